@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only memory of the core: one block that the caller owns. What lives for ever is carved at init, from the
+// front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A component
+// states what it needs by carving from any "memory" with take/mark/rewind: run on an Arena it gets bytes, run on
+// an ArenaSizer (at compile time, if need be) the same code counts them, so the two can never disagree.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <type_traits>
+
+namespace plvo {
+
+// Every take starts on this boundary: a cache line, and enough for any type of the core.
+inline constexpr std::size_t kArenaAlignment = 64;
+
+constexpr std::size_t align_up(std::size_t bytes) {
+  return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+}
+
+// Counts what the same calls would take from an Arena. peak() is what the Arena must hold.
+class ArenaSizer {
+ public:
+  template <typename T>
+  constexpr std::span<T> take(const char* /*who*/, std::size_t count) {
+    used_ += align_up(count * sizeof(T));
+    if (used_ > peak_) peak_ = used_;
+    return {};
+  }
+  constexpr std::size_t mark() const { return used_; }
+  constexpr void rewind(std::size_t mark) { used_ = mark; }
+  constexpr std::size_t used() const { return used_; }
+  constexpr std::size_t peak() const { return peak_; }
+
+ private:
+  std::size_t used_ = 0;
+  std::size_t peak_ = 0;
+};
+
+class Arena {
+ public:
+  // Who took what before seal(): the source of docs/memory.md.
+  struct Record {
+    const char* who = nullptr;
+    std::size_t bytes = 0;
+  };
+  static constexpr std::size_t kMaxRecords = 64;
+
+  Arena() = default;
+  // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
+  explicit Arena(std::span<std::byte> memory);
+
+  // An array of count zero-initialised-by-nobody elements, or an empty span (and exhausted() from then on) when
+  // the block is full. T is trivially destructible: nothing is ever destroyed here, only rewound.
+  template <typename T>
+  std::span<T> take(const char* who, std::size_t count) {
+    static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);
+    std::byte* bytes = take_bytes(who, count * sizeof(T));
+    if (bytes == nullptr) return {};
+    T* first = reinterpret_cast<T*>(bytes);
+    for (std::size_t i = 0; i < count; ++i) new (first + i) T;
+    return {first, count};
+  }
+
+  // Scratch: take after mark(), give back with rewind(). Stages nest like a stack.
+  std::size_t mark() const { return used_; }
+  void rewind(std::size_t mark) { used_ = mark; }
+
+  // Ends the carving of init: later takes are scratch and leave no record.
+  void seal() { sealed_ = true; }
+
+  bool exhausted() const { return exhausted_; }
+  std::size_t used() const { return used_; }
+  std::size_t peak() const { return peak_; }
+  std::size_t capacity() const { return capacity_; }
+  std::span<const Record> records() const { return {records_.data(), record_count_}; }
+
+ private:
+  std::byte* take_bytes(const char* who, std::size_t bytes);
+
+  std::byte* base_ = nullptr;
+  std::size_t capacity_ = 0;
+  std::size_t used_ = 0;
+  std::size_t peak_ = 0;
+  bool exhausted_ = false;
+  bool sealed_ = false;
+  std::array<Record, kMaxRecords> records_{};
+  std::size_t record_count_ = 0;
+};
+
+// Rewinds the memory to where it stood, whichever way a stage is left.
+template <typename Memory>
+class ScratchScope {
+ public:
+  constexpr explicit ScratchScope(Memory& memory) : memory_(memory), mark_(memory.mark()) {}
+  constexpr ~ScratchScope() { memory_.rewind(mark_); }
+  ScratchScope(const ScratchScope&) = delete;
+  ScratchScope& operator=(const ScratchScope&) = delete;
+
+ private:
+  Memory& memory_;
+  std::size_t mark_;
+};
+
+}  // namespace plvo

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Time for whoever must wait or measure. The core itself reads no clock: its results depend on the frames alone.
+#pragma once
+
+#include <cstdint>
+
+namespace plvo {
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual std::int64_t monotonic_ns() const = 0;
+  virtual void sleep_until_ns(std::int64_t monotonic_ns) = 0;
+};
+
+}  // namespace plvo

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// A source of RGB-D frames: a live sensor, a recording, a simulator.
+#pragma once
+
+#include "plvo/base/status.hpp"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/image/frame.hpp"
+
+namespace plvo {
+
+class RgbdCamera {
+ public:
+  virtual ~RgbdCamera() = default;
+
+  // The calibration that the frames of this camera obey, as known after the camera was opened.
+  virtual CameraModel model() const = 0;
+
+  // Waits for the next frame. The views in `frame` stay valid until the next call. What else may come back:
+  //   kDamaged      this frame is lost (the message says why); the next call goes on after it
+  //   kTimeout      nothing came in the camera's time limit; call again
+  //   kUnplugged    the device is gone; call again to wait for it to come back
+  //   kEndOfStream  nothing more will come
+  //   anything else the camera cannot go on
+  // Stamps of frames that come back ok are strictly increasing.
+  virtual Status next(RgbdFrame& frame) = 0;
+};
+
+}  // namespace plvo

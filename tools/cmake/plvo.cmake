@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target of the house shares: the include root, the warnings, and the switches that make the
+# arithmetic the same on every processor.
+
+# Headers sit beside their sources, yet an include reads plvo/<room>/<file>.hpp: a folder of links does it.
+set(PLVO_INCLUDE_ROOT ${CMAKE_BINARY_DIR}/include)
+function(plvo_room path)
+  get_filename_component(room ${path} NAME)
+  file(MAKE_DIRECTORY ${PLVO_INCLUDE_ROOT}/plvo)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${path} ${PLVO_INCLUDE_ROOT}/plvo/${room} SYMBOLIC)
+endfunction()
+
+add_library(plvo_warnings INTERFACE)
+target_compile_options(plvo_warnings INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wnon-virtual-dtor -Werror)
+
+# No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf.
+add_library(plvo_determinism INTERFACE)
+target_compile_options(plvo_determinism INTERFACE -ffp-contract=off)
+target_compile_definitions(plvo_determinism INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
