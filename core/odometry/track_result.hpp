@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What track() says about one frame. Every number in it is finite, whatever the frame was.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "plvo/base/status.hpp"
+#include "plvo/math/se3.hpp"
+
+namespace plvo {
+
+enum class TrackState : std::uint8_t {
+  kInitialising,  // the first usable frame: it defines the world
+  kTracking,      // the pose is new
+  kLost,          // status says why; the pose is the last good one; the next good frame goes on from there
+};
+const char* to_string(TrackState state);
+
+enum class Stage : std::uint8_t { kImage, kPoints, kLines, kMatching, kMotion };
+inline constexpr int kStageCount = 5;
+const char* to_string(Stage stage);
+
+struct FeatureCounts {
+  int detected = 0;        // kept in this frame, after the selection
+  int dropped = 0;         // found, but beyond the capacity
+  int with_depth = 0;      // lifted to 3D
+  int matched = 0;         // to the reference, putative
+  int inliers = 0;         // of the motion
+};
+
+struct TrackResult {
+  TrackState state = TrackState::kInitialising;
+  Status status;
+  std::int64_t stamp_ns = 0;
+  std::int64_t reference_stamp_ns = 0;  // of the frame that this one was matched against
+
+  // Camera to world; the world is the camera frame of the first frame. Covariance of the ⊞-perturbation (position,
+  // then orientation; m and rad) in the axes of the world, accumulated from the motions. While lost, it is that of
+  // the last good pose.
+  Se3 T_world_camera;
+  Matrix6 pose_covariance = Matrix6::Zero();
+
+  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance C_H (23).
+  Se3 T_camera_reference;
+  Matrix6 motion_covariance = Matrix6::Zero();
+
+  FeatureCounts points;
+  FeatureCounts lines;
+  int ransac_iterations = 0;
+  int lm_iterations = 0;
+  double mean_brightness = 0;                          // of the grey image, 0 … 255
+  std::array<std::int64_t, kStageCount> stage_ns{};    // zero without Config::stage_clock
+};
+
+}  // namespace plvo
