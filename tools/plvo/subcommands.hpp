@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of plvo. Each lives in its own file: it adds its options to the application and sets a
+// callback that does the work when the subcommand was chosen and stores how it ended in exit_code:
+//   void add_run(CLI::App& app, int& exit_code);
+// main.cpp calls them all; adding one is a file, a declaration here and a line there.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace plvo::cli {}  // namespace plvo::cli
