@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small dense Levenberg–Marquardt solver for N parameters (N fixed, about 1 … 12), with Nielsen's damping
+// rule (Madsen, Nielsen, Tingleff, "Methods for Non-Linear Least Squares Problems", 2004, ch. 3). The
+// workspace is the object. The solver never sees residuals or the state: a Problem holds its state and offers
+// two functions,
+//
+//   double linearize(const Vector<N>& step, Matrix<N, N>& H, Vector<N>& g);
+//     Makes candidate = state ⊞ step, writes H = Σ Jᵀ Σ⁻¹ J and g = Σ Jᵀ Σ⁻¹ r at the candidate (both
+//     overwritten, H in full), and returns the cost ½ Σ rᵀ Σ⁻¹ r there; J is the derivative of r with respect
+//     to a further ⊞ step. A cost that is not finite says "outside the domain" and is handled as a step that
+//     failed.
+//   void accept();
+//     The candidate becomes the state.
+//
+// One pass over the residuals per iteration thus serves both to judge a step and to take the next; and when
+// the solver stops, hessian() is that of the state it stopped at, so that its inverse is the covariance.
+// Landmarks that the problem eliminates block by block are part of its state: H and g are then the Schur
+// complement on the N parameters.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/math/cholesky.hpp"
+#include "plvo/math/types.hpp"
+
+namespace plvo {
+
+enum class LmStatus : std::uint8_t {
+  kGradientTolerance,  // converged: max |g_i| ≤ gradient_tolerance
+  kStepTolerance,      // converged: max |step_i| ≤ step_tolerance
+  kCostTolerance,      // converged: 0 ≤ cost − new cost ≤ cost_tolerance · cost
+  kMaxIterations,      // iterations = max_iterations; the state is the best one seen
+  kNotFinite,          // the cost, H or g at the start is NaN or infinite; the state is untouched
+  kSingular,  // H + μ D has no Cholesky factor for any μ ≤ max_damping; the state is the best one seen
+  kStalled,   // no step lowers the cost for any μ ≤ max_damping; the state is the best one seen
+};
+
+constexpr bool converged(LmStatus status) { return status <= LmStatus::kCostTolerance; }
+
+struct LmOptions {
+  int max_iterations = 20;            // steps tried: iterations ≤ max_iterations
+  double gradient_tolerance = 1e-12;  // see LmStatus; in the problem's own units
+  double step_tolerance = 1e-9;       // see LmStatus; in the problem's own units
+  double cost_tolerance = 1e-12;      // see LmStatus; relative
+  double initial_damping = 1e-5;  // first μ, relative to D = diag(H); 0 < initial_damping ≤ max_damping
+  double max_damping = 1e10;      // μ ≤ max_damping
+};
+
+struct LmSummary {
+  LmStatus status = LmStatus::kNotFinite;
+  int iterations = 0;       // steps tried, taken or not
+  int accepted = 0;         // steps taken
+  double initial_cost = 0;  // ½ Σ rᵀ Σ⁻¹ r before the first step
+  double final_cost = 0;    // … at the state the problem is left in; never above initial_cost
+};
+
+template <int N>
+class LevenbergMarquardt {
+ public:
+  template <typename Problem>
+  LmSummary solve(Problem& problem, const LmOptions& options = {}) {
+    LmSummary summary;
+    double cost = problem.linearize(Vector<N>::Zero(), H_, g_);
+    summary.initial_cost = summary.final_cost = cost;
+    if (!is_finite(cost) || !H_.allFinite() || !g_.allFinite()) return summary;
+    problem.accept();
+
+    double mu = options.initial_damping;
+    double growth = 2;
+    while (true) {
+      if (g_.cwiseAbs().maxCoeff() <= options.gradient_tolerance)
+        return finish(summary, LmStatus::kGradientTolerance);
+      const bool solved = solve_damped(mu);
+      if (solved && step_.cwiseAbs().maxCoeff() <= options.step_tolerance)
+        return finish(summary, LmStatus::kStepTolerance);
+      if (summary.iterations >= options.max_iterations) return finish(summary, LmStatus::kMaxIterations);
+      ++summary.iterations;
+
+      bool taken = false;
+      if (solved) {
+        const double predicted = 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_);
+        const double new_cost = problem.linearize(step_, H_new_, g_new_);
+        const double gain = (cost - new_cost) / predicted;
+        taken = is_finite(new_cost) && new_cost <= cost && H_new_.allFinite() && g_new_.allFinite();
+        if (taken) {
+          problem.accept();
+          ++summary.accepted;
+          const double decrease = cost - new_cost;
+          const bool small = decrease <= options.cost_tolerance * cost;
+          cost = summary.final_cost = new_cost;
+          H_ = H_new_;
+          g_ = g_new_;
+          if (small) return finish(summary, LmStatus::kCostTolerance);
+          // Nielsen: one smooth rule instead of "halve or double"; a gain ratio of 1 divides μ by 3.
+          const double t = 2 * gain - 1;
+          const double shrink = 1 - t * t * t;
+          mu *= shrink > 1.0 / 3 ? (shrink < 2 ? shrink : 2) : 1.0 / 3;
+          growth = 2;
+        }
+      }
+      if (!taken) {
+        mu *= growth;
+        growth *= 2;
+        if (!(mu <= options.max_damping))
+          return finish(summary, solved ? LmStatus::kStalled : LmStatus::kSingular);
+      }
+    }
+  }
+
+  // H and g at the state where solve() left the problem.
+  const Matrix<N, N>& hessian() const { return H_; }
+  const Vector<N>& gradient() const { return g_; }
+
+ private:
+  static bool is_finite(double x) { return x - x == 0; }
+
+  static LmSummary finish(LmSummary& summary, LmStatus status) {
+    summary.status = status;
+    return summary;
+  }
+
+  // (H + μ D) step = −g with D = diag(H), Marquardt's scaling: the step does not depend on the parameters'
+  // units. An entry of D that is nearly zero is lifted, so that damping also holds a parameter that nothing
+  // observes.
+  bool solve_damped(double mu) {
+    const double floor = 1e-12 * H_.diagonal().cwiseAbs().maxCoeff();
+    damped_ = H_;
+    for (int i = 0; i < N; ++i) {
+      diagonal_[i] = H_(i, i) > floor ? H_(i, i) : floor;
+      damped_(i, i) += mu * diagonal_[i];
+    }
+    if (!cholesky_.factor(damped_)) return false;
+    step_ = -cholesky_.solve(g_);
+    return step_.allFinite();
+  }
+
+  Matrix<N, N> H_, H_new_, damped_;
+  Vector<N> g_, g_new_, diagonal_, step_;
+  Cholesky<N> cholesky_;
+};
+
+}  // namespace plvo
