@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/base/arena.hpp"
 
+#include <string_view>
+
 namespace plvo {
 
 Arena::Arena(std::span<std::byte> memory) {
@@ -11,23 +13,29 @@ Arena::Arena(std::span<std::byte> memory) {
   capacity_ = memory.size() - skip;
 }
 
-std::byte* Arena::take_bytes(const char* who, std::size_t bytes) {
-  const std::size_t needed = align_up(bytes);
-  if (needed > capacity_ - used_) {
+std::byte* Arena::take_bytes(const char* who, std::size_t aligned_bytes) {
+  if (base_ == nullptr || aligned_bytes > capacity_ - used_) {
     exhausted_ = true;
     return nullptr;
   }
   std::byte* start = base_ + used_;
-  used_ += needed;
+  used_ += aligned_bytes;
   if (used_ > peak_) peak_ = used_;
-  if (!sealed_) {
-    // One record a name: a room that takes several arrays is one line of the table.
-    std::size_t i = 0;
-    while (i < record_count_ && records_[i].who != who) ++i;
-    if (i == record_count_ && record_count_ < kMaxRecords) records_[record_count_++].who = who;
-    if (i < kMaxRecords) records_[i].bytes += needed;
-  }
+  if (!sealed_) record(who, aligned_bytes);
   return start;
+}
+
+void Arena::record(const char* who, std::size_t aligned_bytes) {
+  // One record a name: a room that takes several arrays is one line of the table.
+  std::size_t i = 0;
+  while (i < record_count_ && std::string_view(records_[i].who) != who) ++i;
+  if (i == kMaxRecords) {
+    i = kMaxRecords - 1;
+    records_[i].who = "others";
+  } else if (i == record_count_) {
+    records_[record_count_++].who = who;
+  }
+  records_[i].bytes += aligned_bytes;
 }
 
 }  // namespace plvo

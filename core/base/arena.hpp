@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only memory of the core: one block that the caller owns. What lives for ever is carved at init, from the
-// front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A component
-// states what it needs by carving from any "memory" with take/mark/rewind: run on an Arena it gets bytes, run on
-// an ArenaSizer (at compile time, if need be) the same code counts them, so the two can never disagree.
+// The only memory of the core: one block that the caller owns. What lives for ever is carved at init, from
+// the front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A
+// component states what it needs by carving from any "memory" with take/mark/rewind: run on an Arena it gets
+// bytes, run on an ArenaSizer (at compile time, if need be) the same code counts them, so the two can never
+// disagree.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <span>
 #include <type_traits>
@@ -17,8 +19,16 @@ namespace plvo {
 // Every take starts on this boundary: a cache line, and enough for any type of the core.
 inline constexpr std::size_t kArenaAlignment = 64;
 
+// Saturates at the largest multiple of the alignment, which no block ever holds.
 constexpr std::size_t align_up(std::size_t bytes) {
-  return (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() / kArenaAlignment * kArenaAlignment;
+  return bytes > kMost ? kMost : (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+}
+
+// Bytes of an array of `count` elements, rounded up to the alignment; saturates instead of wrapping around.
+constexpr std::size_t array_bytes(std::size_t count, std::size_t element_bytes) {
+  const std::size_t most = std::numeric_limits<std::size_t>::max();
+  return align_up(count > most / element_bytes ? most : count * element_bytes);
 }
 
 // Counts what the same calls would take from an Arena. peak() is what the Arena must hold.
@@ -26,7 +36,9 @@ class ArenaSizer {
  public:
   template <typename T>
   constexpr std::span<T> take(const char* /*who*/, std::size_t count) {
-    used_ += align_up(count * sizeof(T));
+    const std::size_t needed = array_bytes(count, sizeof(T));
+    const std::size_t room = align_up(std::numeric_limits<std::size_t>::max()) - used_;
+    used_ += needed < room ? needed : room;
     if (used_ > peak_) peak_ = used_;
     return {};
   }
@@ -42,7 +54,8 @@ class ArenaSizer {
 
 class Arena {
  public:
-  // Who took what before seal(): the source of docs/memory.md.
+  // Who took what before seal(): the source of docs/memory.md. Names are compared as text; those beyond the
+  // last free record share one named "others".
   struct Record {
     const char* who = nullptr;
     std::size_t bytes = 0;
@@ -53,12 +66,12 @@ class Arena {
   // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
   explicit Arena(std::span<std::byte> memory);
 
-  // An array of count zero-initialised-by-nobody elements, or an empty span (and exhausted() from then on) when
-  // the block is full. T is trivially destructible: nothing is ever destroyed here, only rewound.
+  // An array of count zero-initialised-by-nobody elements, or an empty span (and exhausted() from then on)
+  // when the block is full. T is trivially destructible: nothing is ever destroyed here, only rewound.
   template <typename T>
   std::span<T> take(const char* who, std::size_t count) {
     static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);
-    std::byte* bytes = take_bytes(who, count * sizeof(T));
+    std::byte* bytes = take_bytes(who, array_bytes(count, sizeof(T)));
     if (bytes == nullptr) return {};
     T* first = reinterpret_cast<T*>(bytes);
     for (std::size_t i = 0; i < count; ++i) new (first + i) T;
@@ -79,7 +92,9 @@ class Arena {
   std::span<const Record> records() const { return {records_.data(), record_count_}; }
 
  private:
-  std::byte* take_bytes(const char* who, std::size_t bytes);
+  // aligned_bytes is a multiple of kArenaAlignment.
+  std::byte* take_bytes(const char* who, std::size_t aligned_bytes);
+  void record(const char* who, std::size_t aligned_bytes);
 
   std::byte* base_ = nullptr;
   std::size_t capacity_ = 0;

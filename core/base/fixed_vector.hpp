@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A vector over storage that somebody else owns (a span from the arena, or a std::array). It never grows: a
-// push_back into a full vector is refused and counted, so that capacity is a reported policy, not an accident.
+// push_back into a full vector is refused and counted, so that capacity is a reported policy, not an
+// accident.
 #pragma once
 
 #include <cassert>

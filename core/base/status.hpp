@@ -36,7 +36,7 @@ class [[nodiscard]] Status {
   static constexpr std::size_t kCapacity = 248;
 
   constexpr Status() = default;
-  // Text beyond the capacity is cut off, never written past the end.
+  // Text beyond the capacity is cut off between two characters of UTF-8, never written past the end.
   constexpr Status(StatusCode code, std::string_view message) : code_(code) { append(message); }
 
   constexpr bool ok() const { return code_ == StatusCode::kOk; }
@@ -45,10 +45,13 @@ class [[nodiscard]] Status {
 
   // Append to the message; they return *this so that a message can be built in one expression.
   constexpr Status& append(std::string_view text) {
-    for (char c : text) {
-      if (length_ + 1 >= kCapacity) break;
-      message_[length_++] = c;
+    std::size_t count = text.size();
+    const std::size_t room = kCapacity - 1 - length_;
+    if (count > room) {
+      count = room;
+      while (count > 0 && (static_cast<unsigned char>(text[count]) & 0xc0U) == 0x80U) --count;
     }
+    for (std::size_t i = 0; i < count; ++i) message_[length_++] = text[i];
     message_[length_] = '\0';
     return *this;
   }

@@ -64,8 +64,7 @@ Vector2 distort(const Distortion& lens, const Vector2& ideal, Matrix2* J_distort
 
 Vector2 distort_pixel(const CameraModel& camera, const Vector2& ideal_px) {
   const Pinhole& k = camera.pinhole;
-  const Vector2 d =
-      distort(camera.distortion, {(ideal_px.x() - k.cx) / k.fx, (ideal_px.y() - k.cy) / k.fy});
+  const Vector2 d = distort(camera.distortion, {(ideal_px.x() - k.cx) / k.fx, (ideal_px.y() - k.cy) / k.fy});
   return {d.x() * k.fx + k.cx, d.y() * k.fy + k.cy};
 }
 

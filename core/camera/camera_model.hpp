@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera: a pinhole and a Brown–Conrady lens (k1 k2 p1 p2 k3, in OpenCV's and ROS's order, "plumb_bob").
-// Pixel coordinates put (0, 0) at the centre of the top-left pixel; the optical frame is x right, y down, z forward.
+// Pixel coordinates put (0, 0) at the centre of the top-left pixel; the optical frame is x right, y down, z
+// forward.
 #pragma once
 
 #include "plvo/base/status.hpp"
@@ -23,8 +24,8 @@ struct CameraModel {
   Pinhole pinhole;
   Distortion distortion;
 
-  // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, or a lens
-  // that folds back on itself inside the image.
+  // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, or
+  // a lens that folds back on itself inside the image.
   Status validate() const;
 };
 
@@ -40,8 +41,8 @@ Vector2 distort(const Distortion& distortion, const Vector2& ideal, Matrix2* J_d
 // The pixel at which the lens images what an ideal pinhole would image at (u, v).
 Vector2 distort_pixel(const CameraModel& camera, const Vector2& ideal_px);
 
-// Inverse of distort_pixel, by Newton's method with a fixed number of steps (8): exact to 1e-9 px within any lens
-// that validate() accepts.
+// Inverse of distort_pixel, by Newton's method with a fixed number of steps (8): exact to 1e-9 px within any
+// lens that validate() accepts.
 Vector2 undistort_pixel(const CameraModel& camera, const Vector2& distorted_px);
 
 }  // namespace plvo

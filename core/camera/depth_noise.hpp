@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth noise, equation (2): σ_d = c1 d² + c2 d + c3, d in metres. The paper's coefficients go negative below 0.34 m,
-// so σ_d is kept above a floor.
+// Depth noise, equation (2): σ_d = c1 d² + c2 d + c3, d in metres. The paper's coefficients go negative below
+// 0.34 m, so σ_d is kept above a floor.
 #pragma once
 
 namespace plvo {
@@ -8,8 +8,8 @@ namespace plvo {
 struct DepthNoise {
   double c1 = 2.73e-3;  // 1/m
   double c2 = 7.4e-4;
-  double c3 = -5.8e-4;     // m
-  double floor_m = 5e-4;   // smallest σ_d
+  double c3 = -5.8e-4;    // m
+  double floor_m = 5e-4;  // smallest σ_d
 
   double sigma(double depth_m) const {
     const double sigma_d = (c1 * depth_m + c2) * depth_m + c3;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What points, lines and motion share: a 3D point and a 3D line as measured in one frame, each with its covariance.
+// What points, lines and motion share: a 3D point and a 3D line as measured in one frame, each with its
+// covariance.
 #pragma once
 
 #include "plvo/camera/camera_model.hpp"
@@ -14,7 +15,8 @@ struct Point3d {
   Matrix3 Sigma = Matrix3::Identity();
 };
 
-// The segment between two points A and B, and the covariance (10) of the stacked 6-vector [A; B]; camera frame, metres.
+// The segment between two points A and B, and the covariance (10) of the stacked 6-vector [A; B]; camera
+// frame, metres.
 struct Line3d {
   Vector3 a = Vector3::Zero();
   Vector3 b = Vector3::Zero();

@@ -41,8 +41,8 @@ Vector3 rotation_log(const Matrix3& R) {
 }
 
 Matrix3 renormalise(const Matrix3& R) {
-  // Newton's iteration for the polar factor, R ← (R + R^-T)/2, converges quadratically: one step squares an error
-  // that rounding keeps near 1e-15.
+  // Newton's iteration for the polar factor, R ← (R + R^-T)/2, converges quadratically: one step squares an
+  // error that rounding keeps near 1e-15.
   return 0.5 * (R + Matrix3(R.inverse()).transpose());
 }
 

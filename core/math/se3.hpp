@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid motions. T_a_b maps coordinates in frame b to coordinates in frame a: p_a = T_a_b * p_b. A small motion
-// is a 6-vector δ = (v, ω), translation first, then rotation (metres, radians):
-// T ⊞ δ = (Exp(ω) R, t + v). The two parts are not coupled, so the covariance of δ reads directly as that of the
-// position and of the orientation, both in the axes of frame a.
+// Rigid motions. T_a_b maps coordinates in frame b to coordinates in frame a: p_a = T_a_b * p_b. A small
+// motion is a 6-vector δ = (v, ω), translation first, then rotation (metres, radians): T ⊞ δ = (Exp(ω) R, t +
+// v). The two parts are not coupled, so the covariance of δ reads directly as that of the position and of the
+// orientation, both in the axes of frame a.
 #pragma once
 
 #include "plvo/math/types.hpp"
@@ -21,8 +21,8 @@ Matrix3 renormalise(const Matrix3& R);
 struct Quaternion {  // Hamilton, unit
   double x = 0, y = 0, z = 0, w = 1;
 };
-Quaternion to_quaternion(const Matrix3& R);      // w ≥ 0
-Matrix3 to_rotation(const Quaternion& q);        // normalises q first; the zero quaternion gives identity
+Quaternion to_quaternion(const Matrix3& R);  // w ≥ 0
+Matrix3 to_rotation(const Quaternion& q);    // normalises q first; the zero quaternion gives identity
 
 struct Se3 {
   Matrix3 R = Matrix3::Identity();

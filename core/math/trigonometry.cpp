@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Argument reduction in two parts (Cody & Waite, "Software Manual for the Elementary Functions", 1980), then Taylor
-// polynomials on an interval small enough that the first neglected term is below one unit in the last place.
+// Argument reduction in two parts (Cody & Waite, "Software Manual for the Elementary Functions", 1980), then
+// Taylor polynomials on an interval small enough that the first neglected term is below one unit in the last
+// place.
 #include "plvo/math/trigonometry.hpp"
 
 #include <cmath>
@@ -15,6 +16,12 @@ namespace {
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00;
 constexpr double kHalfPiMiddle = 6.07710050630396597660e-11;
 constexpr double kHalfPiLow = 2.02226624879595063154e-21;
+
+// Beyond it the reduction would lose digits, and at last the conversion to an integer would not be defined.
+constexpr double kLargestAngle = 1e6;
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+bool in_range(double radians) { return radians >= -kLargestAngle && radians <= kLargestAngle; }
 
 double sin_polynomial(double x) {  // |x| ≤ π/4
   const double z = x * x;
@@ -89,6 +96,7 @@ double atan_positive(double x) {  // x ≥ 0, finite
 double sqrt(double x) { return std::sqrt(x); }
 
 double sin(double radians) {
+  if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
   switch (r.quadrant) {
     case 0: return sin_polynomial(r.x);
@@ -99,6 +107,7 @@ double sin(double radians) {
 }
 
 double cos(double radians) {
+  if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
   switch (r.quadrant) {
     case 0: return cos_polynomial(r.x);
@@ -125,6 +134,7 @@ double acos(double x) {
 }
 
 double exp(double x) {
+  if (x != x) return kNoNumber;
   if (x > 709.0) return std::numeric_limits<double>::infinity();
   if (x < -745.0) return 0;
   // x = k ln 2 + r, |r| ≤ ln 2 / 2; exp r by its series, then scaled by 2^k.
@@ -143,7 +153,9 @@ double exp(double x) {
 }
 
 double log(double x) {
-  if (x <= 0) return -std::numeric_limits<double>::infinity();
+  if (x == 0) return -std::numeric_limits<double>::infinity();
+  if (!(x > 0)) return kNoNumber;
+  if (x > std::numeric_limits<double>::max()) return x;
   int exponent = 0;
   if (x < 2.2250738585072014e-308) {  // subnormal
     x *= 18014398509481984.0;         // 2^54
@@ -161,7 +173,8 @@ double log(double x) {
   const double z = s * s;
   double sum = 0;
   for (int k = 21; k >= 3; k -= 2) sum = 1.0 / k + z * sum;
-  return exponent * 6.93147180369123816490e-01 + (2 * s * (1 + z * sum) + exponent * 1.90821492927058770002e-10);
+  return exponent * 6.93147180369123816490e-01 +
+         (2 * s * (1 + z * sum) + exponent * 1.90821492927058770002e-10);
 }
 
 }  // namespace plvo

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// sin, cos, atan2, acos, log and exp from + − × ÷ and sqrt alone. The C library's differ in the last bit from one
-// machine to the next; these do not. Accurate to a few units in the last place over the stated ranges.
+// sin, cos, atan2, acos, log and exp from + − × ÷ and sqrt alone. The C library's differ in the last bit from
+// one machine to the next; these do not. Accurate to a few units in the last place over the stated ranges.
 #pragma once
 
 namespace plvo {
 
-double sin(double radians);                // |radians| ≤ 1e6
-double cos(double radians);                // |radians| ≤ 1e6
-double atan2(double y, double x);          // (−π, π]; atan2(0, 0) = 0
-double acos(double x);                     // clamps x to [−1, 1]
-double exp(double x);                      // 0 below −745, +inf above 709
-double log(double x);                      // x > 0; −inf at 0
-double sqrt(double x);                     // the one function that IEEE 754 rounds exactly
+double sin(double radians);        // |radians| ≤ 1e6
+double cos(double radians);        // |radians| ≤ 1e6
+double atan2(double y, double x);  // (−π, π]; atan2(0, 0) = 0
+double acos(double x);             // clamps x to [−1, 1]
+double exp(double x);              // 0 below −745, +inf above 709
+double log(double x);              // x ≥ 0; −inf at 0
+double sqrt(double x);             // the one function that IEEE 754 rounds exactly
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
 }  // namespace plvo

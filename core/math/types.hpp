@@ -8,7 +8,8 @@
 namespace plvo {
 
 template <int Rows, int Cols>
-using Matrix = Eigen::Matrix<double, Rows, Cols, Eigen::DontAlign | (Rows == 1 && Cols != 1 ? Eigen::RowMajor : 0)>;
+using Matrix =
+    Eigen::Matrix<double, Rows, Cols, Eigen::DontAlign | (Rows == 1 && Cols != 1 ? Eigen::RowMajor : 0)>;
 template <int Rows>
 using Vector = Matrix<Rows, 1>;
 
