@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time for whoever must wait or measure. The core itself reads no clock: its results depend on the frames alone.
+// Time for whoever must wait or measure. The core itself reads no clock: its results depend on the frames
+// alone.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One RGB-D frame. The views are borrowed: they must stay valid until track() returns and are not kept after it.
+// One RGB-D frame. The views are borrowed: they must stay valid until track() returns and are not kept after
+// it.
 #pragma once
 
 #include <cstdint>

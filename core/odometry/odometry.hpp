@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The front door: frames in, poses with covariances out. After Lu & Song, "Robust RGB-D Odometry Using Point and Line
-// Features" (ICCV 2015), Figure 1.
+// The front door: frames in, poses with covariances out. After Lu & Song, "Robust RGB-D Odometry Using Point
+// and Line Features" (ICCV 2015), Figure 1.
 //
 //   alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
 //   plvo::Odometry odometry;
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
 //   plvo::TrackResult result = odometry.track(frame);
 //
-// Memory: init carves the caller's block once; nothing is taken or returned afterwards. Threads: an Odometry is used
-// by one thread at a time. Determinism: the same frames and config give the same bits on every supported machine.
+// Memory: init carves the caller's block once; nothing is taken or returned afterwards. Threads: an Odometry
+// is used by one thread at a time. Determinism: the same frames and config give the same bits on every
+// supported machine.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +26,9 @@
 
 namespace plvo {
 
-// A look at what the last frame was made of, for drawing: pixels of the undistorted image. Valid until the next call
-// of track(). `matches` index `keypoints` (current) and `reference_keypoints`; the flag of the same index says inlier.
+// A look at what the last frame was made of, for drawing: pixels of the undistorted image. Valid until the
+// next call of track(). `matches` index `keypoints` (current) and `reference_keypoints`; the flag of the same
+// index says inlier.
 struct KeypointView {
   float u = 0, v = 0;  // px
   float size_px = 0;   // diameter of what was described
@@ -50,8 +52,8 @@ class Odometry {
   Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config = {},
               const Limits& limits = Limits::vga());
 
-  // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null views, or
-  // not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
+  // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
+  // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
   TrackResult track(const RgbdFrame& frame);
 
   // Who took what of the block, and the high-water mark of the scratch behind it.

@@ -22,11 +22,11 @@ inline constexpr int kStageCount = 5;
 const char* to_string(Stage stage);
 
 struct FeatureCounts {
-  int detected = 0;        // kept in this frame, after the selection
-  int dropped = 0;         // found, but beyond the capacity
-  int with_depth = 0;      // lifted to 3D
-  int matched = 0;         // to the reference, putative
-  int inliers = 0;         // of the motion
+  int detected = 0;    // kept in this frame, after the selection
+  int dropped = 0;     // found, but beyond the capacity
+  int with_depth = 0;  // lifted to 3D
+  int matched = 0;     // to the reference, putative
+  int inliers = 0;     // of the motion
 };
 
 struct TrackResult {
@@ -35,13 +35,14 @@ struct TrackResult {
   std::int64_t stamp_ns = 0;
   std::int64_t reference_stamp_ns = 0;  // of the frame that this one was matched against
 
-  // Camera to world; the world is the camera frame of the first frame. Covariance of the ⊞-perturbation (position,
-  // then orientation; m and rad) in the axes of the world, accumulated from the motions. While lost, it is that of
-  // the last good pose.
+  // Camera to world; the world is the camera frame of the first frame. Covariance of the ⊞-perturbation
+  // (position, then orientation; m and rad) in the axes of the world, accumulated from the motions. While
+  // lost, it is that of the last good pose.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
 
-  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance C_H (23).
+  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance C_H
+  // (23).
   Se3 T_camera_reference;
   Matrix6 motion_covariance = Matrix6::Zero();
 
@@ -49,8 +50,8 @@ struct TrackResult {
   FeatureCounts lines;
   int ransac_iterations = 0;
   int lm_iterations = 0;
-  double mean_brightness = 0;                          // of the grey image, 0 … 255
-  std::array<std::int64_t, kStageCount> stage_ns{};    // zero without Config::stage_clock
+  double mean_brightness = 0;                        // of the grey image, 0 … 255
+  std::array<std::int64_t, kStageCount> stage_ns{};  // zero without Config::stage_clock
 };
 
 }  // namespace plvo

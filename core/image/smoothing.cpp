@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/image/smoothing.hpp"
+
+#include <algorithm>
+
+namespace plvo {
+namespace {
+
+// Vertical pass first, into one row of 16-bit sums padded by `Pad` pixels left and right; then the horizontal
+// pass over that row. Both inner loops are straight lines over contiguous memory, which compilers vectorise
+// by themselves; integers make the result the same however they do it.
+void repeat_borders(std::uint16_t* row, int width, int pad) {
+  for (int i = 1; i <= pad; ++i) {
+    row[-i] = row[0];
+    row[width - 1 + i] = row[width - 1];
+  }
+}
+
+const std::uint8_t* clamped_row(GrayView image, int y) {
+  return image.row(std::clamp(y, 0, image.height - 1));
+}
+
+}  // namespace
+
+void smooth_binomial7(GrayView in, ImageView<std::uint8_t> out, std::span<std::uint16_t> row_sums) {
+  const int width = in.width;
+  std::uint16_t* sums = row_sums.data() + 8;
+  for (int y = 0; y < in.height; ++y) {
+    const std::uint8_t* r0 = clamped_row(in, y - 3);
+    const std::uint8_t* r1 = clamped_row(in, y - 2);
+    const std::uint8_t* r2 = clamped_row(in, y - 1);
+    const std::uint8_t* r3 = clamped_row(in, y);
+    const std::uint8_t* r4 = clamped_row(in, y + 1);
+    const std::uint8_t* r5 = clamped_row(in, y + 2);
+    const std::uint8_t* r6 = clamped_row(in, y + 3);
+    for (int x = 0; x < width; ++x) {
+      sums[x] =
+          static_cast<std::uint16_t>(r0[x] + r6[x] + 6 * (r1[x] + r5[x]) + 15 * (r2[x] + r4[x]) + 20 * r3[x]);
+    }
+    repeat_borders(sums, width, 3);
+    std::uint8_t* line = out.row(y);
+    for (int x = 0; x < width; ++x) {
+      const std::uint16_t* s = sums + x;
+      const std::uint32_t sum = s[-3] + s[3] + 6u * (static_cast<std::uint32_t>(s[-2]) + s[2]) +
+                                15u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 20u * s[0];
+      line[x] = static_cast<std::uint8_t>((sum + 2048) >> 12);
+    }
+  }
+}
+
+void halve_binomial5(GrayView in, ImageView<std::uint8_t> out, std::span<std::uint16_t> row_sums) {
+  const int width = in.width;
+  std::uint16_t* sums = row_sums.data() + 8;
+  for (int y = 0; y < out.height; ++y) {
+    const std::uint8_t* r0 = clamped_row(in, 2 * y - 2);
+    const std::uint8_t* r1 = clamped_row(in, 2 * y - 1);
+    const std::uint8_t* r2 = clamped_row(in, 2 * y);
+    const std::uint8_t* r3 = clamped_row(in, 2 * y + 1);
+    const std::uint8_t* r4 = clamped_row(in, 2 * y + 2);
+    for (int x = 0; x < width; ++x)
+      sums[x] = static_cast<std::uint16_t>(r0[x] + r4[x] + 4 * (r1[x] + r3[x]) + 6 * r2[x]);
+    repeat_borders(sums, width, 3);
+    std::uint8_t* line = out.row(y);
+    for (int x = 0; x < out.width; ++x) {
+      const std::uint16_t* s = sums + 2 * x;
+      const std::uint32_t sum = s[-2] + s[2] + 4u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 6u * s[0];
+      line[x] = static_cast<std::uint8_t>((sum + 128) >> 8);
+    }
+  }
+}
+
+}  // namespace plvo

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/points/alignment.hpp"
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cstdint>
+
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kRadius = kPatchRadius - 1;
+constexpr int kSide = 2 * kRadius + 1;
+constexpr int kPixels = kSide * kSide;
+constexpr int kFractionBits = 5;  // of the bilinear weights: positions are read on a grid of 1/32 px
+
+// The four regressors of the template, in integers: 2·∂T/∂x, 2·∂T/∂y, T, 1; and their normal equations.
+struct Template {
+  std::array<std::int16_t, kPixels> gx, gy, value;
+  Matrix4 normal;
+};
+
+Template make_template(const Patch& patch) {
+  Template t;
+  std::array<std::int32_t, 10> sums{};
+  std::size_t i = 0;
+  for (int y = 1; y <= kSide; ++y) {
+    const std::uint8_t* row = patch.data() + y * kPatchSide + 1;
+    for (int x = 0; x < kSide; ++x, ++i) {
+      const std::int32_t gx = row[x + 1] - row[x - 1];
+      const std::int32_t gy = row[x + kPatchSide] - row[x - kPatchSide];
+      const std::int32_t value = row[x];
+      t.gx[i] = static_cast<std::int16_t>(gx);
+      t.gy[i] = static_cast<std::int16_t>(gy);
+      t.value[i] = static_cast<std::int16_t>(value);
+      sums[0] += gx * gx;
+      sums[1] += gx * gy;
+      sums[2] += gx * value;
+      sums[3] += gx;
+      sums[4] += gy * gy;
+      sums[5] += gy * value;
+      sums[6] += gy;
+      sums[7] += value * value;
+      sums[8] += value;
+    }
+  }
+  sums[9] = kPixels;
+  constexpr int kRow[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) t.normal(r, c) = sums[static_cast<std::size_t>(kRow[r][c])];
+  return t;
+}
+
+struct Moments {
+  Vector4 with_template = Vector4::Zero();  // Σ I·(2Tx, 2Ty, T, 1)
+  double squared = 0;                       // Σ I²
+};
+
+// (x, y): the position of the patch's centre, in 1/32 px; the window must lie inside the image.
+Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_t y) {
+  constexpr std::int32_t kOne = 1 << kFractionBits;
+  const std::int32_t fx = x & (kOne - 1);
+  const std::int32_t fy = y & (kOne - 1);
+  const std::int32_t w00 = (kOne - fx) * (kOne - fy);
+  const std::int32_t w10 = fx * (kOne - fy);
+  const std::int32_t w01 = (kOne - fx) * fy;
+  const std::int32_t w11 = fx * fy;
+  const int x0 = (x >> kFractionBits) - kRadius;
+  const int y0 = (y >> kFractionBits) - kRadius;
+  // Intensities keep four fractional bits: at most 4080, so every sum of 81 products stays below 2^31.
+  constexpr int kDropped = 2 * kFractionBits - 4;
+  std::array<std::int32_t, kPixels> values;
+  std::size_t i = 0;
+  for (int dy = 0; dy < kSide; ++dy) {
+    const std::uint8_t* top = image.data + (y0 + dy) * image.stride + x0;
+    const std::uint8_t* bottom = top + image.stride;
+    for (int dx = 0; dx < kSide; ++dx, ++i) {
+      const std::int32_t sum = w00 * top[dx] + w10 * top[dx + 1] + w01 * bottom[dx] + w11 * bottom[dx + 1];
+      values[i] = (sum + (1 << (kDropped - 1))) >> kDropped;
+    }
+  }
+  std::int32_t with_gx = 0;
+  std::int32_t with_gy = 0;
+  std::int32_t with_value = 0;
+  std::int32_t sum = 0;
+  std::int64_t squared = 0;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    with_gx += values[k] * t.gx[k];
+    with_gy += values[k] * t.gy[k];
+    with_value += values[k] * t.value[k];
+    sum += values[k];
+    squared += values[k] * values[k];
+  }
+  constexpr double kUnit = 1.0 / 16;
+  Moments moments;
+  moments.with_template << kUnit * with_gx, kUnit * with_gy, kUnit * with_value, kUnit * sum;
+  moments.squared = kUnit * kUnit * static_cast<double>(squared);
+  return moments;
+}
+
+}  // namespace
+
+Alignment align_patch(const Patch& patch, GrayView image, double start_x, double start_y,
+                      const AlignmentOptions& options) {
+  Alignment result;
+  const Template t = make_template(patch);
+  const Eigen::LDLT<Matrix4> factor(t.normal);
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1)) return result;
+
+  result.x = start_x;
+  result.y = start_y;
+  const double max_shift_squared = options.max_shift_px * options.max_shift_px;
+  bool converged = false;
+  while (!converged && result.iterations < options.max_iterations) {
+    // Floor, then the read touches one more pixel to the right and below.
+    if (!(result.x >= kRadius + 1 && result.y >= kRadius + 1 && result.x < image.width - kRadius - 2 &&
+          result.y < image.height - kRadius - 2))
+      return result;
+    constexpr double kOne = 1 << kFractionBits;
+    const auto x = static_cast<std::int32_t>(result.x * kOne + 0.5);
+    const auto y = static_cast<std::int32_t>(result.y * kOne + 0.5);
+    const Moments moments = correlate(t, image, x, y);
+    const Vector4 solution = factor.solve(moments.with_template);
+    ++result.iterations;
+    const double gain = solution[2];
+    if (!(gain > 0.2 && gain < 5)) return result;
+    // The regressors are twice the gradients.
+    const double step_x = 2 * solution[0] / gain;
+    const double step_y = 2 * solution[1] / gain;
+    result.x = x / kOne - step_x;
+    result.y = y / kOne - step_y;
+    const double dx = result.x - start_x;
+    const double dy = result.y - start_y;
+    if (!(dx * dx + dy * dy <= max_shift_squared)) return result;
+    converged = step_x * step_x + step_y * step_y < options.tolerance_px * options.tolerance_px;
+    if (!converged) continue;
+
+    const double residual = moments.squared - solution.dot(moments.with_template);
+    const double mean = t.normal(2, 3) / kPixels;
+    const double variance = t.normal(2, 2) / kPixels - mean * mean;
+    const double residual_variance = (residual > 0 ? residual : 0) / (kPixels - 4) / (gain * gain);
+    if (!(residual_variance <= options.max_residual * options.max_residual * variance)) return result;
+    // Covariance of (c_x, c_y): the noise of one pixel through the gradients' normal equations.
+    const double half_sum = 0.125 * (t.normal(0, 0) + t.normal(1, 1));
+    const double half_difference = 0.125 * (t.normal(0, 0) - t.normal(1, 1));
+    const double cross = 0.25 * t.normal(0, 1);
+    const double weakest = half_sum - sqrt(half_difference * half_difference + cross * cross);
+    result.sigma_px = sqrt(residual_variance / (weakest > 1 ? weakest : 1));
+    result.ok = true;
+  }
+  return result;
+}
+
+}  // namespace plvo

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sub-pixel registration of a matched keypoint: where in the current image is the very patch that the
+// reference saw? Detection places a keypoint to about half a pixel in each frame by itself; registering the
+// patch of one frame in the other measures their difference, which is all that the motion needs, several
+// times better. Inverse composition (Baker & Matthews, "Lucas-Kanade 20 years on", IJCV 2004) with the gain
+// and the offset of the light as unknowns, as one linear regression a step: I(x + d) ≈ a T(x) + b + ∇T · c, d
+// ← d − c / a.
+#pragma once
+
+#include "plvo/image/image_view.hpp"
+#include "plvo/points/keypoint.hpp"
+
+namespace plvo {
+
+struct AlignmentOptions {
+  int max_iterations = 8;
+  double tolerance_px = 0.02;  // stop when |step| < this
+  double max_shift_px = 3;     // from the start; a patch that runs farther is another one
+  double max_residual = 0.35;  // SD of the residual / SD of the patch, after gain and offset
+};
+
+struct Alignment {
+  bool ok = false;
+  double x = 0, y = 0;  // pixels of the level
+  double sigma_px =
+      0;  // SD of the position along its worse axis, from the residual and the patch's gradients
+  int iterations = 0;
+};
+
+// patch: cut around whole pixel (px, py) of the reference's level. (start_x, start_y): where that pixel is
+// expected on the same level of the current image. Registers the inner 9×9 pixels.
+Alignment align_patch(const Patch& patch, GrayView image, double start_x, double start_y,
+                      const AlignmentOptions& options);
+
+}  // namespace plvo

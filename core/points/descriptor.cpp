@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/points/descriptor.hpp"
+
+#include "plvo/base/random.hpp"
+
+namespace plvo {
+namespace {
+
+struct PixelPair {
+  std::int8_t ax, ay, bx, by;
+};
+
+// A near-Gaussian integer of SD 6 within ±kDescriptorRadius: the sum of six uniform ones on 0 … 8 has
+// variance 40, less what the bound cuts off.
+constexpr std::int8_t draw_offset(Random& random) {
+  for (;;) {
+    int sum = -24;
+    for (int i = 0; i < 6; ++i) sum += static_cast<int>(random.below(9));
+    if (sum >= -kDescriptorRadius && sum <= kDescriptorRadius) return static_cast<std::int8_t>(sum);
+  }
+}
+
+constexpr std::array<PixelPair, 256> make_pattern() {
+  std::array<PixelPair, 256> pattern{};
+  Random random(2015);
+  for (PixelPair& pair : pattern) {
+    // A comparison of neighbours says little but noise: at least three pixels apart.
+    int distance_squared = 0;
+    do {
+      pair = {draw_offset(random), draw_offset(random), draw_offset(random), draw_offset(random)};
+      const int dx = pair.ax - pair.bx;
+      const int dy = pair.ay - pair.by;
+      distance_squared = dx * dx + dy * dy;
+    } while (distance_squared < 9);
+  }
+  return pattern;
+}
+
+constexpr std::array<PixelPair, 256> kPattern = make_pattern();
+
+int count_bits(std::uint64_t x) {
+  // Parallel sums of neighbouring fields; no processor instruction that an older board lacks.
+  x -= (x >> 1) & 0x5555555555555555ULL;
+  x = (x & 0x3333333333333333ULL) + ((x >> 2) & 0x3333333333333333ULL);
+  x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fULL;
+  return static_cast<int>((x * 0x0101010101010101ULL) >> 56);
+}
+
+}  // namespace
+
+Descriptor describe(GrayView smoothed, int x, int y) {
+  const std::uint8_t* centre = smoothed.row(y) + x;
+  Descriptor descriptor{};
+  for (std::size_t i = 0; i < kPattern.size(); ++i) {
+    const PixelPair& pair = kPattern[i];
+    const std::uint8_t a = centre[pair.ay * smoothed.stride + pair.ax];
+    const std::uint8_t b = centre[pair.by * smoothed.stride + pair.bx];
+    descriptor[i / 64] |= static_cast<std::uint64_t>(a < b) << (i % 64);
+  }
+  return descriptor;
+}
+
+int hamming_distance(const Descriptor& a, const Descriptor& b) {
+  return count_bits(a[0] ^ b[0]) + count_bits(a[1] ^ b[1]) + count_bits(a[2] ^ b[2]) +
+         count_bits(a[3] ^ b[3]);
+}
+
+Patch cut_patch(GrayView image, int x, int y) {
+  Patch patch;
+  std::size_t i = 0;
+  for (int dy = -kPatchRadius; dy <= kPatchRadius; ++dy)
+    for (int dx = -kPatchRadius; dx <= kPatchRadius; ++dx) patch[i++] = image.at(x + dx, y + dy);
+  return patch;
+}
+
+}  // namespace plvo

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/points/detector.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "plvo/math/trigonometry.hpp"
+#include "plvo/points/fast.hpp"
+
+namespace plvo {
+namespace {
+
+using Candidate = DetectionCandidate;
+constexpr int kTileSide = DetectionTile::kSide;
+
+struct Cell {
+  int x0, y0, x1, y1;  // pixels of its level, half open
+};
+
+// Threshold to start from: an eighth of the range of grey levels in the cell.
+int contrast_threshold(GrayView image, const Cell& cell) {
+  int low = 255;
+  int high = 0;
+  for (int y = cell.y0; y < cell.y1; y += 2) {
+    const std::uint8_t* row = image.row(y);
+    for (int x = cell.x0; x < cell.x1; x += 2) {
+      low = std::min<int>(low, row[x]);
+      high = std::max<int>(high, row[x]);
+    }
+  }
+  return (high - low) / 8;
+}
+
+// The strengths of the pixels of one cell (and a rim of one pixel) that pass the segment test; 0 elsewhere.
+class Tile {
+ public:
+  explicit Tile(DetectionTile& storage) : strengths_(storage.strengths), mask_(storage.mask) {}
+
+  // Number of pixels that passed.
+  int fill(GrayView image, const Cell& cell, int threshold) {
+    cell_ = cell;
+    width_ = cell.x1 - cell.x0 + 2;
+    int count = 0;
+    for (int y = cell.y0 - 1; y <= cell.y1; ++y) {
+      float* line = strengths_.data() + (y - cell.y0 + 1) * kTileSide;
+      std::fill(line, line + width_, 0.0F);
+      const std::uint8_t* row = image.row(y) + cell.x0 - 1;
+      segment_pretest_row(row, image.stride, width_, threshold, mask_.data());
+      for (int i = 0; i < width_; ++i) {
+        if (mask_[static_cast<std::size_t>(i)] == 0 || !segment_test(row + i, image.stride, threshold))
+          continue;
+        line[i] = static_cast<float>(corner_strength(image, cell.x0 - 1 + i, y));
+        ++count;
+      }
+    }
+    return count;
+  }
+
+  // The larger of two equal neighbours is the one that comes first: the suppression has a total order.
+  bool is_maximum(int x, int y) const {
+    const float* s = strengths_.data() + (y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1);
+    const float centre = *s;
+    return centre > 0 && s[-kTileSide - 1] < centre && s[-kTileSide] < centre && s[-kTileSide + 1] < centre &&
+           s[-1] < centre && s[1] <= centre && s[kTileSide - 1] <= centre && s[kTileSide] <= centre &&
+           s[kTileSide + 1] <= centre;
+  }
+  float strength(int x, int y) const {
+    return strengths_[static_cast<std::size_t>((y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1))];
+  }
+
+ private:
+  Cell cell_{};
+  int width_ = 0;
+  std::array<float, kTileSide * kTileSide>& strengths_;
+  std::array<std::uint8_t, kTileSide>& mask_;
+};
+
+// The strongest of a cell, strongest first; a later equal never overtakes.
+class BestOfCell {
+ public:
+  void insert(const Candidate& candidate) {
+    std::size_t i = size_;
+    if (size_ < kKeypointsPerCell) {
+      ++size_;
+    } else {
+      i = kKeypointsPerCell - 1;
+      if (candidate.strength <= best_[i].strength) return;
+    }
+    for (; i > 0 && best_[i - 1].strength < candidate.strength; --i) best_[i] = best_[i - 1];
+    best_[i] = candidate;
+  }
+  std::size_t size() const { return size_; }
+  Candidate at(std::size_t i) const {
+    Candidate candidate = best_[i];
+    candidate.rank = static_cast<std::uint8_t>(i);
+    return candidate;
+  }
+
+ private:
+  std::array<Candidate, kKeypointsPerCell> best_;
+  std::size_t size_ = 0;
+};
+
+struct Search {
+  const Pyramid& pyramid;
+  const DepthSampler& depth;
+  const DetectorOptions& options;
+  FixedVector<Candidate>& candidates;
+  int found = 0;
+};
+
+void search_cell(Search& search, Tile& tile, int level, const Cell& cell) {
+  const GrayView image = search.pyramid.level(level);
+  // Three thresholds at the most: each halves the one before.
+  int threshold = std::max(search.options.noise_floor, contrast_threshold(image, cell));
+  constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
+  for (int pass = 0; pass < 3; ++pass) {
+    const int passed = tile.fill(image, cell, threshold);
+    if (passed >= kEnoughPixels || threshold == search.options.noise_floor) break;
+    threshold = std::max(search.options.noise_floor, threshold / 2);
+  }
+  BestOfCell best;
+  for (int y = cell.y0; y < cell.y1; ++y) {
+    for (int x = cell.x0; x < cell.x1; ++x) {
+      if (!tile.is_maximum(x, y) || tile.strength(x, y) < static_cast<float>(search.options.min_strength))
+        continue;
+      ++search.found;
+      if (search.depth.at(x << level, y << level) <= 0) continue;
+      best.insert({tile.strength(x, y), static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                   static_cast<std::uint8_t>(level), 0});
+    }
+  }
+  for (std::size_t i = 0; i < best.size(); ++i) search.candidates.push_back(best.at(i));
+}
+
+void search_level(Search& search, Tile& tile, int level) {
+  const GrayView image = search.pyramid.level(level);
+  const int size = search.options.cell_px;
+  for (int y = kKeypointMargin; y < image.height - kKeypointMargin; y += size) {
+    for (int x = kKeypointMargin; x < image.width - kKeypointMargin; x += size) {
+      const Cell cell{x, y, std::min(x + size, image.width - kKeypointMargin),
+                      std::min(y + size, image.height - kKeypointMargin)};
+      search_cell(search, tile, level, cell);
+    }
+  }
+}
+
+// Peak of the parabola through three samples, as an offset from the middle one in [−0.5, 0.5].
+double parabola_peak(double before, double middle, double after) {
+  const double curvature = before - 2 * middle + after;
+  if (curvature >= 0) return 0;
+  return std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5);
+}
+
+Keypoint refine(const Pyramid& pyramid, const Candidate& candidate) {
+  const GrayView image = pyramid.level(candidate.level);
+  const int x = candidate.x;
+  const int y = candidate.y;
+  const double middle = candidate.strength;
+  const double dx = parabola_peak(corner_strength(image, x - 1, y), middle, corner_strength(image, x + 1, y));
+  const double dy = parabola_peak(corner_strength(image, x, y - 1), middle, corner_strength(image, x, y + 1));
+  const double scale = 1 << candidate.level;
+  Keypoint keypoint;
+  keypoint.u = static_cast<float>((x + dx) * scale);
+  keypoint.v = static_cast<float>((y + dy) * scale);
+  keypoint.x = candidate.x;
+  keypoint.y = candidate.y;
+  keypoint.level = candidate.level;
+  keypoint.strength = candidate.strength;
+  return keypoint;
+}
+
+// Moves the candidates of each rank to the front in turn; the rank that no longer fits whole gives its
+// strongest.
+std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t capacity) {
+  if (candidates.size() <= capacity) return candidates.size();
+  Candidate* first = candidates.begin();
+  // Rank, then strength, then place: a total order, so that the sort's algorithm cannot show.
+  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.rank != b.rank) return a.rank < b.rank;
+    if (a.strength != b.strength) return a.strength > b.strength;
+    if (a.level != b.level) return a.level < b.level;
+    if (a.y != b.y) return a.y < b.y;
+    return a.x < b.x;
+  });
+  return capacity;
+}
+
+}  // namespace
+
+double corner_strength(GrayView image, int x, int y) {
+  constexpr int kRadius = 3;
+  std::int32_t xx = 0;
+  std::int32_t xy = 0;
+  std::int32_t yy = 0;
+  for (int dy = -kRadius; dy <= kRadius; ++dy) {
+    const std::uint8_t* row = image.data + (y + dy) * image.stride + x;
+    const std::uint8_t* above = row - image.stride;
+    const std::uint8_t* below = row + image.stride;
+    for (int dx = -kRadius; dx <= kRadius; ++dx) {
+      const std::int32_t gx = row[dx + 1] - row[dx - 1];
+      const std::int32_t gy = below[dx] - above[dx];
+      xx += gx * gx;
+      xy += gx * gy;
+      yy += gy * gy;
+    }
+  }
+  // Central differences are twice the gradient, hence the 4.
+  constexpr double kScale = 1.0 / (4 * (2 * kRadius + 1) * (2 * kRadius + 1));
+  const double half_sum = 0.5 * (xx + yy);
+  const double half_difference = 0.5 * (xx - yy);
+  return kScale * (half_sum - sqrt(half_difference * half_difference + static_cast<double>(xy) * xy));
+}
+
+DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
+                                  const DetectorOptions& options, Arena& scratch,
+                                  FixedVector<Keypoint>& out) {
+  const ScratchScope scope(scratch);
+  std::size_t cells = 0;
+  for (int level = 0; level < options.levels; ++level)
+    cells += detection_cells(pyramid.level(level).width, pyramid.level(level).height, options.cell_px);
+  FixedVector<Candidate> candidates(
+      scratch.take<Candidate>("keypoint candidates", cells * kKeypointsPerCell));
+  const std::span<DetectionTile> storage = scratch.take<DetectionTile>("keypoint tile", 1);
+  out.clear();
+  if (storage.empty() || candidates.capacity() == 0) return {};
+
+  Search search{pyramid, depth, options, candidates};
+  Tile tile(storage[0]);
+  for (int level = 0; level < options.levels; ++level) search_level(search, tile, level);
+  const std::size_t kept = select_best_spread(candidates, out.capacity());
+  for (std::size_t i = 0; i < kept; ++i) out.push_back(refine(pyramid, candidates[i]));
+  out.add_dropped(candidates.size() - kept);
+  return {search.found};
+}
+
+}  // namespace plvo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A keypoint of one pyramid level and what the other frame needs to find it again. The feature set of a frame
+// owns no image: a reference can be kept for as long as one likes at a fixed price.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/camera/observation.hpp"
+
+namespace plvo {
+
+struct Keypoint {
+  float u = 0, v = 0;         // level-0 pixels, sub-pixel
+  std::int16_t x = 0, y = 0;  // the whole pixel of its level that it was found at
+  std::uint8_t level = 0;
+  float strength = 0;  // smaller eigenvalue of the mean structure tensor, (grey levels / px)²
+};
+
+// 256 comparisons, see descriptor.hpp.
+using Descriptor = std::array<std::uint64_t, 4>;
+
+// Raw pixels around (x, y) on the keypoint's level: what alignment.hpp compares with.
+inline constexpr int kPatchRadius = 5;
+inline constexpr int kPatchSide = 2 * kPatchRadius + 1;
+using Patch = std::array<std::uint8_t, kPatchSide * kPatchSide>;
+
+// The point features of one frame: parallel arrays, index = keypoint.
+struct PointFeatures {
+  FixedVector<Keypoint> keypoints;
+  std::span<Descriptor> descriptors;
+  std::span<Patch> patches;
+  std::span<Point3d> points;  // camera frame
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, int capacity) {
+    const auto n = static_cast<std::size_t>(capacity);
+    keypoints = FixedVector<Keypoint>(memory.template take<Keypoint>("point features", n));
+    descriptors = memory.template take<Descriptor>("point features", n);
+    patches = memory.template take<Patch>("point features", n);
+    points = memory.template take<Point3d>("point features", n);
+  }
+};
+
+}  // namespace plvo

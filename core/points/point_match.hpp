@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Putative point matches: nearest neighbour in Hamming distance, near where the motion prediction puts the
+// reference keypoint; mutual, and clearly better than the second best.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/match.hpp"
+#include "plvo/points/keypoint.hpp"
+
+namespace plvo {
+
+struct PointMatchOptions {
+  double radius_px = 30;    // level-0 pixels around the prediction
+  int max_distance = 64;    // bits
+  double max_ratio = 0.85;  // best distance / distance of the best one elsewhere
+};
+
+// Where a reference keypoint is expected; not visible: outside the image or behind the camera.
+struct Prediction {
+  float u = 0, v = 0;  // level-0 pixels
+  bool visible = false;
+};
+
+struct BestMatch {
+  std::uint16_t index;
+  std::uint16_t distance;
+};
+
+// The current keypoints are sorted into square buckets of this side, so that a search touches only a few.
+inline constexpr int kBucketPx = 32;
+constexpr std::size_t point_match_buckets(int width, int height) {
+  return static_cast<std::size_t>((width + kBucketPx - 1) / kBucketPx) *
+         static_cast<std::size_t>((height + kBucketPx - 1) / kBucketPx);
+}
+
+// Scratch of match_points for so many keypoints a frame and this image size.
+template <typename Memory>
+constexpr void reserve_point_match(Memory& memory, int keypoints, int width, int height) {
+  const ScratchScope scope(memory);
+  const auto n = static_cast<std::size_t>(keypoints);
+  memory.template take<std::uint16_t>("point match", n);
+  memory.template take<std::uint16_t>("point match", point_match_buckets(width, height) + 1);
+  memory.template take<BestMatch>("point match", n);
+  memory.template take<BestMatch>("point match", n);
+}
+
+// predictions: one for each keypoint of the reference. Only keypoints of the same pyramid level are compared.
+// `out` is filled in the order of the reference's keypoints.
+void match_points(const PointFeatures& reference, std::span<const Prediction> predictions,
+                  const PointFeatures& current, int width, int height, const PointMatchOptions& options,
+                  Arena& scratch, FixedVector<Match>& out);
+
+}  // namespace plvo
