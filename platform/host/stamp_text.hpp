@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Time stamps as text. Files write seconds with decimals; the house counts nanoseconds in integers. A double
+// cannot hold both the seconds since 1970 and the nanoseconds, so the digits are read one by one.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace plvo {
+
+// Seconds ("1305031102.175304", also with an exponent) to nanoseconds. False for anything that is not such a
+// number or lies beyond ±292 years; decimals beyond the ninth are cut off.
+bool parse_stamp_ns(std::string_view seconds, std::int64_t& stamp_ns);
+
+// Seconds with six decimals, or nine where the stamp has nanoseconds.
+std::string format_stamp(std::int64_t stamp_ns);
+
+}  // namespace plvo

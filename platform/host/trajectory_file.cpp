@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/host/trajectory_file.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "plvo/host/stamp_text.hpp"
+
+namespace plvo {
+namespace {
+
+void append_covariance(std::string& line, const Matrix6& covariance) {
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column)
+      fmt::format_to(std::back_inserter(line), " {:.9e}", covariance(row, column));
+}
+
+}  // namespace
+
+std::string pose_text(const Se3& T) {
+  const Quaternion q = to_quaternion(T.R);
+  return fmt::format("{:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}", T.t.x(), T.t.y(), T.t.z(), q.x, q.y,
+                     q.z, q.w);
+}
+
+std::string trajectory_line(std::int64_t stamp_ns, const Se3& T_world_camera) {
+  return format_stamp(stamp_ns) + ' ' + pose_text(T_world_camera);
+}
+
+std::string covariance_line(std::int64_t stamp_ns, const Matrix6& covariance) {
+  std::string line = format_stamp(stamp_ns);
+  append_covariance(line, covariance);
+  return line;
+}
+
+std::string motion_line(const TrackResult& result) {
+  std::string line = format_stamp(result.stamp_ns) + ' ' + format_stamp(result.reference_stamp_ns) + ' ' +
+                     pose_text(result.T_camera_reference);
+  append_covariance(line, result.motion_covariance);
+  return line;
+}
+
+}  // namespace plvo

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Image files into the caller's pixels: PNG of any colour type (libspng) and JPEG (TurboJPEG) as RGB, 16-bit
+// grey PNG as depth. One file buffer is reused; after reserve() it does not grow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "plvo/base/status.hpp"
+
+namespace plvo {
+
+struct ImageInfo {
+  int width = 0;
+  int height = 0;
+  int bits = 0;  // per channel
+  bool grey = false;
+};
+
+class ImageDecoder {
+ public:
+  ImageDecoder() = default;
+  ImageDecoder(const ImageDecoder&) = delete;
+  ImageDecoder& operator=(const ImageDecoder&) = delete;
+  ~ImageDecoder();
+
+  // The largest file that will be read, in bytes.
+  void reserve(std::size_t file_bytes) { file_.reserve(file_bytes); }
+
+  // Messages name the file as `name` below. kNotFound: no such file; kDamaged: not an image, or cut off.
+  Status read_header(const std::filesystem::path& path, ImageInfo& info);
+  // rgb: width·height·3 bytes. kInvalidArgument when the image has another size.
+  Status decode_rgb(const std::filesystem::path& path, int width, int height, std::span<std::uint8_t> rgb);
+  // depth: width·height values in the file's unit. kInvalidArgument for another size or a depth of other than
+  // 16 bits.
+  Status decode_depth(const std::filesystem::path& path, int width, int height,
+                      std::span<std::uint16_t> depth);
+
+ private:
+  Status load(const std::filesystem::path& path);
+  Status jpeg_header(const std::filesystem::path& path, ImageInfo& info);
+  bool is_jpeg() const;
+
+  std::vector<unsigned char> file_;
+  void* jpeg_ = nullptr;  // TurboJPEG's handle, made when the first JPEG is met
+};
+
+}  // namespace plvo

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels into image files: PNG for what must stay exact (colour, depth), JPEG in memory for what is only
+// looked at.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plvo/base/status.hpp"
+#include "plvo/image/frame.hpp"
+
+namespace plvo {
+
+// kIo, with the operating system's reason, when the file cannot be written whole.
+Status write_png(const std::filesystem::path& path, const ColourView& image);
+Status write_png(const std::filesystem::path& path, const DepthView& image);  // 16-bit grey
+
+// quality: 1 … 100. Empty when the image is empty.
+std::vector<std::uint8_t> encode_jpeg(const ColourView& image, int quality);
+
+}  // namespace plvo

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/image_writer.hpp"
+#include "temporary_folder.hpp"
+#include "tiny_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+using test::kTinyHeight;
+using test::kTinyWidth;
+using test::TemporaryFolder;
+using test::TinyFrame;
+
+bool says(const Status& status, std::string_view words) {
+  return std::string_view(status.message()).find(words) != std::string_view::npos;
+}
+
+TEST(Image, PngRoundTripIsExact) {
+  const TemporaryFolder folder;
+  const TinyFrame tiny(0);
+  ASSERT_TRUE(write_png(folder / "c.png", tiny.frame.colour).ok());
+  ASSERT_TRUE(write_png(folder / "d.png", tiny.frame.depth).ok());
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(tiny.rgb.size());
+  std::vector<std::uint16_t> depth(tiny.depth.size());
+  ASSERT_TRUE(decoder.decode_rgb(folder / "c.png", kTinyWidth, kTinyHeight, rgb).ok());
+  ASSERT_TRUE(decoder.decode_depth(folder / "d.png", kTinyWidth, kTinyHeight, depth).ok());
+  EXPECT_EQ(rgb, tiny.rgb);
+  EXPECT_EQ(depth, tiny.depth);
+}
+
+TEST(Image, WritesBgrAndGreyAndStrides) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> bgr = {1, 2, 3, 4,  5,  6,  99, 99,
+                                         7, 8, 9, 10, 11, 12, 99, 99};  // 2×2, stride 8
+  ASSERT_TRUE(write_png(folder / "b.png", ColourView{bgr.data(), 2, 2, 8, PixelFormat::kBgr8}).ok());
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(12);
+  ASSERT_TRUE(decoder.decode_rgb(folder / "b.png", 2, 2, rgb).ok());
+  EXPECT_EQ(rgb, (std::vector<std::uint8_t>{3, 2, 1, 6, 5, 4, 9, 8, 7, 12, 11, 10}));
+  const std::vector<std::uint8_t> grey = {10, 20, 30, 40};
+  ASSERT_TRUE(write_png(folder / "g.png", ColourView{grey.data(), 2, 2, 2, PixelFormat::kGray8}).ok());
+  ASSERT_TRUE(decoder.decode_rgb(folder / "g.png", 2, 2, rgb).ok());
+  EXPECT_EQ(rgb, (std::vector<std::uint8_t>{10, 10, 10, 20, 20, 20, 30, 30, 30, 40, 40, 40}));
+}
+
+TEST(Image, ReadsJpegCloseToTheOriginal) {
+  const TemporaryFolder folder;
+  TinyFrame tiny(0);
+  for (std::size_t i = 0; i < tiny.rgb.size(); ++i)  // smooth: JPEG may keep it
+    tiny.rgb[i] = static_cast<std::uint8_t>(40 + (i / 3) % kTinyWidth + i % 3);
+  const std::vector<std::uint8_t> jpeg = encode_jpeg(tiny.frame.colour, 95);
+  test::write_file(folder / "c.jpg", std::string(jpeg.begin(), jpeg.end()));
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(tiny.rgb.size());
+  const Status status = decoder.decode_rgb(folder / "c.jpg", kTinyWidth, kTinyHeight, rgb);
+  ASSERT_TRUE(status.ok()) << status.message();
+  for (std::size_t i = 0; i < rgb.size(); ++i) ASSERT_NEAR(rgb[i], tiny.rgb[i], 6) << i;
+  // Cut off: damaged, not a picture with grey bars.
+  test::write_file(folder / "cut.jpg",
+                   std::string(jpeg.begin(), jpeg.begin() + static_cast<long>(jpeg.size() / 2)));
+  EXPECT_EQ(decoder.decode_rgb(folder / "cut.jpg", kTinyWidth, kTinyHeight, rgb).code(),
+            StatusCode::kDamaged);
+}
+
+TEST(Image, RefusesDamagedFiles) {
+  const TemporaryFolder folder;
+  const TinyFrame tiny(0);
+  ASSERT_TRUE(write_png(folder / "whole.png", tiny.frame.colour).ok());
+  const std::string whole = test::read_file(folder / "whole.png");
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(tiny.rgb.size());
+  for (std::size_t bytes : {std::size_t{0}, std::size_t{5}, std::size_t{20}, whole.size() / 2}) {
+    test::write_file(folder / "cut.png", std::string_view(whole).substr(0, bytes));
+    EXPECT_EQ(decoder.decode_rgb(folder / "cut.png", kTinyWidth, kTinyHeight, rgb).code(),
+              StatusCode::kDamaged)
+        << bytes;
+  }
+  std::string flipped = whole;
+  flipped[whole.size() / 2] = static_cast<char>(~flipped[whole.size() / 2]);
+  test::write_file(folder / "flipped.png", flipped);
+  EXPECT_EQ(decoder.decode_rgb(folder / "flipped.png", kTinyWidth, kTinyHeight, rgb).code(),
+            StatusCode::kDamaged);
+  EXPECT_EQ(decoder.decode_rgb(folder / "none.png", kTinyWidth, kTinyHeight, rgb).code(),
+            StatusCode::kNotFound);
+}
+
+TEST(Image, RefusesOtherSizesAndDepths) {
+  const TemporaryFolder folder;
+  const TinyFrame tiny(0);
+  ASSERT_TRUE(write_png(folder / "c.png", tiny.frame.colour).ok());
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(12);
+  EXPECT_TRUE(says(decoder.decode_rgb(folder / "c.png", 2, 2, rgb), "is 96x64 where 2x2 is expected"));
+  std::vector<std::uint16_t> depth(tiny.depth.size());
+  EXPECT_TRUE(
+      says(decoder.decode_depth(folder / "c.png", kTinyWidth, kTinyHeight, depth), "8 bits per channel"));
+}
+
+TEST(Image, WriteFailureIsAStatus) {
+  const TinyFrame tiny(0);
+  EXPECT_EQ(write_png("/proc/no_such_file.png", tiny.frame.colour).code(), StatusCode::kIo);
+  EXPECT_EQ(write_png("/dev/full", tiny.frame.colour).code(), StatusCode::kIo);
+  EXPECT_TRUE(encode_jpeg({}, 80).empty());
+}
+
+}  // namespace
+}  // namespace plvo

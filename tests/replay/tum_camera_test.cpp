@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/tum_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/paced_camera.hpp"
+#include "temporary_folder.hpp"
+#include "tiny_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using test::tiny_stamp;
+using test::TinyFrame;
+using test::write_tiny_sequence;
+
+bool says(const Status& status, std::string_view words) {
+  return std::string_view(status.message()).find(words) != std::string_view::npos;
+}
+
+Status open(TumCamera& camera, const fs::path& folder, const TumOptions& options = {}) {
+  Calibration calibration;
+  if (Status status = read_calibration(folder / "calibration.txt", calibration); !status.ok()) return status;
+  return camera.open(folder, calibration, options);
+}
+
+TEST(TumCamera, GivesBackWhatWasWritten) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
+  TumCamera camera;
+  const Status status = open(camera, folder.path());
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(camera.frame_count(), 3u);
+  EXPECT_EQ(camera.model().width, 96);
+  EXPECT_EQ(camera.model().pinhole.cx, 47.5);
+  for (int i = 0; i < 3; ++i) {
+    const TinyFrame expected(i);
+    RgbdFrame frame;
+    ASSERT_TRUE(camera.next(frame).ok());
+    EXPECT_EQ(frame.stamp_ns, tiny_stamp(i));
+    EXPECT_EQ(frame.depth_stamp_ns, tiny_stamp(i) + 5'000'000);
+    EXPECT_EQ(frame.depth.metres_per_unit, 1.0 / 5000);
+    EXPECT_TRUE(std::equal(expected.rgb.begin(), expected.rgb.end(), frame.colour.data));
+    EXPECT_TRUE(std::equal(expected.depth.begin(), expected.depth.end(), frame.depth.data));
+  }
+  RgbdFrame frame;
+  EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
+}
+
+TEST(TumCamera, FrameRange) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 5).ok());
+  TumOptions options;
+  options.first_frame = 2;
+  options.end_frame = 4;
+  TumCamera camera;
+  ASSERT_TRUE(open(camera, folder.path(), options).ok());
+  EXPECT_EQ(camera.frame_count(), 2u);
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.stamp_ns, tiny_stamp(2));
+  options.first_frame = 5;
+  options.end_frame = 9;
+  EXPECT_TRUE(says(open(camera, folder.path(), options), "the frame range is empty"));
+}
+
+TEST(TumCamera, DamagedFrameIsSkippedNotFatal) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
+  const fs::path victim = folder.path() / "depth" / "100.038333.png";
+  ASSERT_TRUE(fs::exists(victim));
+  fs::resize_file(victim, fs::file_size(victim) / 2);
+  TumCamera camera;
+  ASSERT_TRUE(open(camera, folder.path()).ok());
+  RgbdFrame frame;
+  EXPECT_TRUE(camera.next(frame).ok());
+  const Status status = camera.next(frame);
+  EXPECT_EQ(status.code(), StatusCode::kDamaged);
+  EXPECT_TRUE(says(status, "depth/100.038333.png: damaged or cut off")) << status.message();
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.stamp_ns, tiny_stamp(2));
+}
+
+TEST(TumCamera, NothingReadableIsRefusedAtOpen) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
+  fs::remove_all(folder / "rgb");
+  TumCamera camera;
+  EXPECT_TRUE(says(open(camera, folder.path()), "no image of the sequence can be read; rgb/100.000000.png"));
+}
+
+TEST(TumCamera, EightBitDepthIsRefusedAtOpen) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
+  const std::vector<std::uint8_t> grey(96 * 64, 80);
+  ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png",
+                        ColourView{grey.data(), 96, 64, 96, PixelFormat::kGray8})
+                  .ok());
+  TumCamera camera;
+  EXPECT_TRUE(says(open(camera, folder.path()), "has 8 bits per channel; depth must be a 16-bit grey PNG"));
+}
+
+TEST(TumCamera, DifferentSizesAreRefusedAtOpen) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
+  ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", TinyFrame(0, 48, 32).frame.depth).ok());
+  TumCamera camera;
+  EXPECT_TRUE(says(open(camera, folder.path()), "colour is 96x64 but depth is 48x32"));
+}
+
+TEST(TumCamera, CalibrationMustFit) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
+  Calibration calibration;
+  ASSERT_TRUE(builtin_calibration("tum-fr1", calibration).ok());
+  TumCamera camera;
+  EXPECT_TRUE(says(camera.open(folder.path(), calibration), "is for 640x480 images, these are 96x64"));
+}
+
+TEST(TumCamera, ReadsARealSequence) {
+  const char* shared = std::getenv("PLVO_SHARED");
+  const fs::path folder = fs::path(shared == nullptr ? "" : shared) / "data" / "fr1_xyz_10f";
+  if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
+  TumCamera camera;
+  ASSERT_TRUE(open(camera, folder).ok());
+  // Its two lists run half a period apart, so that the best-first rule leaves one image of each without a partner.
+  EXPECT_EQ(camera.frame_count(), 9u);
+  EXPECT_EQ(camera.index().unpaired_colour, 1u);
+  RgbdFrame frame;
+  std::int64_t last = 0;
+  for (int i = 0; i < 9; ++i) {
+    ASSERT_TRUE(camera.next(frame).ok());
+    EXPECT_GT(frame.stamp_ns, last);
+    EXPECT_LE(std::abs(frame.depth_stamp_ns - frame.stamp_ns), 20'000'000);
+    last = frame.stamp_ns;
+  }
+  EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
+}
+
+class FakeClock final : public Clock {
+ public:
+  std::int64_t monotonic_ns() const override { return now_ns; }
+  void sleep_until_ns(std::int64_t time) override { now_ns = std::max(now_ns, time); }
+  std::int64_t now_ns = 5'000;
+};
+
+TEST(PacedCamera, RealtimeKeepsTheStampsDistances) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
+  TumCamera camera;
+  ASSERT_TRUE(open(camera, folder.path()).ok());
+  FakeClock clock;
+  PacedCamera paced(camera, Pace::kRealtime, clock, {});
+  RgbdFrame frame;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(paced.next(frame).ok());
+    EXPECT_EQ(clock.now_ns, 5'000 + i * test::kTinyStep);
+  }
+}
+
+TEST(PacedCamera, StepAsksBeforeEachFrame) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
+  TumCamera camera;
+  ASSERT_TRUE(open(camera, folder.path()).ok());
+  FakeClock clock;
+  int steps = 0;
+  PacedCamera paced(camera, Pace::kStep, clock, [&steps] { return ++steps <= 2; });
+  RgbdFrame frame;
+  EXPECT_TRUE(paced.next(frame).ok());
+  EXPECT_TRUE(paced.next(frame).ok());
+  EXPECT_EQ(paced.next(frame).code(), StatusCode::kEndOfStream);
+  EXPECT_EQ(clock.now_ns, 5'000);
+}
+
+TEST(TumWriter, SaysWhyItCannotWrite) {
+  const TemporaryFolder folder;
+  test::write_file(folder / "file", "x");
+  TumWriter writer;
+  EXPECT_EQ(writer.open(folder / "file", test::tiny_camera(), 5000).code(), StatusCode::kIo);
+  EXPECT_EQ(writer.open(folder.path() / "file" / "below", test::tiny_camera(), 5000).code(), StatusCode::kIo);
+}
+
+}  // namespace
+}  // namespace plvo
