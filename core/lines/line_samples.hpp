@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Box L2 of the paper: n_s = min(100, floor(length)) evenly spaced samples on a segment, each with its depth
+// and the SD of that depth, equation (2). Assumes ideal pinhole pixels.
+//
+// Occluding edges. A segment on the border of an object lies between two surfaces, and a Kinect's depth image
+// is displaced against the colour by a pixel or more, so the reading under the segment may belong to either.
+// The edge is the nearer surface's. So a sample reads a short profile across the segment, splits it into
+// surfaces where the depth jumps, and takes the nearer surface's reading next to the segment; see
+// nearer_surface().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "plvo/camera/depth_noise.hpp"
+#include "plvo/lines/segment.hpp"
+
+namespace plvo {
+
+inline constexpr int kMaxLineSamples = 100;
+inline constexpr int kMaxSideReach = 5;  // px
+
+struct LineSample {
+  double t_px = 0;       // along the segment, from its middle, towards b
+  double depth_m = 0;    // > 0
+  double sigma_d_m = 0;  // > 0
+};
+
+// A hundred samples are 2.4 kB, meant for the stack.
+struct LineSamples {
+  std::array<LineSample, kMaxLineSamples> sample;  // by rising t; those without depth are left out
+  int count = 0;                                   // samples with depth
+  int asked = 0;                                   // n_s
+  int mixed = 0;                                   // of the count, those that saw two surfaces
+  std::span<const LineSample> with_depth() const { return {sample.data(), static_cast<std::size_t>(count)}; }
+};
+
+struct SurfaceReading {
+  double depth_m = 0;  // 0: none
+  bool mixed = false;  // two surfaces were in sight, or one beside a gap
+};
+
+// The rule. profile: depths in metres (0: none) at -reach … +reach pixels across the segment, the middle one
+// on it. Readings belong to one surface until two neighbours differ by more than kJumpSigmas of the nearer
+// one's SD. One surface: its reading next to the middle. Several: of those that hold two readings, or one
+// that touches the profile's end and may go on, the nearest; of it the reading next to the middle.
+inline constexpr double kJumpSigmas = 6;
+SurfaceReading nearer_surface(std::span<const float> profile, const DepthNoise& noise);
+
+// Do the profile's ends and middle say that there is but one? Most samples end here. (Something thinner than
+// the reach, between them, is not seen.)
+inline bool one_surface(float left, float here, float right, double sigma_here_m) {
+  const double jump = kJumpSigmas * sigma_here_m;
+  const double to_left = static_cast<double>(left) - static_cast<double>(here);
+  const double to_right = static_cast<double>(right) - static_cast<double>(here);
+  return left > 0 && here > 0 && right > 0 && to_left * to_left <= jump * jump &&
+         to_right * to_right <= jump * jump;
+}
+
+// The SD of a mixed sample is multiplied by this: it was read up to a few pixels beside the segment.
+inline constexpr double kMixedInflation = 2;
+
+// n_s of the paper; 0 for a segment shorter than 2 px.
+int sample_count(const Segment& segment, int max_samples);
+
+// depth_at(float x, float y) returns metres at a pixel, 0 where there is none or outside the image.
+// side_reach_px (0 … kMaxSideReach): how far the profile reaches to either side; 0 is the paper, which looks
+// only under the segment.
+template <typename DepthAt>
+void sample_segment(const Segment& segment, const DepthNoise& noise, int max_samples, int side_reach_px,
+                    const DepthAt& depth_at, LineSamples& out) {
+  out.count = 0;
+  out.mixed = 0;
+  out.asked = sample_count(segment, max_samples);
+  if (out.asked == 0) return;
+  const double length = segment.length_px();
+  const Vector2 along = segment.direction();
+  const Vector2 middle = segment.middle();
+  const double step = length / (out.asked - 1);
+  std::array<float, 2 * kMaxSideReach + 1> profile{};
+  const std::span<const float> readings(profile.data(), static_cast<std::size_t>(2 * side_reach_px + 1));
+  const auto read = [&](const Vector2& p, int offset) {
+    return static_cast<float>(depth_at(static_cast<float>(p.x() - offset * along.y()),
+                                       static_cast<float>(p.y() + offset * along.x())));
+  };
+  for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
+    const double t = i * step - 0.5 * length;
+    const Vector2 p = middle + t * along;
+    const float here = read(p, 0);
+    const double sigma_here = noise.sigma(static_cast<double>(here));
+    LineSample& sample = out.sample[static_cast<std::size_t>(out.count)];
+    if (side_reach_px == 0 ||
+        one_surface(read(p, -side_reach_px), here, read(p, side_reach_px), sigma_here)) {
+      if (!(here > 0)) continue;
+      sample = {t, static_cast<double>(here), sigma_here};
+    } else {
+      for (int o = -side_reach_px; o <= side_reach_px; ++o)
+        profile[static_cast<std::size_t>(o + side_reach_px)] = read(p, o);
+      const SurfaceReading reading = nearer_surface(readings, noise);
+      if (!(reading.depth_m > 0)) continue;
+      const double sigma = noise.sigma(reading.depth_m);
+      sample = {t, reading.depth_m, reading.mixed ? kMixedInflation * sigma : sigma};
+      out.mixed += reading.mixed ? 1 : 0;
+    }
+    ++out.count;
+  }
+}
+
+}  // namespace plvo

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The slow, obvious statement of L3: equations (5)–(10) in three dimensions, with 3×3 covariances, numerical
+// Jacobians and dense Gauss–Newton over the six numbers [A, B].
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "plvo/camera/observation.hpp"
+#include "plvo/lines/line3d.hpp"
+
+namespace plvo::reference {
+
+// (5) by ever finer grids over λ, no formula for its minimum.
+inline double mahalanobis_by_search(const Point3d& point, const Vector3& a, const Vector3& b) {
+  const Eigen::Matrix3d information = Eigen::Matrix3d(point.Sigma).inverse();
+  const auto value = [&](double lambda) {
+    const Eigen::Vector3d e = point.p - (a + lambda * (b - a));
+    return e.dot(information * e);
+  };
+  double centre = 0.5, half = 20;
+  for (int level = 0; level < 60; ++level) {
+    double best = centre;
+    for (int i = -10; i <= 10; ++i)
+      if (value(centre + half * i / 10) < value(best)) best = centre + half * i / 10;
+    centre = best;
+    half *= 0.5;
+  }
+  return std::sqrt(value(centre));
+}
+
+// (6).
+inline Eigen::Vector3d delta(const Point3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Matrix3d information = Eigen::Matrix3d(point.Sigma).inverse();
+  const Eigen::Vector3d d = b - a, e = a - point.p;
+  return point.p - (a - d.dot(information * e) / d.dot(information * d) * d);
+}
+
+// (8), whitened by Σ_w.
+inline Eigen::VectorXd whitened_w(const std::vector<Point3d>& points, const Eigen::Matrix<double, 6, 1>& L) {
+  const Eigen::Vector3d a = L.head<3>(), b = L.tail<3>();
+  Eigen::VectorXd w(3 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Eigen::Vector3d e = delta(points[i], a, b);
+    if (i == 0) e = points[i].p - a;
+    if (i + 1 == points.size()) e = points[i].p - b;
+    const Eigen::LLT<Eigen::Matrix3d> llt{Eigen::Matrix3d(points[i].Sigma)};
+    w.segment<3>(3 * static_cast<Eigen::Index>(i)) = llt.matrixL().solve(e);
+  }
+  return w;
+}
+
+inline Eigen::MatrixXd jacobian(const std::vector<Point3d>& points, const Eigen::Matrix<double, 6, 1>& L) {
+  Eigen::MatrixXd J(3 * points.size(), 6);
+  for (int k = 0; k < 6; ++k) {
+    Eigen::Matrix<double, 6, 1> plus = L, minus = L;
+    plus(k) += 1e-5;
+    minus(k) -= 1e-5;
+    J.col(k) = (whitened_w(points, plus) - whitened_w(points, minus)) / 2e-5;
+  }
+  return J;
+}
+
+struct Mle {
+  Eigen::Matrix<double, 6, 1> L;
+  Eigen::Matrix<double, 6, 6> covariance;
+  double cost = 0;
+};
+
+// (9) and (10), from the points' two ends, by damped Gauss–Newton.
+inline Mle maximum_likelihood(const std::vector<Point3d>& points) {
+  Mle mle;
+  mle.L << points.front().p, points.back().p;
+  double damping = 1e-3;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::VectorXd w = whitened_w(points, mle.L);
+    const Eigen::MatrixXd J = jacobian(points, mle.L);
+    Eigen::Matrix<double, 6, 6> H = J.transpose() * J;
+    H.diagonal() *= 1 + damping;
+    const Eigen::Matrix<double, 6, 1> moved = mle.L - H.ldlt().solve(J.transpose() * w);
+    if (whitened_w(points, moved).squaredNorm() <= w.squaredNorm()) {
+      mle.L = moved;
+      damping *= 0.1;
+    } else {
+      damping *= 10;
+    }
+  }
+  const Eigen::MatrixXd J = jacobian(points, mle.L);
+  mle.covariance = (J.transpose() * J).inverse();
+  mle.cost = whitened_w(points, mle.L).squaredNorm();
+  return mle;
+}
+
+}  // namespace plvo::reference

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/lines/line_samples.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace plvo {
+namespace {
+
+Segment segment(double ax, double ay, double bx, double by) {
+  Segment s;
+  s.a = {ax, ay};
+  s.b = {bx, by};
+  return s;
+}
+
+TEST(LineSamples, CountIsThePapers) {
+  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), 100), 0);
+  EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), 100), 20);
+  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), 100), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), 100), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), 50), 50);
+}
+
+TEST(LineSamples, EvenlySpacedFromEndToEnd) {
+  const Segment s = segment(10, 20, 70, 100);
+  LineSamples samples;
+  std::vector<Vector2> asked;
+  sample_segment(
+      s, DepthNoise{}, 100, 0,
+      [&](float x, float y) {
+        asked.emplace_back(x, y);
+        return 2.0f;
+      },
+      samples);
+  ASSERT_EQ(samples.count, 100);
+  EXPECT_EQ(samples.asked, 100);
+  EXPECT_NEAR((asked.front() - s.a).norm(), 0, 1e-5);
+  EXPECT_NEAR((asked.back() - s.b).norm(), 0, 1e-5);
+  for (std::size_t i = 1; i < 100; ++i)
+    EXPECT_NEAR(samples.sample[i].t_px - samples.sample[i - 1].t_px, 100.0 / 99, 1e-9);
+  EXPECT_NEAR(samples.sample[0].t_px, -50, 1e-9);
+  EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, DepthNoise{}.sigma(2.0));
+}
+
+TEST(LineSamples, NoDepthIsLeftOut) {
+  LineSamples samples;
+  sample_segment(
+      segment(0, 0, 50, 0), DepthNoise{}, 100, 0, [](float x, float) { return x < 20 ? 0.0f : 1.0f; },
+      samples);
+  EXPECT_EQ(samples.asked, 50);
+  EXPECT_EQ(samples.count, 30);
+}
+
+SurfaceReading read(std::array<float, 7> profile) { return nearer_surface(profile, DepthNoise{}); }
+
+TEST(NearerSurface, TheRule) {
+  // One surface: what is under the segment, though a slope makes another reading nearer.
+  EXPECT_FLOAT_EQ(static_cast<float>(read({2.00f, 2.01f, 2.02f, 2.03f, 2.04f, 2.05f, 2.06f}).depth_m), 2.03f);
+  EXPECT_FALSE(read({2.00f, 2.01f, 2.02f, 2.03f, 2.04f, 2.05f, 2.06f}).mixed);
+  // The depth image is displaced: the background lies under the segment. The nearer surface's closest
+  // reading.
+  EXPECT_FLOAT_EQ(static_cast<float>(read({1.01f, 1.02f, 3, 3, 3, 3, 3}).depth_m), 1.02f);
+  EXPECT_TRUE(read({1.01f, 1.02f, 3, 3, 3, 3, 3}).mixed);
+  EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 3, 3, 3, 1.01f}).depth_m), 1.01f);
+  // The nearer surface lies under it.
+  EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 1.03f, 1.02f, 1.01f, 1.0f, 1.0f}).depth_m), 1.02f);
+  // A lone wrong reading in front of one surface is not a surface.
+  EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 3, 1.5f, 3, 3}).depth_m), 3);
+  EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 1.5f, 3, 3, 3}).depth_m), 3);
+  // A shadow: the background's readings are missing beside the nearer surface.
+  EXPECT_FLOAT_EQ(static_cast<float>(read({1, 1, 1, 0, 0, 0, 0}).depth_m), 1);
+  EXPECT_TRUE(read({1, 1, 1, 0, 0, 0, 0}).mixed);
+  EXPECT_FLOAT_EQ(static_cast<float>(read({0, 0, 0, 0, 0, 0, 0}).depth_m), 0);
+  EXPECT_FLOAT_EQ(static_cast<float>(read({0, 0, 0, 2, 0, 0, 0}).depth_m), 2);
+}
+
+TEST(NearerSurface, WithoutReachItIsTheReadingItself) {
+  const std::array<float, 1> one{1.5f};
+  EXPECT_EQ(nearer_surface(one, DepthNoise{}).depth_m, 1.5);
+  EXPECT_FALSE(nearer_surface(one, DepthNoise{}).mixed);
+}
+
+}  // namespace
+}  // namespace plvo
