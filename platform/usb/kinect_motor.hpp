@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Kinect v1's motor, light and accelerometer. Model 1414 has a USB device of its own for them (control
+// transfers); 1473 and Kinect for Windows take commands on the audio device (bulk transfers), and only once
+// the audio firmware runs. The protocols are those that the OpenKinect project documented.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/base/status.hpp"
+#include "plvo/math/types.hpp"
+#include "plvo/usb/usb_bus.hpp"
+
+struct libusb_device_handle;
+
+namespace plvo {
+
+enum class KinectLight : std::uint8_t { kOff, kGreen, kRed, kYellow, kBlinkGreen, kBlinkRedYellow };
+
+struct KinectState {
+  Vector3 acceleration =
+      Vector3::Zero();  // m/s², the Kinect's axes: x right, y up, z forward; at rest it shows gravity
+  double tilt_rad = 0;  // of the head against the horizon, up positive; meaningless while moving
+  bool moving = false;
+  bool at_limit = false;
+};
+
+class KinectMotor {
+ public:
+  static constexpr double kMaxTiltRad = 31 * 3.14159265358979323846 / 180;
+
+  KinectMotor() = default;
+  ~KinectMotor();
+  KinectMotor(const KinectMotor&) = delete;
+  KinectMotor& operator=(const KinectMotor&) = delete;
+
+  // The motor of the first Kinect v1 on the bus. kNotFound, kPermission, kBusy say what to do.
+  Status open(const UsbBus& bus);
+  void close();
+
+  // Clamped to ±31°. Returns at once; read() tells when the head has arrived.
+  Status set_tilt(double tilt_rad);
+  Status set_light(KinectLight light);
+  Status read(KinectState& state);
+
+  bool through_audio() const { return through_audio_; }
+
+ private:
+  Status audio_command(std::uint32_t command, std::uint32_t argument, std::uint8_t* data, int data_size);
+
+  libusb_device_handle* handle_ = nullptr;
+  bool through_audio_ = false;
+  std::uint32_t tag_ = 1;
+};
+
+}  // namespace plvo
