@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// What OpenNi2Camera is made of. Internal to this room.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plvo/openni2/frame_pairer.hpp"
+#include "plvo/openni2/openni2_camera.hpp"
+#include "plvo/openni2/openni2_device.hpp"
+#include "plvo/openni2/software_registration.hpp"
+#include "plvo/openni2/stamp_tracker.hpp"
+
+namespace plvo {
+
+class OpenNi2Recorder;
+
+struct OpenNi2Camera::Impl {
+  Status open();
+  Status choose_model(const OpenNi2Device::StreamFormat& colour);
+  Status next(RgbdFrame& frame);
+  Status read(FramePairer::Stream stream);
+  void count_dropped(FramePairer::Stream stream, int index);
+  void deliver(const FramePairer::Pair& pair, RgbdFrame& frame);
+  Status timeout();
+  Status lose();
+  bool find_again(std::string& uri) const;
+  Status replug(std::chrono::steady_clock::time_point deadline);
+  void log(LogLevel level, const Status& status) const;
+
+  OpenNi2Options options;
+  std::shared_ptr<OpenNi2Runtime> runtime;
+  std::unique_ptr<OpenNi2Device> device;  // null while unplugged
+  OpenNi2DeviceInfo info;
+  CameraModel model;
+  FramePairer pairer;
+  StampTracker tracker;
+  SoftwareRegistration registration;
+  std::vector<std::uint16_t> registered;
+  OpenNi2Recorder* recorder = nullptr;
+
+  OpenNi2Counters counters;
+  std::int64_t period_us = 33333;
+  std::int64_t last_delivered_us = 0;
+  double metres_per_unit = 0.001;
+  bool warp = false;
+  bool unplugged = false;
+  bool after_gap = false;  // frames lost while unplugged are not counted as missing
+  std::array<int, 2> last_index = {-1, -1};
+  std::array<bool, 2> seen_in_call{};
+};
+
+}  // namespace plvo

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// One OpenNI2 device with its colour and its depth stream, opened in the one order that no known driver trips
+// over (the depth stream exists before registration is asked for; libfreenect's driver crashes otherwise).
+// Internal to this room: the only header here that includes OpenNI.h.
+#pragma once
+
+#include <OpenNI.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "plvo/base/status.hpp"
+#include "plvo/openni2/openni2_camera.hpp"
+
+namespace plvo {
+
+// OpenNI2 is initialised while one of these lives. Holding it twice is fine.
+class OpenNi2Runtime {
+ public:
+  ~OpenNi2Runtime();
+  OpenNi2Runtime(const OpenNi2Runtime&) = delete;
+  OpenNi2Runtime& operator=(const OpenNi2Runtime&) = delete;
+  static Status acquire(std::shared_ptr<OpenNi2Runtime>& runtime);
+
+ private:
+  OpenNi2Runtime() = default;
+};
+
+class OpenNi2Device : private openni::OpenNI::DeviceDisconnectedListener,
+                      private openni::OpenNI::DeviceStateChangedListener {
+ public:
+  enum class Wait : std::uint8_t { kColour, kDepth, kTimeout, kError };
+  struct StreamFormat {
+    int width = 0, height = 0, fps = 0;
+    openni::PixelFormat format = openni::PIXEL_FORMAT_RGB888;
+    double fov_x_rad = 0, fov_y_rad = 0;
+    bool mirrored = false;  // the driver would not turn it off: rows are turned round when copied
+  };
+
+  explicit OpenNi2Device(std::shared_ptr<OpenNi2Runtime> runtime);
+  ~OpenNi2Device() override;
+
+  Status open(const std::string& uri, const OpenNi2Options& options);
+  Status start();
+  void close();
+
+  Wait wait(int timeout_ms);
+  openni::VideoStream& colour() { return colour_; }
+  openni::VideoStream& depth() { return depth_; }
+  const StreamFormat& colour_format() const { return colour_format_; }
+  const StreamFormat& depth_format() const { return depth_format_; }
+  const OpenNi2DeviceInfo& info() const { return info_; }
+  bool is_file() const { return is_file_; }
+  bool registered() const { return registered_; }
+  bool gone() const { return gone_; }
+  bool at_end() const { return at_end_; }
+  int recorded_frames();
+
+ private:
+  void onDeviceDisconnected(const openni::DeviceInfo* info) override;
+  void onDeviceStateChanged(const openni::DeviceInfo* info, openni::DeviceState state) override;
+  Status create_stream(openni::VideoStream& stream, openni::SensorType sensor, const OpenNi2Options& options,
+                       StreamFormat& format);
+  void set_registration(const OpenNi2Options& options);
+
+  std::shared_ptr<OpenNi2Runtime> runtime_;
+  openni::Device device_;
+  openni::VideoStream colour_;
+  openni::VideoStream depth_;
+  StreamFormat colour_format_;
+  StreamFormat depth_format_;
+  OpenNi2DeviceInfo info_;  // written in open() under mutex_, for the listeners read it from other threads
+  std::mutex mutex_;
+  bool is_file_ = false;
+  bool registered_ = false;
+  bool listening_ = false;
+  std::atomic<bool> gone_ = false;
+  std::atomic<bool> at_end_ = false;
+};
+
+}  // namespace plvo

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/openni2/openni2_recorder.hpp"
+
+#include <OpenNI.h>
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "plvo/openni2/camera_impl.hpp"
+
+namespace plvo {
+namespace {
+
+// Enough for what OpenNI2 still holds in memory, and for the index that it writes last.
+constexpr std::uintmax_t kReserve_bytes = 64u << 20;
+
+}  // namespace
+
+struct OpenNi2Recorder::Impl {
+  openni::Recorder recorder;
+  OpenNi2Camera::Impl* camera = nullptr;
+  std::string path;
+};
+
+OpenNi2Recorder::OpenNi2Recorder() = default;
+OpenNi2Recorder::~OpenNi2Recorder() { stop(); }
+
+bool OpenNi2Recorder::recording() const { return impl_ != nullptr; }
+
+Status OpenNi2Recorder::start(OpenNi2Camera& camera, const std::string& path) {
+  stop();
+  OpenNi2Camera::Impl& source = *camera.impl_;
+  if (source.device == nullptr) return {StatusCode::kInvalidArgument, "open the camera before recording it"};
+  if (source.recorder != nullptr) return {StatusCode::kBusy, "this camera is being recorded already"};
+  if (source.warp) {
+    return {StatusCode::kUnsupported,
+            "an .oni file of this sensor would hold unregistered depth: record a folder of images instead"};
+  }
+  if (!path.ends_with(".oni")) return {StatusCode::kInvalidArgument, "the file's name must end in .oni"};
+  if (!std::ofstream(path, std::ios::binary)) return Status(StatusCode::kIo, "cannot write ").append(path);
+
+  auto impl = std::make_unique<Impl>();
+  impl->camera = &source;
+  impl->path = path;
+  // Lossless: lossy compression would change what the odometry sees.
+  if (impl->recorder.create(path.c_str()) != openni::STATUS_OK ||
+      impl->recorder.attach(source.device->depth(), false) != openni::STATUS_OK ||
+      impl->recorder.attach(source.device->colour(), false) != openni::STATUS_OK ||
+      impl->recorder.start() != openni::STATUS_OK) {
+    return Status(StatusCode::kIo, "OpenNI2 cannot record to ")
+        .append(path)
+        .append(": ")
+        .append(openni::OpenNI::getExtendedError());
+  }
+  impl_ = std::move(impl);
+  source.recorder = this;
+  return check();
+}
+
+Status OpenNi2Recorder::check() {
+  if (impl_ == nullptr) return {};
+  std::error_code error;
+  const std::filesystem::space_info space =
+      std::filesystem::space(std::filesystem::absolute(impl_->path).parent_path(), error);
+  if (error || space.available >= kReserve_bytes) return {};
+  const std::string path = impl_->path;
+  stop();
+  return Status(StatusCode::kIo, "the disk is almost full: the recording was ended and is complete so far: ")
+      .append(path);
+}
+
+void OpenNi2Recorder::stop() {
+  if (impl_ == nullptr) return;
+  impl_->recorder.stop();
+  impl_->recorder.destroy();
+  impl_->camera->recorder = nullptr;
+  impl_.reset();
+}
+
+}  // namespace plvo
