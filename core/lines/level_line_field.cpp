@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/lines/level_line_field.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace plvo::lsd {
+namespace {
+
+constexpr int kMaxComponent = 510;  // of a gradient in half grey levels
+constexpr int kRatioSteps = 1024;
+
+constexpr double constexpr_sqrt(double x) {  // 1 ≤ x ≤ 2
+  double root = 1.2;
+  for (int i = 0; i < 6; ++i) root = 0.5 * (root + x / root);
+  return root;
+}
+
+// Of a gradient whose larger component is 1 and whose smaller one is ratio / 1024: the unit vector and the
+// length.
+struct OctantEntry {
+  std::uint16_t major = 0;   // · 2^-14
+  std::uint16_t minor = 0;   // · 2^-14
+  std::uint16_t length = 0;  // · 2^-14
+};
+
+constexpr std::array<OctantEntry, kRatioSteps + 1> make_octant() {
+  std::array<OctantEntry, kRatioSteps + 1> octant{};
+  for (int i = 0; i <= kRatioSteps; ++i) {
+    const double ratio = static_cast<double>(i) / kRatioSteps;
+    const double length = constexpr_sqrt(1 + ratio * ratio);
+    const double one = 1 << kDirectionBits;
+    octant[static_cast<std::size_t>(i)] = {static_cast<std::uint16_t>(one / length + 0.5),
+                                           static_cast<std::uint16_t>(one * ratio / length + 0.5),
+                                           static_cast<std::uint16_t>(one * length + 0.5)};
+  }
+  return octant;
+}
+
+// 2^16 · 1024 / component: a multiplication in place of the division that the ratio asks for.
+constexpr std::array<std::uint32_t, kMaxComponent + 1> make_reciprocals() {
+  std::array<std::uint32_t, kMaxComponent + 1> reciprocals{};
+  for (std::uint32_t i = 1; i <= kMaxComponent; ++i) reciprocals[i] = ((kRatioSteps << 16) + i / 2) / i;
+  return reciprocals;
+}
+
+constexpr auto kOctant = make_octant();
+constexpr auto kReciprocals = make_reciprocals();
+
+// A gradient of at most rho = q / sin(tau) may be turned by more than tau by an error of q. Rounding to
+// integers moves each of four pixels by at most 1/2, so a component by at most 1 and the vector by at most
+// √2; the paper takes q = 2 for noise's sake, at full resolution. Squared, in half grey levels: (2 · √2 /
+// sin 22.5°)².
+constexpr int kMinMagnitudeSquared = 55;
+
+constexpr std::size_t kBins = 1024;
+constexpr std::uint32_t kMaxMagnitude = 11541;  // 16 · 510 · √2
+
+constexpr std::size_t bin_of(std::uint16_t magnitude) {
+  // Descending: bin 0 holds the strongest.
+  return kBins - 1 - std::min<std::size_t>(kBins - 1, magnitude * kBins / (kMaxMagnitude + 1));
+}
+
+void clear_border(LevelLineField& field) {
+  const auto stride = static_cast<std::size_t>(field.stride);
+  const std::size_t last_row = static_cast<std::size_t>(field.height + 1) * stride;
+  for (std::size_t x = 0; x < stride; ++x) {
+    field.state[x] = field.state[last_row + x] = kUsed;
+    field.direction[x] = field.direction[last_row + x] = {};
+  }
+  for (std::size_t start = 0; start <= last_row; start += stride) {
+    field.state[start] = field.state[start + stride - 1] = kUsed;
+    field.direction[start] = field.direction[start + stride - 1] = {};
+  }
+}
+
+}  // namespace
+
+PolarGradient polar_gradient(int gx, int gy) {
+  const auto ax = static_cast<std::uint32_t>(gx < 0 ? -gx : gx);
+  const auto ay = static_cast<std::uint32_t>(gy < 0 ? -gy : gy);
+  const bool x_is_major = ax >= ay;
+  const std::uint32_t major = x_is_major ? ax : ay;
+  const std::uint32_t minor = x_is_major ? ay : ax;
+  const OctantEntry entry = kOctant[(minor * kReciprocals[major] + 0x8000U) >> 16];
+  const int x = x_is_major ? entry.major : entry.minor;
+  const int y = x_is_major ? entry.minor : entry.major;
+  return {{static_cast<std::int16_t>(gx < 0 ? -x : x), static_cast<std::int16_t>(gy < 0 ? -y : y)},
+          static_cast<std::uint16_t>((major * entry.length + 512U) >> 10)};
+}
+
+void compute_field(GrayView image, LevelLineField& field, std::span<Pixel> unordered) {
+  clear_border(field);
+  std::array<std::uint32_t, kBins + 1> starts{};
+  std::size_t count = 0;
+  for (int y = 0; y < field.height; ++y) {
+    const std::uint8_t* above = image.row(y);
+    const std::uint8_t* below = image.row(y + 1);
+    const std::size_t first = field.index(0, y);
+    for (int x = 0; x < field.width; ++x) {
+      const int diagonal = below[x + 1] - above[x];
+      const int antidiagonal = above[x + 1] - below[x];
+      const int gx = diagonal + antidiagonal;
+      const int gy = diagonal - antidiagonal;
+      const std::size_t i = first + static_cast<std::size_t>(x);
+      if (gx * gx + gy * gy <= kMinMagnitudeSquared) {
+        field.state[i] = kUsed;
+        field.direction[i] = {};
+        continue;
+      }
+      const PolarGradient polar = polar_gradient(gx, gy);
+      field.state[i] = 0;
+      field.direction[i] = polar.direction;
+      field.magnitude[i] = polar.magnitude;
+      ++starts[bin_of(polar.magnitude) + 1];
+      unordered[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+    }
+  }
+  for (std::size_t bin = 0; bin < kBins; ++bin) starts[bin + 1] += starts[bin];
+  for (const Pixel& pixel : unordered.first(count)) {
+    field.seeds[starts[bin_of(field.magnitude[field.index(pixel.x, pixel.y)])]++] = pixel;
+  }
+  field.seed_count = count;
+}
+
+}  // namespace plvo::lsd
