@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   app.footer(kExitCodeHelp);
   app.require_subcommand(1);
 
-  [[maybe_unused]] int exit_code = kExitSuccess;
+  int exit_code = kExitSuccess;
+  add_eval(app, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -7,4 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-namespace plvo::cli {}  // namespace plvo::cli
+namespace plvo::cli {
+
+void add_eval(CLI::App& app, int& exit_code);
+
+}  // namespace plvo::cli

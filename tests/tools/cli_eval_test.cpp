@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// `plvo eval` as the user runs it, and against the independent script that defines its figures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "plvo/base/random.hpp"
+#include "plvo/eval/trajectory.hpp"
+#include "plvo/host/trajectory_file.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::run_command;
+using test::TemporaryFolder;
+using test::write_file;
+
+const std::string kPlvo = PLVO_BINARY;
+
+fs::path shared() {
+  const char* folder = std::getenv("PLVO_SHARED");
+  return folder == nullptr ? fs::path() : fs::path(folder);
+}
+
+// A drifting estimate at the colour stamps of a sequence: the truth with a random walk on top, a few frames
+// lost.
+void write_estimate(const fs::path& sequence, const fs::path& estimate) {
+  eval::Trajectory truth;
+  ASSERT_TRUE(eval::read_trajectory({sequence / "groundtruth.txt", {}, {}}, truth).ok());
+  Random random(11);
+  const auto noise = [&random](double size) { return size * (2 * random.uniform() - 1); };
+  Se3 drift{rotation_exp(Vector3(0.4, -0.3, 0.2)), Vector3(1, 2, 3)};
+  std::string text = std::string(kTrajectoryHeader) + '\n';
+  std::ifstream list(sequence / "rgb.txt");
+  std::string line;
+  for (int frame = 0; std::getline(list, line);) {
+    if (line[0] == '#') continue;
+    const auto stamp = static_cast<std::int64_t>(std::llround(std::stod(line) * 1e6)) * 1000;
+    const auto sampled = eval::sample(truth, {stamp}, eval::GroundTruthSampling::kNearest, 1'000'000'000);
+    Vector6 step;
+    step << noise(0.004), noise(0.004), noise(0.004), noise(0.003), noise(0.003), noise(0.003);
+    drift = boxplus(drift, step);
+    if (++frame % 17 != 0) text += trajectory_line(stamp, drift * sampled.poses[0]) + '\n';
+  }
+  write_file(estimate, text);
+}
+
+void compare(const nlohmann::json& ours, double theirs, const char* what) {
+  EXPECT_NEAR(ours.get<double>(), theirs, 1e-6 * std::abs(theirs) + 1e-12) << what;
+}
+
+TEST(CliEval, AgreesWithTheIndependentScript) {
+  const fs::path script = shared() / "eval" / "eval_rpe.py";
+  if (!fs::exists(script)) GTEST_SKIP() << "the independent script is not here: " << script;
+  if (run_command("/usr/bin/python3 -c 'import numpy'").exit_code != 0)
+    GTEST_SKIP() << "python3-numpy is not installed";
+  const TemporaryFolder folder;
+  for (const char* name : {"fr1_rpy_150", "corridor_varying", "fr1_xyz_10f", "fr1_desk_9f"}) {
+    const fs::path sequence = shared() / "data" / name;
+    const fs::path estimate = folder / "estimate.txt";
+    write_estimate(sequence, estimate);
+    for (const auto& [ours_mode, their_mode] :
+         {std::pair("nearest", "nearest"), std::pair("interpolated", "interp")}) {
+      const std::string truth = (sequence / "groundtruth.txt").string();
+      const CommandResult ours = run_command(kPlvo + " eval --json --gt " + truth + " --est " +
+                                             estimate.string() + " --gt-sampling " + ours_mode);
+      const CommandResult theirs = run_command("/usr/bin/python3 " + script.string() + ' ' + truth + ' ' +
+                                               estimate.string() + " --json --gt " + their_mode);
+      ASSERT_EQ(ours.exit_code, 0) << ours.err;
+      ASSERT_EQ(theirs.exit_code, 0) << theirs.err;
+      const auto a = nlohmann::json::parse(ours.out);
+      const auto b = nlohmann::json::parse(theirs.out);
+      SCOPED_TRACE(std::string(name) + ' ' + ours_mode);
+      EXPECT_EQ(a["poses"], b["poses"]);
+      compare(a["rpe"][0]["translation_m"]["rmse"], b["rpe_frame_t_mm"].get<double>() * 1e-3,
+              "RPE per frame, mm");
+      compare(a["rpe"][0]["rotation_deg"]["rmse"], b["rpe_frame_r_deg"], "RPE per frame, degrees");
+      compare(a["rpe"][0]["translation_m"]["median"], b["rpe_frame_t_med_mm"].get<double>() * 1e-3, "median");
+      compare(a["rpe"][0]["identity"]["translation_m"]["rmse"], b["gt_frame_t_mm"].get<double>() * 1e-3,
+              "identity");
+      compare(a["rpe"][0]["identity"]["rotation_deg"]["rmse"], b["gt_frame_r_deg"], "identity, degrees");
+      if (b.contains("rpe_1s_t_m")) {
+        EXPECT_EQ(a["rpe"][1]["pairs"], b["pairs_1s"]);
+        compare(a["rpe"][1]["translation_m"]["rmse"], b["rpe_1s_t_m"], "RPE per second");
+        compare(a["rpe"][1]["rotation_deg"]["rmse"], b["rpe_1s_r_deg"], "RPE per second, degrees");
+      } else {
+        EXPECT_EQ(a["rpe"][1]["pairs"], 0);
+      }
+      compare(a["ate_m"]["rmse"], b["ate_rmse_m"], "ATE");
+      compare(a["ate_m"]["max"], b["ate_max_m"], "ATE, largest");
+      compare(a["end_drift"]["translation_m"], b["end_t_m"], "end-point drift");
+      compare(a["end_drift"]["rotation_deg"], b["end_r_deg"], "end-point drift, degrees");
+      compare(a["path_m"], b["path_m"], "path");
+    }
+  }
+}
+
+class CliEvalFiles : public ::testing::Test {
+ protected:
+  CliEvalFiles() {
+    std::string truth, covariances;
+    for (int i = 0; i < 50; ++i) {
+      const Se3 T{rotation_exp(Vector3(0, 0.01 * i, 0)), Vector3(0.01 * i, 0, 0)};
+      truth += trajectory_line(i * 33'000'000LL, T) + '\n';
+      covariances += covariance_line(i * 33'000'000LL, Matrix6::Identity() * 1e-6) + '\n';
+    }
+    write_file(folder_ / "gt.txt", truth);
+    write_file(folder_ / "est.txt", truth);
+    write_file(folder_ / "cov.txt", covariances);
+  }
+  CommandResult eval(const std::string& more) const {
+    return run_command(kPlvo + " eval --gt " + (folder_ / "gt.txt").string() + " --est " +
+                       (folder_ / "est.txt").string() + ' ' + more);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliEvalFiles, TextHasEveryRow) {
+  const CommandResult r =
+      eval("--covariance " + (folder_ / "cov.txt").string() + " --rpe-delta 1f --rpe-delta 0.1m");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  for (const char* words : {"50 of 50 poses", "RPE per frame", "RPE over 0.1m", "identity", "ATE",
+                            "end-point drift", "error against distance", "NEES of the poses"})
+    EXPECT_NE(r.out.find(words), std::string::npos) << words << '\n' << r.out;
+}
+
+TEST_F(CliEvalFiles, UsageErrors) {
+  EXPECT_EQ(eval("--rpe-delta 3x").exit_code, 2);
+  EXPECT_EQ(eval("--gt-sampling sometimes").exit_code, 2);
+  EXPECT_EQ(run_command(kPlvo + " eval").exit_code, 2);
+  EXPECT_EQ(run_command(kPlvo + " nonsense").exit_code, 2);
+  EXPECT_EQ(run_command(kPlvo + " eval --help").exit_code, 0);
+  EXPECT_NE(run_command(kPlvo + " --help").out.find("3 no frame could be tracked"), std::string::npos);
+}
+
+TEST_F(CliEvalFiles, MissingAndDamagedFilesAreOneLine) {
+  for (const char* more : {"--covariance /nowhere", "--motions /nowhere", "--est /nowhere"}) {
+    const CommandResult r =
+        run_command(kPlvo + " eval --gt " + (folder_ / "gt.txt").string() + ' ' + more +
+                    (std::string(more).find("--est") == 0 ? "" : " --est " + (folder_ / "est.txt").string()));
+    EXPECT_EQ(r.exit_code, 1) << more;
+    EXPECT_NE(r.err.find("plvo: error: cannot read /nowhere"), std::string::npos) << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  }
+  write_file(folder_ / "est.txt", "0.0 1 2\n");
+  EXPECT_EQ(eval("").exit_code, 1);
+  EXPECT_NE(eval("").err.find("line 1: has 3 columns"), std::string::npos);
+}
+
+TEST_F(CliEvalFiles, FullStandardOutputIsAnError) {
+  const std::string command =
+      kPlvo + " eval --gt " + (folder_ / "gt.txt").string() + " --est " + (folder_ / "est.txt").string();
+  EXPECT_EQ(run_command("sh -c '" + command + " >/dev/full'").exit_code, 1);
+}
+
+}  // namespace
+}  // namespace plvo

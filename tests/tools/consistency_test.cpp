@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/eval/consistency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo::eval {
+namespace {
+
+double normal(Random& random) {  // the sum of twelve uniforms has variance 1, and no tail that matters here
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) sum += random.uniform();
+  return sum;
+}
+
+// Motions whose errors are drawn from `sigma` while `claimed` is reported.
+Consistency monte_carlo(double sigma, double claimed) {
+  Random random(3);
+  Trajectory truth;
+  std::vector<UncertainMotion> motions;
+  for (int i = 0; i < 600; ++i) {
+    truth.poses.push_back(
+        {i * 30'000'000LL, {rotation_exp(Vector3(0, 0.01 * i, 0)), Vector3(0.02 * i, 0, 0)}});
+    if (i == 0) continue;
+    const Se3 motion = truth.poses[static_cast<std::size_t>(i)].T_world_camera.inverse() *
+                       truth.poses[static_cast<std::size_t>(i - 1)].T_world_camera;
+    Vector6 error;
+    for (int k = 0; k < 6; ++k) error[k] = sigma * normal(random);
+    motions.push_back({i * 30'000'000LL, (i - 1) * 30'000'000LL, boxplus(motion, error),
+                       Matrix6::Identity() * (claimed * claimed)});
+  }
+  return motion_consistency(motions, truth, GroundTruthSampling::kInterpolated, 1);
+}
+
+TEST(Consistency, TrueCovarianceLiesInTheBand) {
+  const Consistency c = monte_carlo(1e-3, 1e-3);
+  EXPECT_EQ(c.count, 599u);
+  EXPECT_GT(c.mean, c.mean_low);
+  EXPECT_LT(c.mean, c.mean_high);
+  EXPECT_NEAR(c.mean_position, 3, 0.3);
+  EXPECT_NEAR(c.mean_orientation, 3, 0.3);
+  EXPECT_NEAR(c.inside_95, 0.95, 0.03);
+}
+
+TEST(Consistency, OverconfidenceShows) {
+  const Consistency c = monte_carlo(2e-3, 1e-3);
+  EXPECT_NEAR(c.mean, 24, 2);
+  EXPECT_LT(c.inside_95, 0.6);
+}
+
+TEST(Consistency, SingularCovariancesAreCountedNotUsed) {
+  PairedPoses poses;
+  std::vector<StampedCovariance> covariances;
+  for (int i = 0; i < 3; ++i) {
+    poses.stamps_ns.push_back(i);
+    poses.truth.push_back({});
+    poses.estimate.push_back({});
+    covariances.push_back({i, Matrix6::Zero()});
+  }
+  covariances[2].covariance = Matrix6::Identity();
+  const Consistency c = pose_consistency(poses, covariances);
+  EXPECT_EQ(c.count, 1u);
+  EXPECT_EQ(c.singular, 1u);
+}
+
+TEST(Consistency, PoseErrorsStartAtZero) {
+  PairedPoses poses;
+  for (int i = 0; i < 3; ++i) {
+    poses.stamps_ns.push_back(i);
+    poses.truth.push_back({rotation_exp(Vector3(0, 0, 1)), Vector3(0.1 * i, 1, 0)});
+    poses.estimate.push_back({});
+  }
+  const std::vector<PoseError> errors = pose_errors(poses, {});
+  EXPECT_EQ(errors[0].error.norm(), 0);
+  EXPECT_NEAR(errors[2].error.head<3>().norm(), 0.2, 1e-12);
+  EXPECT_FALSE(errors[2].sigma.has_value());
+}
+
+}  // namespace
+}  // namespace plvo::eval

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/eval/alignment.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace plvo::eval {
+namespace {
+
+Vector3 mean(const std::vector<Vector3>& points) {
+  Vector3 sum = Vector3::Zero();
+  for (const Vector3& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+std::vector<Vector3> positions(const std::vector<Se3>& poses) {
+  std::vector<Vector3> result;
+  for (const Se3& T : poses) result.push_back(T.t);
+  return result;
+}
+
+}  // namespace
+
+Se3 align(const std::vector<Vector3>& from, const std::vector<Vector3>& to) {
+  const Vector3 from_mean = mean(from);
+  const Vector3 to_mean = mean(to);
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) H += (from[i] - from_mean) * (to[i] - to_mean).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d D = Eigen::Matrix3d::Identity();
+  if ((svd.matrixV() * svd.matrixU().transpose()).determinant() < 0)
+    D(2, 2) = -1;  // a rotation, not a mirror
+  const Matrix3 R = svd.matrixV() * D * svd.matrixU().transpose();
+  return {R, to_mean - R * from_mean};
+}
+
+AbsoluteError absolute_trajectory_error(const std::vector<Se3>& estimate, const std::vector<Se3>& truth) {
+  AbsoluteError result;
+  if (estimate.empty()) return result;
+  result.T_truth_estimate = align(positions(estimate), positions(truth));
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < estimate.size(); ++i)
+    errors.push_back((result.T_truth_estimate * estimate[i].t - truth[i].t).norm());
+  result.position_m = statistics(std::move(errors));
+  return result;
+}
+
+Statistics identity_absolute_error(const std::vector<Se3>& truth) {
+  if (truth.empty()) return {};
+  const Vector3 centre = mean(positions(truth));
+  std::vector<double> errors;
+  for (const Se3& T : truth) errors.push_back((T.t - centre).norm());
+  return statistics(std::move(errors));
+}
+
+}  // namespace plvo::eval

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/eval/evaluation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace plvo::eval {
+namespace {
+
+constexpr double kLostSteps = 2.5;  // a step this many times the median has frames missing in it
+
+std::vector<Interval> find_lost(const std::vector<StampedPose>& poses) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    steps.push_back(static_cast<double>(poses[i].stamp_ns - poses[i - 1].stamp_ns));
+  const double median = statistics(steps).median;
+  std::vector<Interval> lost;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    if (steps[i - 1] > kLostSteps * median) lost.push_back({poses[i - 1].stamp_ns, poses[i].stamp_ns});
+  return lost;
+}
+
+std::vector<Interval> find_gaps(const std::vector<std::int64_t>& stamps, const std::vector<bool>& valid) {
+  std::vector<Interval> gaps;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (valid[i]) continue;
+    if (i > 0 && !valid[i - 1]) {
+      gaps.back().end_ns = stamps[i];
+    } else {
+      gaps.push_back({stamps[i], stamps[i]});
+    }
+  }
+  return gaps;
+}
+
+}  // namespace
+
+Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
+                const std::vector<StampedCovariance>& covariances,
+                const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
+                Evaluation& result) {
+  result = {};
+  result.sampling = options.sampling;
+  result.estimate_poses = estimate.poses.size();
+  std::vector<std::int64_t> stamps;
+  for (const StampedPose& pose : estimate.poses) stamps.push_back(pose.stamp_ns + options.offset_ns);
+  const SampledPoses truth = sample(ground_truth, stamps, options.sampling, options.max_difference_ns);
+  PairedPoses& poses = result.poses;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (!truth.valid[i]) continue;
+    poses.stamps_ns.push_back(estimate.poses[i].stamp_ns);
+    poses.estimate.push_back(estimate.poses[i].T_world_camera);
+    poses.truth.push_back(truth.poses[i]);
+  }
+  if (poses.truth.size() < 2) {
+    return {StatusCode::kInvalidArgument,
+            fmt::format(
+                "only {} of {} poses have ground truth at their stamp; are both files of the same recording, "
+                "with the same clock? (--offset shifts the estimate's stamps)",
+                poses.truth.size(), stamps.size())};
+  }
+  result.duration_s = static_cast<double>(poses.stamps_ns.back() - poses.stamps_ns.front()) * 1e-9;
+  result.path_m = path_lengths(poses.truth).back();
+
+  std::vector<RpeDelta> deltas = options.deltas;
+  if (deltas.empty()) deltas = {{1, RpeDelta::Unit::kFrames, "1f"}, {1, RpeDelta::Unit::kSeconds, "1s"}};
+  for (const RpeDelta& delta : deltas) result.rpe.push_back(relative_pose_error(poses, delta));
+  result.ate = absolute_trajectory_error(poses.estimate, poses.truth);
+  result.ate_identity = identity_absolute_error(poses.truth);
+  result.drift = end_drift(poses);
+  result.drift_identity = identity_end_drift(poses);
+  result.by_distance = distance_errors(poses);
+  result.lost = find_lost(estimate.poses);
+  result.without_truth = find_gaps(stamps, truth.valid);
+
+  result.errors = pose_errors(poses, covariances);
+  if (!covariances.empty()) result.pose_nees = pose_consistency(poses, covariances);
+  if (!motions.empty()) {
+    std::vector<UncertainMotion> shifted = motions;
+    for (UncertainMotion& motion : shifted) {
+      motion.stamp_ns += options.offset_ns;
+      motion.reference_stamp_ns += options.offset_ns;
+    }
+    result.motion_nees =
+        motion_consistency(shifted, ground_truth, options.sampling, options.max_difference_ns);
+  }
+  return {};
+}
+
+}  // namespace plvo::eval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything `plvo eval` says about one estimate, and how it says it.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plvo/eval/alignment.hpp"
+#include "plvo/eval/consistency.hpp"
+#include "plvo/eval/relative_error.hpp"
+#include "plvo/eval/trajectory.hpp"
+
+namespace plvo::eval {
+
+struct EvaluationOptions {
+  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
+  std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
+  std::int64_t offset_ns = 0;                   // added to the stamps of the estimate
+  std::vector<RpeDelta> deltas;                 // empty: one frame and one second
+};
+
+struct Interval {
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+};
+
+struct Evaluation {
+  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
+  std::size_t estimate_poses = 0;
+  PairedPoses poses;  // those with ground truth
+  double duration_s = 0;
+  double path_m = 0;  // of the truth
+
+  std::vector<RpeResult> rpe;
+  AbsoluteError ate;
+  Statistics ate_identity;
+  EndDrift drift, drift_identity;
+  std::vector<DistanceError> by_distance;
+
+  // Where consecutive poses of the estimate are more than 2.5 of its median steps apart: frames that were
+  // lost.
+  std::vector<Interval> lost;
+  // Runs of poses that have no ground truth.
+  std::vector<Interval> without_truth;
+
+  std::vector<PoseError> errors;
+  std::optional<Consistency> pose_nees;
+  std::optional<Consistency> motion_nees;
+};
+
+// kInvalidArgument when fewer than two poses of the estimate have a true pose.
+Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
+                const std::vector<StampedCovariance>& covariances,
+                const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
+                Evaluation& result);
+
+std::string to_text(const Evaluation& evaluation);
+nlohmann::ordered_json to_json(const Evaluation& evaluation);
+
+}  // namespace plvo::eval

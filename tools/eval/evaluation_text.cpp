@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "plvo/eval/evaluation.hpp"
+#include "plvo/host/stamp_text.hpp"
+
+namespace plvo::eval {
+namespace {
+
+constexpr std::size_t kListedIntervals = 10;
+
+struct Text {
+  std::string out;
+  template <typename... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out), format, std::forward<Args>(args)...);
+    out += '\n';
+  }
+};
+
+std::string delta_name(const RpeDelta& delta) {
+  if (delta.text == "1f") return "RPE per frame";
+  if (delta.text == "1s") return "RPE per second";
+  return "RPE over " + delta.text;
+}
+
+void add_rpe(Text& text, const RpeResult& r) {
+  const auto row = [&text](const std::string& name, const char* who, const RpeErrors& e) {
+    const Statistics& t = e.translation_m;
+    const Statistics& a = e.rotation_deg;
+    text.line("{:<18} {:<9} {:10.3f} {:9.3f} {:9.3f} {:9.3f}   {:8.4f} {:8.4f} {:8.4f} {:8.4f}", name, who,
+              1e3 * t.rmse, 1e3 * t.median, 1e3 * t.p95, 1e3 * t.max, a.rmse, a.median, a.p95, a.max);
+  };
+  if (r.estimate.translation_m.count == 0) {
+    text.line("{:<18} no two poses are that far apart", delta_name(r.delta));
+    return;
+  }
+  row(delta_name(r.delta), "estimate", r.estimate);
+  row("", "identity", r.identity);
+}
+
+void add_ate(Text& text, const Evaluation& e) {
+  const auto row = [&text](const char* name, const char* who, const Statistics& s) {
+    text.line("{:<18} {:<9} {:10.3f} {:9.3f} {:9.3f} {:9.3f}", name, who, 1e3 * s.rmse, 1e3 * s.median,
+              1e3 * s.p95, 1e3 * s.max);
+  };
+  row("ATE", "estimate", e.ate.position_m);
+  row("", "identity", e.ate_identity);
+  const double percent = e.path_m > 0 ? 100 * e.drift.translation_m / e.path_m : 0;
+  text.line("{:<18} {:<9} {:10.3f} mm ({:.2f} % of the path) {:8.4f} deg", "end-point drift", "estimate",
+            1e3 * e.drift.translation_m, percent, e.drift.rotation_deg);
+  text.line("{:<18} {:<9} {:10.3f} mm {:8.4f} deg", "", "identity", 1e3 * e.drift_identity.translation_m,
+            e.drift_identity.rotation_deg);
+}
+
+void add_nees(Text& text, const char* name, const Consistency& c) {
+  if (c.count == 0) {
+    text.line("{:<18} no sample has both a covariance that can be inverted and ground truth", name);
+    return;
+  }
+  text.line(
+      "{:<18} mean {:.2f} of 6 (position {:.2f} of 3, orientation {:.2f} of 3), {:.1f} % inside the 95 % "
+      "bound, "
+      "{} samples",
+      name, c.mean, c.mean_position, c.mean_orientation, 100 * c.inside_95, c.count);
+}
+
+void add_intervals(Text& text, const char* name, const std::vector<Interval>& intervals) {
+  if (intervals.empty()) return;
+  text.line("{}: {}", name, intervals.size());
+  for (std::size_t i = 0; i < intervals.size() && i < kListedIntervals; ++i) {
+    text.line("  {} to {} ({:.3f} s)", format_stamp(intervals[i].begin_ns), format_stamp(intervals[i].end_ns),
+              static_cast<double>(intervals[i].end_ns - intervals[i].begin_ns) * 1e-9);
+  }
+  if (intervals.size() > kListedIntervals) text.line("  and {} more", intervals.size() - kListedIntervals);
+}
+
+}  // namespace
+
+std::string to_text(const Evaluation& e) {
+  Text text;
+  text.line("{} of {} poses have ground truth ({}); {:.3f} s, {:.3f} m", e.poses.truth.size(),
+            e.estimate_poses, e.sampling == GroundTruthSampling::kNearest ? "nearest stamp" : "interpolated",
+            e.duration_s, e.path_m);
+  text.line("identity: what a camera that never moves would score\n");
+  text.line("{:<28} {:>10} {:>9} {:>9} {:>9}   {:>8} {:>8} {:>8} {:>8}", "", "RMSE mm", "median", "p95",
+            "max", "RMSE deg", "median", "p95", "max");
+  for (const RpeResult& r : e.rpe) add_rpe(text, r);
+  add_ate(text, e);
+  if (!e.by_distance.empty()) {
+    text.line("\nerror against distance: mean (p95) drift over pieces of the path");
+    for (const DistanceError& d : e.by_distance) {
+      text.line("  {:7.1f} m {:8.3f} % ({:.3f}) {:9.4f} deg/m ({:.4f})  {} pieces", d.length_m,
+                d.translation_percent.mean, d.translation_percent.p95, d.rotation_deg_per_m.mean,
+                d.rotation_deg_per_m.p95, d.translation_percent.count);
+    }
+  }
+  if (e.pose_nees || e.motion_nees) text.line("");
+  if (e.pose_nees) add_nees(text, "NEES of the poses", *e.pose_nees);
+  if (e.motion_nees) add_nees(text, "NEES of the motions", *e.motion_nees);
+  add_intervals(text, "\nintervals without a pose (lost)", e.lost);
+  add_intervals(text, "\nposes without ground truth", e.without_truth);
+  return text.out;
+}
+
+}  // namespace plvo::eval

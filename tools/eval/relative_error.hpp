@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Relative pose error, equation (27) of Lu & Song after Sturm et al. (IROS 2012): with estimates P and truth
+// Q, E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) over all pairs (i, j) that lie one delta apart. Beside it always the
+// row of a camera that never moves (P = identity): an error says little until one knows what standing still
+// would score.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plvo/eval/statistics.hpp"
+#include "plvo/math/se3.hpp"
+
+namespace plvo::eval {
+
+// "1f" (frames of the estimate), "0.5s" (seconds; a pair may be off by 50 ms) or "2m" (metres of true path).
+struct RpeDelta {
+  enum class Unit : std::uint8_t { kFrames, kSeconds, kMetres };
+  double amount = 1;
+  Unit unit = Unit::kFrames;
+  std::string text = "1f";
+};
+bool parse_rpe_delta(std::string_view text, RpeDelta& delta);
+
+// Poses that have a true pose beside them; all three of one length.
+struct PairedPoses {
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<Se3> estimate;
+  std::vector<Se3> truth;
+};
+
+struct RpeErrors {
+  Statistics translation_m;
+  Statistics rotation_deg;
+};
+
+struct RpeResult {
+  RpeDelta delta;
+  RpeErrors estimate;
+  RpeErrors identity;
+};
+RpeResult relative_pose_error(const PairedPoses& poses, const RpeDelta& delta);
+
+// Drift from one end to the other (the paper's TED when the walk is closed).
+struct EndDrift {
+  double translation_m = 0;
+  double rotation_deg = 0;
+};
+EndDrift end_drift(const PairedPoses& poses);
+EndDrift identity_end_drift(const PairedPoses& poses);
+
+// Drift over pieces of the path that are `length_m` long in truth, one from each pose, in units of their
+// length.
+struct DistanceError {
+  double length_m = 0;
+  Statistics translation_percent;
+  Statistics rotation_deg_per_m;
+};
+// For lengths 0.1, 0.2, 0.5, 1, 2, 5, … m as far as the path reaches.
+std::vector<DistanceError> distance_errors(const PairedPoses& poses);
+
+// Angle of a rotation in degrees, sound near zero.
+double rotation_angle_deg(const Matrix3& R);
+
+}  // namespace plvo::eval

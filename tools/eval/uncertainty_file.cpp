@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/eval/uncertainty_file.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "plvo/eval/table_reader.hpp"
+#include "plvo/host/stamp_text.hpp"
+
+namespace plvo::eval {
+namespace {
+
+constexpr std::size_t kFull = 36;
+constexpr std::size_t kUpper = 21;
+
+// The covariance in the columns from `first` to the end of the row.
+Status parse_covariance(const std::filesystem::path& path, const TableRow& row, std::size_t first,
+                        Matrix6& covariance) {
+  const std::size_t columns = row.words.size();
+  if (columns != first + kFull && columns != first + kUpper) {
+    return row_error(path, row,
+                     fmt::format("has {} columns where {} (full) or {} (upper triangle) are expected",
+                                 columns, first + kFull, first + kUpper));
+  }
+  std::vector<double> values(columns - first);
+  if (Status status = parse_numbers(path, row, first, values); !status.ok()) return status;
+  std::size_t next = 0;
+  for (int r = 0; r < 6; ++r)
+    for (int c = values.size() == kFull ? 0 : r; c < 6; ++c) covariance(r, c) = values[next++];
+  if (values.size() == kUpper)
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < r; ++c) covariance(r, c) = covariance(c, r);
+  return {};
+}
+
+template <typename Row>
+void sort_by_stamp(std::vector<Row>& rows) {
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const Row& a, const Row& b) { return a.stamp_ns < b.stamp_ns; });
+}
+
+}  // namespace
+
+Status read_covariances(const std::filesystem::path& path, std::vector<StampedCovariance>& covariances) {
+  covariances.clear();
+  std::vector<TableRow> rows;
+  if (Status status = read_table(path, rows); !status.ok()) return status;
+  for (const TableRow& row : rows) {
+    StampedCovariance next;
+    if (!parse_stamp_ns(row.words[0], next.stamp_ns))
+      return row_error(path, row, "expected a stamp in seconds first");
+    if (Status status = parse_covariance(path, row, 1, next.covariance); !status.ok()) return status;
+    covariances.push_back(next);
+  }
+  sort_by_stamp(covariances);
+  return {};
+}
+
+Status read_motions(const std::filesystem::path& path, std::vector<UncertainMotion>& motions) {
+  motions.clear();
+  std::vector<TableRow> rows;
+  if (Status status = read_table(path, rows); !status.ok()) return status;
+  for (const TableRow& row : rows) {
+    UncertainMotion next;
+    std::vector<double> pose(7);
+    if (row.words.size() < 2 || !parse_stamp_ns(row.words[0], next.stamp_ns) ||
+        !parse_stamp_ns(row.words[1], next.reference_stamp_ns))
+      return row_error(path, row, "expected two stamps in seconds first");
+    if (Status status = parse_numbers(path, row, 2, pose); !status.ok()) return status;
+    next.T_camera_reference = {to_rotation({pose[3], pose[4], pose[5], pose[6]}),
+                               Vector3(pose[0], pose[1], pose[2])};
+    if (Status status = parse_covariance(path, row, 9, next.covariance); !status.ok()) return status;
+    motions.push_back(next);
+  }
+  sort_by_stamp(motions);
+  return {};
+}
+
+}  // namespace plvo::eval
