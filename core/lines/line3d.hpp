@@ -58,12 +58,12 @@ struct Line3dReport {
 Line3dReport fit_line3d(const Segment& segment, const LineSamples& samples, const Pinhole& pinhole,
                         const Line3dConfig& config, Line3d& line);
 
-// Sampling and fit in one; depth_at as in sample_segment.
-template <typename DepthAt>
-Line3dReport observe_line(const Segment& segment, const DepthAt& depth_at, const Pinhole& pinhole,
+// Sampling and fit in one; depth as in sample_segment.
+template <typename Depth>
+Line3dReport observe_line(const Segment& segment, const Depth& depth, const Pinhole& pinhole,
                           const DepthNoise& noise, const Line3dConfig& config, Line3d& line) {
   LineSamples samples;
-  sample_segment(segment, noise, config.max_samples, config.side_reach_px, depth_at, samples);
+  sample_segment(segment, noise, config.max_samples, config.side_reach_px, depth, samples);
   return fit_line3d(segment, samples, pinhole, config, line);
 }
 

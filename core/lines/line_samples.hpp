@@ -15,6 +15,7 @@
 
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/lines/segment.hpp"
+#include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
 
@@ -61,15 +62,22 @@ inline bool one_surface(float left, float here, float right, double sigma_here_m
 // The SD of a mixed sample is multiplied by this: it was read up to a few pixels beside the segment.
 inline constexpr double kMixedInflation = 2;
 
+inline int nearest_pixel(double x) {
+  const int truncated = static_cast<int>(x + 0.5);
+  return truncated - (truncated > x + 0.5 ? 1 : 0);
+}
+
 // n_s of the paper; 0 for a segment shorter than 2 px.
 int sample_count(const Segment& segment, int max_samples);
 
-// depth_at(float x, float y) returns metres at a pixel, 0 where there is none or outside the image.
-// side_reach_px (0 … kMaxSideReach): how far the profile reaches to either side; 0 is the paper, which looks
-// only under the segment.
-template <typename DepthAt>
+// On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
+// noise.registration_px, which is added to σ_d.
+// depth.at(int x, int y) returns metres at a pixel, 0 where there is none or outside the image (DepthSampler
+// does). side_reach_px (0 … kMaxSideReach): how far the profile reaches to either side; 0 is the paper, which
+// looks only under the segment.
+template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, int max_samples, int side_reach_px,
-                    const DepthAt& depth_at, LineSamples& out) {
+                    const Depth& depth, LineSamples& out) {
   out.count = 0;
   out.mixed = 0;
   out.asked = sample_count(segment, max_samples);
@@ -80,20 +88,23 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, int max_sam
   const double step = length / (out.asked - 1);
   std::array<float, 2 * kMaxSideReach + 1> profile{};
   const std::span<const float> readings(profile.data(), static_cast<std::size_t>(2 * side_reach_px + 1));
+  const double per_px = side_reach_px > 0 ? 0.5 / side_reach_px : 0;
   const auto read = [&](const Vector2& p, int offset) {
-    return static_cast<float>(depth_at(static_cast<float>(p.x() - offset * along.y()),
-                                       static_cast<float>(p.y() + offset * along.x())));
+    return static_cast<float>(
+        depth.at(nearest_pixel(p.x() - offset * along.y()), nearest_pixel(p.y() + offset * along.x())));
   };
   for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
     const double t = i * step - 0.5 * length;
     const Vector2 p = middle + t * along;
     const float here = read(p, 0);
+    const float left = side_reach_px > 0 ? read(p, -side_reach_px) : here;
+    const float right = side_reach_px > 0 ? read(p, side_reach_px) : here;
     const double sigma_here = noise.sigma(static_cast<double>(here));
     LineSample& sample = out.sample[static_cast<std::size_t>(out.count)];
-    if (side_reach_px == 0 ||
-        one_surface(read(p, -side_reach_px), here, read(p, side_reach_px), sigma_here)) {
-      if (!(here > 0)) continue;
-      sample = {t, static_cast<double>(here), sigma_here};
+    if (one_surface(left, here, right, sigma_here)) {
+      const double slope = static_cast<double>(right - left) * per_px;
+      const double misread = slope * noise.registration_px;
+      sample = {t, static_cast<double>(here), sqrt(sigma_here * sigma_here + misread * misread)};
     } else {
       for (int o = -side_reach_px; o <= side_reach_px; ++o)
         profile[static_cast<std::size_t>(o + side_reach_px)] = read(p, o);

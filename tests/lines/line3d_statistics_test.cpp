@@ -125,8 +125,8 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
 struct Border {
   double near_m, step_m, shift_px;
   Segment segment;
-  double operator()(float x, float y) const {
-    const Vector2 p(static_cast<double>(x), static_cast<double>(y));
+  double operator()(int x, int y) const {
+    const Vector2 p(x, y);
     const double across = (p - segment.a).dot(segment.normal());
     return across > shift_px ? near_m + step_m : near_m;
   }
@@ -140,10 +140,10 @@ TEST(OccludingEdge, BackgroundDoesNotDragTheLine) {
     for (const double shift : {-2.6, -1.5, -0.5, 0.5, 1.5, 2.6})
       for (int trial = 0; trial < 6; ++trial) {
         Border border{1 + random.uniform(), step, shift, test::random_segment(random, 40, 250)};
-        const auto noisy = [&](float x, float y) {
+        const test::DepthFunction noisy{[&](int x, int y) {
           const double d = border(x, y);
-          return static_cast<float>(d + DepthNoise{}.sigma(d) * test::gaussian(random));
-        };
+          return d + DepthNoise{}.sigma(d) * test::gaussian(random);
+        }};
         const Vector3 a = back_project(pinhole, border.segment.a.x(), border.segment.a.y(), border.near_m);
         const Vector3 b = back_project(pinhole, border.segment.b.x(), border.segment.b.y(), border.near_m);
         const auto is_good = [&](int reach) {

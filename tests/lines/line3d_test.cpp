@@ -192,15 +192,15 @@ TEST(Line3d, SameBitsWhateverTheOrderOfCalls) {
 TEST(Line3d, NothingToFit) {
   Line3d line;
   Segment s;
-  EXPECT_EQ(observe_line(
-                s, [](float, float) { return 1.0f; }, Pinhole{}, DepthNoise{}, {}, line)
-                .outcome,
-            Line3dOutcome::kTooFewDepths);
+  EXPECT_EQ(
+      observe_line(s, test::DepthFunction{[](int, int) { return 1.0; }}, Pinhole{}, DepthNoise{}, {}, line)
+          .outcome,
+      Line3dOutcome::kTooFewDepths);
   s.b = {30, 0};
-  EXPECT_EQ(observe_line(
-                s, [](float, float) { return 0.0f; }, Pinhole{}, DepthNoise{}, {}, line)
-                .outcome,
-            Line3dOutcome::kTooFewDepths);
+  EXPECT_EQ(
+      observe_line(s, test::DepthFunction{[](int, int) { return 0.0; }}, Pinhole{}, DepthNoise{}, {}, line)
+          .outcome,
+      Line3dOutcome::kTooFewDepths);
 }
 
 }  // namespace

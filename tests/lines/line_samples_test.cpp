@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <vector>
+
+#include "line_scene.hpp"
 
 namespace plvo {
 namespace {
@@ -27,17 +30,15 @@ TEST(LineSamples, EvenlySpacedFromEndToEnd) {
   const Segment s = segment(10, 20, 70, 100);
   LineSamples samples;
   std::vector<Vector2> asked;
-  sample_segment(
-      s, DepthNoise{}, 100, 0,
-      [&](float x, float y) {
-        asked.emplace_back(x, y);
-        return 2.0f;
-      },
-      samples);
+  sample_segment(s, DepthNoise{}, 100, 0, test::DepthFunction{[&](int x, int y) {
+                   asked.emplace_back(x, y);
+                   return 2.0;
+                 }},
+                 samples);
   ASSERT_EQ(samples.count, 100);
   EXPECT_EQ(samples.asked, 100);
-  EXPECT_NEAR((asked.front() - s.a).norm(), 0, 1e-5);
-  EXPECT_NEAR((asked.back() - s.b).norm(), 0, 1e-5);
+  EXPECT_EQ(asked.front(), s.a);
+  EXPECT_EQ(asked.back(), s.b);
   for (std::size_t i = 1; i < 100; ++i)
     EXPECT_NEAR(samples.sample[i].t_px - samples.sample[i - 1].t_px, 100.0 / 99, 1e-9);
   EXPECT_NEAR(samples.sample[0].t_px, -50, 1e-9);
@@ -46,11 +47,29 @@ TEST(LineSamples, EvenlySpacedFromEndToEnd) {
 
 TEST(LineSamples, NoDepthIsLeftOut) {
   LineSamples samples;
-  sample_segment(
-      segment(0, 0, 50, 0), DepthNoise{}, 100, 0, [](float x, float) { return x < 20 ? 0.0f : 1.0f; },
-      samples);
+  sample_segment(segment(0, 0, 50, 0), DepthNoise{}, 100, 0,
+                 test::DepthFunction{[](int x, int) { return x < 20 ? 0.0 : 1.0; }}, samples);
   EXPECT_EQ(samples.asked, 50);
   EXPECT_EQ(samples.count, 30);
+}
+
+TEST(LineSamples, ASlopeAcrossTheSegmentIsLessSure) {
+  DepthNoise noise;
+  noise.registration_px = 2;
+  LineSamples samples;
+  const test::DepthFunction slope{[](int, int y) { return 2 + 0.01 * y; }};
+  sample_segment(segment(0, 0, 50, 0), noise, 100, 3, slope, samples);
+  EXPECT_NEAR(samples.sample[10].sigma_d_m, std::sqrt(noise.sigma(2) * noise.sigma(2) + 0.02 * 0.02), 1e-6);
+  sample_segment(segment(0, 0, 0, 50), noise, 100, 3, slope, samples);
+  EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
+}
+
+TEST(LineSamples, NearestPixel) {
+  EXPECT_EQ(nearest_pixel(2.4), 2);
+  EXPECT_EQ(nearest_pixel(2.6), 3);
+  EXPECT_EQ(nearest_pixel(-0.4), 0);
+  EXPECT_EQ(nearest_pixel(-0.6), -1);
+  EXPECT_EQ(nearest_pixel(-1.4), -1);
 }
 
 SurfaceReading read(std::array<float, 7> profile) { return nearer_surface(profile, DepthNoise{}); }

@@ -30,6 +30,15 @@ inline double offset_from_line(const Vector3& p, const Vector3& a, const Vector3
   return (p - a - d * d.dot(p - a)).norm();
 }
 
+// A depth image from a function of the pixel.
+template <typename Function>
+struct DepthFunction {
+  Function function;
+  double at(int x, int y) const { return function(x, y); }
+};
+template <typename Function>
+DepthFunction(Function) -> DepthFunction<Function>;
+
 struct LineScene {
   Segment segment;
   Vector3 a, b;  // of the true line, at the segment's ends

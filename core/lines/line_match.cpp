@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/lines/line_match.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+
+namespace {
+
+constexpr std::uint16_t kNone = 0xffff;
+
+LinePose pose_of(const Segment& segment) {
+  const Vector2 m = segment.middle(), u = segment.direction();
+  return {static_cast<float>(m.x()), static_cast<float>(m.y()), static_cast<float>(u.x()),
+          static_cast<float>(u.y()), static_cast<float>(0.5 * segment.length_px())};
+}
+
+struct Gates {
+  float cos_angle, max_offset, min_overlap;
+  float same_cos, same_offset;
+};
+
+// Does the current segment lie where the predicted one lets it?
+bool compatible(const LinePose& p, const LinePose& c, const Gates& gates) {
+  if (p.ux * c.ux + p.uy * c.uy < gates.cos_angle) return false;
+  const float dx = c.x - p.x, dy = c.y - p.y;
+  const float across = dy * p.ux - dx * p.uy;
+  if (across > gates.max_offset || across < -gates.max_offset) return false;
+  const float along = dx * p.ux + dy * p.uy;
+  const float reach = p.half_length + c.half_length + gates.max_offset - (along < 0 ? -along : along);
+  return reach >= gates.min_overlap * 2 * std::min(p.half_length, c.half_length);
+}
+
+// Are they pieces of one line?
+bool same_line(const LinePose& a, const LinePose& b, const Gates& gates) {
+  if (a.ux * b.ux + a.uy * b.uy < gates.same_cos) return false;
+  const float dx = b.x - a.x, dy = b.y - a.y;
+  const float across = dy * a.ux - dx * a.uy;
+  return across <= gates.same_offset && across >= -gates.same_offset;
+}
+
+// The best candidate of a reference segment if it is near enough and no other line comes close to it.
+LineCandidate clear_best(std::span<const LineCandidate> candidates, std::span<const LinePose> current,
+                         const Gates& gates, const LineMatchConfig& config) {
+  LineCandidate best{kNone, config.max_distance + 1};
+  for (const LineCandidate& c : candidates)
+    if (c.distance < best.distance) best = c;  // of equals the first
+  if (best.index == kNone) return best;
+  const double limit = config.max_ratio * config.max_ratio;
+  for (const LineCandidate& c : candidates) {
+    if (best.distance < limit * c.distance || c.index == best.index) continue;
+    if (!same_line(current[best.index], current[c.index], gates)) return {kNone, 0};
+  }
+  return best;
+}
+
+}  // namespace
+
+void match_lines(std::span<const Segment> predicted, std::span<const LineDescriptor> reference_descriptors,
+                 std::span<const Segment> current, std::span<const LineDescriptor> current_descriptors,
+                 const LineMatchConfig& config, Arena& memory, FixedVector<Match>& matches) {
+  matches.clear();
+  ScratchScope<Arena> scope(memory);
+  const LineMatchScratch scratch = take_line_match_scratch(memory, predicted.size(), current.size());
+  if (memory.exhausted()) return;
+  for (std::size_t j = 0; j < current.size(); ++j) {
+    scratch.current[j] = pose_of(current[j]);
+    scratch.best_of_current[j] = {kNone, std::numeric_limits<int>::max()};
+  }
+  const Gates gates{static_cast<float>(cos(config.max_angle_rad)), static_cast<float>(config.max_offset_px),
+                    static_cast<float>(config.min_overlap), static_cast<float>(cos(config.same_line_rad)),
+                    static_cast<float>(config.same_line_px)};
+
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const LinePose pose = pose_of(predicted[i]);
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < current.size(); ++j) {
+      if (!compatible(pose, scratch.current[j], gates)) continue;
+      const int distance = descriptor_distance(reference_descriptors[i], current_descriptors[j]);
+      scratch.candidates[count++] = {static_cast<std::uint16_t>(j), distance};
+      LineCandidate& back = scratch.best_of_current[j];
+      if (distance < back.distance) back = {static_cast<std::uint16_t>(i), distance};
+    }
+    scratch.best_of_reference[i] =
+        clear_best(scratch.candidates.first(count), scratch.current, gates, config).index;
+  }
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const std::uint16_t j = scratch.best_of_reference[i];
+    if (j != kNone && scratch.best_of_current[j].index == i)
+      matches.push_back({static_cast<std::uint16_t>(i), j});
+  }
+}
+
+}  // namespace plvo

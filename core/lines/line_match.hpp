@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Box L4 of the paper, matching: nearest neighbours in descriptor space, made robust. A pair must lie as the
+// prediction says (direction with its sign, distance, overlap), be each other's nearest, and be clearly
+// nearer than any rival. A piece of the same broken line is not a rival.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/match.hpp"
+#include "plvo/lines/msld.hpp"
+#include "plvo/lines/segment.hpp"
+
+namespace plvo {
+
+struct LineMatchConfig {
+  double max_angle_rad = 0.2;  // between predicted and current direction
+  double max_offset_px =
+      40;                    // across the predicted segment, at the current one's middle; slack along it, too
+  double min_overlap = 0.5;  // of the shorter one's length
+  int max_distance = 20000;  // of descriptors, squared
+  double max_ratio = 0.85;   // of the distances, not squared, to the best and to the next best
+  // A rival is a piece of the best one's line if it is within this distance and angle of it.
+  double same_line_px = 3;
+  double same_line_rad = 0.07;
+};
+
+// What match_lines needs of one segment.
+struct LinePose {
+  float x, y;         // middle
+  float ux, uy;       // direction
+  float half_length;  // px
+};
+
+struct LineCandidate {
+  std::uint16_t index;
+  int distance;
+};
+
+struct LineMatchScratch {
+  std::span<LinePose> current;
+  std::span<LineCandidate> candidates, best_of_current;
+  std::span<std::uint16_t> best_of_reference;
+};
+template <typename Memory>
+constexpr LineMatchScratch take_line_match_scratch(Memory& memory, std::size_t references,
+                                                   std::size_t currents) {
+  return {memory.template take<LinePose>("line match", currents),
+          memory.template take<LineCandidate>("line match", currents),
+          memory.template take<LineCandidate>("line match", currents),
+          memory.template take<std::uint16_t>("line match", references)};
+}
+
+// predicted: the reference segments where the motion predicts them in the current image (or where they were,
+// with wide gates). Matches come in the order of the reference segments. At most 65535 segments either side;
+// at most |predicted| · |current| descriptor distances.
+void match_lines(std::span<const Segment> predicted, std::span<const LineDescriptor> reference_descriptors,
+                 std::span<const Segment> current, std::span<const LineDescriptor> current_descriptors,
+                 const LineMatchConfig& config, Arena& scratch, FixedVector<Match>& matches);
+
+}  // namespace plvo
