@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that RANSAC and the refinement know of a feature. A kind of constraint (points, lines, …) is a
+// ConstraintSet: a list of putative matches between two frames that brings its residual, its Jacobian, its
+// covariance, its landmark block and its part in a minimal set. A further kind is one more implementation;
+// nothing else changes.
+//
+// T = T_current_reference maps reference coordinates to current ones, X' = R X + t, equation (11). Its
+// perturbation is the ⊞ of se3.hpp, ξ = (v, ω).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "plvo/math/se3.hpp"
+#include "plvo/motion/robust_kernel.hpp"
+
+namespace plvo {
+
+// What one match offers to a minimal set: a pair of points, or of lines (a point on it, and its direction,
+// unit length, sign unknown). The sigmas only serve to reject degenerate or inconsistent sets.
+struct Primitive {
+  enum class Shape : std::uint8_t { kNone, kPoint, kLine };  // kNone: takes no part in minimal sets
+  Shape shape = Shape::kNone;
+  Vector3 p_reference, p_current;
+  Vector3 d_reference, d_current;
+  double sigma_p_m = 0;    // SD of p_reference − p_current in any one direction, about
+  double sigma_d_rad = 0;  // SD of the angle between the directions, about
+};
+
+class ConstraintSet {
+ public:
+  virtual std::size_t size() const = 0;
+  // Degrees of freedom of one match's residual: the dimension of its χ² distribution.
+  virtual int dof() const = 0;
+  // False for a match that can say nothing (not finite, covariance not positive definite or absurdly large,
+  // …): it is never sampled, never an inlier.
+  virtual bool usable(std::size_t i) const = 0;
+  virtual Primitive primitive(std::size_t i) const = 0;
+
+  // Squared Mahalanobis distance between the two measurements of match i under T, χ²(dof()) for a true match.
+  // Any value above `cutoff` may be returned as soon as it is known to be above.
+  virtual double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const = 0;
+
+  // Refinement. begin() sets the landmarks of the inliers back to their measurements. linearize() then moves
+  // candidate landmarks to their optimum for T, adds their Schur complement on ξ to H and g (both over the
+  // inliers) and returns ½ Σ ρ there; accept() keeps the candidates. Time is linear in size().
+  virtual void begin() = 0;
+  virtual double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) = 0;
+  virtual void accept() = 0;
+
+  // One flag per match, written by RANSAC, read by the refinement and by the caller.
+  std::span<std::uint8_t> inliers() { return inliers_; }
+  std::span<const std::uint8_t> inliers() const { return inliers_; }
+
+ protected:
+  explicit ConstraintSet(std::span<std::uint8_t> inliers) : inliers_(inliers) {}
+  ConstraintSet(const ConstraintSet&) = default;
+  ConstraintSet& operator=(const ConstraintSet&) = default;
+  ~ConstraintSet() = default;  // never deleted through the base
+
+  std::span<std::uint8_t> inliers_;
+};
+
+}  // namespace plvo

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/motion/line_constraints.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "plvo/math/cholesky.hpp"
+
+namespace plvo {
+namespace {
+
+// As for points: an end more uncertain than this tells nothing.
+constexpr double kMaxVarianceM2 = 1.0;
+// A segment must be longer than this many SDs of its ends, or its direction is not known well enough to
+// linearise.
+constexpr double kMinLengthSigmas = 4;
+// Gauss–Newton steps of one landmark per linearisation, and the step (m) below which the next would be in
+// vain: the eliminated cost already accounts for the last step to first order.
+constexpr int kMaxLandmarkSteps = 4;
+constexpr double kLandmarkTolerance = 1e-6;
+
+bool is_measurement(const Line3d& line) {
+  Cholesky<6> cholesky;
+  if (!line.a.allFinite() || !line.b.allFinite() || !line.Sigma.allFinite()) return false;
+  const double trace = line.Sigma.trace();
+  return trace <= 2 * kMaxVarianceM2 && cholesky.factor(line.Sigma) &&
+         (line.b - line.a).squaredNorm() > kMinLengthSigmas * kMinLengthSigmas * trace / 6;
+}
+
+// A right-handed orthonormal frame whose third column is the unit vector d.
+Matrix3 frame_along(const Vector3& d) {
+  int least = 0;
+  for (int k = 1; k < 3; ++k)
+    if (d[k] * d[k] < d[least] * d[least]) least = k;
+  Vector3 axis = Vector3::Zero();
+  axis[least] = 1;
+  Matrix3 frame;
+  Vector3 u = axis - d * d[least];
+  u *= 1 / sqrt(u.squaredNorm());
+  frame.col(0) = u;
+  frame.col(1) = d.cross(u);
+  frame.col(2) = d;
+  return frame;
+}
+
+// A measured segment as seen from an infinite line through q with the frame G = [U d].
+struct EndOffsets {
+  Vector4 e;          // across the line: Uᵀ (A − q), Uᵀ (B − q)
+  Vector2 lambda;     // along the line: dᵀ (A − q), dᵀ (B − q)
+  Matrix4 C;          // covariance of e
+  Matrix<2, 4> C_le;  // covariance of lambda with e
+};
+
+EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
+  EndOffsets offsets;
+  const Vector3 a = G.transpose().lazyProduct(line.a - q);
+  const Vector3 b = G.transpose().lazyProduct(line.b - q);
+  offsets.e << a.x(), a.y(), b.x(), b.y();
+  offsets.lambda << a.z(), b.z();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const Matrix3 left = G.transpose().lazyProduct(line.Sigma.block<3, 3>(3 * i, 3 * j));
+      const Matrix3 M = left.lazyProduct(G);
+      offsets.C.block<2, 2>(2 * i, 2 * j) = M.block<2, 2>(0, 0);
+      offsets.C_le.block<1, 2>(i, 2 * j) = M.block<1, 2>(2, 0);
+      if (i != j) {
+        offsets.C.block<2, 2>(2 * j, 2 * i) = M.block<2, 2>(0, 0).transpose();
+        offsets.C_le.block<1, 2>(j, 2 * i) = M.block<2, 1>(0, 2).transpose();
+      }
+    }
+  return offsets;
+}
+
+// Linear interpolation from displacements at two stations on the line to those at two others, N ⊗ I₂.
+struct Interpolation {
+  double n[2][2];
+  Interpolation(const Vector2& from, const Vector2& to) {
+    for (int i = 0; i < 2; ++i) {
+      const double t = (to[i] - from[0]) / (from[1] - from[0]);
+      n[i][0] = 1 - t;
+      n[i][1] = t;
+    }
+  }
+  Vector4 operator*(const Vector4& y) const {
+    Vector4 result;
+    for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < 2; ++k) result[2 * i + k] = n[i][0] * y[k] + n[i][1] * y[2 + k];
+    return result;
+  }
+  Vector4 transpose_times(const Vector4& y) const {
+    Vector4 result;
+    for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < 2; ++k) result[2 * i + k] = n[0][i] * y[k] + n[1][i] * y[2 + k];
+    return result;
+  }
+  // N C Nᵀ
+  Matrix4 sandwich(const Matrix4& C) const {
+    Matrix4 NC;
+    for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < 2; ++k)
+        for (int c = 0; c < 4; ++c) NC(2 * i + k, c) = n[i][0] * C(k, c) + n[i][1] * C(2 + k, c);
+    Matrix4 result;
+    for (int r = 0; r < 4; ++r)
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) result(r, 2 * i + k) = n[i][0] * NC(r, k) + n[i][1] * NC(r, 2 + k);
+    return result;
+  }
+};
+
+// One match at (T, landmark): everything the elimination needs.
+struct Linearized {
+  Cholesky<4> W;         // factor of C' + N C Nᵀ
+  Vector4 c, w;          // c = e' − N e, w = W c
+  Vector4 y;             // the landmark's best displacement across the line at its stations
+  Vector2 stations;      // λ_A, λ_B of the reference frame
+  Vector2 ends;          // λ'_A, λ'_B of the current frame
+  Matrix3 G, G_current;  // line frames
+};
+
+bool linearize_line(const Line3d& reference, const Line3d& current, const Se3& T,
+                    const LineConstraints::Landmark& landmark, Linearized& at) {
+  at.G = frame_along(landmark.d);
+  at.G_current = T.R.lazyProduct(at.G);
+  const EndOffsets first = observe(reference, landmark.q, at.G);
+  const EndOffsets second = observe(current, T * landmark.q, at.G_current);
+
+  // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
+  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w and C⁻¹ e = −Nᵀ w, so that w of
+  // the last step serves.
+  const Interpolation rough(first.lambda, second.lambda);
+  at.stations = first.lambda + Vector2(first.C_le.lazyProduct(rough.transpose_times(landmark.w)));
+  at.ends = second.lambda - Vector2(second.C_le.lazyProduct(landmark.w));
+  const Interpolation N(at.stations, at.ends);
+
+  at.c = second.e - N * first.e;
+  if (!at.W.factor(second.C + N.sandwich(first.C))) return false;
+  at.w = at.W.solve(at.c);
+  at.y = first.e + Vector4(first.C.lazyProduct(N.transpose_times(at.w)));
+  return true;
+}
+
+LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const Linearized& at) {
+  const Matrix<3, 2> U = at.G.block<3, 2>(0, 0);
+  const Vector3 at_a = U.lazyProduct(at.y.head<2>());
+  const Vector3 at_b = U.lazyProduct(at.y.tail<2>());
+  const Vector3 slope = (at_b - at_a) / (at.stations[1] - at.stations[0]);
+  LineConstraints::Landmark result;
+  result.q = landmark.q + at_a - at.stations[0] * slope;
+  result.d = landmark.d + slope;
+  result.d *= 1 / sqrt(result.d.squaredNorm());
+  result.w = at.w;
+  return result;
+}
+
+LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
+  return {reference.q, reference.frame.col(2), Vector4::Zero()};
+}
+
+}  // namespace
+
+LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<const Line3d> current,
+                                 std::span<const Match> matches, const Workspace& workspace)
+    : ConstraintSet(workspace.inliers.first(std::min(matches.size(), workspace.inliers.size()))),
+      reference_(reference),
+      current_(current),
+      matches_(matches.first(inliers_.size())),
+      usable_(workspace.usable.first(inliers_.size())),
+      references_(workspace.references.first(inliers_.size())),
+      landmarks_(workspace.landmarks.first(inliers_.size())),
+      candidates_(workspace.candidates.first(inliers_.size())) {
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    const Match& match = matches_[i];
+    inliers_[i] = 0;
+    usable_[i] = match.reference < reference_.size() && match.current < current_.size() &&
+                 is_measurement(reference_[match.reference]) && is_measurement(current_[match.current]);
+    if (usable_[i] == 0) continue;
+    const Line3d& line = reference_[match.reference];
+    const Vector3 d = line.b - line.a;
+    const double length = sqrt(d.squaredNorm());
+    Reference& summary = references_[i];
+    summary.q = 0.5 * (line.a + line.b);
+    summary.frame = frame_along(d / length);
+    summary.half_length = 0.5 * length;
+    summary.C = observe(line, summary.q, summary.frame).C;
+  }
+}
+
+Primitive LineConstraints::primitive(std::size_t i) const {
+  const Reference& reference = references_[i];
+  const Line3d& current = current_[matches_[i].current];
+  const Vector3 d_current = current.b - current.a;
+  const double length_current = sqrt(d_current.squaredNorm());
+  Primitive primitive;
+  primitive.shape = Primitive::Shape::kLine;
+  primitive.p_reference = reference.q;
+  primitive.p_current = 0.5 * (current.a + current.b);
+  primitive.d_reference = reference.frame.col(2);
+  primitive.d_current = d_current / length_current;
+  // Bounds of the worst direction across the line, from traces there: of the mean of the two ends, and of
+  // their difference.
+  const Matrix4& C = reference.C;
+  const double ends = C.trace();
+  const double cross = C(0, 2) + C(1, 3);
+  const Matrix6& S = current.Sigma;
+  const Vector3& d = primitive.d_current;
+  const auto across = [&](int row, int column) {
+    const Matrix3 block = S.block<3, 3>(row, column);
+    return block.trace() - d.dot(block * d);
+  };
+  const double ends_current = across(0, 0) + across(3, 3);
+  const double cross_current = across(3, 0);
+  primitive.sigma_p_m = sqrt((ends + 2 * cross + ends_current + 2 * cross_current) / 4);
+  primitive.sigma_d_rad = sqrt((ends - 2 * cross) / (4 * reference.half_length * reference.half_length) +
+                               (ends_current - 2 * cross_current) / (length_current * length_current));
+  return primitive;
+}
+
+double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const {
+  const Reference& reference = references_[i];
+  const Line3d& current = current_[matches_[i].current];
+  const Matrix3 G = T.R.lazyProduct(reference.frame);
+  const Vector3 q = T * reference.q;
+  const Vector3 a = G.transpose().lazyProduct(current.a - q);
+  const Vector3 b = G.transpose().lazyProduct(current.b - q);
+  const Interpolation N(Vector2(-reference.half_length, reference.half_length), Vector2(a.z(), b.z()));
+  // As for points, the trace bounds the largest eigenvalue: here of C' + N C Nᵀ.
+  const double squared_norm = a.head<2>().squaredNorm() + b.head<2>().squaredNorm();
+  double N_squared = 0;
+  for (const auto& row : N.n) N_squared += row[0] * row[0] + row[1] * row[1];
+  const double bound = current.Sigma.trace() + N_squared * reference.C.trace();
+  if (!(squared_norm <= cutoff * bound)) return squared_norm / bound;
+
+  const EndOffsets offsets = observe(current, q, G);
+  Cholesky<4> cholesky;
+  if (!cholesky.factor(offsets.C + N.sandwich(reference.C))) return 2 * cutoff;
+  return cholesky.solve_lower(offsets.e).squaredNorm();
+}
+
+void LineConstraints::begin() {
+  for (std::size_t i = 0; i < matches_.size(); ++i)
+    if (inliers_[i] != 0) landmarks_[i] = measured_landmark(references_[i]);
+}
+
+void LineConstraints::accept() { std::swap(landmarks_, candidates_); }
+
+double LineConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) {
+  double cost = 0;
+  Matrix6 H_sum = Matrix6::Zero();  // lower triangle
+  Vector6 g_sum = Vector6::Zero();
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    if (inliers_[i] == 0) continue;
+    Landmark landmark = landmarks_[i];
+    Linearized at;
+    Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
+    for (int step = 0; step < kMaxLandmarkSteps; ++step) {
+      if (!linearize_line(reference_[matches_[i].reference], current_[matches_[i].current], T, landmark, at))
+        return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
+      q = T.R.lazyProduct(landmark.q);
+      landmark = moved(landmark, at);
+      if (at.y.cwiseAbs().maxCoeff() <= kLandmarkTolerance) break;
+    }
+    candidates_[i] = landmark;
+
+    double weight = 1;
+    cost += 0.5 * kernel(at.c.dot(at.w), weight);
+    // −∂c/∂ξ, one row per end and direction u across: [uᵀ, (S × u)ᵀ], S the end's place on the line less t.
+    Matrix<4, 6> J;
+    for (int end = 0; end < 2; ++end) {
+      const Vector3 S = q + at.ends[end] * at.G_current.col(2);
+      for (int k = 0; k < 2; ++k) {
+        const Vector3 u = at.G_current.col(k);
+        J.block<1, 3>(2 * end + k, 0) = u.transpose();
+        J.block<1, 3>(2 * end + k, 3) = S.cross(u).transpose();
+      }
+    }
+    Matrix<4, 6> whitened;
+    for (int column = 0; column < 6; ++column) whitened.col(column) = at.W.solve_lower(J.col(column));
+    for (int r = 0; r < 6; ++r) {
+      g_sum[r] -= weight * J.col(r).dot(at.w);
+      for (int c = 0; c <= r; ++c) H_sum(r, c) += weight * whitened.col(r).dot(whitened.col(c));
+    }
+  }
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) H(r, c) += r >= c ? H_sum(r, c) : H_sum(c, r);
+  g += g_sum;
+  return cost;
+}
+
+}  // namespace plvo

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/motion/motion_estimator.hpp"
+
+#include "plvo/math/cholesky.hpp"
+#include "plvo/math/symmetric_eigen.hpp"
+
+namespace plvo {
+namespace {
+
+// Rounds of "refine, judge the inliers again" after the first: the consensus settles at once or does not
+// matter.
+constexpr int kMaxRejudgements = 2;
+// Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
+// error.
+constexpr double kMinEigenvalueRatio = 1e-10;
+
+double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).values.maxCoeff(); }
+
+// C = H⁻¹, or false when H does not determine all six degrees of freedom, by the two rules stated in the
+// header.
+bool invert_information(const Matrix6& H, const MotionOptions& options, Matrix6& C) {
+  if (!H.allFinite() || !(H.diagonal().minCoeff() > 0)) return false;
+  // To a unit diagonal first: metres and radians then weigh alike, and the eigenvalues mean something.
+  Vector6 scale;
+  for (int i = 0; i < 6; ++i) scale[i] = 1 / sqrt(H(i, i));
+  Matrix6 unit;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) unit(i, j) = H(i, j) * scale[i] * scale[j];
+  const Vector6 values = symmetric_eigen<6>(unit).values;
+  if (!(values.minCoeff() > kMinEigenvalueRatio * values.maxCoeff())) return false;
+  Cholesky<6> cholesky;
+  if (!cholesky.factor(unit)) return false;
+  C = cholesky.inverse();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) C(i, j) *= scale[i] * scale[j];
+  const Matrix3 C_translation = C.block<3, 3>(0, 0);
+  const Matrix3 C_rotation = C.block<3, 3>(3, 3);
+  return C.allFinite() && largest_eigenvalue(C_translation) <= options.max_sigma_m * options.max_sigma_m &&
+         largest_eigenvalue(C_rotation) <= options.max_sigma_rad * options.max_sigma_rad;
+}
+
+void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
+  for (std::size_t kind = 0; kind < sets.size(); ++kind) {
+    const ConstraintSet& set = *sets[kind];
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      estimate.inliers[kind] += set.inliers()[i];
+      estimate.usable[kind] += set.usable(i) ? 1 : 0;
+    }
+  }
+}
+
+StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& options, std::uint64_t seed,
+                 const Se3* prediction, std::span<Candidate> scratch, MotionEstimate& estimate) {
+  Ransac ransac(sets, options.ransac, options.loss, scratch);
+  if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < options.min_inliers)
+    return StatusCode::kTooFewFeatures;
+  const double least_share = options.min_inlier_ratio * static_cast<double>(ransac.usable());
+  const auto consensus = [&] {
+    return ransac.inliers() >= options.min_inliers && ransac.inliers() >= least_share;
+  };
+
+  Se3 T;
+  if (!ransac.run(seed, prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  ransac.judge(T);
+  LevenbergMarquardt<6> solver;
+  for (int round = 0; round <= kMaxRejudgements; ++round) {
+    if (!consensus()) return StatusCode::kNoConsensus;
+    MotionProblem problem(sets, options.loss, T);
+    estimate.lm = solver.solve(problem, options.lm);
+    if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
+      return StatusCode::kDegenerate;
+    T = problem.T_current_reference();
+    for (std::size_t kind = 0; kind < sets.size(); ++kind)
+      estimate.information[kind] = problem.information(kind);
+    if (round == kMaxRejudgements || !ransac.judge(T)) break;
+  }
+  if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
+    return StatusCode::kNotConverged;
+  if (!T.is_finite() || !invert_information(solver.hessian(), options, estimate.C_H))
+    return StatusCode::kDegenerate;
+  estimate.T_current_reference = T;
+  return StatusCode::kOk;
+}
+
+}  // namespace
+
+MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionOptions& options,
+                               std::uint64_t seed, const Se3* prediction, Arena& arena) {
+  if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
+  std::size_t matches = 0;
+  for (ConstraintSet* set : sets) {
+    matches += set->size();
+    for (std::uint8_t& flag : set->inliers()) flag = 0;
+  }
+  const ScratchScope<Arena> scope(arena);
+  const std::span<Candidate> scratch = take_ransac_scratch(arena, matches);
+  MotionEstimate estimate;
+  estimate.status = scratch.size() < matches ? StatusCode::kOutOfMemory
+                                             : solve(sets, options, seed, prediction, scratch, estimate);
+  if (estimate.status == StatusCode::kOk) {
+    count(sets, estimate);
+    return estimate;
+  }
+  for (ConstraintSet* set : sets)
+    for (std::uint8_t& flag : set->inliers()) flag = 0;
+  MotionEstimate failed;
+  failed.status = estimate.status;
+  failed.ransac = estimate.ransac;
+  failed.lm = estimate.lm;
+  if (failed.lm.status == LmStatus::kNotFinite) failed.lm.initial_cost = failed.lm.final_cost = 0;
+  count(sets, failed);
+  return failed;
+}
+
+}  // namespace plvo

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Box 5 and box 6 of the paper: putative matches of any kinds in, the motion between two frames and its
+// covariance out. RANSAC over mixed minimal sets finds the consensus (ransac.hpp), the joint
+// maximum-likelihood estimate refines it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/status.hpp"
+#include "plvo/math/levenberg_marquardt.hpp"
+#include "plvo/motion/constraint_set.hpp"
+#include "plvo/motion/line_constraints.hpp"
+#include "plvo/motion/motion_problem.hpp"
+#include "plvo/motion/point_constraints.hpp"
+#include "plvo/motion/ransac.hpp"
+
+namespace plvo {
+
+struct MotionOptions {
+  RansacOptions ransac;
+  // Huber by default: robust where the covariances are too optimistic, honest where they are right
+  // (robust_kernel.hpp).
+  RobustLoss loss = RobustLoss::kHuber;
+  // Steps below 1e-7 (m, rad) are five orders below the sensor; the cost tolerance is left to the solver's
+  // default.
+  LmOptions lm{.max_iterations = 20, .step_tolerance = 1e-7};
+  // kNoConsensus with fewer inliers than this, all kinds together, or than this fraction of the usable
+  // matches.
+  int min_inliers = 6;
+  double min_inlier_ratio = 0.1;
+  // kDegenerate when the SD of the translation (rotation) in its worst direction exceeds this: some degree of
+  // freedom is then held by noise alone (all lines parallel, all points on a line, …).
+  double max_sigma_m = 0.1;
+  double max_sigma_rad = 0.1;
+};
+
+struct MotionEstimate {
+  // kOk; kTooFewFeatures: fewer than three usable matches that may form a minimal set, or fewer than
+  // min_inliers; kNoConsensus; kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever
+  // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
+  StatusCode status = StatusCode::kTooFewFeatures;
+  Se3 T_current_reference;  // X' = R X + t, equation (11)
+  // C_H (23) of the ⊞-perturbation (v, ω) of T_current_reference, with the robust weights: (Σ w Jᵀ Σ⁻¹ J)⁻¹.
+  // m², m rad, rad².
+  Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
+  // Per kind, in the order of the sets: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹ (26). Zero for an empty
+  // kind.
+  std::array<Matrix6, kMaxConstraintKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
+                                                          Matrix6::Zero()};
+  std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
+  std::array<int, kMaxConstraintKinds> usable{};
+  RansacSummary ransac;
+  LmSummary lm;
+
+  static constexpr double kUnknownVariance = 1e6;
+};
+
+// sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
+// prediction, if any, is tried as hypothesis number zero, and decides between rotations that perpendicular
+// lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch) is taken from
+// the arena and given back; an arena without room for it is kOutOfMemory.
+MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionOptions& options,
+                               std::uint64_t seed, const Se3* prediction, Arena& arena);
+
+// What points, lines and estimate_motion take between mark and rewind, for sizing.
+template <typename Memory>
+constexpr void size_motion(Memory& memory, std::size_t max_points, std::size_t max_lines) {
+  const ScratchScope<Memory> scope(memory);
+  (void)PointConstraints::Workspace::take(memory, max_points);
+  (void)LineConstraints::Workspace::take(memory, max_lines);
+  (void)take_ransac_scratch(memory, max_points + max_lines);
+}
+
+}  // namespace plvo

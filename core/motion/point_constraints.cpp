@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/motion/point_constraints.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "plvo/math/cholesky.hpp"
+
+namespace plvo {
+namespace {
+
+// A point more uncertain than this tells nothing, and would pass any χ² test.
+constexpr double kMaxVarianceM2 = 1.0;
+
+bool is_measurement(const Point3d& point) {
+  Cholesky<3> cholesky;
+  return point.p.allFinite() && point.Sigma.allFinite() && point.Sigma.trace() <= kMaxVarianceM2 &&
+         cholesky.factor(point.Sigma);
+}
+
+// Six numbers of a symmetric 3×3 matrix.
+struct Symmetric3 {
+  double xx, xy, xz, yy, yz, zz;
+  Vector3 operator*(const Vector3& v) const {
+    return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
+            xz * v.x() + yz * v.y() + zz * v.z()};
+  }
+};
+
+// R Σ Rᵀ + Σ'.
+Symmetric3 sum_of_covariances(const Matrix3& R, const Matrix3& Sigma, const Matrix3& Sigma_current) {
+  const Matrix3 A = R.lazyProduct(Sigma);
+  const auto entry = [&](int i, int j) {
+    return A(i, 0) * R(j, 0) + A(i, 1) * R(j, 1) + A(i, 2) * R(j, 2) + Sigma_current(i, j);
+  };
+  return {entry(0, 0), entry(1, 0), entry(2, 0), entry(1, 1), entry(2, 1), entry(2, 2)};
+}
+
+// By cofactors: one division, and covariances of measurements are far from singular.
+Symmetric3 inverse(const Symmetric3& m) {
+  const double xx = m.yy * m.zz - m.yz * m.yz;
+  const double xy = m.xz * m.yz - m.xy * m.zz;
+  const double xz = m.xy * m.yz - m.xz * m.yy;
+  const double scale = 1 / (m.xx * xx + m.xy * xy + m.xz * xz);
+  return {xx * scale,
+          xy * scale,
+          xz * scale,
+          (m.xx * m.zz - m.xz * m.xz) * scale,
+          (m.xy * m.xz - m.xx * m.yz) * scale,
+          (m.xx * m.yy - m.xy * m.xy) * scale};
+}
+
+}  // namespace
+
+PointConstraints::PointConstraints(std::span<const Point3d> reference, std::span<const Point3d> current,
+                                   std::span<const Match> matches, const Workspace& workspace)
+    : ConstraintSet(workspace.inliers.first(std::min(matches.size(), workspace.inliers.size()))),
+      reference_(reference),
+      current_(current),
+      matches_(matches.first(inliers_.size())),
+      usable_(workspace.usable.first(inliers_.size())) {
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    const Match& match = matches_[i];
+    inliers_[i] = 0;
+    usable_[i] = match.reference < reference_.size() && match.current < current_.size() &&
+                 is_measurement(reference_[match.reference]) && is_measurement(current_[match.current]);
+  }
+}
+
+Primitive PointConstraints::primitive(std::size_t i) const {
+  const Point3d& reference = reference_[matches_[i].reference];
+  const Point3d& current = current_[matches_[i].current];
+  Primitive primitive;
+  primitive.shape = Primitive::Shape::kPoint;
+  primitive.p_reference = reference.p;
+  primitive.p_current = current.p;
+  primitive.sigma_p_m = sqrt((reference.Sigma.trace() + current.Sigma.trace()) / 3);
+  return primitive;
+}
+
+double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const {
+  const Point3d& reference = reference_[matches_[i].reference];
+  const Point3d& current = current_[matches_[i].current];
+  const Vector3 e = current.p - T * reference.p;
+  // No eigenvalue of the covariance exceeds its trace: s ≥ |e|² / trace, which spares most outliers the
+  // inverse.
+  const double squared_norm = e.squaredNorm();
+  const double trace = reference.Sigma.trace() + current.Sigma.trace();
+  if (squared_norm > cutoff * trace) return squared_norm / trace;
+  return e.dot(inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma)) * e);
+}
+
+double PointConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) {
+  double cost = 0;
+  Matrix3 H_vv = Matrix3::Zero();
+  Matrix3 H_vw = Matrix3::Zero();
+  Matrix3 H_ww = Matrix3::Zero();  // lower triangle
+  Vector3 g_v = Vector3::Zero();
+  Vector3 g_w = Vector3::Zero();
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    if (inliers_[i] == 0) continue;
+    const Point3d& reference = reference_[matches_[i].reference];
+    const Point3d& current = current_[matches_[i].current];
+    const Vector3 e = current.p - T * reference.p;
+    Symmetric3 W = inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma));
+    Vector3 We = W * e;
+    double weight = 1;
+    cost += 0.5 * kernel(e.dot(We), weight);
+    const Vector3 q = current.p - current.Sigma * We - T.t;  // R X*
+    We *= weight;
+    W = {W.xx * weight, W.xy * weight, W.xz * weight, W.yy * weight, W.yz * weight, W.zz * weight};
+
+    g_v -= We;
+    g_w -= q.cross(We);
+    // W [q]× row by row, rᵀ [q]× = (r × q)ᵀ; then [q]×ᵀ (W [q]×) column by column, [q]×ᵀ c = c × q.
+    Matrix3 rows;
+    rows << W.xx, W.xy, W.xz, W.xy, W.yy, W.yz, W.xz, W.yz, W.zz;
+    Matrix3 B;
+    for (int r = 0; r < 3; ++r) {
+      B(r, 0) = rows(r, 1) * q.z() - rows(r, 2) * q.y();
+      B(r, 1) = rows(r, 2) * q.x() - rows(r, 0) * q.z();
+      B(r, 2) = rows(r, 0) * q.y() - rows(r, 1) * q.x();
+    }
+    H_vv += rows;
+    H_vw -= B;
+    for (int c = 0; c < 3; ++c) {
+      H_ww(0, c) += B(1, c) * q.z() - B(2, c) * q.y();
+      H_ww(1, c) += B(2, c) * q.x() - B(0, c) * q.z();
+      H_ww(2, c) += B(0, c) * q.y() - B(1, c) * q.x();
+    }
+  }
+  H.block<3, 3>(0, 0) += H_vv;
+  H.block<3, 3>(0, 3) += H_vw;
+  H.block<3, 3>(3, 0) += H_vw.transpose();
+  H.block<3, 3>(3, 3) += 0.5 * (H_ww + H_ww.transpose());
+  g.head<3>() += g_v;
+  g.tail<3>() += g_w;
+  return cost;
+}
+
+}  // namespace plvo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Point matches as constraints on the motion: equations (12)–(14) of the paper. The landmark X_i of a match
+// enters linearly, so its 3×3 block is eliminated in closed form. With e = P' − R P − t and W = (R Σ Rᵀ +
+// Σ')⁻¹ the best landmark for a given T leaves
+//   cost ½ eᵀ W e,   R X* + t = P' − Σ' W e,   Schur complement J_ξᵀ W J_ξ,   gradient −J_ξᵀ W e,
+// with J_ξ = [I, −[R X*]×]. This is exact (the matrix inversion lemma; the gradient because X* is optimal),
+// not an approximation of the joint problem; tests/motion compares it with a dense joint solve.
+#pragma once
+
+#include "plvo/base/match.hpp"
+#include "plvo/camera/observation.hpp"
+#include "plvo/motion/constraint_set.hpp"
+
+namespace plvo {
+
+class PointConstraints final : public ConstraintSet {
+ public:
+  struct Workspace {
+    std::span<std::uint8_t> inliers, usable;
+    template <typename Memory>
+    static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
+      return {memory.template take<std::uint8_t>("motion: point inliers", max_matches),
+              memory.template take<std::uint8_t>("motion: usable points", max_matches)};
+    }
+  };
+
+  // matches[i] pairs reference[matches[i].reference] with current[matches[i].current]; all spans must outlive
+  // the set. Matches beyond the workspace's capacity are ignored.
+  PointConstraints(std::span<const Point3d> reference, std::span<const Point3d> current,
+                   std::span<const Match> matches, const Workspace& workspace);
+
+  std::size_t size() const override { return matches_.size(); }
+  int dof() const override { return 3; }
+  bool usable(std::size_t i) const override { return usable_[i] != 0; }
+  Primitive primitive(std::size_t i) const override;
+  double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
+  void begin() override {}
+  double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) override;
+  void accept() override {}
+
+ private:
+  std::span<const Point3d> reference_, current_;
+  std::span<const Match> matches_;
+  std::span<std::uint8_t> usable_;
+};
+
+}  // namespace plvo

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// RANSAC over mixed minimal sets (section 5.1 of the paper), for any kinds of constraints.
+//
+// Sampling: three different matches, uniformly over all usable matches of all kinds; the kinds drawn decide
+// which of the four solvers runs. Every match is as likely to be good as any other as far as we know before
+// the first test, so this makes the kinds appear in proportion to how much of the evidence they are, and a
+// scene of one kind needs no special case. Scoring is MSAC (Torr & Zisserman 2000): a match at squared
+// Mahalanobis distance s below its threshold gains threshold − s, its log-likelihood ratio against the
+// threshold; the threshold is the quantile of χ²(dof) at one probability for all kinds. A hypothesis is
+// dropped as soon as all its remaining matches together cannot bring it to the best score: this loses
+// nothing. A new best is refined on its inliers by a few steps of the maximum-likelihood problem (LO-RANSAC,
+// Chum, Matas & Kittler 2003).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/math/se3.hpp"
+#include "plvo/motion/constraint_set.hpp"
+#include "plvo/motion/motion_problem.hpp"
+
+namespace plvo {
+
+struct RansacOptions {
+  double inlier_probability = 0.99;  // of a true match to pass the χ² test, for every kind; 0 < p < 1
+  double confidence = 0.999;         // to have drawn a set of true matches before stopping; 0 < p < 1
+  int max_iterations =
+      300;  // non-degenerate sets drawn: iterations ≤ max_iterations; draws ≤ 4 max_iterations
+};
+
+struct RansacSummary {
+  int draws = 0;       // sets drawn
+  int iterations = 0;  // of these, not degenerate
+  int hypotheses = 0;  // of these, rigid within their uncertainty, hence solved and scored
+  int refinements = 0;
+  double score = 0;  // of the best one; 0 when there is none
+};
+
+// A match that may be an inlier.
+struct Candidate {
+  std::uint8_t kind = 0;
+  std::uint16_t index = 0;
+};
+
+template <typename Memory>
+constexpr std::span<Candidate> take_ransac_scratch(Memory& memory, std::size_t max_matches) {
+  return memory.template take<Candidate>("motion: candidates", max_matches);
+}
+
+class Ransac {
+ public:
+  // scratch holds a Candidate for every match of all sets; what does not fit is not looked at.
+  Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options, RobustLoss loss,
+         std::span<Candidate> scratch);
+
+  // Usable matches, all of them, and those that may form minimal sets.
+  std::size_t usable() const { return usable_; }
+  std::size_t samplable() const { return samplable_; }
+
+  // The best motion found; false when no hypothesis scored at all.
+  bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
+
+  // Sets every inlier flag by the χ² test under T, with the thresholds scaled by `scale`; true when a flag
+  // changed.
+  bool judge(const Se3& T, double scale = 1);
+  int inliers() const { return inliers_; }
+
+ private:
+  double score(const Se3& T, double scale, double to_beat) const;
+  void refine(Se3& T);
+  bool consider(Se3 T, Se3& best, RansacSummary& summary);
+  int iterations_needed() const;
+
+  std::span<ConstraintSet* const> sets_;
+  RansacOptions options_;
+  RobustLoss loss_;
+  std::span<Candidate> candidates_;  // those that may form minimal sets first
+  std::size_t usable_ = 0;
+  std::size_t samplable_ = 0;
+  int inliers_ = 0;
+  double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
+  std::array<double, kMaxConstraintKinds> threshold_{};
+};
+
+}  // namespace plvo
