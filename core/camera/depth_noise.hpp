@@ -11,8 +11,8 @@ struct DepthNoise {
   double c3 = -5.8e-4;    // m
   double floor_m = 5e-4;  // smallest σ_d
 
-  // Depth and colour of a real sensor do not meet exactly: on a slope an error of so many pixels (SD) becomes one of
-  // depth. Not in the paper; 0 switches it off.
+  // Depth and colour of a real sensor do not meet exactly: on a slope an error of so many pixels (SD) becomes
+  // one of depth. Not in the paper; 0 switches it off.
   double registration_px = 0.5;
 
   double sigma(double depth_m) const {

@@ -20,15 +20,9 @@ void to_gray(const ColourView& colour, ImageView<std::uint8_t> gray) {
   for (int y = 0; y < gray.height; ++y) {
     const std::uint8_t* row = colour.data + y * colour.stride_bytes;
     switch (colour.format) {
-      case PixelFormat::kGray8:
-        std::memcpy(gray.row(y), row, static_cast<std::size_t>(gray.width));
-        break;
-      case PixelFormat::kRgb8:
-        luma_row<0>(row, gray.width, gray.row(y));
-        break;
-      case PixelFormat::kBgr8:
-        luma_row<2>(row, gray.width, gray.row(y));
-        break;
+      case PixelFormat::kGray8: std::memcpy(gray.row(y), row, static_cast<std::size_t>(gray.width)); break;
+      case PixelFormat::kRgb8: luma_row<0>(row, gray.width, gray.row(y)); break;
+      case PixelFormat::kBgr8: luma_row<2>(row, gray.width, gray.row(y)); break;
     }
   }
 }

@@ -99,14 +99,10 @@ double sin(double radians) {
   if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
   switch (r.quadrant) {
-    case 0:
-      return sin_polynomial(r.x);
-    case 1:
-      return cos_polynomial(r.x);
-    case 2:
-      return -sin_polynomial(r.x);
-    default:
-      return -cos_polynomial(r.x);
+    case 0: return sin_polynomial(r.x);
+    case 1: return cos_polynomial(r.x);
+    case 2: return -sin_polynomial(r.x);
+    default: return -cos_polynomial(r.x);
   }
 }
 
@@ -114,14 +110,10 @@ double cos(double radians) {
   if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
   switch (r.quadrant) {
-    case 0:
-      return cos_polynomial(r.x);
-    case 1:
-      return -sin_polynomial(r.x);
-    case 2:
-      return -cos_polynomial(r.x);
-    default:
-      return sin_polynomial(r.x);
+    case 0: return cos_polynomial(r.x);
+    case 1: return -sin_polynomial(r.x);
+    case 2: return -cos_polynomial(r.x);
+    default: return sin_polynomial(r.x);
   }
 }
 

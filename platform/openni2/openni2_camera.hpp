@@ -26,8 +26,8 @@ struct OpenNi2DeviceInfo {
 };
 
 enum class OpenNi2Registration : std::uint8_t {
-  kAuto,  // by the device where it can, else in software (see software_registration.hpp); .oni files are
-          // taken as registered, for the format does not say, and plvo records registered depth
+  kAuto,      // by the device where it can, else in software (see software_registration.hpp); .oni files are
+              // taken as registered, for the format does not say, and plvo records registered depth
   kSoftware,  // in software, even where the device could
   kNone,      // leave the depth image as it is: only for whoever registers it elsewhere
 };

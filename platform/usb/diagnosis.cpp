@@ -67,8 +67,7 @@ void judge_power(const SystemFacts& facts, Findings& out) {
 bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& out) {
   switch (device.access) {
     case UsbAccess::kNotTried:
-    case UsbAccess::kFree:
-      return true;
+    case UsbAccess::kFree: return true;
     case UsbAccess::kDenied:
       out.push_back({Severity::kProblem, FindingCode::kPermission,
                      "No permission to use the " + where(device) + ", " + device.node + ".",
@@ -210,46 +209,26 @@ void judge_bandwidth(const SystemFacts& facts, Findings& out) {
 
 const char* to_string(FindingCode code) {
   switch (code) {
-    case FindingCode::kReady:
-      return "ready";
-    case FindingCode::kUsbUnavailable:
-      return "usb_unavailable";
-    case FindingCode::kNothingPluggedIn:
-      return "nothing_plugged_in";
-    case FindingCode::kTwelveVolts:
-      return "twelve_volts";
-    case FindingCode::kPermission:
-      return "permission";
-    case FindingCode::kBusy:
-      return "busy";
-    case FindingCode::kKernelDriver:
-      return "kernel_driver";
-    case FindingCode::kSlowPort:
-      return "slow_port";
-    case FindingCode::kSharedBus:
-      return "shared_bus";
-    case FindingCode::kUsbfsMemory:
-      return "usbfs_memory";
-    case FindingCode::kGone:
-      return "gone";
-    case FindingCode::kAccessFailed:
-      return "access_failed";
-    case FindingCode::kRuleMissing:
-      return "rule_missing";
-    case FindingCode::kNoHotPlug:
-      return "no_hot_plug";
-    case FindingCode::kOpenniNotBuilt:
-      return "openni_not_built";
-    case FindingCode::kOpenniMissing:
-      return "openni_missing";
-    case FindingCode::kDriverFolderMissing:
-      return "driver_folder_missing";
-    case FindingCode::kDriverMissing:
-      return "driver_missing";
-    case FindingCode::kDriverMisnamed:
-      return "driver_misnamed";
-    case FindingCode::kDriverBroken:
-      return "driver_broken";
+    case FindingCode::kReady: return "ready";
+    case FindingCode::kUsbUnavailable: return "usb_unavailable";
+    case FindingCode::kNothingPluggedIn: return "nothing_plugged_in";
+    case FindingCode::kTwelveVolts: return "twelve_volts";
+    case FindingCode::kPermission: return "permission";
+    case FindingCode::kBusy: return "busy";
+    case FindingCode::kKernelDriver: return "kernel_driver";
+    case FindingCode::kSlowPort: return "slow_port";
+    case FindingCode::kSharedBus: return "shared_bus";
+    case FindingCode::kUsbfsMemory: return "usbfs_memory";
+    case FindingCode::kGone: return "gone";
+    case FindingCode::kAccessFailed: return "access_failed";
+    case FindingCode::kRuleMissing: return "rule_missing";
+    case FindingCode::kNoHotPlug: return "no_hot_plug";
+    case FindingCode::kOpenniNotBuilt: return "openni_not_built";
+    case FindingCode::kOpenniMissing: return "openni_missing";
+    case FindingCode::kDriverFolderMissing: return "driver_folder_missing";
+    case FindingCode::kDriverMissing: return "driver_missing";
+    case FindingCode::kDriverMisnamed: return "driver_misnamed";
+    case FindingCode::kDriverBroken: return "driver_broken";
   }
   return "unknown";
 }

@@ -32,16 +32,11 @@ long read_number(const char* path) {
 
 UsbAccess to_access(int error) {
   switch (error) {
-    case 0:
-      return UsbAccess::kFree;
-    case LIBUSB_ERROR_ACCESS:
-      return UsbAccess::kDenied;
-    case LIBUSB_ERROR_BUSY:
-      return UsbAccess::kBusy;
-    case LIBUSB_ERROR_NO_DEVICE:
-      return UsbAccess::kGone;
-    default:
-      return UsbAccess::kFailed;
+    case 0: return UsbAccess::kFree;
+    case LIBUSB_ERROR_ACCESS: return UsbAccess::kDenied;
+    case LIBUSB_ERROR_BUSY: return UsbAccess::kBusy;
+    case LIBUSB_ERROR_NO_DEVICE: return UsbAccess::kGone;
+    default: return UsbAccess::kFailed;
   }
 }
 

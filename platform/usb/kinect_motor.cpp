@@ -46,18 +46,12 @@ double get_be16(const std::uint8_t* from) { return static_cast<std::int16_t>((fr
 
 int light_on_motor(KinectLight light) {
   switch (light) {
-    case KinectLight::kOff:
-      return 0;
-    case KinectLight::kGreen:
-      return 1;
-    case KinectLight::kRed:
-      return 2;
-    case KinectLight::kYellow:
-      return 3;
-    case KinectLight::kBlinkGreen:
-      return 4;
-    case KinectLight::kBlinkRedYellow:
-      return 6;
+    case KinectLight::kOff: return 0;
+    case KinectLight::kGreen: return 1;
+    case KinectLight::kRed: return 2;
+    case KinectLight::kYellow: return 3;
+    case KinectLight::kBlinkGreen: return 4;
+    case KinectLight::kBlinkRedYellow: return 6;
   }
   return 0;
 }
@@ -65,16 +59,12 @@ int light_on_motor(KinectLight light) {
 // The audio device knows fewer lights: the nearest one.
 std::uint32_t light_on_audio(KinectLight light) {
   switch (light) {
-    case KinectLight::kOff:
-      return 1;
-    case KinectLight::kBlinkGreen:
-      return 2;
-    case KinectLight::kGreen:
-      return 3;
+    case KinectLight::kOff: return 1;
+    case KinectLight::kBlinkGreen: return 2;
+    case KinectLight::kGreen: return 3;
     case KinectLight::kRed:
     case KinectLight::kYellow:
-    case KinectLight::kBlinkRedYellow:
-      return 4;
+    case KinectLight::kBlinkRedYellow: return 4;
   }
   return 1;
 }

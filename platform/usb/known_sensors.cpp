@@ -66,14 +66,10 @@ const KnownUsbDevice* find_known(std::uint16_t vendor, std::uint16_t product) {
 
 const SensorNeeds& needs_of(SensorFamily family) {
   switch (family) {
-    case SensorFamily::kKinectV1:
-      return kKinectV1Needs;
-    case SensorFamily::kKinectV2:
-      return kKinectV2Needs;
-    case SensorFamily::kPrimeSense:
-      return kPrimeSenseNeeds;
-    case SensorFamily::kAstra:
-      return kAstraNeeds;
+    case SensorFamily::kKinectV1: return kKinectV1Needs;
+    case SensorFamily::kKinectV2: return kKinectV2Needs;
+    case SensorFamily::kPrimeSense: return kPrimeSenseNeeds;
+    case SensorFamily::kAstra: return kAstraNeeds;
   }
   return kKinectV1Needs;
 }

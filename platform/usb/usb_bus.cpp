@@ -14,18 +14,12 @@ namespace {
 
 int to_mbps(int speed) {
   switch (speed) {
-    case LIBUSB_SPEED_LOW:
-      return 1;
-    case LIBUSB_SPEED_FULL:
-      return 12;
-    case LIBUSB_SPEED_HIGH:
-      return 480;
-    case LIBUSB_SPEED_SUPER:
-      return 5000;
-    case LIBUSB_SPEED_SUPER_PLUS:
-      return 10000;
-    default:
-      return 0;
+    case LIBUSB_SPEED_LOW: return 1;
+    case LIBUSB_SPEED_FULL: return 12;
+    case LIBUSB_SPEED_HIGH: return 480;
+    case LIBUSB_SPEED_SUPER: return 5000;
+    case LIBUSB_SPEED_SUPER_PLUS: return 10000;
+    default: return 0;
   }
 }
 

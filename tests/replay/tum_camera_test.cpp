@@ -128,7 +128,8 @@ TEST(TumCamera, ReadsARealSequence) {
   if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
   TumCamera camera;
   ASSERT_TRUE(open(camera, folder).ok());
-  // Its two lists run half a period apart, so that the best-first rule leaves one image of each without a partner.
+  // Its two lists run half a period apart, so that the best-first rule leaves one image of each without a
+  // partner.
   EXPECT_EQ(camera.frame_count(), 9u);
   EXPECT_EQ(camera.index().unpaired_colour, 1u);
   RgbdFrame frame;

@@ -207,16 +207,11 @@ gboolean MockUsb::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpoi
     case USBDEVFS_GET_CAPABILITIES:
       *static_cast<std::uint32_t*>(pointer) = USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_ZERO_PACKET;
       break;
-    case USBDEVFS_CLAIMINTERFACE:
-      error = device.behaviour.claim_errno;
-      break;
+    case USBDEVFS_CLAIMINTERFACE: error = device.behaviour.claim_errno; break;
     case USBDEVFS_RELEASEINTERFACE:
     case USBDEVFS_SETCONFIGURATION:
-    case USBDEVFS_DISCONNECT_CLAIM:
-      break;
-    case USBDEVFS_GETDRIVER:
-      error = ENODATA;
-      break;
+    case USBDEVFS_DISCONNECT_CLAIM: break;
+    case USBDEVFS_GETDRIVER: error = ENODATA; break;
     case USBDEVFS_SUBMITURB: {
       auto* urb = static_cast<usbdevfs_urb*>(pointer);
       auto* buffer = static_cast<std::uint8_t*>(urb->buffer);
@@ -240,9 +235,7 @@ gboolean MockUsb::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpoi
         device.done.pop_front();
       }
       break;
-    default:
-      error = ENOTTY;
-      break;
+    default: error = ENOTTY; break;
   }
   umockdev_ioctl_client_complete(client, error != 0 ? -1 : result, error);
   return TRUE;

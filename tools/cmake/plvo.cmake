@@ -12,7 +12,7 @@ endfunction()
 
 add_library(plvo_warnings INTERFACE)
 target_compile_options(plvo_warnings INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wnon-virtual-dtor -Werror)
+  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Werror)
 
 # No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf.
 add_library(plvo_determinism INTERFACE)

@@ -53,12 +53,9 @@ OniStatus DriverStream::getProperty(int id, void* data, int* size) {
   // What a 16-bit image can hold bounds it as well.
   const int max_value = std::min(kMaxDepth_mm * units_per_mm, 65535);
   switch (id) {
-    case ONI_STREAM_PROPERTY_VIDEO_MODE:
-      return answer(now, data, size);
-    case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
-      return answer(fov_.x_rad, data, size);
-    case ONI_STREAM_PROPERTY_VERTICAL_FOV:
-      return answer(fov_.y_rad, data, size);
+    case ONI_STREAM_PROPERTY_VIDEO_MODE: return answer(now, data, size);
+    case ONI_STREAM_PROPERTY_HORIZONTAL_FOV: return answer(fov_.x_rad, data, size);
+    case ONI_STREAM_PROPERTY_VERTICAL_FOV: return answer(fov_.y_rad, data, size);
     case ONI_STREAM_PROPERTY_MIRRORING:
       return answer(static_cast<OniBool>(mirrored_ ? TRUE : FALSE), data, size);
     case ONI_STREAM_PROPERTY_CROPPING:
@@ -67,10 +64,8 @@ OniStatus DriverStream::getProperty(int id, void* data, int* size) {
       return answer(now.resolutionX * bytes_per_pixel(now.pixelFormat), data, size);
     case ONI_STREAM_PROPERTY_MAX_VALUE:
       return is_depth ? answer(max_value, data, size) : ONI_STATUS_NOT_SUPPORTED;
-    case ONI_STREAM_PROPERTY_MIN_VALUE:
-      return is_depth ? answer(0, data, size) : ONI_STATUS_NOT_SUPPORTED;
-    default:
-      return ONI_STATUS_NOT_SUPPORTED;
+    case ONI_STREAM_PROPERTY_MIN_VALUE: return is_depth ? answer(0, data, size) : ONI_STATUS_NOT_SUPPORTED;
+    default: return ONI_STATUS_NOT_SUPPORTED;
   }
 }
 
@@ -109,13 +104,10 @@ OniBool DriverStream::isPropertySupported(int id) {
     case ONI_STREAM_PROPERTY_VERTICAL_FOV:
     case ONI_STREAM_PROPERTY_MIRRORING:
     case ONI_STREAM_PROPERTY_CROPPING:
-    case ONI_STREAM_PROPERTY_STRIDE:
-      return TRUE;
+    case ONI_STREAM_PROPERTY_STRIDE: return TRUE;
     case ONI_STREAM_PROPERTY_MAX_VALUE:
-    case ONI_STREAM_PROPERTY_MIN_VALUE:
-      return sensor_ == ONI_SENSOR_DEPTH ? TRUE : FALSE;
-    default:
-      return FALSE;
+    case ONI_STREAM_PROPERTY_MIN_VALUE: return sensor_ == ONI_SENSOR_DEPTH ? TRUE : FALSE;
+    default: return FALSE;
   }
 }
 

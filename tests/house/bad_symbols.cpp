@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that the core must not do, so that the check of its symbols can be seen to fail.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+int calls = 0;
+
+double misbehave(int n, double x) {
+  static int hidden = 0;
+  hidden += n;
+  calls += hidden;
+  std::vector<double> heap(static_cast<std::size_t>(n), std::sin(x));
+  std::printf("%d\n", calls);
+  return heap.back();
+}

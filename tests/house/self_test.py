@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The checks of the house must be able to fail: each is shown a made-up tree that breaks its rule."""
+import pathlib
+import tempfile
+import unittest
+
+import arrows
+import rules
+
+LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
+
+
+class Tree:
+    """A small source tree in a temporary folder."""
+
+    def __init__(self, contents):
+        self._folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self._folder.name)
+        for name, text in contents.items():
+            path = self.root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+
+    def __enter__(self):
+        return self.root
+
+    def __exit__(self, *_):
+        self._folder.cleanup()
+
+
+def include(*headers):
+    return LICENCE + "".join(f'#include "{header}"\n' for header in headers)
+
+
+GOOD = {
+    "core/base/status.hpp": include(),
+    "core/math/se3.hpp": include("plvo/base/status.hpp"),
+    "core/points/match.hpp": include("plvo/math/se3.hpp"),
+    "core/lines/match.hpp": include("plvo/base/status.hpp"),
+    "core/odometry/odometry.hpp": include("plvo/points/match.hpp", "plvo/lines/match.hpp", "plvo/base/status.hpp"),
+    "hal/clock.hpp": include("plvo/base/status.hpp"),
+    "platform/replay/replay.hpp": include("plvo/hal/clock.hpp", "plvo/odometry/odometry.hpp"),
+    "tools/main.cpp": include("plvo/replay/replay.hpp", "plvo/base/status.hpp"),
+}
+
+
+class Arrows(unittest.TestCase):
+    def found(self, extra):
+        with Tree({**GOOD, **extra}) as root:
+            return arrows.check(root)
+
+    def test_a_good_tree_passes(self):
+        self.assertEqual(self.found({}), [])
+
+    def test_every_forbidden_arrow_is_named(self):
+        bad = {
+            "core/base/up.hpp": "plvo/math/se3.hpp",
+            "core/points/sideways.cpp": "plvo/lines/match.hpp",
+            "core/lines/sideways.cpp": "plvo/points/match.hpp",
+            "core/motion/sideways.cpp": "plvo/points/match.hpp",
+            "core/math/far_up.cpp": "plvo/odometry/odometry.hpp",
+            "core/base/to_hal.cpp": "plvo/hal/clock.hpp",
+            "core/odometry/to_platform.cpp": "plvo/replay/replay.hpp",
+            "hal/to_platform.hpp": "plvo/replay/replay.hpp",
+            "platform/replay/to_tools.cpp": "plvo/tools/run.hpp",
+            "core/attic/new_room.cpp": "plvo/base/status.hpp",
+            "tools/nowhere.cpp": "plvo/cellar/door.hpp",
+        }
+        for path, header in bad.items():
+            errors = self.found({path: include(header), "tools/run.hpp": include()})
+            self.assertTrue(any(error.startswith(path + ":2:") for error in errors), (path, errors))
+
+    def test_roundabout_spellings_do_not_help(self):
+        for text in ('#include "../odometry/odometry.hpp"', '#include "odometry.hpp"', '# include <plvo/odometry/odometry.hpp>',
+                     '  #  include   "plvo/odometry/odometry.hpp"  // why not'):
+            self.assertTrue(self.found({"core/math/clever.cpp": LICENCE + text + "\n"}), text)
+
+    def test_a_comment_is_not_an_include(self):
+        text = LICENCE + '// #include "plvo/odometry/odometry.hpp"\n/* \n#include "plvo/lines/match.hpp"\n*/\n'
+        self.assertEqual(self.found({"core/math/prose.cpp": text}), [])
+
+    def test_a_circle_between_rooms_of_one_floor_is_named(self):
+        errors = self.found({"platform/replay/a.cpp": include("plvo/host/b.hpp"),
+                             "platform/host/b.hpp": include("plvo/replay/replay.hpp")})
+        self.assertTrue(any("circle" in error for error in errors), errors)
+
+
+class Rules(unittest.TestCase):
+    def found(self, name, text):
+        with Tree({name: text}) as root:
+            return rules.check(root)
+
+    def test_a_good_file_passes(self):
+        text = LICENCE + ('// new and delete, malloc() and std::vector in prose\n#include <array>\n#include <Eigen/Core>\n'
+                          'const char* text = "throw";\nA(const A&) = delete;\nnew (first + i) T;\ndouble y = sqrt(x);\n')
+        self.assertEqual(self.found("core/base/a.hpp", text), [])
+
+    def test_a_missing_licence_is_named(self):
+        for name in ("core/base/a.hpp", "tools/x.py", "platform/CMakeLists.txt", "tests/a_test.cpp", "tools/setup/x.sh"):
+            self.assertTrue(self.found(name, "\n"), name)
+
+    def test_every_forbidden_word_is_named(self):
+        for line in ("#include <vector>", "#include <cmath>", "#include <iostream>", "#include <stdlib.h>", "p = malloc(8);",
+                     "free(p);", "int* p = new int;", "auto p = new T[3];", "delete p;", "throw 1;", "try {", "printf(text);",
+                     "std::vector<int> v;", "std::string s;", "std::function<void()> f;", "std::stable_sort(a, b);", "x = std::sin(y);",
+                     "x = std::pow(y, 2);", "dynamic_cast<A*>(b);", "abort();", "thread_local int x;", "__m128 v;"):
+            self.assertTrue(self.found("core/base/a.cpp", LICENCE + line + "\n"), line)
+            self.assertTrue(self.found("hal/a.hpp", LICENCE + line + "\n"), line)
+
+    def test_other_floors_may(self):
+        self.assertEqual(self.found("platform/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
+
+    def test_a_path_of_one_machine_is_named(self):
+        self.assertTrue(self.found("tools/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
+
+
+if __name__ == "__main__":
+    unittest.main()

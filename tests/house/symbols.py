@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads the symbols of the core's archive: what it asks of the outside world must be on a short list, and it must
+hold no variable that changes. So no path through the core can reach a heap, a file, or a libm that differs."""
+import argparse
+import re
+import subprocess
+import sys
+
+# What any C++ compiler may ask for, freestanding or not; and sqrt, which IEEE 754 rounds exactly.
+ALLOWED = {"memcpy", "memmove", "memset", "memcmp", "strlen", "sqrt", "_GLOBAL_OFFSET_TABLE_"}
+# 32-bit ARM: helpers of the compiler's own run-time library for 64-bit integers and block moves.
+ALLOWED_PATTERN = re.compile(
+    r"__aeabi_(?:u?l(?:div|2d|2f|asr|lsl|lsr|cmp|mul)(?:mod)?|u?ldivmod|u?idiv(?:mod)?|[df]2u?lz|mem(?:cpy|move|set|clr)[48]?"
+    r"|unwind_cpp_pr[012])$|__(?:u?div|u?mod)[dst]i3$")
+# Debug builds keep their assertions; the address sanitizer's builds are not examined.
+DEBUG_ONLY = {"__assert_fail", "__assert_func"}
+
+
+def read(nm, archive):
+    """(undefined names, mutable variables) over all members together."""
+    out = subprocess.run([nm, archive], capture_output=True, text=True, check=True).stdout
+    defined, undefined, mutable = set(), set(), set()
+    for line in out.splitlines():
+        match = re.match(r"(?:[0-9a-fA-F]+)?\s+([A-Za-z])\s+(\S+)$", line)
+        if not match:
+            continue
+        kind, name = match.groups()
+        if kind in "Uw":
+            undefined.add(name)
+            continue
+        defined.add(name)
+        # Read-only data that needs relocation is listed as data too, but in a section of its own name.
+        if kind in "bBdDgGsSC" and not re.match(r"(?:\$|DW\.ref\.|_ZTV|_ZTS|_ZTI)", name):
+            mutable.add(name)
+    return undefined - defined, mutable
+
+
+def check(nm, archive, debug=False):
+    undefined, mutable = read(nm, archive)
+    allowed = ALLOWED | (DEBUG_ONLY if debug else set())
+    errors = [f"asks for {name}" for name in sorted(undefined)
+              if name not in allowed and not ALLOWED_PATTERN.match(name)]
+    return errors + [f"holds the variable {name}" for name in sorted(mutable)]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("archive")
+    parser.add_argument("--nm", default="nm")
+    parser.add_argument("--debug", action="store_true", help="allow what assertions need")
+    parser.add_argument("--expect", nargs="*", help="the archive is a bad one: each of these must be found")
+    arguments = parser.parse_args()
+    errors = check(arguments.nm, arguments.archive, arguments.debug)
+    print("\n".join(errors) if errors else "the core asks for nothing but block moves and sqrt")
+    if arguments.expect is None:
+        return 1 if errors else 0
+    missed = [name for name in arguments.expect if not any(name in error for error in errors)]
+    if missed:
+        print("not caught: " + ", ".join(missed))
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
