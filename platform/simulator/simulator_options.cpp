@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/simulator/simulator_options.hpp"
+
+#include <array>
+
+namespace plvo {
+namespace {
+
+constexpr std::array kScenes = {SceneName::kCorridor, SceneName::kStaircase, SceneName::kHall,
+                                SceneName::kDesk, SceneName::kBare};
+constexpr std::array kLights = {LightName::kConstant, LightName::kVarying};
+
+template <typename Name, std::size_t N>
+Status parse(std::string_view what, std::string_view text, const std::array<Name, N>& names, Name& name) {
+  for (const Name candidate : names) {
+    if (text == to_string(candidate)) {
+      name = candidate;
+      return {};
+    }
+  }
+  Status status(StatusCode::kInvalidArgument, "there is no ");
+  status.append(what).append(" \"").append(text.substr(0, 40)).append("\"; choose one of:");
+  for (const Name candidate : names) status.append(" ").append(to_string(candidate));
+  return status;
+}
+
+}  // namespace
+
+const char* to_string(SceneName name) {
+  switch (name) {
+    case SceneName::kCorridor: return "corridor";
+    case SceneName::kStaircase: return "staircase";
+    case SceneName::kHall: return "hall";
+    case SceneName::kDesk: return "desk";
+    case SceneName::kBare: return "bare";
+  }
+  return "unknown";
+}
+
+const char* to_string(LightName name) {
+  switch (name) {
+    case LightName::kConstant: return "constant";
+    case LightName::kVarying: return "varying";
+  }
+  return "unknown";
+}
+
+Status parse_scene(std::string_view text, SceneName& name) { return parse("scene", text, kScenes, name); }
+Status parse_light(std::string_view text, LightName& name) { return parse("light", text, kLights, name); }
+
+Status SimulatorOptions::validate() const {
+  const auto invalid = [](const char* what) {
+    return Status(StatusCode::kInvalidArgument, "simulator: ").append(what);
+  };
+  const Status calibration = camera.validate();
+  if (!calibration.ok()) return calibration;
+  if (camera.width > 4096 || camera.height > 4096)
+    return invalid("the image may have at most 4096x4096 pixels");
+  if (frames < 1 || frames > 1000000) return invalid("frames must lie in 1 ... 1000000");
+  if (!(fps >= 1 && fps <= 1000)) return invalid("fps must lie in 1 ... 1000");
+  if (threads < 1 || threads > 256) return invalid("threads must lie in 1 ... 256");
+  if (!(depth.noise_scale >= 0 && depth.noise_scale <= 100))
+    return invalid("the depth noise scale must lie in 0 ... 100");
+  if (!(depth.min_range_m >= 0 && depth.max_range_m > depth.min_range_m && depth.max_range_m <= 13))
+    return invalid("the depth range must be 0 <= min < max <= 13 metres");
+  if (!(depth.baseline_m > 0 && depth.baseline_m < 1))
+    return invalid("the baseline must lie in 0 ... 1 metre");
+  if (!(depth.focal_px > 0 && depth.focal_px < 1e5))
+    return invalid("the infrared focal length must be positive");
+  if (!(depth.steps_per_px >= 0 && depth.steps_per_px < 1e4))
+    return invalid("steps per pixel must lie in 0 ... 10000");
+  return {};
+}
+
+}  // namespace plvo

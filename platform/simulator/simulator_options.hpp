@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a simulated camera can be asked for. The defaults are those of the command line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "plvo/base/status.hpp"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/camera/depth_noise.hpp"
+
+namespace plvo {
+
+enum class SceneName : std::uint8_t { kCorridor, kStaircase, kHall, kDesk, kBare };
+enum class LightName : std::uint8_t {
+  kConstant,  // the ceiling lights
+  kVarying,   // a panel lamp in a hand: it swings and dims; the ceiling lights are nearly off
+};
+
+// "corridor", "staircase", "hall", "desk", "bare"; "constant", "varying".
+const char* to_string(SceneName name);
+const char* to_string(LightName name);
+// kInvalidArgument, listing the names there are.
+Status parse_scene(std::string_view text, SceneName& name);
+Status parse_light(std::string_view text, LightName& name);
+
+// The Kinect's depth sensor: a projector beside an infrared camera.
+struct DepthSensorOptions {
+  DepthNoise noise;           // equation (2)
+  double noise_scale = 0.55;  // the real sensor's share of (2); see kinect_depth.hpp
+  double min_range_m = 0.5;   // nearer is a hole
+  double max_range_m = 5.0;   // farther is a hole
+  double baseline_m = 0.075;  // from the infrared camera to the projector, along +x
+  double focal_px = 580;      // of the infrared camera
+  double steps_per_px = 8;    // disparity steps per pixel; 0: no quantisation
+};
+
+struct SimulatorOptions {
+  SceneName scene = SceneName::kBare;
+  LightName light = LightName::kConstant;
+  std::uint64_t seed = 1;
+  int frames = 300;
+  double fps = 30;
+  CameraModel camera;
+  // false: the noise-free twin of the same walk under the same light: no colour noise, no blur, and the exact
+  // depth of every surface within the range of the 16-bit format (13.1 m).
+  bool noise = true;
+  DepthSensorOptions depth;
+  // A TUM ground-truth file that moves the camera instead of the seeded hand; empty: none.
+  std::string trajectory_file;
+  int threads = 2;  // the pictures do not depend on it
+
+  // kInvalidArgument, naming the option.
+  Status validate() const;
+};
+
+}  // namespace plvo
