@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# From a fresh Debian 12 to a trajectory: installs what is missing, builds, runs the odometry on the simulated camera.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+. tools/setup/packages.sh
+
+# shellcheck disable=SC2086  # a list of words
+install_packages $PLVO_PACKAGES_BUILD
+
+say "building (build/release)"
+cmake --preset release -DPLVO_BUILD_TESTS=OFF -DPLVO_BUILD_BENCH=OFF >&2
+cmake --build --preset release --parallel "$(nproc)" --target plvo >&2
+
+out=build/demo
+mkdir -p "$out"
+plvo=build/release/bin/plvo
+arguments=(run --camera sim --out "$out/trajectory.txt" --stats "$out/stats.csv" --json "$out/summary.json")
+# A report that opens in a browser, where this build can write one.
+if "$plvo" run --help | grep -q -- --report; then arguments+=(--report "$out/report.html"); fi
+say "running: $plvo ${arguments[*]}"
+"$plvo" "${arguments[@]}"
+
+say "done. Look at:"
+for file in "$out"/*; do say "  $file"; done

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every Debian package that plvo is built, tested and cross-built with: the one list. To be sourced.
+
+# The library, the cameras and the command line.
+PLVO_PACKAGES_BUILD="g++ make cmake pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
+  libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libcpp-httplib-dev"
+
+# The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages.
+PLVO_PACKAGES_TEST="ninja-build googletest libgtest-dev python3 python3-numpy clang clang-format clang-tidy
+  umockdev libumockdev-dev chromium"
+
+# The boards: cross compilers, and processors that are emulated.
+PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user"
+
+say() { printf '\033[1mplvo:\033[0m %s\n' "$*" >&2; }
+
+# install_packages NAME…: what is missing, and nothing (not even the network) when nothing is.
+install_packages() {
+  local package missing=() root=()
+  for package in "$@"; do
+    if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then missing+=("$package"); fi
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    say "all $# packages are installed"
+    return
+  fi
+  if [ "$(id -u)" -ne 0 ]; then root=(sudo); fi
+  say "installing ${#missing[@]} packages: ${missing[*]}"
+  "${root[@]}" apt-get update -qq >&2
+  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+}

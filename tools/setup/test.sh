@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# From a fresh Debian 12 to every test passed: installs what is missing, builds and tests each preset, the release one
+# last. Stops at the first failure. `test.sh release` does that preset alone.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+. tools/setup/packages.sh
+
+presets=("$@")
+if [ ${#presets[@]} -eq 0 ]; then presets=(clang debug asan aarch64 armhf release); fi
+
+# shellcheck disable=SC2086  # lists of words
+install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_TEST $PLVO_PACKAGES_CROSS
+
+started=$SECONDS
+build() {
+  local preset=$1 generator=()
+  say "[$((SECONDS - started)) s] $preset: building"
+  if [ ! -f "build/$preset/CMakeCache.txt" ]; then generator=(-G Ninja); fi
+  # An earlier demo may have left the tests out of this folder.
+  cmake --preset "$preset" "${generator[@]}" -DPLVO_BUILD_TESTS=ON >&2
+  cmake --build --preset "$preset" --parallel "$(nproc)" >&2
+}
+suite() {
+  say "[$((SECONDS - started)) s] $1: testing"
+  ctest --preset "$1" --parallel "$(nproc)"
+}
+
+last=${presets[-1]}
+unset 'presets[-1]'
+for preset in "${presets[@]}"; do
+  build "$preset"
+  suite "$preset"
+done
+build "$last"
+tests/golden/compare_presets.sh "${presets[@]}" "$last"
+suite "$last"
