@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kMaxProfiles = 32;
 constexpr int kMinProfiles = 4;
-constexpr int kReach = 4;  // pixels to either side in which the steepest place is looked for
+constexpr int kReach = 3;  // pixels to either side in which the steepest place is looked for
+constexpr double kMaxShift_px = 1.5;
 // What a peak's place is uncertain by even on a clean edge: the parabola is not the edge's true shape.
 constexpr double kPeakFloor_px = 0.05;
 
@@ -45,10 +46,13 @@ bool find_peak(const Axes& axes, int u, double v, Peak& peak) {
   }
   std::array<int, 2 * kReach + 1> change{};
   for (std::size_t i = 0; i < change.size(); ++i) change[i] = sums[i + 2] - sums[i];
+  // Uphill from the middle: a stronger edge behind a valley is somebody else's.
   std::size_t best = kReach;
-  for (std::size_t i = 1; i <= kReach; ++i) {  // from the middle out: of equals the nearest wins
-    if (change[kReach + i] > change[best]) best = kReach + i;
-    if (change[kReach - i] > change[best]) best = kReach - i;
+  const bool up = change[best + 1] > change[best - 1];
+  while (best > 0 && best + 1 < change.size()) {
+    const std::size_t next = up ? best + 1 : best - 1;
+    if (change[next] <= change[best]) break;
+    best = next;
   }
   if (best == 0 || best + 1 == change.size() || change[best] <= 0) return false;
   const int curvature = 2 * change[best] - change[best - 1] - change[best + 1];
@@ -104,6 +108,19 @@ LineFit fit(std::span<const Peak> peaks) {
   return line;
 }
 
+// Weighs the fit against where the segment was before, offset and slope 0 with the prior's uncertainty: a short or weak
+// segment whose few profiles scatter stays near it.
+void shrink_to_prior(double position_sd_px, double length_px, LineFit& line) {
+  const double prior_offset = position_sd_px * position_sd_px;
+  const double prior_slope = 4 * prior_offset / (length_px * length_px);
+  const double keep_offset = prior_offset / (prior_offset + line.variance_offset);
+  const double keep_slope = prior_slope / (prior_slope + line.variance_slope);
+  line.offset *= keep_offset;
+  line.slope *= keep_slope;
+  line.variance_offset *= keep_offset;
+  line.variance_slope *= keep_slope;
+}
+
 // Drops the peaks further than 2.5 SD (at least half a pixel) from the line; true if any was.
 bool drop_outliers(const LineFit& line, std::span<Peak>& peaks) {
   const double limit = std::max(2.5 * line.sd, 0.5);
@@ -155,6 +172,11 @@ bool localise(GrayView image, double position_sd_px, Segment& segment) {
     if (!enough()) return false;
     line = fit(peaks);
   }
+  shrink_to_prior(position_sd_px, length, line);
+  const auto shift_at = [&](double u) { return line.offset + line.slope * (u - line.mean_along); };
+  const double shift_a = shift_at(segment.a[major]);
+  const double shift_b = shift_at(segment.b[major]);
+  if (std::max(shift_a * shift_a, shift_b * shift_b) > kMaxShift_px * kMaxShift_px) return false;
 
   // The ends slide to their feet on the new line.
   const double new_slope = slope + line.slope;

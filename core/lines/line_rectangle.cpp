@@ -27,9 +27,10 @@ struct Moments {
 Moments weigh(const LevelLineField& field, std::span<const Pixel> pixels) {
   // Integers about the seed: exact, so the order of the pixels does not matter.
   const Pixel seed = pixels.front();
+  const std::uint16_t* const magnitudes = field.magnitude.data();
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
   for (const Pixel& pixel : pixels) {
-    const std::int64_t w = field.magnitude[field.index(pixel.x, pixel.y)];
+    const std::int64_t w = magnitudes[field.index(pixel.x, pixel.y)];
     const std::int64_t x = pixel.x - seed.x;
     const std::int64_t y = pixel.y - seed.y;
     m += w;

@@ -4,28 +4,40 @@
 namespace plvo::lsd {
 
 Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pixel> storage) {
-  constexpr int kNeighbours[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+  // Plain pointers: the compiler must not fear that a write to the states changes where the arrays are.
+  std::uint8_t* const states = field.state.data();
+  const Direction* const directions = field.direction.data();
+  Pixel* const pixels = storage.data();
+  const std::ptrdiff_t stride = field.stride;
+  const std::int64_t tangent_q15 = tolerance.tangent_q15;
   std::size_t count = 0;
   std::int64_t sum_x = 0;
   std::int64_t sum_y = 0;
-  const auto add = [&](std::size_t i, int x, int y) {
-    field.state[i] = static_cast<std::uint8_t>((field.state[i] + 1) | kUsed);
-    storage[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
-    sum_x += field.direction[i].x;
-    sum_y += field.direction[i].y;
+  const auto add = [&](std::uint8_t* state, int x, int y) {
+    const Direction d = directions[state - states];
+    *state = static_cast<std::uint8_t>((*state + 1) | kUsed);
+    pixels[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+    sum_x += d.x;
+    sum_y += d.y;
   };
-  add(field.index(seed.x, seed.y), seed.x, seed.y);
+  const auto try_add = [&](std::uint8_t* state, int x, int y) {
+    if ((*state & kUsed) != 0) return;
+    const Direction d = directions[state - states];
+    const std::int64_t dot = d.x * sum_x + d.y * sum_y;
+    const std::int64_t cross = d.x * sum_y - d.y * sum_x;
+    if ((cross < 0 ? -cross : cross) * 32768 <= tangent_q15 * dot) add(state, x, y);
+  };
+  add(states + field.index(seed.x, seed.y), seed.x, seed.y);
   for (std::size_t next = 0; next < count; ++next) {
-    const Pixel centre = storage[next];
-    for (const auto& step : kNeighbours) {
-      const int x = centre.x + step[0];
-      const int y = centre.y + step[1];
-      const std::size_t i = field.index(x, y);
-      if ((field.state[i] & kUsed) != 0) continue;
-      const Direction d = field.direction[i];
-      const std::int64_t dot = d.x * sum_x + d.y * sum_y;
-      const std::int64_t cross = d.x * sum_y - d.y * sum_x;
-      if ((cross < 0 ? -cross : cross) * 32768 <= tolerance.tangent_q15 * dot) add(i, x, y);
+    const int x = pixels[next].x;
+    const int y = pixels[next].y;
+    std::uint8_t* row = states + field.index(x, y - 1);
+    for (int j = y - 1; j <= y + 1; ++j, row += stride) {
+      // Most neighbours are taken already: three at a glance.
+      if ((row[-1] & row[0] & row[1] & kUsed) != 0) continue;
+      try_add(row - 1, x - 1, j);
+      try_add(row, x, j);
+      try_add(row + 1, x + 1, j);
     }
   }
   return {storage.first(count), sum_x, sum_y};

@@ -13,7 +13,7 @@ namespace {
 constexpr int kCellColumns = 6;
 constexpr int kCellRows = 4;
 // How well a rectangle's axis is known before it is placed on the full image, in pixels of the reduced one.
-constexpr double kAxisSd_px = 0.25;
+constexpr double kAxisSd_px = 0.15;
 
 std::size_t cell_of(const Vector2& middle, int width, int height) {
   const int column = std::clamp(static_cast<int>(middle.x() * kCellColumns / width), 0, kCellColumns - 1);

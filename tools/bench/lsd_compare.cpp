@@ -186,17 +186,30 @@ bool carry(const Frame& from, const Frame& to, const Calibration& c, double x, d
   return u >= 0 && v >= 0 && u <= to.gray.cols - 1 && v <= to.gray.rows - 1;
 }
 
-bool same(const Line2& a, const Line2& b) {
+struct Difference {
+  double degrees = 0;
+  double distance_px = 0;  // of b's middle from a
+};
+
+// Is b a again, the same way round?
+bool same(const Line2& a, const Line2& b, Difference& difference) {
   const double la = a.length();
   const double dx = (a.x2 - a.x1) / la;
   const double dy = (a.y2 - a.y1) / la;
-  const double lb = b.length();
-  if (((b.x2 - b.x1) * dx + (b.y2 - b.y1) * dy) / lb < 0.9962) return false;  // 5°, the same way round
-  const double middle = -(0.5 * (b.x1 + b.x2) - a.x1) * dy + (0.5 * (b.y1 + b.y2) - a.y1) * dx;
-  if (std::abs(middle) > 3) return false;
+  const double along = (b.x2 - b.x1) * dx + (b.y2 - b.y1) * dy;
+  const double across = (b.y2 - b.y1) * dx - (b.x2 - b.x1) * dy;
+  difference.degrees = std::abs(std::atan2(across, along)) * 180 / 3.14159265358979;
+  difference.distance_px = std::abs((0.5 * (b.y1 + b.y2) - a.y1) * dx - (0.5 * (b.x1 + b.x2) - a.x1) * dy);
+  if (difference.degrees > 5 || difference.distance_px > 3) return false;
   const double s = (b.x1 - a.x1) * dx + (b.y1 - a.y1) * dy;
   const double e = (b.x2 - a.x1) * dx + (b.y2 - a.y1) * dy;
-  return std::min(std::max(s, e), la) - std::max(std::min(s, e), 0.0) >= 0.5 * std::min(la, lb);
+  return std::min(std::max(s, e), la) - std::max(std::min(s, e), 0.0) >= 0.5 * std::min(la, b.length());
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
 }
 
 struct Score {
@@ -204,6 +217,8 @@ struct Score {
   int repeated = 0;
   std::size_t segments = 0;
   std::vector<double> ms;
+  std::vector<double> degrees;
+  std::vector<double> distances_px;
 
   void compare(const Options& options, const Calibration& c, const Frame& from, const Frame& to,
                const std::vector<Line2>& before, const std::vector<Line2>& now) {
@@ -216,22 +231,21 @@ struct Score {
       }
       ++repeatable;
       for (const Line2& other : now) {
-        if (!same(carried, other)) continue;
+        Difference difference;
+        if (!same(carried, other, difference)) continue;
         ++repeated;
+        degrees.push_back(difference.degrees);
+        distances_px.push_back(difference.distance_px);
         break;
       }
     }
   }
   void print(const char* name, std::size_t frames, double reference_ms) {
-    std::sort(ms.begin(), ms.end());
-    const double median = ms[ms.size() / 2];
-    std::printf("| %-22s | %6.1f | %6d | %5.1f %% | %7.2f | %7.2f | %6.1f |\n", name,
+    const double typical = median(ms);  // sorts them
+    std::printf("| %-22s | %6.1f | %6d | %6.1f %% | %5.2f | %5.2f | %6.2f | %6.2f | %6.1f |\n", name,
                 static_cast<double>(segments) / static_cast<double>(frames), repeatable,
-                100.0 * repeated / std::max(1, repeatable), median, ms.back(), reference_ms / median);
-  }
-  double median_ms() {
-    std::sort(ms.begin(), ms.end());
-    return ms[ms.size() / 2];
+                100.0 * repeated / std::max(1, repeatable), median(degrees), median(distances_px), typical,
+                ms.back(), typical / reference_ms);
   }
 };
 
@@ -342,17 +356,17 @@ int main(int argc, char** argv) {
   const auto n = static_cast<double>(frames.size());
   std::printf("%s, %zu frames; segments of at least %.0f px\n", options.folder.c_str(), frames.size(),
               options.min_length_px);
-  std::printf("| detector               | number | tested | repeated | med ms |  max ms | ours × |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
-  const double reference = scores[0].median_ms();
+  std::printf(
+      "| detector               | number | tested | repeated | deg   | px    | med ms | max ms | time × |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  const double reference = median(scores[0].ms);
   const char* const names[] = {"ours, half, refined", "OpenCV LSD, scale 0.8", "OpenCV LSD, scale 0.5"};
   for (int k = 0; k < (options.only_ours ? 1 : 3); ++k) scores[k].print(names[k], frames.size(), reference);
-  std::sort(pyramid_ms.begin(), pyramid_ms.end());
   std::printf(
       "ours, mean per frame: %.0f pixels with a direction, %.0f additions to regions, %.0f regions, %.0f "
       "tested, %.0f "
       "meaningful, %.0f dropped, %.0f placed; pyramid (shared with the points) %.2f ms, not included above\n",
       directed / n, grown / n, regions / n, dense / n, meaningful / n, dropped / n, placed / n,
-      pyramid_ms[pyramid_ms.size() / 2]);
+      median(pyramid_ms));
   return 0;
 }
