@@ -108,8 +108,8 @@ LineFit fit(std::span<const Peak> peaks) {
   return line;
 }
 
-// Weighs the fit against where the segment was before, offset and slope 0 with the prior's uncertainty: a short or weak
-// segment whose few profiles scatter stays near it.
+// Weighs the fit against where the segment was before, offset and slope 0 with the prior's uncertainty: a
+// short or weak segment whose few profiles scatter stays near it.
 void shrink_to_prior(double position_sd_px, double length_px, LineFit& line) {
   const double prior_offset = position_sd_px * position_sd_px;
   const double prior_slope = 4 * prior_offset / (length_px * length_px);
@@ -172,6 +172,10 @@ bool localise(GrayView image, double position_sd_px, Segment& segment) {
     if (!enough()) return false;
     line = fit(peaks);
   }
+  // Profiles less than three pixels apart share some of their pixels, and so their noise.
+  const double shared = std::max(1.0, 3.0 * profiles / (du < 0 ? -du : du));
+  line.variance_offset *= shared;
+  line.variance_slope *= shared;
   shrink_to_prior(position_sd_px, length, line);
   const auto shift_at = [&](double u) { return line.offset + line.slope * (u - line.mean_along); };
   const double shift_a = shift_at(segment.a[major]);

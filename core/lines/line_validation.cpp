@@ -39,13 +39,13 @@ Tolerance spread_near_seed(const LevelLineField& field, const Region& region, co
   return {static_cast<std::int32_t>(sine / sqrt(1 - sine * sine) * 32768.0)};
 }
 
-// Keeps the pixels within the radius of the seed, in their order; releases the rest.
-void shrink(LevelLineField& field, Region& region, double squared_radius) {
-  const Pixel seed = region.pixels.front();
+// Keeps the pixels for which keep(pixel) holds, in their order; releases the rest.
+template <typename Keep>
+void filter(LevelLineField& field, Region& region, Keep&& keep) {
   std::size_t kept = 0;
   region.sum_x = region.sum_y = 0;
-  for (const Pixel& pixel : region.pixels) {
-    if (static_cast<double>(squared_distance(seed, pixel)) > squared_radius) {
+  for (const Pixel pixel : region.pixels) {
+    if (!keep(pixel)) {
       release(field, {&pixel, 1});
       continue;
     }
@@ -55,6 +55,40 @@ void shrink(LevelLineField& field, Region& region, double squared_radius) {
     region.pixels[kept++] = pixel;
   }
   region.pixels = region.pixels.first(kept);
+}
+
+// The reach across the rectangle's axis that holds nearly all of the region's gradient: twice its standard
+// deviation, and at least a pixel.
+std::int32_t trimmed_reach_q8(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
+  std::int64_t mass = 0;
+  std::int64_t squares = 0;
+  for (const Pixel& pixel : region.pixels) {
+    const std::int64_t w = field.magnitude[field.index(pixel.x, pixel.y)];
+    const std::int64_t t = rectangle.across(pixel.x, pixel.y);
+    mass += w;
+    squares += w * t * t;
+  }
+  const double sd_q8 = sqrt(static_cast<double>(squares) / static_cast<double>(mass));
+  return std::max(256, static_cast<std::int32_t>(2 * sd_q8));
+}
+
+// Beyond it the region is not one edge with whiskers but bent, or several edges.
+constexpr std::int32_t kMaxTrimmedReach_q8 = 384;
+
+// Noise beside an edge grows onto it as whiskers, which make the rectangle wide and empty without moving the
+// edge. Cuts them off, at most twice; true if that makes the region dense.
+bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size) {
+  for (int i = 0; i < 2 && !is_dense(rectangle, region.pixels.size()); ++i) {
+    const std::int32_t reach = trimmed_reach_q8(field, region, rectangle);
+    if (reach > kMaxTrimmedReach_q8) return false;
+    filter(field, region, [&](Pixel pixel) {
+      const std::int32_t t = rectangle.across(pixel.x, pixel.y);
+      return t >= -reach && t <= reach;
+    });
+    if (region.pixels.size() < min_size) return false;
+    rectangle = fit_rectangle(field, region);
+  }
+  return is_dense(rectangle, region.pixels.size());
 }
 
 // A pixel of the rectangle as validate keeps it: its offset across in the high bits, its level + 1 in the low
@@ -93,8 +127,9 @@ void consider(std::span<const std::int32_t> samples, const FalseAlarms& false_al
 bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
              std::span<Pixel> storage) {
   if (is_dense(rectangle, region.pixels.size())) return true;
-  const Tolerance tolerance = spread_near_seed(field, region, rectangle);
   const Pixel seed = region.pixels.front();
+  const Tolerance tolerance = spread_near_seed(field, region, rectangle);
+  if (trim(field, region, rectangle, min_size)) return true;
   release(field, region.pixels);
   region = grow(field, seed, tolerance, storage);
   if (region.pixels.size() < min_size) return false;
@@ -105,7 +140,8 @@ bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::s
   }
   for (int i = 0; i < 24 && !is_dense(rectangle, region.pixels.size()); ++i) {
     squared_radius *= 0.75 * 0.75;
-    shrink(field, region, squared_radius);
+    filter(field, region,
+           [&](Pixel pixel) { return static_cast<double>(squared_distance(seed, pixel)) <= squared_radius; });
     if (region.pixels.size() < min_size) return false;
     rectangle = fit_rectangle(field, region);
   }

@@ -13,9 +13,11 @@
 
 namespace plvo::lsd {
 
-// Tightens region until is_dense(): first with a tolerance of twice the spread of the directions near the
-// seed, then pixel by pixel from the far end (radius · 3/4, at most 24 times). Pixels left out are released.
-// False when fewer than min_size pixels remain. storage: the memory that holds the region.
+// Tightens region until is_dense(): first by cutting off what lies beside the edge (ours, not the paper's:
+// under noise the paper's two steps break a long edge to pieces), then by growing anew with a tolerance of
+// twice the spread of the directions near the seed, then pixel by pixel from the far end (radius · 3/4, at
+// most 24 times). Pixels left out are released. False when fewer than min_size pixels remain. storage: the
+// memory that holds the region.
 bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
              std::span<Pixel> storage);
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The number of false alarms against the binomial sum written out, in long double.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plvo/base/random.hpp"
+#include "plvo/lines/nfa.hpp"
+
+namespace plvo::lsd {
+namespace {
+
+long double reference(int width, int height, int n, int k, int level) {
+  const long double p = 1.0L / static_cast<long double>(8 << level);
+  long double sum = 0;
+  for (int j = n; j >= k; --j) {
+    sum += std::exp(std::lgamma(n + 1.0L) - std::lgamma(j + 1.0L) - std::lgamma(n - j + 1.0L) +
+                    j * std::log(p) + (n - j) * std::log1p(-p));
+  }
+  const long double tests = 11 * std::pow(static_cast<long double>(width) * height, 2.5L);
+  return -(std::log10(tests) + std::log10(sum));
+}
+
+TEST(FalseAlarms, AgreesWithTheSumWrittenOut) {
+  Random random(5);
+  const FalseAlarms alarms(320, 240);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const int n = 1 + static_cast<int>(random.below(trial % 3 == 0 ? 2000 : 120));
+    const int level = static_cast<int>(random.below(11));
+    const int k = static_cast<int>(random.below(static_cast<std::uint32_t>(n + 1)));
+    const double p = 1.0 / (8 << level);
+    const double found = alarms.meaningfulness(n, k, level);
+    const long double truth = reference(320, 240, n, k, level);
+    if (truth > 4000) continue;  // the sum written out is 0 there even in long double
+    if (k > n * p) {
+      // Rounded up by at most one part in a thousand, and never down.
+      EXPECT_LE(found, static_cast<double>(truth) + 1e-8) << n << " " << k << " " << level;
+      EXPECT_GE(found, static_cast<double>(truth) - 0.002) << n << " " << k << " " << level;
+    } else {
+      EXPECT_LE(found, static_cast<double>(truth) + 1e-8);
+      EXPECT_LT(found, 0);
+    }
+  }
+}
+
+TEST(FalseAlarms, MoreAlignedMeansMoreMeaningful) {
+  const FalseAlarms alarms(320, 240);
+  for (int n : {20, 255, 256, 300, 70000}) {
+    double before = alarms.meaningfulness(n, 0, 0);
+    for (int k = 1; k <= n; k += 1 + n / 100) {
+      const double now = alarms.meaningfulness(n, k, 0);
+      EXPECT_GE(now, before);
+      before = now;
+    }
+    EXPECT_TRUE(std::isfinite(before));
+  }
+}
+
+TEST(FalseAlarms, OneIsTheLimitOfTheTextbookCase) {
+  // 11 (320 · 240)^2.5 = 10^13.25: fifteen of fifteen at p = 1/8 are just meaningful, fourteen of fourteen
+  // not.
+  const FalseAlarms alarms(320, 240);
+  EXPECT_GT(alarms.meaningfulness(15, 15, 0), 0);
+  EXPECT_LT(alarms.meaningfulness(14, 14, 0), 0);
+}
+
+}  // namespace
+}  // namespace plvo::lsd
