@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// The OpenNI2 driver for the Kinect v1 (models 1414 and 1473, and Kinect for Windows), over Debian's
+// libfreenect. Colour and depth come in 640x480 at 30 Hz, depth in millimetres, registered to colour by
+// libfreenect with the sensor's own calibration when asked. The driver watches the bus itself and tells
+// OpenNI2 of plugging and unplugging. Written from OniDriverAPI.h and libfreenect.h.
+#include <libusb.h>
+
+#include <cstring>
+#include <memory>
+
+#include "plvo/openni2/freenect_driver/driver_stream.hpp"
+#include "plvo/openni2/freenect_driver/kinect.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr char kScheme[] = "freenect://";
+constexpr auto kWatch_ms = std::chrono::milliseconds(100);
+
+// Nominal fields of view of the Kinect v1, the values that OpenNI2's other driver for it gives.
+constexpr float kRadians = 3.14159265f / 180.0f;
+constexpr FieldOfView kDepthFov{58.5f * kRadians, 45.6f * kRadians};
+constexpr FieldOfView kColourFov{62.0f * kRadians, 48.6f * kRadians};
+
+constexpr OniVideoMode kDepthMode{ONI_PIXEL_FORMAT_DEPTH_1_MM, Kinect::kWidth, Kinect::kHeight, 30};
+constexpr OniVideoMode kColourMode{ONI_PIXEL_FORMAT_RGB888, Kinect::kWidth, Kinect::kHeight, 30};
+
+class KinectDevice;
+
+class KinectStream : public DriverStream {
+ public:
+  KinectStream(KinectDevice& device, OniSensorType sensor)
+      : DriverStream(sensor, std::span(sensor == ONI_SENSOR_DEPTH ? &kDepthMode : &kColourMode, 1),
+                     sensor == ONI_SENSOR_DEPTH ? kDepthFov : kColourFov),
+        device_(device) {}
+  OniStatus start() override;
+  void stop() override;
+
+  // On the Kinect's thread.
+  void take(const void* pixels, std::uint64_t stamp_us) {
+    if (!running()) return;
+    OniFrame* frame = acquire();
+    if (frame == nullptr) return;
+    std::memcpy(frame->data, pixels, static_cast<std::size_t>(frame->dataSize));
+    frame->timestamp = stamp_us;
+    frame->frameIndex = ++index_;
+    deliver(frame);
+  }
+
+ private:
+  KinectDevice& device_;
+  int index_ = 0;
+};
+
+class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
+ public:
+  std::string open(const std::string& port) { return kinect_.open(port); }
+
+  OniStatus getSensorInfoList(OniSensorInfo** sensors, int* count) override {
+    *sensors = sensors_;
+    *count = 2;
+    return ONI_STATUS_OK;
+  }
+  oni::driver::StreamBase* createStream(OniSensorType sensor) override {
+    if (sensor != ONI_SENSOR_DEPTH && sensor != ONI_SENSOR_COLOR) return nullptr;
+    const std::lock_guard lock(mutex_);
+    std::unique_ptr<KinectStream>& slot = sensor == ONI_SENSOR_DEPTH ? depth_ : colour_;
+    if (slot != nullptr) return nullptr;  // OpenNI2 shares one stream among its clients by itself
+    slot = std::make_unique<KinectStream>(*this, sensor);
+    return slot.get();
+  }
+  void destroyStream(oni::driver::StreamBase* stream) override {
+    static_cast<KinectStream*>(stream)->stop();
+    const std::lock_guard lock(mutex_);
+    (stream == depth_.get() ? depth_ : colour_).reset();
+  }
+
+  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override {
+    return mode == ONI_IMAGE_REGISTRATION_OFF || mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR ? TRUE : FALSE;
+  }
+  OniBool isPropertySupported(int id) override {
+    return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || id == ONI_DEVICE_PROPERTY_DRIVER_VERSION ? TRUE
+                                                                                                    : FALSE;
+  }
+  OniStatus getProperty(int id, void* data, int* size) override {
+    if (id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION && *size == sizeof(registration_)) {
+      std::memcpy(data, &registration_, sizeof(registration_));
+      return ONI_STATUS_OK;
+    }
+    const OniVersion version{0, 1, 0, 0};
+    if (id == ONI_DEVICE_PROPERTY_DRIVER_VERSION && *size == sizeof(version)) {
+      std::memcpy(data, &version, sizeof(version));
+      return ONI_STATUS_OK;
+    }
+    return ONI_STATUS_NOT_SUPPORTED;
+  }
+  // Before or after the depth stream exists, running or not: any order will do.
+  OniStatus setProperty(int id, const void* data, int size) override {
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_SUPPORTED;
+    if (size != sizeof(registration_)) return ONI_STATUS_BAD_PARAMETER;
+    OniImageRegistrationMode wanted = ONI_IMAGE_REGISTRATION_OFF;
+    std::memcpy(&wanted, data, sizeof(wanted));
+    if (isImageRegistrationModeSupported(wanted) == FALSE) return ONI_STATUS_NOT_SUPPORTED;
+    if (wanted == registration_) return ONI_STATUS_OK;
+    registration_ = wanted;
+    bool running = false;
+    {
+      const std::lock_guard lock(mutex_);
+      running = depth_ != nullptr && depth_->running();
+    }
+    return !running || start(ONI_SENSOR_DEPTH) ? ONI_STATUS_OK : ONI_STATUS_ERROR;
+  }
+
+  bool start(OniSensorType sensor) {
+    if (sensor == ONI_SENSOR_COLOR) return kinect_.start_colour();
+    return kinect_.start_depth(registration_ == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR);
+  }
+  void stop(OniSensorType sensor) {
+    sensor == ONI_SENSOR_DEPTH ? kinect_.stop_depth() : kinect_.stop_colour();
+  }
+
+ private:
+  // The streams live as long as they run, and they are stopped on this very thread: no lock is needed.
+  void on_depth(const std::uint16_t* depth_mm, std::uint64_t stamp_us) override {
+    depth_->take(depth_mm, stamp_us);
+  }
+  void on_colour(const std::uint8_t* rgb, std::uint64_t stamp_us) override { colour_->take(rgb, stamp_us); }
+
+  std::mutex mutex_;
+  std::unique_ptr<KinectStream> depth_;
+  std::unique_ptr<KinectStream> colour_;
+  std::atomic<OniImageRegistrationMode> registration_ = ONI_IMAGE_REGISTRATION_OFF;
+  OniVideoMode depth_mode_ = kDepthMode;
+  OniVideoMode colour_mode_ = kColourMode;
+  OniSensorInfo sensors_[2] = {{ONI_SENSOR_DEPTH, 1, &depth_mode_}, {ONI_SENSOR_COLOR, 1, &colour_mode_}};
+  Kinect kinect_{*this};  // last: its thread uses all of the above
+};
+
+OniStatus KinectStream::start() {
+  DriverStream::start();
+  if (device_.start(sensor())) return ONI_STATUS_OK;
+  DriverStream::stop();
+  return ONI_STATUS_ERROR;
+}
+
+void KinectStream::stop() {
+  if (!running()) return;
+  DriverStream::stop();
+  device_.stop(sensor());
+}
+
+class FreenectDriver : public oni::driver::DriverBase {
+ public:
+  explicit FreenectDriver(OniDriverServices* services) : DriverBase(services) {}
+
+  OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
+                       oni::driver::DeviceDisconnectedCallback disconnected,
+                       oni::driver::DeviceStateChangedCallback state, void* cookie) override {
+    DriverBase::initialize(connected, disconnected, state, cookie);
+    if (libusb_init(&usb_) != 0) {
+      usb_ = nullptr;
+      return ONI_STATUS_ERROR;
+    }
+    look();
+    watch_ = std::thread([this] {
+      while (!quit_) {
+        std::this_thread::sleep_for(kWatch_ms);
+        look();
+      }
+    });
+    return ONI_STATUS_OK;
+  }
+
+  oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
+    const std::string text = uri;
+    auto device = std::make_unique<KinectDevice>();
+    const std::string error =
+        device->open(text.starts_with(kScheme) ? text.substr(sizeof(kScheme) - 1) : text);
+    if (error.empty()) return device.release();
+    getServices().errorLoggerAppend("Kinect %s: %s", uri, error.c_str());
+    return nullptr;
+  }
+  void deviceClose(oni::driver::DeviceBase* device) override { delete device; }
+
+  void shutdown() override {
+    quit_ = true;
+    if (watch_.joinable()) watch_.join();
+    if (usb_ != nullptr) libusb_exit(usb_);
+    usb_ = nullptr;
+  }
+
+ private:
+  // libfreenect has no hot-plug, and OpenNI2 only knows what its drivers tell it.
+  void look() {
+    const std::vector<KinectPlug> now = list_kinects(usb_);
+    const auto has = [](const std::vector<KinectPlug>& list, const KinectPlug& plug) {
+      return std::find(list.begin(), list.end(), plug) != list.end();
+    };
+    for (const KinectPlug& plug : known_) {
+      if (!has(now, plug)) tell(plug, false);
+    }
+    for (const KinectPlug& plug : now) {
+      if (!has(known_, plug)) tell(plug, true);
+    }
+    known_ = now;
+  }
+
+  void tell(const KinectPlug& plug, bool connected) {
+    OniDeviceInfo info{};
+    std::snprintf(info.uri, sizeof(info.uri), "%s%s", kScheme, plug.port.c_str());
+    std::strcpy(info.vendor, "Microsoft");
+    std::strcpy(info.name, "Kinect v1");
+    info.usbVendorId = plug.vendor;
+    info.usbProductId = plug.product;
+    connected ? deviceConnected(&info) : deviceDisconnected(&info);
+  }
+
+  libusb_context* usb_ = nullptr;
+  std::vector<KinectPlug> known_;
+  std::atomic<bool> quit_ = false;
+  std::thread watch_;
+};
+
+}  // namespace
+}  // namespace plvo
+
+ONI_EXPORT_DRIVER(plvo::FreenectDriver)
