@@ -18,6 +18,8 @@ struct Limits {
   int segments = 256;    // per frame
   static constexpr Limits vga() { return {}; }
   static constexpr Limits qvga() { return {320, 240, 500, 128}; }
+  // kInvalidArgument, naming the entry and its range.
+  Status validate() const;
 };
 
 enum class Features : std::uint8_t { kPoints, kLines, kBoth };
@@ -28,12 +30,15 @@ enum class ReferencePolicy : std::uint8_t {
 };
 
 struct PointConfig {
-  double sigma_px = 0.35;        // σ_p on the finest pyramid level, after sub-pixel refinement
-  int pyramid_levels = 3;        // 1 … 4
-  int cell_px = 40;              // keypoints compete within a cell and are spread over the cells
-  double min_contrast = 6.0;     // least corner strength that is above the sensor's noise, grey levels
-  int max_hamming = 60;          // of 256 bits
-  double search_radius_px = 60;  // around the predicted position, when nothing better is known
+  double sigma_px = 0.2;    // σ_p on the finest pyramid level; doubles with every level
+  int pyramid_levels = 3;   // searched for keypoints, 1 … 4
+  int cell_px = 40;         // keypoints are spread over cells of this side, 24 … 64
+  int noise_floor = 5;      // grey levels: contrast below this is the sensor's noise, 1 … 64
+  double min_strength = 8;  // least corner strength, (grey levels / px)²
+  double search_radius_px =
+      30;                   // around the predicted position; a second search, when the first fails, is wider
+  int max_distance = 64;    // Hamming, of 256 bits
+  double max_ratio = 0.85;  // best distance / second best
 };
 
 struct LineConfig {
@@ -47,6 +52,17 @@ struct MotionConfig {
   int max_ransac_iterations = 300;
   int min_inliers = 10;
   bool robust = true;  // down-weight large residuals in the maximum-likelihood refinement
+
+  // A keyframe is kept while at least this share of its keypoints are inliers.
+  double keyframe_inlier_ratio = 0.5;
+
+  // When tracking fails, features are looked for this far from where they were, whatever the prediction.
+  double wide_search_px = 120;
+  // After so many lost frames in a row the reference is given up and tracking starts anew from the last good
+  // pose, whose covariance then grows by the motion that nobody saw: at most this fast (SD per second).
+  int max_lost_frames = 15;
+  double unseen_m_per_s = 0.5;
+  double unseen_rad_per_s = 0.5;
 };
 
 struct Config {

@@ -12,6 +12,7 @@
 // supported machine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,29 +23,67 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/pair_estimation.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
 
 // A look at what the last frame was made of, for drawing: pixels of the undistorted image. Valid until the
-// next call of track(). `matches` index `keypoints` (current) and `reference_keypoints`; the flag of the same
-// index says inlier.
-struct KeypointView {
-  float u = 0, v = 0;  // px
-  float size_px = 0;   // diameter of what was described
-  bool has_depth = false;
+// next call of track(). A track pairs a place in the reference with the place in this frame where it was
+// found.
+struct PointTrackView {
+  float u_reference = 0, v_reference = 0, u = 0, v = 0;  // px
+  bool inlier = false;
+};
+struct LineTrackView {
+  std::uint16_t reference = 0, current = 0;  // indices into reference_segments and segments
+  bool inlier = false;
 };
 struct SegmentView {
   float a_u = 0, a_v = 0, b_u = 0, b_v = 0;  // px
-  bool has_depth = false;
+  bool has_3d = false;
 };
 struct FeatureView {
   GrayView image;  // undistorted, grey
-  std::span<const KeypointView> keypoints, reference_keypoints;
+  std::span<const Keypoint> keypoints;
   std::span<const SegmentView> segments, reference_segments;
-  std::span<const Match> point_matches, line_matches;
-  std::span<const std::uint8_t> point_inliers, line_inliers;
+  std::span<const PointTrackView> point_tracks;
+  std::span<const LineTrackView> line_tracks;
 };
+
+// What init carves, in order; on an ArenaSizer the same code counts it.
+struct OdometryRooms {
+  FeatureExtraction extraction;
+  PairEstimation estimation;
+  std::array<FrameFeatures, 3> frames;  // the reference, the last good frame, the frame being tracked
+  std::span<PointTrackView> point_track_views;
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    for (FrameFeatures& frame : frames) frame.carve(memory, limits);
+    point_track_views =
+        memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
+    extraction.carve(memory, limits);
+    estimation.carve(memory, limits);
+  }
+  // The stages of one frame come one after the other: of their scratch the largest counts.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    FeatureExtraction::reserve(memory, limits);
+    PairEstimation::reserve(memory, limits);
+  }
+};
+
+// Bytes that init needs for these capacities, wherever the block starts.
+constexpr std::size_t required_bytes(const Limits& limits) {
+  ArenaSizer sizer;
+  OdometryRooms rooms;
+  rooms.carve(sizer, limits);
+  OdometryRooms::reserve(sizer, limits);
+  return sizer.peak() + kArenaAlignment;
+}
 
 class Odometry {
  public:
@@ -64,12 +103,42 @@ class Odometry {
   FeatureView features() const;
 
  private:
-  struct Impl;
-  Arena arena_;
-  Impl* impl_ = nullptr;  // lives in the arena
-};
+  struct Anchor {
+    Se3 T_world_camera;
+    Matrix6 covariance = Matrix6::Zero();
+  };
 
-// Bytes that init needs for these capacities.
-constexpr std::size_t required_bytes(const Limits& limits);
+  Status check(const RgbdFrame& frame) const;
+  MotionEstimate estimate_motion_to(int reference, TrackResult& result);
+  Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
+  void accept(const MotionEstimate& motion, int against, TrackResult& result);
+  void start(TrackResult& result);
+  void lose(const MotionEstimate& motion, TrackResult& result);
+  void choose_reference(const TrackResult& result);
+  void fill_views(const MotionEstimate& motion);
+
+  FrameFeatures& frame(int slot) { return rooms_.frames[static_cast<std::size_t>(slot)]; }
+  const FrameFeatures& frame(int slot) const { return rooms_.frames[static_cast<std::size_t>(slot)]; }
+  Anchor& anchor(int slot) { return anchors_[static_cast<std::size_t>(slot)]; }
+
+  Arena arena_;
+  OdometryRooms rooms_;
+  CameraModel camera_;
+  Config config_;
+  bool ready_ = false;
+
+  // Slots of rooms_.frames. Until the first usable frame there is no reference (−1).
+  int reference_ = -1;
+  int last_ = -1;
+  int current_ = 0;
+  std::array<Anchor, 3> anchors_;
+  std::int64_t last_stamp_ns_ = 0;  // of the last frame that was looked at, good or not
+  bool has_stamp_ = false;
+  Se3 T_last_previous_;  // the last motion, and how long it took: the prediction of the next one
+  std::int64_t motion_ns_ = 0;
+  int lost_frames_ = 0;
+  int view_slot_ = 0;  // whose keypoints features() shows
+  std::size_t point_track_count_ = 0;
+};
 
 }  // namespace plvo

@@ -15,7 +15,8 @@ constexpr int kSide = 2 * kRadius + 1;
 constexpr int kPixels = kSide * kSide;
 constexpr int kFractionBits = 5;  // of the bilinear weights: positions are read on a grid of 1/32 px
 
-// The four regressors of the template, in integers: 2·∂T/∂x, 2·∂T/∂y, T, 1; and their normal equations.
+// The four regressors of the template, in integers: 2·∂T/∂x, 2·∂T/∂y, T less its mean, 1; and their normal
+// equations.
 struct Template {
   std::array<std::int16_t, kPixels> gx, gy, value;
   Matrix4 normal;
@@ -23,6 +24,10 @@ struct Template {
 
 Template make_template(const Patch& patch) {
   Template t;
+  // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
+  std::int32_t total = 0;
+  for (std::uint8_t value : patch) total += value;
+  const std::int32_t mean = total / (kPatchSide * kPatchSide);
   std::array<std::int32_t, 10> sums{};
   std::size_t i = 0;
   for (int y = 1; y <= kSide; ++y) {
@@ -30,7 +35,7 @@ Template make_template(const Patch& patch) {
     for (int x = 0; x < kSide; ++x, ++i) {
       const std::int32_t gx = row[x + 1] - row[x - 1];
       const std::int32_t gy = row[x + kPatchSide] - row[x - kPatchSide];
-      const std::int32_t value = row[x];
+      const std::int32_t value = row[x] - mean;
       t.gx[i] = static_cast<std::int16_t>(gx);
       t.gy[i] = static_cast<std::int16_t>(gy);
       t.value[i] = static_cast<std::int16_t>(value);
@@ -53,7 +58,7 @@ Template make_template(const Patch& patch) {
 }
 
 struct Moments {
-  Vector4 with_template = Vector4::Zero();  // Σ I·(2Tx, 2Ty, T, 1)
+  Vector4 with_template = Vector4::Zero();  // Σ I · regressors
   double squared = 0;                       // Σ I²
 };
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P1–P3 and L1–L3: from the two images of a frame to features with 3D positions and
+// covariances.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/frame.hpp"
+#include "plvo/image/pyramid.hpp"
+#include "plvo/image/undistortion.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/stage_timer.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/points/detector.hpp"
+
+namespace plvo {
+
+// P2 and P3: the 3D point of a keypoint at (u, v) with the depth found there; σ_p grows with the pyramid
+// level.
+Point3d observe_keypoint(const Pinhole& pinhole, const PointConfig& config, int level, double u, double v,
+                         const DepthSample& depth);
+
+class FeatureExtraction {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    table_.carve(memory, limits.width, limits.height);
+    pyramid_.carve(memory, limits.width, limits.height);
+  }
+  // Scratch: the stages come one after the other, so the largest counts.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    const auto pixels = static_cast<std::size_t>(limits.width) * static_cast<std::size_t>(limits.height);
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("raw grey image", pixels);
+    }
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("smoothed image", pixels);
+      take_smoothing_row(memory, limits.width);
+    }
+    reserve_detection(memory, limits.width, limits.height);
+  }
+
+  void init(const CameraModel& camera, const Config& config);
+
+  // Fills `features` from `frame`, whose sizes were checked; counts and stage times go to `result`.
+  void extract(const RgbdFrame& frame, Arena& scratch, FrameFeatures& features, TrackResult& result);
+
+  // Of the last frame: what matching refines against. The sampler reads the frame's own depth: valid during
+  // track().
+  const Pyramid& pyramid() const { return pyramid_; }
+  const DepthSampler& depth() const { return depth_; }
+
+ private:
+  void prepare_image(const ColourView& colour, Arena& scratch);
+  void describe_points(Arena& scratch, PointFeatures& points);
+
+  CameraModel camera_;
+  Config config_;
+  UndistortionTable table_;
+  Pyramid pyramid_;
+  DepthSampler depth_;
+};
+
+}  // namespace plvo

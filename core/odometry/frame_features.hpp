@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that is kept of a frame: its features in 2D and 3D. They serve as the reference for later frames: the
+// next one, or many, when the frame is a keyframe.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/odometry/config.hpp"
+#include "plvo/points/keypoint.hpp"
+
+namespace plvo {
+
+struct FrameFeatures {
+  std::int64_t stamp_ns = 0;
+  PointFeatures points;
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    points.carve(memory, limits.keypoints);
+  }
+};
+
+}  // namespace plvo

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/pair_estimation.hpp"
+
+#include <algorithm>
+
+#include "plvo/odometry/stage_timer.hpp"
+
+namespace plvo {
+
+void PairEstimation::init(const CameraModel& camera, const Config& config) {
+  camera_ = camera;
+  config_ = config;
+}
+
+MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const FrameFeatures& /*current*/,
+                                     const Se3& T_predicted, Arena& scratch, TrackResult& result) {
+  const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
+  const ScratchScope scope(scratch);
+  const std::size_t n = point_tracks_.matches.size();
+  const PointConstraints::Workspace workspace = PointConstraints::Workspace::take(scratch, n);
+  PointConstraints points(reference.points.points, point_tracks_.points, point_tracks_.matches.span(),
+                          workspace);
+
+  MotionOptions options;
+  options.ransac.inlier_probability = config_.motion.inlier_probability;
+  options.ransac.max_iterations = config_.motion.max_ransac_iterations;
+  options.min_inliers = config_.motion.min_inliers;
+  options.loss = config_.motion.robust ? RobustLoss::kHuber : RobustLoss::kNone;
+  ConstraintSet* const sets[] = {&points};
+  const MotionEstimate estimate = estimate_motion(sets, options, config_.seed, &T_predicted, scratch);
+
+  std::copy(points.inliers().begin(), points.inliers().end(), point_inliers_.begin());
+  result.points.matched = static_cast<int>(n);
+  result.points.inliers = estimate.inliers[0];
+  result.ransac_iterations += estimate.ransac.iterations;
+  result.lm_iterations += estimate.lm.iterations;
+  return estimate;
+}
+
+MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const FrameFeatures& current,
+                                        const FeatureExtraction& images, const Se3& T_predicted,
+                                        double radius_px, Arena& scratch, TrackResult& result) {
+  const TrackingView view{camera_.pinhole, config_.points, images.pyramid(), images.depth()};
+  {
+    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    track_by_descriptor(view, reference.points, current.points, T_predicted, radius_px, scratch,
+                        point_tracks_);
+  }
+  const MotionEstimate first = solve(reference, current, T_predicted, scratch, result);
+  if (first.status != StatusCode::kOk) return first;
+  {
+    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    track_by_motion(view, reference.points, first.T_current_reference, point_tracks_);
+  }
+  return solve(reference, current, first.T_current_reference, scratch, result);
+}
+
+}  // namespace plvo

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P4, L4, 5 and 6: the motion between a reference's features and the current frame's.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/motion/motion_estimator.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/point_tracking.hpp"
+#include "plvo/odometry/track_result.hpp"
+
+namespace plvo {
+
+class PairEstimation {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    point_tracks_.carve(memory, limits.keypoints);
+    point_inliers_ =
+        memory.template take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+  }
+  // Scratch: the larger of the stages, which come one after the other.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
+    size_motion(memory, static_cast<std::size_t>(limits.keypoints),
+                static_cast<std::size_t>(limits.segments));
+  }
+
+  void init(const CameraModel& camera, const Config& config);
+
+  // T_predicted: T_current_reference as expected; radius_px: how far from it features are looked for. Counts
+  // and times go to `result`, the tracks stay for a look at them.
+  MotionEstimate estimate(const FrameFeatures& reference, const FrameFeatures& current,
+                          const FeatureExtraction& images, const Se3& T_predicted, double radius_px,
+                          Arena& scratch, TrackResult& result);
+
+  const PointTracks& point_tracks() const { return point_tracks_; }
+  std::span<const std::uint8_t> point_inliers() const {
+    return point_inliers_.first(point_tracks_.matches.size());
+  }
+
+ private:
+  MotionEstimate solve(const FrameFeatures& reference, const FrameFeatures& current, const Se3& T_predicted,
+                       Arena& scratch, TrackResult& result);
+
+  CameraModel camera_;
+  Config config_;
+  PointTracks point_tracks_;
+  std::span<std::uint8_t> point_inliers_;
+};
+
+}  // namespace plvo

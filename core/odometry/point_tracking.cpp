@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/point_tracking.hpp"
+
+#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/points/alignment.hpp"
+
+namespace plvo {
+namespace {
+
+// Where the reference keypoint's 3D point is seen after the motion.
+Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
+  constexpr double kNearest_m = 0.1;
+  if (!(point.p.z() > 0)) return {};
+  const Vector3 p = T_current_reference * point.p;
+  if (!(p.z() > kNearest_m)) return {};
+  const Vector2 pixel = project(view.pinhole, p);
+  const GrayView image = view.pyramid.level(0);
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height)) return {};
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+}
+
+// Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
+void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i, double u,
+                       double v, PointTracks& tracks) {
+  const Keypoint& keypoint = reference.keypoints[i];
+  const double scale = 1 << keypoint.level;
+  // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
+  const double offset_x = keypoint.u / scale - keypoint.x;
+  const double offset_y = keypoint.v / scale - keypoint.y;
+  const Alignment alignment = align_patch(reference.patches[i], view.pyramid.level(keypoint.level),
+                                          u / scale - offset_x, v / scale - offset_y, AlignmentOptions{});
+  if (!alignment.ok) return;
+  const Vector2 pixel((alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale);
+  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y());
+  if (!(depth.depth_m > 0)) return;
+  const std::size_t track = tracks.matches.size();
+  if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
+  tracks.pixels[track] = pixel;
+  tracks.points[track] =
+      observe_keypoint(view.pinhole, view.config, keypoint.level, pixel.x(), pixel.y(), depth);
+}
+
+}  // namespace
+
+void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
+                         const PointFeatures& current, const Se3& T_current_reference, double radius_px,
+                         Arena& scratch, PointTracks& tracks) {
+  tracks.matches.clear();
+  const ScratchScope scope(scratch);
+  const std::size_t n = reference.keypoints.size();
+  const std::span<Prediction> predictions = scratch.take<Prediction>("predictions", n);
+  FixedVector<Match> putative(scratch.take<Match>("putative matches", n));
+  if (predictions.size() < n || putative.capacity() < n) return;
+  for (std::size_t i = 0; i < n; ++i)
+    predictions[i] = predict(view, reference.points[i], T_current_reference);
+
+  PointMatchOptions options;
+  options.radius_px = radius_px;
+  options.max_distance = view.config.max_distance;
+  options.max_ratio = view.config.max_ratio;
+  const GrayView image = view.pyramid.level(0);
+  match_points(reference, predictions, current, image.width, image.height, options, scratch, putative);
+  for (const Match& match : putative) {
+    const Keypoint& found = current.keypoints[match.current];
+    register_keypoint(view, reference, match.reference, found.u, found.v, tracks);
+  }
+}
+
+void track_by_motion(const TrackingView& view, const PointFeatures& reference, const Se3& T_current_reference,
+                     PointTracks& tracks) {
+  tracks.matches.clear();
+  for (std::size_t i = 0; i < reference.keypoints.size(); ++i) {
+    const Prediction prediction = predict(view, reference.points[i], T_current_reference);
+    if (prediction.visible) register_keypoint(view, reference, i, prediction.u, prediction.v, tracks);
+  }
+}
+
+}  // namespace plvo

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the reference's keypoints in the current frame and lifts what was found to 3D. Twice: first through
+// descriptors, which need no good idea of the motion, to get one; then, with that motion, by registering the
+// patch of every reference keypoint where it must be — which does not depend on the detector finding the same
+// corner again, and so yields several times as many matches.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/match.hpp"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/pyramid.hpp"
+#include "plvo/math/se3.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/points/keypoint.hpp"
+#include "plvo/points/point_match.hpp"
+
+namespace plvo {
+
+// Reference keypoint matches[i].reference was found at (u, v)[i], and is points[i] there; matches[i].current
+// == i.
+struct PointTracks {
+  FixedVector<Match> matches;
+  std::span<Vector2> pixels;  // level-0 px
+  std::span<Point3d> points;  // camera frame of the current frame
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, int capacity) {
+    const auto n = static_cast<std::size_t>(capacity);
+    matches = FixedVector<Match>(memory.template take<Match>("point tracks", n));
+    pixels = memory.template take<Vector2>("point tracks", n);
+    points = memory.template take<Point3d>("point tracks", n);
+  }
+};
+
+// The current frame as the tracker sees it.
+struct TrackingView {
+  const Pinhole& pinhole;
+  const PointConfig& config;
+  const Pyramid& pyramid;
+  const DepthSampler& depth;
+};
+
+// Through descriptors, within radius_px of where T_current_reference puts the reference keypoints.
+void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
+                         const PointFeatures& current, const Se3& T_current_reference, double radius_px,
+                         Arena& scratch, PointTracks& tracks);
+
+// By registration alone, from where T_current_reference puts them.
+void track_by_motion(const TrackingView& view, const PointFeatures& reference, const Se3& T_current_reference,
+                     PointTracks& tracks);
+
+// Scratch of track_by_descriptor.
+template <typename Memory>
+constexpr void reserve_tracking(Memory& memory, int keypoints, int width, int height) {
+  const ScratchScope scope(memory);
+  const auto n = static_cast<std::size_t>(keypoints);
+  memory.template take<Prediction>("predictions", n);
+  memory.template take<Match>("putative matches", n);
+  reserve_point_match(memory, keypoints, width, height);
+}
+
+}  // namespace plvo
