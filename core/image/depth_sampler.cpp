@@ -7,11 +7,53 @@
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
+namespace {
+
+constexpr int kMaxWindow = (2 * DepthSampler::kMaxRadius + 1) * (2 * DepthSampler::kMaxRadius + 1);
+
+// Least-squares plane through inverse depths: q(x, y) = q0 + qx x + qy y. In inverse depth a plane of the
+// world is a plane over the image exactly, and the Kinect's own noise is even.
+class InverseDepthPlane {
+ public:
+  void add(double x, double y, double q) {
+    n_ += 1;
+    x_ += x;
+    y_ += y;
+    xx_ += x * x;
+    xy_ += x * y;
+    yy_ += y * y;
+    q_ += q;
+    qx_ += q * x;
+    qy_ += q * y;
+  }
+  // False when the pixels lie (nearly) on one line. The values are those at x = y = 0.
+  bool solve(double& q0, double& slope_x, double& slope_y) const {
+    const double mean_x = x_ / n_;
+    const double mean_y = y_ / n_;
+    const double cxx = xx_ - x_ * mean_x;
+    const double cxy = xy_ - x_ * mean_y;
+    const double cyy = yy_ - y_ * mean_y;
+    const double determinant = cxx * cyy - cxy * cxy;
+    if (!(determinant > 0.1 * n_ * n_)) return false;
+    const double cqx = qx_ - q_ * mean_x;
+    const double cqy = qy_ - q_ * mean_y;
+    slope_x = (cqx * cyy - cqy * cxy) / determinant;
+    slope_y = (cqy * cxx - cqx * cxy) / determinant;
+    q0 = q_ / n_ - slope_x * mean_x - slope_y * mean_y;
+    return true;
+  }
+
+ private:
+  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, q_ = 0, qx_ = 0, qy_ = 0;
+};
+
+}  // namespace
 
 DepthSample DepthSampler::sample(double u, double v, int radius) const {
-  constexpr int kMaxRadius = 3;
-  constexpr int kMaxWindow = (2 * kMaxRadius + 1) * (2 * kMaxRadius + 1);
-  std::array<double, kMaxWindow> window;
+  struct Entry {
+    double x, y, z;  // offset from (u, v) in px; m
+  };
+  std::array<Entry, kMaxWindow> window;
   std::size_t count = 0;
   const int x0 = static_cast<int>(u + 0.5);
   const int y0 = static_cast<int>(v + 0.5);
@@ -21,7 +63,7 @@ DepthSample DepthSampler::sample(double u, double v, int radius) const {
     for (int x = x0 - radius; x <= x0 + radius; ++x) {
       const double z = at(x, y);
       if (z <= 0) continue;
-      window[count++] = z;
+      window[count++] = {x - u, y - v, z};
       if (nearest == 0 || z < nearest) nearest = z;
     }
   }
@@ -29,31 +71,34 @@ DepthSample DepthSampler::sample(double u, double v, int radius) const {
   // Where half the window has no depth, the rest is a rim of bad depth.
   if (2 * count < side * side) return {};
 
-  // A jump is what neither noise nor a steep surface explains: 6 σ and 4 % of the depth.
-  const double sigma = noise_.sigma(nearest);
-  const double jump = std::max(6 * sigma, 0.04 * nearest);
+  // A jump is what neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
+  const double jump = std::max(6 * noise_.sigma(nearest), 0.04 * nearest);
+  InverseDepthPlane plane;
   double sum = 0;
-  double sum_squared = 0;
   std::size_t near_count = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double z = window[i];
-    if (z > nearest + jump) continue;
-    const double offset = z - nearest;  // small numbers keep their digits when squared
-    sum += offset;
-    sum_squared += offset * offset;
+    if (window[i].z > nearest + jump) continue;
+    plane.add(window[i].x, window[i].y, 1 / window[i].z);
+    sum += window[i].z;
     ++near_count;
   }
-  const auto n = static_cast<double>(near_count);
-  const double mean = sum / n;
-  const double variance = std::max(0.0, sum_squared / n - mean * mean);
 
   DepthSample result;
-  result.depth_m = nearest + mean;
   result.on_edge = near_count < count;
-  // The spread within the window is noise plus slope × misregistration of about a pixel: both belong to the
-  // pixel's depth. A mixed window leaves the nearer surface's own depth less sure.
+  result.depth_m = sum / static_cast<double>(near_count);
+  double slope_m = 0;  // per px
+  double q0 = 0;
+  double slope_x = 0;
+  double slope_y = 0;
+  if (plane.solve(q0, slope_x, slope_y) && q0 > 0) {
+    // The plane may only interpolate: beyond the depths it was fitted to it is not believed.
+    result.depth_m = std::clamp(1 / q0, nearest, nearest + jump);
+    slope_m = result.depth_m * result.depth_m * sqrt(slope_x * slope_x + slope_y * slope_y);
+  }
   const double sigma_d = noise_.sigma(result.depth_m);
-  result.sigma_m = sqrt(std::max(sigma_d * sigma_d, 0.5 * sigma_d * sigma_d + variance));
+  const double sigma_registration = slope_m * noise_.registration_px;
+  result.sigma_m = sqrt(sigma_d * sigma_d + sigma_registration * sigma_registration);
+  // The nearer surface's own depth is less sure where the window is mixed.
   if (result.on_edge) result.sigma_m *= 2;
   return result;
 }

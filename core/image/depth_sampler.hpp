@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the depth that belongs to a pixel of the undistorted grey image. On a depth edge a keypoint belongs
 // to the nearer surface (it is the nearer surface's outline), but registration and the lens leave the edge a
-// pixel or two off: so a small window is looked at, the nearer surface's depths are averaged, and a mixed
-// window says so.
+// pixel or two off: so a small window is looked at, a plane is fitted to the nearer surface's depths, and a
+// mixed window says so.
 #pragma once
 
 #include <cstdint>
@@ -21,27 +21,28 @@ struct DepthSample {
 
 class DepthSampler {
  public:
-  DepthSampler() = default;
   DepthSampler(const DepthView& depth, const UndistortionTable& table, const DepthNoise& noise)
-      : depth_(depth), table_(&table), noise_(noise) {}
+      : depth_(depth), table_(table), noise_(noise) {}
 
   // Depth at one pixel, in metres, 0 where there is none or (x, y) is outside the image.
   double at(int x, int y) const {
     int raw_x = 0;
     int raw_y = 0;
-    if (x < 0 || y < 0 || x >= depth_.width || y >= depth_.height || !table_->raw_pixel(x, y, raw_x, raw_y))
+    if (x < 0 || y < 0 || x >= depth_.width || y >= depth_.height || !table_.raw_pixel(x, y, raw_x, raw_y))
       return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
 
-  // The depth at (u, v) from the window of (2·radius+1)² pixels around it, radius ≤ 3.
-  DepthSample sample(double u, double v, int radius = 1) const;
+  static constexpr int kMaxRadius = 3;
+  // The depth at (u, v), inside the image, from a plane fitted to the window of (2·radius+1)² pixels around
+  // it.
+  DepthSample sample(double u, double v, int radius = 2) const;
 
   const DepthNoise& noise() const { return noise_; }
 
  private:
   DepthView depth_;
-  const UndistortionTable* table_ = nullptr;
+  const UndistortionTable& table_;
   DepthNoise noise_;
 };
 

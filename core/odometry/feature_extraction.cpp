@@ -47,10 +47,9 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) {
   }
 }
 
-void FeatureExtraction::extract(const RgbdFrame& frame, Arena& scratch, FrameFeatures& features,
-                                TrackResult& result) {
+void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch,
+                                FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
-  depth_ = DepthSampler(frame.depth, table_, config_.depth_noise);
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
@@ -63,21 +62,26 @@ void FeatureExtraction::extract(const RgbdFrame& frame, Arena& scratch, FrameFea
   options.cell_px = config_.points.cell_px;
   options.noise_floor = config_.points.noise_floor;
   options.min_strength = config_.points.min_strength;
-  const DetectionSummary summary = detect_keypoints(pyramid_, depth_, options, scratch, points.keypoints);
+  const DetectionSummary summary = detect_keypoints(pyramid_, depth, options, scratch, points.keypoints);
   describe_points(scratch, points);
+  lift_points(depth, points, result);
 
+  result.points.detected = summary.candidates;
+  result.points.dropped = static_cast<int>(points.keypoints.dropped());
+}
+
+void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, PointFeatures& points,
+                                    TrackResult& result) const {
   // P2, P3. A keypoint whose window turns out to have no usable depth keeps a covariance of zero: "no 3D
   // point".
   int with_depth = 0;
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
-    const DepthSample depth = depth_.sample(keypoint.u, keypoint.v);
+    const DepthSample depth = depth_sampler.sample(keypoint.u, keypoint.v);
     points.points[i] =
         observe_keypoint(camera_.pinhole, config_.points, keypoint.level, keypoint.u, keypoint.v, depth);
     with_depth += depth.depth_m > 0 ? 1 : 0;
   }
-  result.points.detected = summary.candidates;
-  result.points.dropped = static_cast<int>(points.keypoints.dropped());
   result.points.with_depth = with_depth;
 }
 

@@ -49,15 +49,20 @@ class FeatureExtraction {
 
   void init(const CameraModel& camera, const Config& config);
 
-  // Fills `features` from `frame`, whose sizes were checked; counts and stage times go to `result`.
-  void extract(const RgbdFrame& frame, Arena& scratch, FrameFeatures& features, TrackResult& result);
+  // A sampler of the frame's own depth: as long as the frame's views are valid.
+  DepthSampler depth_sampler(const RgbdFrame& frame) const {
+    return {frame.depth, table_, config_.depth_noise};
+  }
 
-  // Of the last frame: what matching refines against. The sampler reads the frame's own depth: valid during
-  // track().
+  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
+               TrackResult& result);
+
+  // Of the last frame: what matching refines against.
   const Pyramid& pyramid() const { return pyramid_; }
-  const DepthSampler& depth() const { return depth_; }
 
  private:
+  void lift_points(const DepthSampler& depth, PointFeatures& points, TrackResult& result) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
   void describe_points(Arena& scratch, PointFeatures& points);
 
@@ -65,7 +70,6 @@ class FeatureExtraction {
   Config config_;
   UndistortionTable table_;
   Pyramid pyramid_;
-  DepthSampler depth_;
 };
 
 }  // namespace plvo

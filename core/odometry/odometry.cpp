@@ -14,8 +14,8 @@ constexpr int kMinStartFeatures = 20;
 Status explain_loss(const MotionEstimate& motion, const TrackResult& result) {
   Status status(motion.status, "lost: ");
   if (result.points.with_depth < kMinStartFeatures)
-    return status.append("hardly anything to see (dark, blurred, bare, or no depth); 3D points: ")
-        .append(result.points.with_depth);
+    return status.append("hardly anything to see (dark, blurred, bare, or no depth); keypoints: ")
+        .append(result.points.detected);
   switch (motion.status) {
     case StatusCode::kTooFewFeatures:
       return status.append("too few features of the reference were found again: ")
@@ -94,15 +94,16 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   last_stamp_ns_ = input.stamp_ns;
   view_slot_ = current_;
   has_stamp_ = true;
-  rooms_.extraction.extract(input, arena_, frame(current_), result);
+  const DepthSampler depth = rooms_.extraction.depth_sampler(input);
+  rooms_.extraction.extract(input, depth, arena_, frame(current_), result);
   if (reference_ == kNobody) {
     start(result);
     return result;
   }
-  MotionEstimate motion = estimate_motion_to(reference_, result);
+  MotionEstimate motion = estimate_motion_to(reference_, depth, result);
   int against = reference_;
   if (motion.status != StatusCode::kOk && last_ != reference_) {
-    motion = estimate_motion_to(last_, result);
+    motion = estimate_motion_to(last_, depth, result);
     against = last_;
   }
   fill_views(motion);
@@ -126,15 +127,15 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   return boxplus(Se3{}, ratio * velocity) * T_last_reference;
 }
 
-MotionEstimate Odometry::estimate_motion_to(int reference, TrackResult& result) {
+MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result) {
   const Se3 T_predicted = predict_motion(reference, result.stamp_ns);
   result.reference_stamp_ns = frame(reference).stamp_ns;
   MotionEstimate motion =
-      rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction, T_predicted,
-                                 config_.points.search_radius_px, arena_, result);
+      rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
+                                 T_predicted, config_.points.search_radius_px, arena_, result);
   if (motion.status == StatusCode::kOk) return motion;
-  return rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction, Se3{},
-                                    config_.motion.wide_search_px, arena_, result);
+  return rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
+                                    Se3{}, config_.motion.wide_search_px, arena_, result);
 }
 
 void Odometry::start(TrackResult& result) {

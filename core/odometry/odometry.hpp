@@ -109,7 +109,7 @@ class Odometry {
   };
 
   Status check(const RgbdFrame& frame) const;
-  MotionEstimate estimate_motion_to(int reference, TrackResult& result);
+  MotionEstimate estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   void accept(const MotionEstimate& motion, int against, TrackResult& result);
   void start(TrackResult& result);

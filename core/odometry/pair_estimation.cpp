@@ -38,9 +38,10 @@ MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const Frame
 }
 
 MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const FrameFeatures& current,
-                                        const FeatureExtraction& images, const Se3& T_predicted,
-                                        double radius_px, Arena& scratch, TrackResult& result) {
-  const TrackingView view{camera_.pinhole, config_.points, images.pyramid(), images.depth()};
+                                        const Pyramid& pyramid, const DepthSampler& depth,
+                                        const Se3& T_predicted, double radius_px, Arena& scratch,
+                                        TrackResult& result) {
+  const TrackingView view{camera_.pinhole, config_.points, pyramid, depth};
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
     track_by_descriptor(view, reference.points, current.points, T_predicted, radius_px, scratch,

@@ -36,8 +36,8 @@ class PairEstimation {
   // T_predicted: T_current_reference as expected; radius_px: how far from it features are looked for. Counts
   // and times go to `result`, the tracks stay for a look at them.
   MotionEstimate estimate(const FrameFeatures& reference, const FrameFeatures& current,
-                          const FeatureExtraction& images, const Se3& T_predicted, double radius_px,
-                          Arena& scratch, TrackResult& result);
+                          const Pyramid& pyramid, const DepthSampler& depth, const Se3& T_predicted,
+                          double radius_px, Arena& scratch, TrackResult& result);
 
   const PointTracks& point_tracks() const { return point_tracks_; }
   std::span<const std::uint8_t> point_inliers() const {

@@ -25,8 +25,8 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
   const Keypoint& keypoint = reference.keypoints[i];
   const double scale = 1 << keypoint.level;
   // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
-  const double offset_x = keypoint.u / scale - keypoint.x;
-  const double offset_y = keypoint.v / scale - keypoint.y;
+  const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
+  const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
   const Alignment alignment = align_patch(reference.patches[i], view.pyramid.level(keypoint.level),
                                           u / scale - offset_x, v / scale - offset_y, AlignmentOptions{});
   if (!alignment.ok) return;
