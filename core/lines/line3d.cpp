@@ -208,13 +208,36 @@ bool plane_covariance(const Samples& samples, std::size_t first, std::size_t las
   return true;
 }
 
+// How many of the consensus set count as one independent sample, at least `least`. What the residuals show:
+// their correlation ρ from one to the next, (1 + ρ) / (1 − ρ) as for a first-order process, and their size
+// where it is above what (4) says.
+double samples_per_independent_one(const Samples& samples, const PlaneLine& line, double least) {
+  const Chord chord(line);
+  double squares = 0, products = 0, before = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
+    if (!samples.consensus[i]) continue;
+    const Distance d = distance(samples.all[i], chord);
+    const double r = d.cross * sqrt(d.inverse_norm2);
+    squares += r * r;
+    products += r * before;
+    before = r;
+    ++count;
+  }
+  const double correlation = std::clamp(squares > 0 ? products / squares : 0, 0.0, 0.95);
+  const double size = count > 2 ? squares / (count - 2) : 0;
+  return std::max(least, (1 + correlation) / (1 - correlation)) * std::max(1.0, size);
+}
+
 // Of (S_A, S_B): how well the segment is located across itself.
 bool transverse_covariance(const Segment& segment, const Samples& samples, const PlaneLine& line,
                            const Line3dConfig& config, Matrix2& covariance) {
   if (segment.sigma_px > 0) {
-    const double middle =
-        segment.sigma_px * segment.sigma_px + config.transverse_floor_px * config.transverse_floor_px;
-    const double angle = segment.sigma_angle_rad * segment.sigma_angle_rad;
+    // The floor holds at either end by itself.
+    const double half = 0.5 * segment.length_px();
+    const double floor2 = 0.5 * config.transverse_floor_px * config.transverse_floor_px;
+    const double middle = segment.sigma_px * segment.sigma_px + floor2;
+    const double angle = segment.sigma_angle_rad * segment.sigma_angle_rad + floor2 / (half * half);
     covariance << line.z_a * line.z_a * (middle + line.t_a * line.t_a * angle),
         line.z_a * line.z_b * (middle + line.t_a * line.t_b * angle), 0,
         line.z_b * line.z_b * (middle + line.t_b * line.t_b * angle);
@@ -284,9 +307,12 @@ Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken, const 
                         const Line3dConfig& config, Line3d& out) {
   Line3dReport report;
   report.asked = taken.asked;
+  report.with_depth = taken.count;
+  report.mixed = taken.mixed;
   int needed = 2;  // the least integer that reaches τ n_s
   while (needed < config.min_consensus * taken.asked) ++needed;
   if (taken.count < needed) return report;
+  while (needed < config.min_agreement * taken.count) ++needed;
 
   Samples samples;
   whiten_all(taken, config.sigma_p_px, samples);
@@ -302,7 +328,9 @@ Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken, const 
   const double t_first = foot_pixel(samples.all[first], chord), t_last = foot_pixel(samples.all[last], chord);
 
   const double spacing = segment.length_px() / (taken.asked - 1);
-  const double weight = config.depth_correlation_px > spacing ? spacing / config.depth_correlation_px : 1.0;
+  const double stated = std::max(1.0, config.depth_correlation_px / spacing);
+  const double weight =
+      config.trust_residuals ? 1 / samples_per_independent_one(samples, line, stated) : 1 / stated;
   Matrix4 in_plane;
   Matrix2 across;
   if (!(t_first < t_last) || !re_anchor(line, t_first, t_last) ||

@@ -21,21 +21,36 @@
 
 namespace plvo {
 
+// The defaults are calibrated on rendered sequences with exact truth (tools/bench/line_match_precision);
+// paper() is Lu & Song's.
 struct Line3dConfig {
   int max_samples = 100;            // of n_s
   double min_consensus = 0.6;       // τ: least n_con / n_s
+  double min_agreement = 0.8;       // least n_con / samples with depth: else a second surface had a say
   double sigma_p_px = 0.5;          // σ_p of (3), of one sample
   double inlier_chi_square = 6.63;  // on r², one degree of freedom: 99 %
   int max_ransac_iterations = 20;   // two-sample lines tried; 16 find a 60 % consensus with 99.9 %
   int side_reach_px = 3;            // see sample_segment
   // Errors of depth readings closer than this along the segment are one error, not two: quantisation and the
   // sensor's correlation window see to that. The in-plane information is divided by (this / sample spacing)
-  // where that is above 1. 1 is the paper's assumption of independent samples.
-  double depth_correlation_px = 1;
-  // Where the line lies across itself: the segment's own σ (at the middle, and of the angle), plus this in
-  // quadrature, if the segment states one; the paper's independent σ_p per sample where it does not.
-  double transverse_floor_px = 0;
+  // where that is above 1; 1 is the paper's assumption of independent samples.
+  double depth_correlation_px = 3;
+  // Divide it by more where the residuals show more correlation than that, or are larger than (4) says.
+  bool trust_residuals = true;
+  // Where the line lies across itself: the segment's own σ (at the middle, and of the angle) and, in
+  // quadrature, this at either end; the paper's independent σ_p per sample where the segment states none.
+  double transverse_floor_px = 0.1;
   std::uint64_t seed = 1;
+
+  static Line3dConfig paper() {
+    Line3dConfig config;
+    config.min_agreement = 0;
+    config.side_reach_px = 0;
+    config.depth_correlation_px = 1;
+    config.trust_residuals = false;
+    config.transverse_floor_px = 0;
+    return config;
+  }
 };
 
 enum class Line3dOutcome : std::uint8_t {
@@ -48,9 +63,11 @@ enum class Line3dOutcome : std::uint8_t {
 
 struct Line3dReport {
   Line3dOutcome outcome = Line3dOutcome::kTooFewDepths;
-  int asked = 0;      // n_s
-  int consensus = 0;  // n_con
-  double cost = 0;    // Σ r² over the consensus set
+  int asked = 0;       // n_s
+  int with_depth = 0;  // samples with depth
+  int mixed = 0;       // of these, those that saw two surfaces
+  int consensus = 0;   // n_con
+  double cost = 0;     // Σ r² over the consensus set
 };
 
 // The 3D line of the samples, camera frame, metres; a, b ordered as the segment's. `line` is written only on

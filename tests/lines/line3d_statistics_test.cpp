@@ -40,7 +40,7 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
   const Pinhole pinhole;
   const int trials = 1500;
   double nees = 0, nees_ends = 0;
-  Line3dConfig config;
+  Line3dConfig config = Line3dConfig::paper();  // its noise is independent from sample to sample
   config.sigma_p_px = 0.8;
   config.inlier_chi_square = 16;  // no truncation of the noise's tails
   for (int trial = 0; trial < trials; ++trial) {
@@ -80,7 +80,7 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
   Random random(22);
   const Pinhole pinhole;
   const int trials = 1000, run = 8;
-  double as_paper = 0, as_stated = 0;
+  double as_paper = 0, as_stated = 0, as_seen = 0;
   for (int trial = 0; trial < trials; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
     scene.segment.sigma_px = 0.2;
@@ -97,10 +97,11 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
       LineSample& s = samples.sample[static_cast<std::size_t>(i)];
       s.depth_m += error * s.sigma_d_m;
     }
-    Line3dConfig config;
+    Line3dConfig config = Line3dConfig::paper();
     config.inlier_chi_square = 16;
-    for (double* nees : {&as_paper, &as_stated}) {
-      config.depth_correlation_px = nees == &as_paper ? 1 : run;
+    for (double* nees : {&as_paper, &as_stated, &as_seen}) {
+      config.depth_correlation_px = nees == &as_stated ? run : 1;
+      config.trust_residuals = nees == &as_seen;
       Line3d line;
       ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, line).outcome, Line3dOutcome::kOk);
       const Eigen::Vector3d d = (scene.b - scene.a).normalized();
@@ -118,6 +119,8 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
   }
   EXPECT_GT(as_paper, 6);
   EXPECT_NEAR(as_stated, 2, 0.4);
+  EXPECT_GT(as_seen, 1.2);  // told by the residuals alone, within a third
+  EXPECT_LT(as_seen, 2.7);
 }
 
 // A straight border: before it a wall at `near`, beyond it one at `near + step`; the depth image is displaced

@@ -76,7 +76,7 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
   const Pinhole pinhole{520, 540, 320, 240};
   for (int trial = 0; trial < 20; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
-    Line3dConfig config;
+    Line3dConfig config = Line3dConfig::paper();
     config.inlier_chi_square = 1e9;  // everything is consensus, in both
     const LineSamples samples = scene.noisy_samples(random, config.sigma_p_px, DepthNoise{});
     Line3d line;
@@ -121,12 +121,32 @@ TEST(Line3d, WrongDepthsAreLeftOut) {
     for (int i = 0; i < samples.count; ++i)  // a third of them far behind
       if (i % 3 == 1) samples.sample[static_cast<std::size_t>(i)].depth_m *= 1.3 + random.uniform();
     Line3d line;
-    if (fit_line3d(scene.segment, samples, pinhole, {}, line).outcome != Line3dOutcome::kOk) continue;
+    if (fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), line).outcome !=
+        Line3dOutcome::kOk)
+      continue;
     ++found;
     EXPECT_LT(test::offset_from_line(line.a, scene.a, scene.b), 0.08);
     EXPECT_LT(test::offset_from_line(line.b, scene.a, scene.b), 0.08);
   }
   EXPECT_GE(found, 47);
+}
+
+// Two walls meet under one segment, 70 to 30: no line, though the larger part alone would pass τ.
+TEST(Line3d, TwoSurfacesAreNotOneLine) {
+  Random random(15);
+  const Pinhole pinhole;
+  int with_paper = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const LineScene scene = LineScene::random(random, pinhole);
+    LineSamples samples = scene.noisy_samples(random, 0.5, DepthNoise{});
+    for (int i = samples.count * 7 / 10; i < samples.count; ++i)
+      samples.sample[static_cast<std::size_t>(i)].depth_m += 0.4;
+    Line3d line;
+    EXPECT_NE(fit_line3d(scene.segment, samples, pinhole, {}, line).outcome, Line3dOutcome::kOk);
+    with_paper += fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), line).outcome ==
+                  Line3dOutcome::kOk;
+  }
+  EXPECT_GT(with_paper, 30);
 }
 
 TEST(Line3d, MissingDepth) {
