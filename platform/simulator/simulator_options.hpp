@@ -37,7 +37,7 @@ struct DepthSensorOptions {
 };
 
 struct SimulatorOptions {
-  SceneName scene = SceneName::kCorridor;
+  SceneName scene = SceneName::kBare;
   LightName light = LightName::kConstant;
   std::uint64_t seed = 1;
   int frames = 300;

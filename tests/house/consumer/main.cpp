@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/camera/camera_model.hpp"
+// The front door, as its header shows it, with a block that is sized when it is compiled.
+#include <cstdio>
+
 #include "plvo/hal/rgbd_camera.hpp"
-#include "plvo/math/se3.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
 
 int main() {
-  plvo::Vector6 delta = plvo::Vector6::Constant(0.5);
-  const plvo::Se3 T = plvo::boxplus(plvo::Se3{}, delta);
-  return plvo::CameraModel{}.validate().ok() && (plvo::boxminus(T, plvo::Se3{}) - delta).norm() < 1e-12 ? 0
-                                                                                                        : 1;
+  static plvo::Odometry odometry;
+  const plvo::Status status = odometry.init(memory, plvo::CameraModel{});
+  std::printf("%s, %zu bytes\n", plvo::to_string(status.code()), sizeof memory);
+  const plvo::TrackResult result = odometry.track(plvo::RgbdFrame{});  // a frame without images is refused
+  return status.ok() && result.status.code() == plvo::StatusCode::kInvalidArgument ? 0 : 1;
 }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as a calibration, in each of its forms: read or refused with words, and what is accepted is
+// usable.
+#include <string_view>
+
+#include "plvo/replay/calibration.hpp"
+#include "scratch_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace plvo;
+  for (const char* name : {"calibration.txt", "camera_info.yaml"}) {
+    Calibration calibration;
+    const Status status = read_calibration(fuzz::write_scratch(name, data, size), calibration);
+    fuzz::require(status.ok() || !std::string_view(status.message()).empty());
+    if (!status.ok() || !calibration.validate(640, 480).ok()) continue;
+    CameraModel camera = calibration.camera;
+    camera.width = 640;
+    camera.height = 480;
+    for (int v = 0; v < 480; v += 60)
+      for (int u = 0; u < 640; u += 60) fuzz::require(undistort_pixel(camera, Vector2(u, v)).allFinite());
+  }
+  return 0;
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "memory_table.hpp"
+
+#include <algorithm>
+
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+std::string with_commas(std::size_t value) {
+  const std::string digits = std::to_string(value);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string row(const std::string& who, std::size_t vga, std::size_t qvga) {
+  return "| " + who + " | " + with_commas(vga) + " | " + with_commas(qvga) + " |\n";
+}
+
+std::string capacities(const char* name, const Limits& limits) {
+  return std::string("- ") + name + ": " + std::to_string(limits.width) + "x" +
+         std::to_string(limits.height) + " px, " + std::to_string(limits.keypoints) + " keypoints, " +
+         std::to_string(limits.segments) + " segments\n";
+}
+
+}  // namespace
+
+MemoryUse measure_memory(const Limits& limits, int frames) {
+  MemoryUse use;
+  use.limits = limits;
+  use.required = required_bytes(limits);
+  std::vector<std::byte> memory(use.required);
+  ProceduralSequence sequence(limits.width, limits.height);
+  Odometry odometry;
+  if (!odometry.init(memory, sequence.camera(), Config{}, limits).ok()) return use;
+  use.used = odometry.memory_used();
+  for (int i = 0; i < frames; ++i) (void)odometry.track(sequence.render(i));
+  use.peak = odometry.memory_peak();
+  for (const Arena::Record& record : odometry.memory_records())
+    use.rows.push_back({record.who, record.bytes});
+  return use;
+}
+
+std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga) {
+  std::string page =
+      "# Memory\n\n"
+      "The caller owns one block; `init` carves it once, and nothing is taken from anywhere else, then or "
+      "later. This page is\n"
+      "written by a test (`tests/odometry/memory_test.cpp`), which fails when the figures are no longer "
+      "true. To write it\n"
+      "anew: `PLVO_UPDATE_DOCS=1 build/release/tests/memory_test`.\n\n"
+      "Bytes on a 64-bit machine, by what `init` takes them for:\n\n"
+      "| for | VGA | QVGA |\n|---|---:|---:|\n";
+  for (const MemoryUse::Row& r : vga.rows) {
+    const auto same =
+        std::find_if(qvga.rows.begin(), qvga.rows.end(), [&](const auto& q) { return q.who == r.who; });
+    page += row(r.who, r.bytes, same == qvga.rows.end() ? 0 : same->bytes);
+  }
+  page +=
+      row("scratch of one stage, given back after it", vga.required - vga.used, qvga.required - qvga.used);
+  page += row("**`required_bytes(limits)`**", vga.required, qvga.required);
+  page += row("`sizeof(plvo::Odometry)`, wherever the caller puts it", sizeof(Odometry), sizeof(Odometry));
+  page += "\nThe capacities (`plvo::Limits`) that these are for:\n\n";
+  page += capacities("VGA", vga.limits) + capacities("QVGA", qvga.limits);
+  page +=
+      "\nMore keypoints or segments cost what the rows say in proportion. A block that is too small is "
+      "refused by `init`\n"
+      "with the number of bytes that it needs. The ceiling that the test holds for VGA is 8 MiB in all.\n";
+  return page;
+}
+
+}  // namespace plvo

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/memory.md, written from what an Odometry says of its own block.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+
+// What one choice of Limits takes.
+struct MemoryUse {
+  Limits limits;
+  struct Row {
+    std::string who;
+    std::size_t bytes;
+  };
+  std::vector<Row> rows;     // of init, in the order of the carving
+  std::size_t used = 0;      // by init; the sum of the rows
+  std::size_t peak = 0;      // with the scratch of the hungriest frame so far
+  std::size_t required = 0;  // what required_bytes asks of the caller
+};
+
+// Tracks a few frames of the procedural sequence and reads the records.
+MemoryUse measure_memory(const Limits& limits, int frames);
+
+// The page, in Markdown.
+std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga);
+
+}  // namespace plvo

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory the odometry takes: a floor and a ceiling, exactly what required_bytes says, and
+// docs/memory.md true.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "memory_table.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr std::size_t kMiB = 1024 * 1024;
+
+// At compile time: a caller may make the block a static array.
+static_assert(required_bytes(Limits::vga()) <= 8 * kMiB);
+static_assert(required_bytes(Limits::qvga()) < required_bytes(Limits::vga()));
+// A grey image and its gradients alone need this much: less would mean that a room no longer counts what it
+// takes.
+static_assert(required_bytes(Limits::vga()) > 640 * 480 * 2);
+static_assert(required_bytes(Limits::qvga()) > 320 * 240 * 2);
+static_assert(required_bytes(Limits::qvga()) <= 4 * kMiB);
+
+const MemoryUse& vga() {
+  static const MemoryUse use = measure_memory(Limits::vga(), 3);
+  return use;
+}
+const MemoryUse& qvga() {
+  static const MemoryUse use = measure_memory(Limits::qvga(), 6);
+  return use;
+}
+
+TEST(Memory, EveryByteOfInitHasAName) {
+  for (const MemoryUse* use : {&vga(), &qvga()}) {
+    ASSERT_FALSE(use->rows.empty());
+    std::size_t sum = 0;
+    for (const MemoryUse::Row& row : use->rows) {
+      EXPECT_GT(row.bytes, 0U) << row.who;
+      sum += row.bytes;
+    }
+    EXPECT_EQ(sum, use->used);
+  }
+}
+
+TEST(Memory, TheScratchFitsBehindWhatInitTook) {
+  for (const MemoryUse* use : {&vga(), &qvga()}) {
+    EXPECT_GT(use->peak, use->used) << "frames were tracked, so scratch was taken";
+    EXPECT_LE(use->peak, use->required);
+  }
+}
+
+TEST(Memory, InitTakesExactlyWhatItAsksFor) {
+  constexpr Limits kLimits = Limits::qvga();
+  std::vector<std::byte> memory(required_bytes(kLimits));
+  CameraModel camera{320, 240, {260, 260, 160, 120}, {}};
+  Odometry odometry;
+  EXPECT_TRUE(odometry.init(memory, camera, Config{}, kLimits).ok());
+  const Status status = odometry.init(std::span(memory).first(memory.size() - 1), camera, Config{}, kLimits);
+  EXPECT_EQ(status.code(), StatusCode::kOutOfMemory);
+  EXPECT_NE(std::string(status.message()).find(std::to_string(memory.size())), std::string::npos)
+      << "the message names the bytes that are needed: " << status.message();
+  EXPECT_EQ(odometry.init({}, camera, Config{}, kLimits).code(), StatusCode::kOutOfMemory);
+}
+
+TEST(Memory, AMisalignedBlockOfTheRequiredSizeIsEnough) {
+  constexpr Limits kLimits = Limits::qvga();
+  std::vector<std::byte> memory(required_bytes(kLimits) + 1);
+  CameraModel camera{320, 240, {260, 260, 160, 120}, {}};
+  Odometry odometry;
+  EXPECT_TRUE(odometry.init(std::span(memory).subspan(1), camera, Config{}, kLimits).ok());
+}
+
+TEST(Memory, ThePageIsTrue) {
+  if (sizeof(void*) != 8) GTEST_SKIP() << "the page is about 64-bit machines";
+  const std::string page = memory_page(vga(), qvga());
+  if (std::getenv("PLVO_UPDATE_DOCS") != nullptr) std::ofstream(PLVO_MEMORY_DOC) << page;
+  std::stringstream committed;
+  committed << std::ifstream(PLVO_MEMORY_DOC).rdbuf();
+  EXPECT_EQ(committed.str(), page) << "write it anew: PLVO_UPDATE_DOCS=1 "
+                                   << "build/release/tests/memory_test";
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// After the caller has handed over the block, neither init nor track takes or returns a byte of the heap:
+// over a whole sequence, with frames that are lost, refused, and found again.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "allocation_guard.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+class NoAllocation : public testing::TestWithParam<std::function<Config()>> {
+ protected:
+  void SetUp() override {
+    if (!AllocationGuard::available())
+      GTEST_SKIP() << "SKIPPED: a sanitizer owns malloc here, so allocations cannot be counted; the other "
+                      "presets do it";
+  }
+};
+
+TEST_P(NoAllocation, OverASequenceWithLostFrames) {
+  constexpr Limits kLimits = Limits::qvga();
+  ProceduralSequence sequence(kLimits.width, kLimits.height);
+  std::vector<std::byte> memory(required_bytes(kLimits));
+  const Config config = GetParam()();
+
+  AllocationGuard guard;
+  Odometry odometry;
+  const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+  guard.disarm();
+  ASSERT_TRUE(status.ok()) << status.message();
+
+  int tracked = 0, lost = 0, refused = 0, tracked_after_loss = 0;
+  const auto track = [&](const RgbdFrame& frame) {
+    guard.arm();
+    const TrackResult result = odometry.track(frame);
+    guard.disarm();
+    return result;
+  };
+  for (int i = 0; i < 20; ++i) {
+    const bool dark = i == 6 || i == 7 || i == 13;
+    const TrackResult result = track(dark ? sequence.render_dark(i) : sequence.render(i));
+    if (result.state == TrackState::kLost) ++lost;
+    if (result.state == TrackState::kTracking) {
+      ++tracked;
+      if (lost > 0) ++tracked_after_loss;
+    }
+    if (i == 10) {
+      // Frames that are refused at the door: no picture, an old stamp, another size.
+      RgbdFrame blind = sequence.render(i + 1);
+      blind.depth.data = nullptr;
+      RgbdFrame small = sequence.render(i + 1);
+      small.colour.width /= 2;
+      for (const RgbdFrame& bad : {blind, small, sequence.render(0)})
+        if (track(bad).status.code() == StatusCode::kInvalidArgument) ++refused;
+    }
+  }
+  EXPECT_EQ(guard.taken(), 0);
+  EXPECT_EQ(guard.returned(), 0);
+  // The stretch that was watched must have been the one that was meant.
+  EXPECT_EQ(lost, 3);
+  EXPECT_EQ(refused, 3);
+  EXPECT_GE(tracked, 15);
+  EXPECT_GE(tracked_after_loss, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Configs, NoAllocation,
+                         testing::Values([] { return Config{}; }, [] { return Config::paper(); },
+                                         [] {
+                                           Config config;
+                                           config.reference = ReferencePolicy::kKeyframe;
+                                           return config;
+                                         }));
+
+TEST(NoAllocationWhenLostForGood, GivesUpTheReferenceAndStartsAnew) {
+  if (!AllocationGuard::available()) GTEST_SKIP() << "SKIPPED: a sanitizer owns malloc here";
+  constexpr Limits kLimits = Limits::qvga();
+  ProceduralSequence sequence(kLimits.width, kLimits.height);
+  std::vector<std::byte> memory(required_bytes(kLimits));
+  Config config;
+  config.motion.max_lost_frames = 3;
+  Odometry odometry;
+  ASSERT_TRUE(odometry.init(memory, sequence.camera(), config, kLimits).ok());
+  AllocationGuard guard;
+  guard.disarm();
+  TrackState last = TrackState::kLost;
+  for (int i = 0; i < 9; ++i) {
+    const RgbdFrame frame = i >= 2 && i < 6 ? sequence.render_dark(i) : sequence.render(i);
+    guard.arm();
+    last = odometry.track(frame).state;
+    guard.disarm();
+  }
+  EXPECT_EQ(guard.calls(), 0);
+  EXPECT_EQ(last, TrackState::kTracking);
+}
+
+}  // namespace
+}  // namespace plvo
