@@ -42,6 +42,10 @@ class SceneBuilder {
 };
 
 // One function a room.
+std::unique_ptr<Scene> build_corridor(std::uint64_t seed);
+std::unique_ptr<Scene> build_staircase(std::uint64_t seed);
+std::unique_ptr<Scene> build_hall(std::uint64_t seed);
+std::unique_ptr<Scene> build_desk(std::uint64_t seed);
 std::unique_ptr<Scene> build_bare(std::uint64_t seed);
 
 }  // namespace plvo::sim

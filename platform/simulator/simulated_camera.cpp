@@ -47,8 +47,7 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
   if (!valid.ok()) return valid;
   std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed);
   if (scene == nullptr)
-    return Status(StatusCode::kUnsupported, "this version cannot build the scene ")
-        .append(to_string(options.scene));
+    return Status(StatusCode::kInvalidArgument, "simulator: the scene is none of those there are");
   // From the first frame's stamp to the last one's.
   const double duration_s = (options.frames - 1) / options.fps;
   sim::Trajectory trajectory;

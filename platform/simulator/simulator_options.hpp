@@ -37,7 +37,7 @@ struct DepthSensorOptions {
 };
 
 struct SimulatorOptions {
-  SceneName scene = SceneName::kBare;
+  SceneName scene = SceneName::kCorridor;
   LightName light = LightName::kConstant;
   std::uint64_t seed = 1;
   int frames = 300;

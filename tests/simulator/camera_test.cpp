@@ -15,7 +15,7 @@ using test::small_options;
 
 TEST(SimulatedCamera, SameSeedSameBytesWhateverTheThreads) {
   for (const LightName light : {LightName::kConstant, LightName::kVarying}) {
-    SimulatorOptions options = small_options(SceneName::kBare, light);
+    SimulatorOptions options = small_options(SceneName::kDesk, light);
     options.threads = 1;
     const std::vector<Shot> one = shoot(options);
     options.threads = 3;
