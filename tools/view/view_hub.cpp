@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/view/view_hub.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <iterator>
+
+#include "plvo/host/pose_json.hpp"
+#include "plvo/host/posix_clock.hpp"
+#include "plvo/host/stamp_text.hpp"
+#include "plvo/replay/image_writer.hpp"
+#include "plvo/view/view_server.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kIdle_ns = 3 * kSecond;  // nobody asked for so long: nobody looks
+constexpr std::size_t kMaxKnownViewers = 64;
+constexpr int kJpegQuality = 75;
+
+void put_part(std::string& to, std::string_view part) {
+  for (int i = 0; i < 4; ++i) to += static_cast<char>((part.size() >> (8 * i)) & 0xff);
+  to += part;
+}
+
+std::string jpeg(const std::uint8_t* pixels, int width, int height, PixelFormat format) {
+  if (width <= 0 || height <= 0) return {};
+  const int bytes = format == PixelFormat::kGray8 ? 1 : 3;
+  const std::vector<std::uint8_t> data =
+      encode_jpeg({pixels, width, height, width * bytes, format}, kJpegQuality);
+  return {data.begin(), data.end()};
+}
+
+std::string features_json(const ViewSnapshot& snapshot) {
+  std::string out = "\"points\":[";
+  const char* comma = "";
+  for (const ViewSnapshot::Point& p : snapshot.points) {
+    fmt::format_to(std::back_inserter(out), "{}{:.1f},{:.1f},{:.1f},{:.1f},{}", comma, p.u, p.v,
+                   p.u_reference, p.v_reference, static_cast<int>(p.fate));
+    comma = ",";
+  }
+  out += "],\"segments\":[";
+  comma = "";
+  for (const ViewSnapshot::Segment& s : snapshot.segments) {
+    fmt::format_to(std::back_inserter(out), "{}{:.1f},{:.1f},{:.1f},{:.1f},{}", comma, s.a_u, s.a_v, s.b_u,
+                   s.b_v, static_cast<int>(s.fate));
+    comma = ",";
+  }
+  return out + "]";
+}
+
+void put_array(std::string& to, const char* name, const double* values, int count) {
+  fmt::format_to(std::back_inserter(to), ",\"{}\":[", name);
+  for (int i = 0; i < count; ++i) {
+    fmt::format_to(std::back_inserter(to), "{}{:.6g}", i > 0 ? "," : "",
+                   std::isfinite(values[i]) ? values[i] : 0.0);
+  }
+  to += ']';
+}
+
+void put_counts(std::string& to, const char* name, const FeatureCounts& counts) {
+  fmt::format_to(std::back_inserter(to), ",\"{}\":{{\"detected\":{},\"matched\":{},\"inliers\":{}}}", name,
+                 counts.detected, counts.matched, counts.inliers);
+}
+
+}  // namespace
+
+void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
+                      const ViewStatus& status, bool lens_is_straight) {
+  const std::int64_t now = posix_monotonic_ns();
+  const bool watched = now - last_ask_ns_ < kIdle_ns;
+  const bool with_image = watched && now - last_image_ns_ >= kSecond / ViewServer::kMaxRate;
+  if (with_image) {
+    // back_ belongs to this thread; only the swap below gives it away.
+    ViewSnapshot& snapshot = snapshots_[static_cast<std::size_t>(back_)];
+    snapshot.copy_images(frame, features, lens_is_straight);
+    snapshot.copy_features(features);
+    last_image_ns_ = now;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    result_ = result;
+    status_ = status;
+    if (result.state != TrackState::kLost) path_.add(result.T_world_camera.t);
+    if (with_image) {
+      snapshots_[static_cast<std::size_t>(back_)].image_sequence = ++image_sequence_;
+      std::swap(back_, middle_);
+      middle_is_new_ = true;
+      ++sequence_;
+    }
+  }
+  if (with_image) news_.notify_all();
+}
+
+void ViewHub::publish_status(const ViewStatus& status) {
+  {
+    const std::lock_guard lock(mutex_);
+    status_ = status;
+    ++sequence_;
+  }
+  news_.notify_all();
+}
+
+void ViewHub::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  news_.notify_all();
+}
+
+int ViewHub::viewers() const {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = posix_monotonic_ns();
+  int count = 0;
+  for (const auto& [name, when] : seen_) count += now - when < kIdle_ns ? 1 : 0;
+  return count;
+}
+
+// Under mutex_.
+void ViewHub::note_viewer(const std::string& viewer) {
+  const std::int64_t now = posix_monotonic_ns();
+  last_ask_ns_ = now;
+  std::erase_if(seen_, [now](const auto& entry) { return now - entry.second >= kIdle_ns; });
+  if (seen_.size() < kMaxKnownViewers || seen_.count(viewer) != 0) seen_[viewer.substr(0, 32)] = now;
+}
+
+std::shared_ptr<const ViewHub::Encoded> ViewHub::encoded() {
+  const std::lock_guard encoding(encode_mutex_);
+  {
+    const std::lock_guard lock(mutex_);
+    if (!middle_is_new_) return encoded_;
+    std::swap(front_, middle_);
+    middle_is_new_ = false;
+  }
+  const ViewSnapshot& snapshot = snapshots_[static_cast<std::size_t>(front_)];
+  auto fresh = std::make_shared<Encoded>();
+  fresh->image = snapshot.image_sequence;
+  fresh->width = snapshot.width;
+  fresh->height = snapshot.height;
+  fresh->colour = jpeg(snapshot.pixels.data(), snapshot.width, snapshot.height, snapshot.format);
+  std::vector<std::uint8_t> rgb;
+  int width = 0, height = 0;
+  paint_depth(snapshot, rgb, width, height);
+  fresh->depth = jpeg(rgb.data(), width, height, PixelFormat::kRgb8);
+  fresh->features = features_json(snapshot);
+  encoded_ = fresh;
+  ++encodings_;
+  return encoded_;
+}
+
+std::string ViewHub::state_json(const Ask& ask, const Encoded& image) {
+  std::string out;
+  const int watching = viewers();
+  const std::lock_guard lock(mutex_);
+  const TrackResult& r = result_;
+  const Quaternion q = to_quaternion(r.T_world_camera.R);
+  const std::array<double, 4> orientation{q.x, q.y, q.z, q.w};
+  fmt::format_to(
+      std::back_inserter(out),
+      "{{\"sequence\":{},\"image\":{},\"size\":[{},{}],\"stamp\":\"{}\",\"state\":\"{}\",\"message\":{},"
+      "\"camera\":{},\"camera_hz\":{:.2f},\"odometry_hz\":{:.2f},\"latency_ms\":{:.2f},\"frames\":{},"
+      "\"lost\":{},\"dropped\":{},\"viewers\":{},\"brightness\":{:.1f}",
+      sequence_, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
+      json_string(r.status.message()), json_string(status_.camera), status_.camera_hz, status_.odometry_hz,
+      status_.latency_ms, status_.frames, status_.lost, status_.dropped, watching, r.mean_brightness);
+  put_array(out, "position", r.T_world_camera.t.data(), 3);
+  put_array(out, "orientation", orientation.data(), 4);
+  put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: by rows or by columns alike
+  put_counts(out, "point_counts", r.points);
+  put_counts(out, "line_counts", r.lines);
+  const auto& points = path_.points();
+  const bool known = ask.path_epoch == path_.epoch() && ask.path_points <= points.size();
+  const std::size_t from = known ? ask.path_points : 0;
+  fmt::format_to(std::back_inserter(out), ",\"path_epoch\":{},\"path_from\":{},\"path\":[", path_.epoch(),
+                 from);
+  for (std::size_t i = from; i < points.size(); ++i) {
+    fmt::format_to(std::back_inserter(out), "{}{:.4f},{:.4f},{:.4f}", i > from ? "," : "", points[i].x(),
+                   points[i].y(), points[i].z());
+  }
+  return out + "]," + image.features + "}";
+}
+
+std::string ViewHub::reply(const Ask& ask, int timeout_ms) {
+  {
+    std::unique_lock lock(mutex_);
+    note_viewer(ask.viewer);
+    news_.wait_for(lock, std::chrono::milliseconds(timeout_ms),
+                   [&] { return closed_ || sequence_ > ask.after || (sequence_ < ask.after); });
+    if (closed_ || sequence_ == ask.after) return {};
+  }
+  const std::shared_ptr<const Encoded> image = encoded();
+  std::string out;
+  put_part(out, state_json(ask, *image));
+  const bool has_it = image->image == ask.image;
+  put_part(out, has_it ? std::string_view() : image->colour);
+  put_part(out, has_it ? std::string_view() : image->depth);
+  ++replies_;
+  return out;
+}
+
+}  // namespace plvo

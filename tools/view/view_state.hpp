@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the viewers are shown, handed from the odometry's thread to the threads that encode and send. The
+// odometry copies into a spare snapshot and swaps it in: it never waits for a viewer, an encoder or a
+// network.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "plvo/image/frame.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+
+// How the session goes, beside what the odometry itself says.
+struct ViewStatus {
+  std::string camera = "waiting for the first frame";  // the camera's state, in words
+  double camera_hz = 0;
+  double odometry_hz = 0;
+  double latency_ms = 0;  // from a frame's arrival to its pose
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t dropped = 0;
+};
+
+// What a feature has come to: the page colours it so.
+enum class FeatureFate : std::uint8_t { kSeen, kWithDepth, kMatched, kInlier };
+
+struct ViewSnapshot {
+  struct Point {
+    float u = 0, v = 0;                      // px
+    float u_reference = 0, v_reference = 0;  // where it was, if it was matched
+    FeatureFate fate = FeatureFate::kSeen;
+  };
+  struct Segment {
+    float a_u = 0, a_v = 0, b_u = 0, b_v = 0;
+    FeatureFate fate = FeatureFate::kSeen;
+  };
+  std::uint64_t image_sequence = 0;  // 0: no image yet
+  int width = 0, height = 0;
+  PixelFormat format = PixelFormat::kGray8;
+  std::vector<std::uint8_t> pixels;  // without gaps
+  int depth_width = 0, depth_height = 0;
+  double metres_per_unit = 0.001;
+  std::vector<std::uint16_t> depth;
+  std::vector<Point> points;
+  std::vector<Segment> segments;
+
+  // image: the camera's colours where the lens is straight, else what the features were found in.
+  void copy_images(const RgbdFrame& frame, const FeatureView& features, bool lens_is_straight);
+  void copy_features(const FeatureView& features);
+};
+
+// The way so far, thinned so that it never outgrows its capacity: when full, every second point goes, and the
+// spacing doubles. epoch() changes with that, to tell a viewer that what it has is stale.
+class ViewPath {
+ public:
+  static constexpr std::size_t kCapacity = 8192;
+  static constexpr double kSpacing_m = 0.005;
+
+  ViewPath() { points_.reserve(kCapacity); }
+  void add(const Vector3& position);
+  std::uint64_t epoch() const { return epoch_; }
+  const std::vector<Vector3>& points() const { return points_; }
+
+ private:
+  std::vector<Vector3> points_;
+  double spacing_m_ = kSpacing_m;
+  std::uint64_t epoch_ = 0;
+};
+
+// Depth as colours, every second pixel of every second row: red is near (0.5 m), blue far (6 m), black none.
+void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, int& width, int& height);
+
+}  // namespace plvo
