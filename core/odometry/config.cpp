@@ -31,10 +31,36 @@ Status validate(const PointConfig& points) {
   return {};
 }
 
+Status validate(const Line3dConfig& fit) {
+  if (!within(fit.max_samples, 2, kMaxLineSamples)) return out_of_range("lines.fit.max_samples", "2 to 100");
+  if (!within(fit.min_consensus, 0, 1)) return out_of_range("lines.fit.min_consensus", "0 to 1");
+  if (!within(fit.sigma_p_px, 0.01, 20)) return out_of_range("lines.fit.sigma_p_px", "between 0.01 and 20");
+  if (!within(fit.inlier_chi_square, 0.1, 100))
+    return out_of_range("lines.fit.inlier_chi_square", "0.1 to 100");
+  if (!within(fit.max_ransac_iterations, 1, 1000))
+    return out_of_range("lines.fit.max_ransac_iterations", "1 to 1000");
+  if (!within(fit.side_reach_px, 0, kMaxSideReach)) return out_of_range("lines.fit.side_reach_px", "0 to 5");
+  if (!within(fit.depth_correlation_px, 0.01, 1000))
+    return out_of_range("lines.fit.depth_correlation_px", "between 0.01 and 1000");
+  if (!within(fit.transverse_floor_px, 0, 20))
+    return out_of_range("lines.fit.transverse_floor_px", "0 to 20");
+  return {};
+}
+
+Status validate(const LineMatchConfig& match) {
+  if (!within(match.max_angle_rad, 0, 4)) return out_of_range("lines.match.max_angle_rad", "0 to 4");
+  if (!within(match.max_offset_px, 0, 4000)) return out_of_range("lines.match.max_offset_px", "0 to 4000");
+  if (!within(match.min_overlap, 0, 1)) return out_of_range("lines.match.min_overlap", "0 to 1");
+  if (!within(match.max_distance, 0, 300000)) return out_of_range("lines.match.max_distance", "0 to 300000");
+  if (!within(match.max_ratio, 0, 1)) return out_of_range("lines.match.max_ratio", "0 to 1");
+  return {};
+}
+
 Status validate(const LineConfig& lines) {
-  if (!within(lines.sigma_px, 0.01, 20)) return out_of_range("lines.sigma_px", "between 0.01 and 20");
-  if (!within(lines.min_length_px, 5, 1000)) return out_of_range("lines.min_length_px", "5 to 1000");
-  if (!within(lines.min_consensus, 0, 1)) return out_of_range("lines.min_consensus", "0 to 1");
+  if (Status status = validate(lines.fit); !status.ok()) return status;
+  if (Status status = validate(lines.match); !status.ok()) return status;
+  if (!within(lines.guided_offset_px, 0, 4000)) return out_of_range("lines.guided_offset_px", "0 to 4000");
+  if (!within(lines.guided_angle_rad, 0, 4)) return out_of_range("lines.guided_angle_rad", "0 to 4");
   return {};
 }
 

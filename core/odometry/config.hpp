@@ -7,6 +7,8 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/lines/line3d.hpp"
+#include "plvo/lines/line_match.hpp"
 
 namespace plvo {
 
@@ -42,9 +44,10 @@ struct PointConfig {
 };
 
 struct LineConfig {
-  double sigma_px = 0.5;  // transverse σ of a sample on a segment
-  double min_length_px = 20;
-  double min_consensus = 0.6;  // τ of the paper
+  Line3dConfig fit;       // L2, L3
+  LineMatchConfig match;  // L4, before the motion is known; afterwards these gates are enough:
+  double guided_offset_px = 8;
+  double guided_angle_rad = 0.1;
 };
 
 struct MotionConfig {

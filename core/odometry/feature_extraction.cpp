@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/feature_extraction.hpp"
 
+#include <utility>
+
 #include "plvo/camera/observation.hpp"
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
@@ -13,6 +15,7 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   config_ = config;
   table_.init(camera);
   pyramid_.init(camera.width, camera.height);
+  segment_detector_[0] = SegmentDetector((camera.width + 1) / 2, (camera.height + 1) / 2);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
@@ -55,8 +58,16 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
+  features.points.keypoints.clear();
+  features.lines.segments.clear();
+  features.lines.count_3d = 0;
+  if (config_.features != Features::kLines) extract_points(depth, scratch, features.points, result);
+  if (config_.features != Features::kPoints) extract_lines(depth, scratch, features.lines, result);
+}
+
+void FeatureExtraction::extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                                       TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kPoints);
-  PointFeatures& points = features.points;
   DetectorOptions options;
   options.levels = config_.points.pyramid_levels;
   options.cell_px = config_.points.cell_px;
@@ -83,6 +94,31 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, PointFeat
     with_depth += depth.depth_m > 0 ? 1 : 0;
   }
   result.points.with_depth = with_depth;
+}
+
+void FeatureExtraction::extract_lines(const DepthSampler& depth, Arena& scratch, LineFeatures& lines,
+                                      TrackResult& result) {
+  const StageTimer timer(config_.stage_clock, result, Stage::kLines);
+  constexpr int kLevel = 1;
+  constexpr double kScale = 1 << kLevel;
+  const GrayView reduced = pyramid_.level(kLevel);
+  const Status status =
+      segment_detector_[0].detect(reduced, kScale, pyramid_.level(0), scratch, lines.segments);
+  if (!status.ok()) lines.segments.clear();
+  result.lines.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped());
+  result.lines.dropped = static_cast<int>(lines.segments.dropped());
+
+  for (std::size_t i = 0; i < lines.segments.size(); ++i) {
+    const Segment segment = lines.segments[i];
+    Line3d& line = lines.lines[lines.count_3d];
+    if (observe_line(segment, depth, camera_.pinhole, config_.depth_noise, config_.lines.fit, line).outcome !=
+        Line3dOutcome::kOk)
+      continue;
+    std::swap(lines.segments[i], lines.segments[lines.count_3d]);
+    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / kScale, segment);
+    ++lines.count_3d;
+  }
+  result.lines.with_depth = static_cast<int>(lines.count_3d);
 }
 
 Point3d observe_keypoint(const Pinhole& pinhole, const PointConfig& config, int level, double u, double v,

@@ -11,6 +11,7 @@
 #include "plvo/image/frame.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/image/undistortion.hpp"
+#include "plvo/lines/lsd.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/frame_features.hpp"
 #include "plvo/odometry/stage_timer.hpp"
@@ -30,6 +31,7 @@ class FeatureExtraction {
   constexpr void carve(Memory& memory, const Limits& limits) {
     table_.carve(memory, limits.width, limits.height);
     pyramid_.carve(memory, limits.width, limits.height);
+    segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
   }
   // Scratch: the stages come one after the other, so the largest counts.
   template <typename Memory>
@@ -45,6 +47,12 @@ class FeatureExtraction {
       take_smoothing_row(memory, limits.width);
     }
     reserve_detection(memory, limits.width, limits.height);
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::byte>(
+          "segment detection",
+          SegmentDetector::scratch_bytes((limits.width + 1) / 2, (limits.height + 1) / 2));
+    }
   }
 
   void init(const CameraModel& camera, const Config& config);
@@ -64,12 +72,15 @@ class FeatureExtraction {
  private:
   void lift_points(const DepthSampler& depth, PointFeatures& points, TrackResult& result) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
+  void extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points, TrackResult& result);
+  void extract_lines(const DepthSampler& depth, Arena& scratch, LineFeatures& lines, TrackResult& result);
   void describe_points(Arena& scratch, PointFeatures& points);
 
   CameraModel camera_;
   Config config_;
   UndistortionTable table_;
   Pyramid pyramid_;
+  std::span<SegmentDetector> segment_detector_;  // one
 };
 
 }  // namespace plvo

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "plvo/lines/line_features.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/points/keypoint.hpp"
 
@@ -13,10 +14,12 @@ namespace plvo {
 struct FrameFeatures {
   std::int64_t stamp_ns = 0;
   PointFeatures points;
+  LineFeatures lines;
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
     points.carve(memory, limits.keypoints);
+    lines.carve(memory, limits.segments);
   }
 };
 

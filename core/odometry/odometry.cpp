@@ -10,22 +10,34 @@ constexpr int kNobody = -1;
 // A frame with fewer 3D points than this cannot start a trajectory.
 constexpr int kMinStartFeatures = 20;
 
+std::size_t view_segments(const LineFeatures& lines, std::span<SegmentView> views) {
+  for (std::size_t i = 0; i < lines.segments.size(); ++i) {
+    const Segment& segment = lines.segments[i];
+    views[i] = {static_cast<float>(segment.a.x()), static_cast<float>(segment.a.y()),
+                static_cast<float>(segment.b.x()), static_cast<float>(segment.b.y()), i < lines.count_3d};
+  }
+  return lines.segments.size();
+}
+
 // Why no motion was found, and what would help.
 Status explain_loss(const MotionEstimate& motion, const TrackResult& result) {
   Status status(motion.status, "lost: ");
-  if (result.points.with_depth < kMinStartFeatures)
+  if (result.points.with_depth + result.lines.with_depth < kMinStartFeatures)
     return status.append("hardly anything to see (dark, blurred, bare, or no depth); keypoints: ")
         .append(result.points.detected);
   switch (motion.status) {
     case StatusCode::kTooFewFeatures:
       return status.append("too few features of the reference were found again: ")
-          .append(result.points.matched);
+          .append(result.points.matched + result.lines.matched);
     case StatusCode::kNoConsensus:
-      return status.append("the matches do not agree on one motion; matches: ").append(result.points.matched);
+      return status.append("the matches do not agree on one motion; matches: ")
+          .append(result.points.matched + result.lines.matched);
     case StatusCode::kDegenerate:
       return status.append("what is seen leaves some direction of motion open; inliers: ")
-          .append(result.points.inliers);
-    default: return status.append("the motion did not converge; inliers: ").append(result.points.inliers);
+          .append(result.points.inliers + result.lines.inliers);
+    default:
+      return status.append("the motion did not converge; inliers: ")
+          .append(result.points.inliers + result.lines.inliers);
   }
 }
 
@@ -85,7 +97,7 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     result.T_world_camera = anchor(last_).T_world_camera;
     result.pose_covariance = anchor(last_).covariance;
   }
-  point_track_count_ = 0;
+  point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   if (Status status = check(input); !status.ok()) {
     result.state = TrackState::kLost;
     result.status = status;
@@ -96,6 +108,7 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   has_stamp_ = true;
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
   rooms_.extraction.extract(input, depth, arena_, frame(current_), result);
+  segment_count_ = view_segments(frame(current_).lines, rooms_.segment_views);
   if (reference_ == kNobody) {
     start(result);
     return result;
@@ -106,7 +119,7 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     motion = estimate_motion_to(last_, depth, result);
     against = last_;
   }
-  fill_views(motion);
+  fill_views(motion, against);
   if (motion.status == StatusCode::kOk)
     accept(motion, against, result);
   else
@@ -139,11 +152,12 @@ MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& d
 }
 
 void Odometry::start(TrackResult& result) {
-  if (result.points.with_depth < kMinStartFeatures) {
+  if (result.points.with_depth + result.lines.with_depth < kMinStartFeatures) {
     result.state = TrackState::kInitialising;
-    result.status = Status(StatusCode::kTooFewFeatures,
-                           "waiting for a first frame with texture and depth; 3D points in this one: ")
-                        .append(result.points.with_depth);
+    result.status =
+        Status(StatusCode::kTooFewFeatures,
+               "waiting for a first frame with texture and depth; 3D points and lines in this one: ")
+            .append(result.points.with_depth + result.lines.with_depth);
     return;
   }
   // After a loss the anchor is the last good pose, already widened; at the very start it is the world's
@@ -183,9 +197,11 @@ void Odometry::accept(const MotionEstimate& motion, int against, TrackResult& re
 // one.
 void Odometry::choose_reference(const TrackResult& result) {
   last_ = current_;
-  const int available = static_cast<int>(frame(reference_).points.keypoints.size());
-  const bool keep = config_.reference == ReferencePolicy::kKeyframe &&
-                    result.points.inliers >= config_.motion.keyframe_inlier_ratio * available;
+  const FrameFeatures& features = frame(reference_);
+  const auto available = static_cast<double>(features.points.keypoints.size() + features.lines.count_3d);
+  const bool keep =
+      config_.reference == ReferencePolicy::kKeyframe &&
+      result.points.inliers + result.lines.inliers >= config_.motion.keyframe_inlier_ratio * available;
   if (!keep) reference_ = last_;
   current_ = 0;
   while (current_ == reference_ || current_ == last_) ++current_;
@@ -209,9 +225,9 @@ void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
   current_ = (last_ + 1) % 3;
 }
 
-void Odometry::fill_views(const MotionEstimate& motion) {
+void Odometry::fill_views(const MotionEstimate& motion, int against) {
   const PointTracks& tracks = rooms_.estimation.point_tracks();
-  const PointFeatures& reference = frame(reference_).points;
+  const PointFeatures& reference = frame(against).points;
   const std::span<const std::uint8_t> inliers = rooms_.estimation.point_inliers();
   const bool solved = motion.status == StatusCode::kOk;
   point_track_count_ = tracks.matches.size();
@@ -220,6 +236,12 @@ void Odometry::fill_views(const MotionEstimate& motion) {
     rooms_.point_track_views[i] = {from.u, from.v, static_cast<float>(tracks.pixels[i].x()),
                                    static_cast<float>(tracks.pixels[i].y()), solved && inliers[i] != 0};
   }
+  reference_segment_count_ = view_segments(frame(against).lines, rooms_.reference_segment_views);
+  const std::span<const Match> matches = rooms_.estimation.line_matches();
+  const std::span<const std::uint8_t> line_inliers = rooms_.estimation.line_inliers();
+  line_track_count_ = matches.size();
+  for (std::size_t i = 0; i < line_track_count_; ++i)
+    rooms_.line_track_views[i] = {matches[i].reference, matches[i].current, solved && line_inliers[i] != 0};
 }
 
 FeatureView Odometry::features() const {
@@ -228,6 +250,9 @@ FeatureView Odometry::features() const {
   view.image = rooms_.extraction.pyramid().level(0);
   view.keypoints = frame(view_slot_).points.keypoints.span();
   view.point_tracks = rooms_.point_track_views.first(point_track_count_);
+  view.segments = rooms_.segment_views.first(segment_count_);
+  view.reference_segments = rooms_.reference_segment_views.first(reference_segment_count_);
+  view.line_tracks = rooms_.line_track_views.first(line_track_count_);
   return view;
 }
 

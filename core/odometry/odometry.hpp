@@ -59,12 +59,18 @@ struct OdometryRooms {
   PairEstimation estimation;
   std::array<FrameFeatures, 3> frames;  // the reference, the last good frame, the frame being tracked
   std::span<PointTrackView> point_track_views;
+  std::span<LineTrackView> line_track_views;
+  std::span<SegmentView> segment_views, reference_segment_views;
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
     for (FrameFeatures& frame : frames) frame.carve(memory, limits);
     point_track_views =
         memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    line_track_views = memory.template take<LineTrackView>("feature view", segments);
+    segment_views = memory.template take<SegmentView>("feature view", segments);
+    reference_segment_views = memory.template take<SegmentView>("feature view", segments);
     extraction.carve(memory, limits);
     estimation.carve(memory, limits);
   }
@@ -115,7 +121,7 @@ class Odometry {
   void start(TrackResult& result);
   void lose(const MotionEstimate& motion, TrackResult& result);
   void choose_reference(const TrackResult& result);
-  void fill_views(const MotionEstimate& motion);
+  void fill_views(const MotionEstimate& motion, int against);
 
   FrameFeatures& frame(int slot) { return rooms_.frames[static_cast<std::size_t>(slot)]; }
   const FrameFeatures& frame(int slot) const { return rooms_.frames[static_cast<std::size_t>(slot)]; }
@@ -139,6 +145,9 @@ class Odometry {
   int lost_frames_ = 0;
   int view_slot_ = 0;  // whose keypoints features() shows
   std::size_t point_track_count_ = 0;
+  std::size_t line_track_count_ = 0;
+  std::size_t segment_count_ = 0;
+  std::size_t reference_segment_count_ = 0;
 };
 
 }  // namespace plvo

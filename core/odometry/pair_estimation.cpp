@@ -12,7 +12,7 @@ void PairEstimation::init(const CameraModel& camera, const Config& config) {
   config_ = config;
 }
 
-MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const FrameFeatures& /*current*/,
+MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const FrameFeatures& current,
                                      const Se3& T_predicted, Arena& scratch, TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
@@ -20,16 +20,23 @@ MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const Frame
   const PointConstraints::Workspace workspace = PointConstraints::Workspace::take(scratch, n);
   PointConstraints points(reference.points.points, point_tracks_.points, point_tracks_.matches.span(),
                           workspace);
+  const std::size_t m = line_matches_.size();
+  const LineConstraints::Workspace line_workspace = LineConstraints::Workspace::take(scratch, m);
+  LineConstraints lines(reference.lines.lines_3d(), current.lines.lines_3d(), line_matches_.span(),
+                        line_workspace);
 
   MotionOptions options;
   options.ransac.inlier_probability = config_.motion.inlier_probability;
   options.ransac.max_iterations = config_.motion.max_ransac_iterations;
   options.min_inliers = config_.motion.min_inliers;
   options.loss = config_.motion.robust ? RobustLoss::kHuber : RobustLoss::kNone;
-  ConstraintSet* const sets[] = {&points};
+  ConstraintSet* const sets[] = {&points, &lines};
   const MotionEstimate estimate = estimate_motion(sets, options, config_.seed, &T_predicted, scratch);
 
   std::copy(points.inliers().begin(), points.inliers().end(), point_inliers_.begin());
+  std::copy(lines.inliers().begin(), lines.inliers().end(), line_inliers_.begin());
+  result.lines.matched = static_cast<int>(m);
+  result.lines.inliers = estimate.inliers[1];
   result.points.matched = static_cast<int>(n);
   result.points.inliers = estimate.inliers[0];
   result.ransac_iterations += estimate.ransac.iterations;
@@ -52,6 +59,11 @@ MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const Fr
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
     track_by_motion(view, reference.points, first.T_current_reference, point_tracks_);
+    LineMatchConfig gates = config_.lines.match;
+    gates.max_offset_px = config_.lines.guided_offset_px;
+    gates.max_angle_rad = config_.lines.guided_angle_rad;
+    match_predicted_lines(camera_.pinhole, reference.lines, current.lines, first.T_current_reference, gates,
+                          scratch, line_matches_);
   }
   return solve(reference, current, first.T_current_reference, scratch, result);
 }

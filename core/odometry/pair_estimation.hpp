@@ -10,6 +10,7 @@
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/line_tracking.hpp"
 #include "plvo/odometry/point_tracking.hpp"
 #include "plvo/odometry/track_result.hpp"
 
@@ -22,11 +23,15 @@ class PairEstimation {
     point_tracks_.carve(memory, limits.keypoints);
     point_inliers_ =
         memory.template take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    line_matches_ = FixedVector<Match>(memory.template take<Match>("line tracks", segments));
+    line_inliers_ = memory.template take<std::uint8_t>("line tracks", segments);
   }
   // Scratch: the larger of the stages, which come one after the other.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
+    reserve_line_tracking(memory, limits.segments);
     size_motion(memory, static_cast<std::size_t>(limits.keypoints),
                 static_cast<std::size_t>(limits.segments));
   }
@@ -39,6 +44,8 @@ class PairEstimation {
                           const Pyramid& pyramid, const DepthSampler& depth, const Se3& T_predicted,
                           double radius_px, Arena& scratch, TrackResult& result);
 
+  std::span<const Match> line_matches() const { return line_matches_.span(); }
+  std::span<const std::uint8_t> line_inliers() const { return line_inliers_.first(line_matches_.size()); }
   const PointTracks& point_tracks() const { return point_tracks_; }
   std::span<const std::uint8_t> point_inliers() const {
     return point_inliers_.first(point_tracks_.matches.size());
@@ -52,6 +59,8 @@ class PairEstimation {
   Config config_;
   PointTracks point_tracks_;
   std::span<std::uint8_t> point_inliers_;
+  FixedVector<Match> line_matches_;
+  std::span<std::uint8_t> line_inliers_;
 };
 
 }  // namespace plvo

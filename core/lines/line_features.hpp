@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The line features of one frame: parallel arrays, index = segment. The segments that became 3D lines come
+// first.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/camera/observation.hpp"
+#include "plvo/lines/msld.hpp"
+#include "plvo/lines/segment.hpp"
+
+namespace plvo {
+
+struct LineFeatures {
+  FixedVector<Segment> segments;
+  std::span<LineDescriptor> descriptors;  // of the 3D lines
+  std::span<Line3d> lines;                // camera frame
+  std::size_t count_3d = 0;
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, int capacity) {
+    const auto n = static_cast<std::size_t>(capacity);
+    segments = FixedVector<Segment>(memory.template take<Segment>("line features", n));
+    descriptors = memory.template take<LineDescriptor>("line features", n);
+    lines = memory.template take<Line3d>("line features", n);
+  }
+
+  std::span<const Segment> segments_3d() const { return segments.span().first(count_3d); }
+  std::span<const LineDescriptor> descriptors_3d() const { return descriptors.first(count_3d); }
+  std::span<const Line3d> lines_3d() const { return lines.first(count_3d); }
+};
+
+}  // namespace plvo

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matches the reference's 3D lines to the current frame's, near where a motion puts them.
+#pragma once
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/match.hpp"
+#include "plvo/lines/line_features.hpp"
+#include "plvo/lines/line_match.hpp"
+#include "plvo/math/se3.hpp"
+
+namespace plvo {
+
+// Indices are those of the 3D lines of both frames. Lines that the motion puts behind the camera are left
+// out.
+void match_predicted_lines(const Pinhole& pinhole, const LineFeatures& reference, const LineFeatures& current,
+                           const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
+                           FixedVector<Match>& matches);
+
+// Its scratch.
+template <typename Memory>
+constexpr void reserve_line_tracking(Memory& memory, int segments) {
+  const ScratchScope scope(memory);
+  const auto n = static_cast<std::size_t>(segments);
+  memory.template take<Segment>("predicted segments", n);
+  take_line_match_scratch(memory, n, n);
+}
+
+}  // namespace plvo
