@@ -53,6 +53,10 @@ MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const Fr
     const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
     track_by_descriptor(view, reference.points, current.points, T_predicted, radius_px, scratch,
                         point_tracks_);
+    LineMatchConfig gates = config_.lines.match;
+    gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
+    match_predicted_lines(camera_.pinhole, reference.lines, current.lines, T_predicted, gates, scratch,
+                          line_matches_);
   }
   const MotionEstimate first = solve(reference, current, T_predicted, scratch, result);
   if (first.status != StatusCode::kOk) return first;
