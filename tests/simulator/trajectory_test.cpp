@@ -122,6 +122,31 @@ TEST_F(RecordedTrajectory, RefusesWhatIsNone) {
   EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);
 }
 
+TEST(HandHeldTrajectory, WalksThroughNothing) {
+  for (const SceneName name :
+       {SceneName::kCorridor, SceneName::kStaircase, SceneName::kHall, SceneName::kDesk, SceneName::kBare}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      const std::unique_ptr<sim::Scene> scene = sim::build_scene(name, seed);
+      for (const double duration_s : {5.0, 120.0}) {  // the stroll, and the round where there is one
+        const Trajectory walk = Trajectory::hand_held(*scene, seed, duration_s);
+        for (double t = 0; t < duration_s; t += 0.25) {
+          const Vector3 p = walk.at(t).t;
+          const sim::Float3 eye{static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                static_cast<float>(p.z())};
+          for (const sim::Solid& solid : scene->solids) {
+            const sim::Float3 local = solid.to_local(eye);
+            const auto outside = [](float x, float half) { return std::max(std::abs(x) - half, 0.0F); };
+            const sim::Float3 gap{outside(local.x, solid.half.x), outside(local.y, solid.half.y),
+                                  outside(local.z, solid.half.z)};
+            ASSERT_GT(norm(gap), 0.2F)
+                << to_string(name) << " seed " << seed << " at " << t << " of " << duration_s;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_F(RecordedTrajectory, TakesTheRealOnes) {
   const char* shared = std::getenv("PLVO_SHARED");
   const std::filesystem::path folder =
