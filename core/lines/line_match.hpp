@@ -20,7 +20,7 @@ struct LineMatchConfig {
   double max_offset_px =
       40;                    // across the predicted segment, at the current one's middle; slack along it, too
   double min_overlap = 0.5;  // of the shorter one's length
-  int max_distance = 20000;  // of descriptors, squared
+  int max_distance = 35000;  // of descriptors, squared
   double max_ratio = 0.85;   // of the distances, not squared, to the best and to the next best
   // A rival is a piece of the best one's line if it is within this distance and angle of it.
   double same_line_px = 3;

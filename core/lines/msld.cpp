@@ -9,21 +9,12 @@ namespace plvo {
 
 namespace {
 
-constexpr int kRows = kMsldBands * kMsldRowsPerBand;
+constexpr std::size_t kRows = kMsldBands * kMsldRowsPerBand;
 constexpr std::size_t kSums = 4 * kMsldBands;
-constexpr int kDirectionBits = 8;
-constexpr int kWeightBits = 6;
 constexpr double kClip = 0.4;  // of a normalised half's component: no single strong edge may decide
 
-// A row's share in the band it lies in and in the neighbour it lies towards (−1, 0, +1), times the Gaussian
-// over the region: SD half the region's half width, so that an error in the segment's place changes little at
-// the rim.
-struct RowWeight {
-  int band, neighbour;
-  std::int32_t own, other;
-};
-
-constexpr double gaussian(double x) {  // exp(−x²/2) at compile time, |x| ≤ 2.1
+// exp(−x²/2) at compile time, |x| ≤ 1.
+constexpr double gaussian(double x) {
   double term = 1, sum = 1;
   for (int k = 1; k < 40; ++k) {
     term *= -0.5 * x * x / k;
@@ -32,25 +23,25 @@ constexpr double gaussian(double x) {  // exp(−x²/2) at compile time, |x| ≤
   return sum;
 }
 
-constexpr std::array<RowWeight, kRows> make_row_weights() {
-  std::array<RowWeight, kRows> weights{};
-  for (int r = 0; r < kRows; ++r) {
-    const double row = r - 0.5 * (kRows - 1);
-    const int band = r / kMsldRowsPerBand;
-    // Position between band centres, in bands: −0.5 … 0.5.
-    const double offset = (r % kMsldRowsPerBand - 0.5 * (kMsldRowsPerBand - 1)) / kMsldRowsPerBand;
-    const double away = offset < 0 ? -offset : offset;
-    const double g = gaussian(row / (0.5 * kRows)) * (1 << kWeightBits);
-    weights[static_cast<std::size_t>(r)] = {band,
-                                            offset < 0   ? band - 1
-                                            : offset > 0 ? band + 1
-                                                         : band,
-                                            static_cast<std::int32_t>(g * (1 - away) + 0.5),
-                                            static_cast<std::int32_t>(g * away + 0.5)};
-  }
+// A band takes its own rows and, falling linearly to the next band's centre, its neighbours' nearer rows:
+// kReach rows to either side of its centre. The Gaussian over the whole region has half its half width for
+// SD, so that an error in the segment's place changes little at the rim.
+constexpr int kReach = kMsldRowsPerBand - 1;
+static_assert(kMsldRowsPerBand % 2 == 1, "a band's centre is a row");
+using BandWeights = std::array<float, 2 * kReach + 1>;
+
+constexpr std::array<BandWeights, kMsldBands> make_weights() {
+  std::array<BandWeights, kMsldBands> weights{};
+  for (int band = 0; band < kMsldBands; ++band)
+    for (int o = -kReach; o <= kReach; ++o) {
+      const double row = (band - kMsldBands / 2) * kMsldRowsPerBand + o;
+      const double share = 1.0 - (o < 0 ? -o : o) / static_cast<double>(kMsldRowsPerBand);
+      weights[static_cast<std::size_t>(band)][static_cast<std::size_t>(o + kReach)] =
+          static_cast<float>(share * gaussian(row / (0.5 * kRows)));
+    }
   return weights;
 }
-constexpr std::array<RowWeight, kRows> kRowWeights = make_row_weights();
+constexpr std::array<BandWeights, kMsldBands> kWeights = make_weights();
 
 // Positions in the image in 1/65536 px.
 constexpr int kPositionBits = 16;
@@ -60,10 +51,10 @@ std::int32_t to_fixed(double x) {
 }
 
 struct Region {
-  std::int32_t x, y;                      // of the first column's first row
-  std::int32_t ux, uy;                    // from a column to the next
-  std::int32_t nx, ny;                    // from a row to the next, towards the brighter side
-  std::int32_t direction_x, direction_y;  // unit vector along the segment, kDirectionBits
+  std::int32_t x, y;               // of the first column's first row
+  std::int32_t ux, uy;             // from a column to the next
+  std::int32_t nx, ny;             // from a row to the next, towards the brighter side
+  float direction_x, direction_y;  // unit vector along the segment
   int columns;
 };
 
@@ -75,15 +66,15 @@ Region make_region(double scale, const Segment& segment) {
   const double step = length / region.columns;
   // Half a pixel is added, so that truncation rounds to the nearest pixel.
   const Vector2 first =
-      segment.a * scale + 0.5 * step * u - 0.5 * (kRows - 1) * kMsldRowPitch_px * n + Vector2(0.5, 0.5);
+      segment.a * scale + 0.5 * step * u - 0.5 * (kRows - 1.0) * kMsldRowPitch_px * n + Vector2(0.5, 0.5);
   region.x = to_fixed(first.x());
   region.y = to_fixed(first.y());
   region.ux = to_fixed(step * u.x());
   region.uy = to_fixed(step * u.y());
   region.nx = to_fixed(kMsldRowPitch_px * n.x());
   region.ny = to_fixed(kMsldRowPitch_px * n.y());
-  region.direction_x = to_fixed(u.x()) >> (kPositionBits - kDirectionBits);
-  region.direction_y = to_fixed(u.y()) >> (kPositionBits - kDirectionBits);
+  region.direction_x = static_cast<float>(u.x());
+  region.direction_y = static_cast<float>(u.y());
   return region;
 }
 
@@ -91,7 +82,7 @@ Region make_region(double scale, const Segment& segment) {
 bool inside(const Region& region, GrayView image) {
   for (int corner = 0; corner < 4; ++corner) {
     const int c = corner % 2 == 0 ? 0 : region.columns - 1;
-    const int r = corner / 2 == 0 ? 0 : kRows - 1;
+    const int r = corner / 2 == 0 ? 0 : static_cast<int>(kRows) - 1;
     const int x = (region.x + c * region.ux + r * region.nx) >> kPositionBits;
     const int y = (region.y + c * region.uy + r * region.ny) >> kPositionBits;
     if (x < 1 || y < 1 || x >= image.width - 1 || y >= image.height - 1) return false;
@@ -100,46 +91,55 @@ bool inside(const Region& region, GrayView image) {
 }
 
 struct Sums {
-  std::array<std::int64_t, kSums> first{};   // Σ V over the columns
-  std::array<std::int64_t, kSums> second{};  // Σ V²
+  std::array<float, kSums> first{};   // Σ V over the columns
+  std::array<float, kSums> second{};  // Σ V²
 };
 
-// One column: V, four numbers for each band, with a band more at either end that is thrown away. Bounds: a
-// gradient is below 2^9, times a direction 2^17, times the weights of a band's rows 2^25.
+// The gradients of one column, each as four non-negative parts: towards the brighter side, away from it,
+// along the segment, against it. A margin of zero rows on both sides stands for the rows beyond the region.
+using Column = std::array<std::array<float, 4>, kRows + 2 * kReach>;
+
 template <bool kInside>
-void sum_column(GrayView image, const Region& region, std::int32_t x, std::int32_t y,
-                std::array<std::int32_t, kSums + 8>& V) {
-  V.fill(0);
-  for (const RowWeight& row : kRowWeights) {
+void read_column(GrayView image, const Region& region, std::int32_t x, std::int32_t y, Column& column) {
+  for (std::size_t r = kReach; r < kRows + kReach; ++r) {
     const int px = x >> kPositionBits, py = y >> kPositionBits;
     x += region.nx;
     y += region.ny;
-    if (!kInside && (px < 1 || py < 1 || px >= image.width - 1 || py >= image.height - 1)) continue;
+    if (!kInside && (px < 1 || py < 1 || px >= image.width - 1 || py >= image.height - 1)) {
+      column[r] = {};
+      continue;
+    }
     const std::uint8_t* p = image.data + py * image.stride + px;
-    const std::int32_t gx = p[1] - p[-1];
-    const std::int32_t gy = p[image.stride] - p[-image.stride];
-    const std::int32_t across = gy * region.direction_x - gx * region.direction_y;
-    const std::int32_t along = gx * region.direction_x + gy * region.direction_y;
-    const std::int32_t parts[4] = {std::max(across, 0), std::max(-across, 0), std::max(along, 0),
-                                   std::max(-along, 0)};
-    std::int32_t* own = V.data() + 4 * (row.band + 1);
-    std::int32_t* other = V.data() + 4 * (row.neighbour + 1);
-    for (int k = 0; k < 4; ++k) own[k] += parts[k] * row.own;
-    for (int k = 0; k < 4; ++k) other[k] += parts[k] * row.other;
+    const auto gx = static_cast<float>(p[1] - p[-1]);
+    const auto gy = static_cast<float>(p[image.stride] - p[-image.stride]);
+    const float across = gy * region.direction_x - gx * region.direction_y;
+    const float along = gx * region.direction_x + gy * region.direction_y;
+    column[r] = {std::max(across, 0.0F), std::max(-across, 0.0F), std::max(along, 0.0F),
+                 std::max(-along, 0.0F)};
+  }
+}
+
+// The four parts are independent lanes, each summed in one order: a compiler may do them side by side.
+void add_column(const Column& column, Sums& sums) {
+  for (std::size_t band = 0; band < kMsldBands; ++band) {
+    std::array<float, 4> V{};
+    for (std::size_t o = 0; o < 2 * kReach + 1; ++o)
+      for (std::size_t k = 0; k < 4; ++k)
+        V[k] += kWeights[band][o] * column[band * kMsldRowsPerBand + kMsldRowsPerBand / 2 + o][k];
+    for (std::size_t k = 0; k < 4; ++k) {
+      sums.first[4 * band + k] += V[k];
+      sums.second[4 * band + k] += V[k] * V[k];
+    }
   }
 }
 
 template <bool kInside>
 void sum_region(GrayView image, const Region& region, Sums& sums) {
-  std::array<std::int32_t, kSums + 8> V;
+  Column column{};
   std::int32_t x = region.x, y = region.y;
   for (int c = 0; c < region.columns; ++c) {
-    sum_column<kInside>(image, region, x, y, V);
-    for (std::size_t k = 0; k < kSums; ++k) {
-      const std::int64_t v = V[k + 4];
-      sums.first[k] += v;
-      sums.second[k] += v * v;
-    }
+    read_column<kInside>(image, region, x, y, column);
+    add_column(column, sums);
     x += region.ux;
     y += region.uy;
   }

@@ -6,7 +6,7 @@
 // numbers. The descriptor is their mean and their SD over the columns. Both halves are normalised by
 // themselves, so a linear change of the light cancels; an offset cancels in the gradient already.
 //
-// In integers up to the normalisation. Columns and rows are kept few, since neighbouring ones tell the same.
+// Columns and rows are kept few, since neighbouring ones tell the same.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace plvo {
 inline constexpr int kMsldBands = 9;
 inline constexpr int kMsldRowsPerBand = 3;
 inline constexpr int kMsldRowPitch_px = 1;  // of the image that is described, at half resolution 54 px in all
-inline constexpr int kMsldMaxColumns = 24;
+inline constexpr int kMsldMaxColumns = 16;
 inline constexpr std::size_t kMsldLength = 2 * 4 * kMsldBands;
 
 // Bands × 4 means, bands × 4 SDs; each half has unit norm, in units of 1/255.
