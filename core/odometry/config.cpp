@@ -34,6 +34,7 @@ Status validate(const PointConfig& points) {
 Status validate(const Line3dConfig& fit) {
   if (!within(fit.max_samples, 2, kMaxLineSamples)) return out_of_range("lines.fit.max_samples", "2 to 100");
   if (!within(fit.min_consensus, 0, 1)) return out_of_range("lines.fit.min_consensus", "0 to 1");
+  if (!within(fit.min_agreement, 0, 1)) return out_of_range("lines.fit.min_agreement", "0 to 1");
   if (!within(fit.sigma_p_px, 0.01, 20)) return out_of_range("lines.fit.sigma_p_px", "between 0.01 and 20");
   if (!within(fit.inlier_chi_square, 0.1, 100))
     return out_of_range("lines.fit.inlier_chi_square", "0.1 to 100");
@@ -102,6 +103,7 @@ Config Config::paper() {
   config.features = Features::kBoth;
   config.reference = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
+  config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
   return config;
 }
