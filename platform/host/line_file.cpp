@@ -25,6 +25,11 @@ Status LineFile::open(const std::filesystem::path& path) {
   return descriptor_ >= 0 ? Status() : failed("create");
 }
 
+Status LineFile::open(const std::filesystem::path& path, std::string_view first_line) {
+  const Status status = open(path);
+  return status.ok() ? write(first_line) : status;
+}
+
 Status LineFile::write(std::string_view line) {
   if (descriptor_ < 0) return {};
   line_.assign(line);

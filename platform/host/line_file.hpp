@@ -21,6 +21,8 @@ class LineFile {
 
   // Makes the file or empties it. kIo, with the operating system's reason and the path.
   Status open(const std::filesystem::path& path);
+  // The same, and writes the first line.
+  Status open(const std::filesystem::path& path, std::string_view first_line);
   // line: without its newline. kIo as above; the lines before it stay. A file that is not open takes any line
   // and does nothing, so that an output nobody asked for needs no special case.
   Status write(std::string_view line);

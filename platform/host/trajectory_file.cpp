@@ -41,4 +41,19 @@ std::string motion_line(const TrackResult& result) {
   return line;
 }
 
+Status TrajectoryFile::write(const TrackResult& result) {
+  if (result.state == TrackState::kLost) return {};
+  return file_.write(trajectory_line(result.stamp_ns, result.T_world_camera));
+}
+
+Status CovarianceFile::write(const TrackResult& result) {
+  if (result.state == TrackState::kLost) return {};
+  return file_.write(covariance_line(result.stamp_ns, result.pose_covariance));
+}
+
+Status MotionFile::write(const TrackResult& result) {
+  if (result.state != TrackState::kTracking) return {};
+  return file_.write(motion_line(result));
+}
+
 }  // namespace plvo

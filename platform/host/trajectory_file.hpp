@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "plvo/hal/pose_sink.hpp"
+#include "plvo/host/line_file.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/track_result.hpp"
 
@@ -26,5 +28,34 @@ std::string pose_text(const Se3& T);
 std::string trajectory_line(std::int64_t stamp_ns, const Se3& T_world_camera);
 std::string covariance_line(std::int64_t stamp_ns, const Matrix6& covariance);
 std::string motion_line(const TrackResult& result);
+
+// The same as sinks: a line for each frame that has a pose (lost ones have none; the first one has no
+// motion). Until open() made the file, write() does nothing.
+class TrajectoryFile final : public PoseSink {
+ public:
+  Status open(const std::filesystem::path& path) { return file_.open(path, kTrajectoryHeader); }
+  Status write(const TrackResult& result) override;
+
+ private:
+  LineFile file_;
+};
+
+class CovarianceFile final : public PoseSink {
+ public:
+  Status open(const std::filesystem::path& path) { return file_.open(path, kCovarianceHeader); }
+  Status write(const TrackResult& result) override;
+
+ private:
+  LineFile file_;
+};
+
+class MotionFile final : public PoseSink {
+ public:
+  Status open(const std::filesystem::path& path) { return file_.open(path, kMotionsHeader); }
+  Status write(const TrackResult& result) override;
+
+ private:
+  LineFile file_;
+};
 
 }  // namespace plvo

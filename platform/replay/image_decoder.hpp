@@ -27,8 +27,9 @@ class ImageDecoder {
   ImageDecoder& operator=(const ImageDecoder&) = delete;
   ~ImageDecoder();
 
-  // The largest file that will be read, in bytes.
-  void reserve(std::size_t file_bytes) { file_.reserve(file_bytes); }
+  // The largest file that will be read, in bytes. Touches the memory, so that it is there and not only
+  // promised.
+  void reserve(std::size_t file_bytes) { file_.resize(file_bytes); }
 
   // Messages name the file as `name` below. kNotFound: no such file; kDamaged: not an image, or cut off.
   Status read_header(const std::filesystem::path& path, ImageInfo& info);

@@ -84,18 +84,22 @@ void TumCamera::allocate() {
   const std::size_t pixels = static_cast<std::size_t>(model_.width) * static_cast<std::size_t>(model_.height);
   colour_.assign(pixels * 3, 0);
   depth_.assign(pixels, 0);
+  // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
+  RgbdFrame first;
+  [[maybe_unused]] const Status told_again_by_the_first_call = next(first);
+  next_ = 0;
 }
 
 Status TumCamera::next(RgbdFrame& frame) {
   if (next_ >= index_.pairs.size()) return {StatusCode::kEndOfStream, "the sequence ends here"};
   const TumPair& pair = index_.pairs[next_++];
+  frame.stamp_ns = pair.colour.stamp_ns;  // also of a frame that turns out to be damaged
+  frame.depth_stamp_ns = pair.depth.stamp_ns;
   Status status = decoder_.decode_rgb(folder_ / pair.colour.file, model_.width, model_.height, colour_);
   if (status.ok())
     status = decoder_.decode_depth(folder_ / pair.depth.file, model_.width, model_.height, depth_);
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
 
-  frame.stamp_ns = pair.colour.stamp_ns;
-  frame.depth_stamp_ns = pair.depth.stamp_ns;
   frame.colour = {colour_.data(), model_.width, model_.height, model_.width * std::ptrdiff_t{3},
                   PixelFormat::kRgb8};
   frame.depth = {depth_.data(), model_.width, model_.height, model_.width, 1.0 / depth_units_per_metre_};

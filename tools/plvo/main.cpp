@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
 
   int exit_code = kExitSuccess;
+  add_run(app, exit_code);
   add_eval(app, exit_code);
+  add_simulate(app, exit_code);
 
   try {
     app.parse(argc, argv);

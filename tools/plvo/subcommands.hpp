@@ -9,6 +9,8 @@
 
 namespace plvo::cli {
 
+void add_run(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app, int& exit_code);
+void add_simulate(CLI::App& app, int& exit_code);
 
 }  // namespace plvo::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of one frame: what every output of a run is made from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "plvo/odometry/track_result.hpp"
+
+namespace plvo::cli {
+
+struct FrameRecord {
+  std::size_t number = 0;  // from 0, counting damaged frames too
+  Status camera_status;  // not ok: the camera could not give this frame out, and nothing below holds but the
+                         // stamp
+  TrackResult result;
+  std::int64_t cpu_ns = 0;  // CPU time of track() alone
+
+  bool damaged() const { return !camera_status.ok(); }
+  bool has_pose() const { return !damaged() && result.state != TrackState::kLost; }
+};
+
+}  // namespace plvo::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/plvo/interrupt.hpp"
+
+#include <csignal>
+
+namespace plvo::cli {
+namespace {
+
+volatile std::sig_atomic_t caught = 0;
+extern "C" void on_interrupt(int) { caught = 1; }
+
+}  // namespace
+
+void catch_interrupt() {
+  struct sigaction action = {};
+  action.sa_handler = on_interrupt;
+  action.sa_flags =
+      static_cast<int>(SA_RESETHAND);  // and no SA_RESTART: a read of the keyboard must end, too
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return caught != 0; }
+
+}  // namespace plvo::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the odometry is set, and the memory it lives in.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo::cli {
+
+enum class Preset : std::uint8_t { kDefault, kPaper };
+
+struct OdometryOptions {
+  Preset preset = Preset::kDefault;
+  std::optional<Features> features;
+  std::optional<ReferencePolicy> reference;
+  std::optional<std::uint64_t> seed;
+};
+void add_odometry_options(CLI::App& command, OdometryOptions& options);
+
+// The preset, then what was asked for beside it.
+Config make_config(const OdometryOptions& options);
+
+// An odometry with the block it needs. Every page of the block is touched, so that memory does not seem to
+// grow later.
+class OdometryBlock {
+ public:
+  Status init(const CameraModel& camera, const Config& config);
+  Odometry& odometry() { return odometry_; }
+
+ private:
+  std::vector<std::byte> memory_;
+  Odometry odometry_;
+};
+
+}  // namespace plvo::cli

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory this process holds, and how to hold it from the start.
+#pragma once
+
+#include <cstdint>
+
+namespace plvo::cli {
+
+// Bytes; zero where the system does not tell. Anonymous is the part that no file backs: what the program
+// itself took.
+struct ResidentMemory {
+  std::int64_t total = 0;
+  std::int64_t anonymous = 0;
+};
+ResidentMemory resident_memory();
+
+// Brings every page of the program, its libraries and its stack into memory now: the first frames then wait
+// for no disk, and what grows later grew because something was taken. Does what the kernel can (Linux 5.14
+// for the code).
+void prefault_program();
+
+}  // namespace plvo::cli

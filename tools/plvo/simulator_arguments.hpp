@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The simulated camera's options on the command line, shared by `plvo simulate` and `plvo run --camera sim`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "plvo/simulator/simulator_options.hpp"
+
+namespace plvo::cli {
+
+struct SimulatorArguments {
+  std::string scene = "bare", light = "constant";
+  std::uint64_t seed = 1;
+  double fps = 30;
+  std::string size;  // WIDTHxHEIGHT
+  std::string trajectory;
+  bool clean = false;
+  int threads = 2;
+};
+void add_simulator_options(CLI::App& command, SimulatorArguments& arguments);
+
+// kInvalidArgument, naming the option. `frames` is how many there shall be.
+Status make_simulator_options(const SimulatorArguments& arguments, int frames, SimulatorOptions& options);
+
+}  // namespace plvo::cli
