@@ -4,9 +4,9 @@
 // same bytes from every compiler, level and processor: golden.txt holds it.
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
 #include <vector>
 
+#include "fingerprint.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
 
@@ -14,45 +14,19 @@ namespace {
 
 using namespace plvo;
 
-class Fingerprint {
- public:
-  void add(std::uint64_t bits) {
-    for (int i = 0; i < 8; ++i) hash_ = (hash_ ^ ((bits >> (8 * i)) & 0xff)) * 1099511628211ULL;  // FNV-1a
-  }
-  void add(double value) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    add(bits);
-  }
-  void add(int value) { add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
-  template <int Rows, int Cols>
-  void add(const Matrix<Rows, Cols>& m) {
-    for (int r = 0; r < Rows; ++r)
-      for (int c = 0; c < Cols; ++c) add(m(r, c));
-  }
-  void add(const Se3& T) {
-    add(T.R);
-    add(T.t);
-  }
-  void add(const FeatureCounts& counts) {
-    for (int n : {counts.detected, counts.dropped, counts.with_depth, counts.matched, counts.inliers}) add(n);
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 14695981039346656037ULL;
-};
-
 Fingerprint fingerprint(const TrackResult& result) {
   Fingerprint print;
   print.add(static_cast<int>(result.state));
   print.add(static_cast<int>(result.status.code()));
-  print.add(result.T_world_camera);
+  print.add(result.T_world_camera.R);
+  print.add(result.T_world_camera.t);
   print.add(result.pose_covariance);
-  print.add(result.T_camera_reference);
+  print.add(result.T_camera_reference.R);
+  print.add(result.T_camera_reference.t);
   print.add(result.motion_covariance);
-  print.add(result.points);
-  print.add(result.lines);
+  for (const FeatureCounts& counts : {result.points, result.lines})
+    for (int n : {counts.detected, counts.dropped, counts.with_depth, counts.matched, counts.inliers})
+      print.add(n);
   print.add(result.ransac_iterations);
   print.add(result.lm_iterations);
   print.add(result.mean_brightness);

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2034  # the lists are read by those who source this
 # Every Debian package that plvo is built, tested and cross-built with: the one list. To be sourced.
 
 # The library, the cameras and the command line.
