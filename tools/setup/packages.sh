@@ -8,7 +8,7 @@ PLVO_PACKAGES_BUILD="g++ make cmake pkg-config libeigen3-dev libfmt-dev libcli11
 
 # The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages.
 PLVO_PACKAGES_TEST="ninja-build googletest libgtest-dev python3 python3-numpy clang libclang-rt-dev clang-format clang-tidy
-  umockdev libumockdev-dev chromium"
+  umockdev libumockdev-dev chromium fonts-liberation"
 
 # The boards: cross compilers, and processors that are emulated.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user"
