@@ -35,7 +35,7 @@ for preset in "$@"; do
 done
 [ -n "$presets" ] || { echo "no preset has built plvo" >&2; exit 1; }
 
-compare simulated --camera sim
+compare simulated --camera sim --size 320x240
 if [ -d "$shared/data/fr1_desk_9f" ]; then
   compare fr1_desk "$shared/data/fr1_desk_9f" --camera-model tum-fr1
 else
