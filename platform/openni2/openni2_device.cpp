@@ -28,6 +28,10 @@ Status open_error(const std::string& uri) {
   } else if (contains(text, "LIBUSB_ERROR_BUSY") || contains(text, "busy")) {
     status = Status(StatusCode::kBusy,
                     "another program holds the sensor: close it, or unplug and plug in again. ");
+  } else if (uri.ends_with(".oni")) {
+    return Status(StatusCode::kDamaged,
+                  "OpenNI2 cannot read the recording (broken, or libOniFile is missing): ")
+        .append(uri);
   } else {
     status = Status(StatusCode::kNotFound, "cannot open the OpenNI2 device '");
     status.append(uri.empty() ? "(first)" : uri).append("': ");
