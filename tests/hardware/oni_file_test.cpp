@@ -28,7 +28,7 @@ class OniFileTest : public VirtualDeviceTest {
   // Records while `count` frames are read; returns the ticks that were read.
   std::vector<int> record(int count) {
     open();
-    EXPECT_TRUE(camera_.next(frame_).ok());
+    EXPECT_TRUE(next_frame().ok());
     plvo::OpenNi2Recorder recorder;
     const Status status = recorder.start(camera_, path_);
     EXPECT_TRUE(status.ok()) << status.message();
@@ -96,17 +96,17 @@ TEST_F(OniFileTest, FieldOfViewAndModeComeFromTheFile) {
   EXPECT_EQ(camera_.model().width, 320);
   EXPECT_NEAR(camera_.model().pinhole.fx, 160 / std::tan(1.0226 / 2), 1e-3);
   EXPECT_TRUE(camera_.registered_by_device());
-  EXPECT_TRUE(camera_.next(frame_).ok());
+  EXPECT_TRUE(next_frame().ok());
 }
 
 TEST_F(OniFileTest, UnplugEndsTheRecordingWithAValidFile) {
   open();
-  ASSERT_TRUE(camera_.next(frame_).ok());
+  ASSERT_TRUE(next_frame().ok());
   plvo::OpenNi2Recorder recorder;
   ASSERT_TRUE(recorder.start(camera_, path_).ok());
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(next_frame().ok());
   ASSERT_TRUE(device_.command("unplug"));
-  EXPECT_EQ(next_fault().code(), StatusCode::kUnplugged);
+  EXPECT_EQ(wait_for(StatusCode::kUnplugged).code(), StatusCode::kUnplugged);
   EXPECT_FALSE(recorder.recording());
   camera_.close();
   EXPECT_GE(play(std::chrono::milliseconds(0)).size(), 3u);

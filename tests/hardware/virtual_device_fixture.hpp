@@ -31,6 +31,10 @@ inline double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+inline bool says(const Status& status, const std::string& words) {
+  return std::string(status.message()).find(words) != std::string::npos;
+}
+
 class VirtualDeviceTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -57,11 +61,11 @@ class VirtualDeviceTest : public testing::Test {
     while (!status.ok() && seconds_since(start) < 10) status = camera_.next(frame_);
     return status;
   }
-  // The first answer that is not a frame (10 s at most).
-  Status next_fault() {
+  // Calls on until the camera answers with this code (10 s at most); the last answer.
+  Status wait_for(StatusCode code) {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
-    while (status.ok() && seconds_since(start) < 10) status = camera_.next(frame_);
+    while (status.code() != code && seconds_since(start) < 10) status = camera_.next(frame_);
     return status;
   }
   // Which tick of the pattern the colour image shows, by its first pixel (modulo 256); all of it must fit.
