@@ -29,6 +29,15 @@ using plvo::Status;
 using plvo::StatusCode;
 using Clock = std::chrono::steady_clock;
 
+// A sanitizer slows everything down and keeps what was freed: figures say nothing then.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kFiguresCount = false;
+#elif defined(__has_feature)
+constexpr bool kFiguresCount = !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#else
+constexpr bool kFiguresCount = true;
+#endif
+
 constexpr std::size_t kPixels = 640 * 480;
 
 double seconds_since(Clock::time_point start) {
@@ -231,11 +240,13 @@ TEST_F(SimulatedKinectTest, FullRate) {
       static_cast<unsigned long long>(counters.unmatched_colour),
       static_cast<unsigned long long>(counters.unmatched_depth),
       static_cast<unsigned long long>(kinect_.skipped()), resident_kB() - before_kB);
-  EXPECT_GE(fps, 28.0);
+  EXPECT_GE(fps, kFiguresCount ? 28.0 : 2.0);
   EXPECT_LE(fps, 33.0) << "more than the sensor sends, even after a pause";
   EXPECT_NEAR(static_cast<double>(last_ns - first_ns) * 1e-9, took, 0.5) << "stamps go at the clock's pace";
   EXPECT_EQ(counters.clock_jumps, 0u);
-  EXPECT_LT(resident_kB() - before_kB, 4096);
+  if (kFiguresCount) {
+    EXPECT_LT(resident_kB() - before_kB, 4096);
+  }
 }
 
 TEST_F(SimulatedKinectTest, UnplugInMidStreamAndReplug) {
