@@ -47,10 +47,11 @@ Config read_config(Bytes& bytes) {
   config.points.sigma_px = bytes.number(0.1, 2);
   config.points.pyramid_levels = bytes.take<std::uint8_t>() % 6;
   config.points.cell_px = bytes.take<std::uint8_t>();
-  config.points.min_contrast = bytes.number(0, 20);
+  config.points.noise_floor = bytes.take<std::uint8_t>();
+  config.points.min_strength = bytes.number(0, 20);
   config.points.search_radius_px = bytes.number(0, 100);
-  config.lines.min_length_px = bytes.number(0, 50);
-  config.lines.min_consensus = bytes.number(0, 1);
+  config.lines.guided_offset_px = bytes.number(0, 50);
+  config.lines.guided_angle_rad = bytes.number(0, 1);
   config.motion.inlier_probability = bytes.number(0.5, 1);
   config.motion.max_ransac_iterations = bytes.take<std::uint8_t>() * 4;
   config.motion.min_inliers = bytes.take<std::uint8_t>() % 30;
@@ -75,7 +76,8 @@ void paint(Bytes& bytes, std::vector<std::uint8_t>& colour, std::vector<std::uin
                                  : kind % 4 == 1 ? random.next()
                                                  : block * 2654435761U >> 13;
       colour[k] = static_cast<std::uint8_t>(grey);
-      depth[k] = static_cast<std::uint16_t>(base + slope * x + (kind & 4 ? random.next() % 512 : 0));
+      depth[k] =
+          static_cast<std::uint16_t>(base + slope * x + static_cast<int>(kind & 4 ? random.next() % 512 : 0));
     }
 }
 
