@@ -68,12 +68,12 @@ class RowGradients {
     for (int i = 0; i < count; ++i) {
       const int diagonal = below[i + 1] - above[i];
       const int antidiagonal = above[i + 1] - below[i];
-      const int gx = diagonal + antidiagonal;
-      const int gy = diagonal - antidiagonal;
-      const auto at = static_cast<std::size_t>(i);
-      gx_[at] = static_cast<std::int16_t>(gx);
-      gy_[at] = static_cast<std::int16_t>(gy);
-      strong_[at] = gx * gx + gy * gy > kMinMagnitudeSquared ? 1 : 0;
+      const auto gx = static_cast<std::int16_t>(diagonal + antidiagonal);
+      const auto gy = static_cast<std::int16_t>(diagonal - antidiagonal);
+      gx_[static_cast<std::size_t>(i)] = gx;
+      gy_[static_cast<std::size_t>(i)] = gy;
+      strong_[static_cast<std::size_t>(i)] =
+          static_cast<int>(gx) * gx + static_cast<int>(gy) * gy > kMinMagnitudeSquared ? 1 : 0;
     }
   }
   bool strong(int i) const { return strong_[static_cast<std::size_t>(i)] != 0; }
@@ -84,7 +84,7 @@ class RowGradients {
  private:
   std::array<std::int16_t, kBlock> gx_{};
   std::array<std::int16_t, kBlock> gy_{};
-  std::array<std::uint8_t, kBlock> strong_{};
+  std::array<std::int32_t, kBlock> strong_{};
 };
 
 }  // namespace

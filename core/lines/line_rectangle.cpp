@@ -2,16 +2,11 @@
 #include "plvo/lines/line_rectangle.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::lsd {
 namespace {
-
-// tan(22.5° / 2^level) · 2^20.
-constexpr std::array<std::int32_t, kPrecisionLevels> kTangents_q20 = {
-    434334, 208575, 103276, 51513, 25741, 12869, 6434, 3217, 1608, 804, 402};
 
 std::int32_t to_fixed(double value, double one) {
   const double scaled = value * one;
@@ -81,6 +76,8 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
   r.y_q8 = to_fixed(seed.y + moments.y, 256);
   r.dx = to_fixed(dx, 1 << kDirectionBits);
   r.dy = to_fixed(dy, 1 << kDirectionBits);
+  // The smaller principal moment; rounding may take it below 0.
+  r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (moments.xx + moments.yy - h) / moments.mass)), 256);
   for (const Pixel& pixel : region.pixels) {
     const std::int32_t l = r.along(pixel.x, pixel.y);
     const std::int32_t t = r.across(pixel.x, pixel.y);
@@ -100,19 +97,6 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
 bool is_dense(const Rectangle& rectangle, std::size_t region_size) {
   const std::int64_t area_q16 = std::int64_t{rectangle.length_q8()} * rectangle.width_q8();
   return static_cast<std::int64_t>(region_size) * 10 * 65536 >= area_q16 * 7;
-}
-
-int alignment_level(const Rectangle& rectangle, Direction direction) {
-  const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
-  const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
-  if (dot <= 0) return kNotAligned;
-  const std::int64_t turn = std::int64_t{cross < 0 ? -cross : cross} << 20;
-  int level = kNotAligned;
-  while (level + 1 < kPrecisionLevels &&
-         turn <= std::int64_t{kTangents_q20[static_cast<std::size_t>(level + 1)]} * dot) {
-    ++level;
-  }
-  return level;
 }
 
 }  // namespace plvo::lsd

@@ -5,6 +5,7 @@
 // machine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,14 +30,20 @@ struct Rectangle {
   std::int32_t along_max = 0;
   std::int32_t across_min = 0;
   std::int32_t across_max = 0;
+  // Standard deviation of the gradient's mass across it, 2^-8 pixels.
+  std::int32_t across_sd = 0;
 
+  std::int64_t along_q22(int x, int y) const {
+    return std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy;
+  }
+  std::int64_t across_q22(int x, int y) const {
+    return std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy;
+  }
   std::int32_t along(int x, int y) const {
-    return static_cast<std::int32_t>(
-        (std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy) >> kDirectionBits);
+    return static_cast<std::int32_t>(along_q22(x, y) >> kDirectionBits);
   }
   std::int32_t across(int x, int y) const {
-    return static_cast<std::int32_t>(
-        (std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy) >> kDirectionBits);
+    return static_cast<std::int32_t>(across_q22(x, y) >> kDirectionBits);
   }
   std::int32_t length_q8() const { return along_max - along_min; }
   std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted
@@ -48,8 +55,23 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
 // Does the region fill at least 70 % of its rectangle?
 bool is_dense(const Rectangle& rectangle, std::size_t region_size);
 
+// tan(22.5° / 2^level) · 2^20.
+inline constexpr std::array<std::int32_t, kPrecisionLevels> kTangents_q20 = {
+    434334, 208575, 103276, 51513, 25741, 12869, 6434, 3217, 1608, 804, 402};
+
 // The finest precision at which a pixel's gradient points across the rectangle, or kNotAligned.
-int alignment_level(const Rectangle& rectangle, Direction direction);
+inline int alignment_level(const Rectangle& rectangle, Direction direction) {
+  const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
+  if (dot <= 0) return kNotAligned;
+  const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
+  const std::int64_t turn = std::int64_t{cross < 0 ? -cross : cross} << 20;
+  int level = kNotAligned;
+  while (level + 1 < kPrecisionLevels &&
+         turn <= std::int64_t{kTangents_q20[static_cast<std::size_t>(level + 1)]} * dot) {
+    ++level;
+  }
+  return level;
+}
 
 // Calls visit(x, y) for every pixel of the field inside the rectangle, row by row.
 template <typename Visit>
@@ -89,10 +111,13 @@ void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& vis
     if (inverse_dx != 0) cut((along_min - v * dy) * inverse_dx, (along_max - v * dy) * inverse_dx);
     if (inverse_dy != 0) cut((v * dx - across_min) * inverse_dy, (v * dx - across_max) * inverse_dy);
     if (left > right) continue;
+    const int first = static_cast<int>(left);
     const int last = static_cast<int>(right);
-    for (int x = static_cast<int>(left); x <= last; ++x) {
-      const std::int32_t l = r.along(x, y);
-      const std::int32_t t = r.across(x, y);
+    std::int64_t along = r.along_q22(first, y);
+    std::int64_t across = r.across_q22(first, y);
+    for (int x = first; x <= last; ++x, along += 256 * r.dx, across -= 256 * r.dy) {
+      const auto l = static_cast<std::int32_t>(along >> kDirectionBits);
+      const auto t = static_cast<std::int32_t>(across >> kDirectionBits);
       if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
       visit(x, y, t);
     }

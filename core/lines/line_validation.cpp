@@ -57,30 +57,17 @@ void filter(LevelLineField& field, Region& region, Keep&& keep) {
   region.pixels = region.pixels.first(kept);
 }
 
-// The reach across the rectangle's axis that holds nearly all of the region's gradient: twice its standard
-// deviation, and at least a pixel.
-std::int32_t trimmed_reach_q8(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
-  std::int64_t mass = 0;
-  std::int64_t squares = 0;
-  for (const Pixel& pixel : region.pixels) {
-    const std::int64_t w = field.magnitude[field.index(pixel.x, pixel.y)];
-    const std::int64_t t = rectangle.across(pixel.x, pixel.y);
-    mass += w;
-    squares += w * t * t;
-  }
-  const double sd_q8 = sqrt(static_cast<double>(squares) / static_cast<double>(mass));
-  return std::max(256, static_cast<std::int32_t>(2 * sd_q8));
-}
-
-// Beyond it the region is not one edge with whiskers but bent, or several edges.
-constexpr std::int32_t kMaxTrimmedReach_q8 = 384;
+// A region whose gradient spreads further across than this is not one edge with whiskers but bent, or several
+// edges.
+constexpr std::int32_t kMaxAcrossSd_q8 = 192;
 
 // Noise beside an edge grows onto it as whiskers, which make the rectangle wide and empty without moving the
-// edge. Cuts them off, at most twice; true if that makes the region dense.
+// edge. Cuts them off, beyond twice the standard deviation of the gradient's mass (at least a pixel), at most
+// twice; true if that makes the region dense.
 bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size) {
   for (int i = 0; i < 2 && !is_dense(rectangle, region.pixels.size()); ++i) {
-    const std::int32_t reach = trimmed_reach_q8(field, region, rectangle);
-    if (reach > kMaxTrimmedReach_q8) return false;
+    if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
+    const std::int32_t reach = std::max(256, 2 * rectangle.across_sd);
     filter(field, region, [&](Pixel pixel) {
       const std::int32_t t = rectangle.across(pixel.x, pixel.y);
       return t >= -reach && t <= reach;

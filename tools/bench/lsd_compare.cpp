@@ -6,10 +6,10 @@
 //   lsd_compare DIR [--frames N] [--min-length PX] [--draw DIR] [--only-ours]
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -23,7 +23,8 @@
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+// CPU time of this process: the machine may be busy with other things.
+double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Options {
   std::string folder;
@@ -122,16 +123,16 @@ class Ours {
 
   std::vector<Line2> detect(const cv::Mat& gray, double& ms, double& pyramid_ms) {
     for (int y = 0; y < height_; ++y) std::copy_n(gray.ptr(y), width_, pyramid_.base().row(y));
-    const auto start = Clock::now();
+    const double start = cpu_ms();
     pyramid_.build();
-    const auto built = Clock::now();
+    const double built = cpu_ms();
     segments_ = plvo::FixedVector<plvo::Segment>(storage_);
     const plvo::Status status =
         detector_.detect(pyramid_.level(1), 2.0, pyramid_.level(0), arena_, segments_, &counts_);
-    const auto end = Clock::now();
+    const double end = cpu_ms();
     if (!status.ok()) std::fprintf(stderr, "%s\n", status.message());
-    pyramid_ms = std::chrono::duration<double, std::milli>(built - start).count();
-    ms = std::chrono::duration<double, std::milli>(end - built).count();
+    pyramid_ms = built - start;
+    ms = end - built;
     std::vector<Line2> lines;
     for (const plvo::Segment& s : segments_) lines.push_back({s.a.x(), s.a.y(), s.b.x(), s.b.y()});
     return lines;
@@ -275,9 +276,9 @@ std::size_t count_long(const Options& options, const std::vector<Line2>& lines) 
 
 std::vector<Line2> opencv_lines(cv::LineSegmentDetector& detector, const cv::Mat& gray, double& ms) {
   std::vector<cv::Vec4f> found;
-  const auto start = Clock::now();
+  const double start = cpu_ms();
   detector.detect(gray, found);
-  ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  ms = cpu_ms() - start;
   std::vector<Line2> lines;
   for (const cv::Vec4f& v : found) {
     lines.push_back({static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]),
