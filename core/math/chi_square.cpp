@@ -5,38 +5,56 @@
 
 namespace plvo {
 
+namespace {
+
+// y^a e^-y / Γ(a + 1) with a = dof/2, y = x/2: the last term of the density, the first factor of the
+// distribution.
+double front(int dof, double y) {
+  // Built up from a = 0 (y^0 / Γ(1)) or a = 1/2 (√y / Γ(3/2)) by factors y / a.
+  double a = dof % 2 == 0 ? 0 : 0.5;
+  double value = dof % 2 == 0 ? 1 : sqrt(y) / (0.5 * sqrt(kPi));
+  while (2 * a + 1 < dof) {
+    a += 1;
+    value *= y / a;
+  }
+  return value * exp(-y);
+}
+
+}  // namespace
+
 double chi_square_cdf(int dof, double x) {
   if (!(x > 0)) return 0;
   if (x > 200) return 1;
   // The series of the regularised incomplete gamma function (Abramowitz & Stegun 6.5.29),
-  // P(a, y) = y^a e^-y / Γ(a + 1) · Σ y^n / ((a + 1) … (a + n)), a = dof/2, y = x/2; all its terms are
-  // positive.
+  // P(a, y) = y^a e^-y / Γ(a + 1) · Σ y^n / ((a + 1) … (a + n)); all its terms are positive.
   const double y = x / 2;
-  // y^a / Γ(a + 1), built up from a = 0 (y^0 / Γ(1)) or a = 1/2 (√y / Γ(3/2)) by factors y / a.
-  double a = dof % 2 == 0 ? 0 : 0.5;
-  double front = dof % 2 == 0 ? 1 : sqrt(y) / (0.5 * sqrt(kPi));
-  while (2 * a + 1 < dof) {
-    a += 1;
-    front *= y / a;
-  }
   double term = 1;
   double sum = 1;
   for (int n = 1; n < 500 && term > 1e-17 * sum; ++n) {
-    term *= y / (a + n);
+    term *= y / (0.5 * dof + n);
     sum += term;
   }
-  const double p = front * exp(-y) * sum;
+  const double p = front(dof, y) * sum;
   return p < 1 ? p : 1;
 }
 
 double chi_square_quantile(int dof, double probability) {
   double low = 0;
   double high = 100;
+  double x = 2.5 * dof;
   for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (chi_square_cdf(dof, middle) < probability ? low : high) = middle;
+    const double error = chi_square_cdf(dof, x) - probability;
+    (error < 0 ? low : high) = x;
+    // Newton's step, the density being front · a / y / 2; halving instead wherever it would leave the
+    // bracket.
+    const double density = front(dof, x / 2) * dof / (2 * x);
+    const double next = density > 0 ? x - error / density : low;
+    const double previous = x;
+    x = next > low && next < high ? next : 0.5 * (low + high);
+    const double change = x - previous;
+    if (change * change <= 1e-18 * x * x) break;
   }
-  return 0.5 * (low + high);
+  return x;
 }
 
 }  // namespace plvo

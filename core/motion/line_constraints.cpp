@@ -17,9 +17,9 @@ constexpr double kMaxVarianceM2 = 1.0;
 // linearise.
 constexpr double kMinLengthSigmas = 4;
 // Gauss–Newton steps of one landmark per linearisation, and the step (m) below which the next would be in
-// vain: the eliminated cost already accounts for the last step to first order.
+// vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
-constexpr double kLandmarkTolerance = 1e-6;
+constexpr double kLandmarkTolerance = 1e-5;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
@@ -109,10 +109,20 @@ struct Interpolation {
   }
 };
 
+// λ − C_le w, the correction held within a quarter of the segment: far from the solution the offsets are no
+// noise, and what they predict along the line is no position.
+Vector2 corrected(const EndOffsets& offsets, const Vector4& w) {
+  const double length = offsets.lambda[1] - offsets.lambda[0];
+  const double limit = 0.25 * (length < 0 ? -length : length);
+  const Vector2 correction = offsets.C_le.lazyProduct(w);
+  return offsets.lambda - correction.cwiseMin(limit).cwiseMax(-limit);
+}
+
 // One match at (T, landmark): everything the elimination needs.
 struct Linearized {
   Cholesky<4> W;         // factor of C' + N C Nᵀ
   Vector4 c, w;          // c = e' − N e, w = W c
+  Vector4 w_reference;   // −Nᵀ w
   Vector4 y;             // the landmark's best displacement across the line at its stations
   Vector2 stations;      // λ_A, λ_B of the reference frame
   Vector2 ends;          // λ'_A, λ'_B of the current frame
@@ -127,17 +137,17 @@ bool linearize_line(const Line3d& reference, const Line3d& current, const Se3& T
   const EndOffsets second = observe(current, T * landmark.q, at.G_current);
 
   // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
-  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w and C⁻¹ e = −Nᵀ w, so that w of
-  // the last step serves.
-  const Interpolation rough(first.lambda, second.lambda);
-  at.stations = first.lambda + Vector2(first.C_le.lazyProduct(rough.transpose_times(landmark.w)));
-  at.ends = second.lambda - Vector2(second.C_le.lazyProduct(landmark.w));
+  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference:
+  // those of the last step serve, and agree with their own step when it converges.
+  at.stations = corrected(first, landmark.w_reference);
+  at.ends = corrected(second, landmark.w_current);
   const Interpolation N(at.stations, at.ends);
 
   at.c = second.e - N * first.e;
   if (!at.W.factor(second.C + N.sandwich(first.C))) return false;
   at.w = at.W.solve(at.c);
-  at.y = first.e + Vector4(first.C.lazyProduct(N.transpose_times(at.w)));
+  at.w_reference = -N.transpose_times(at.w);
+  at.y = first.e - Vector4(first.C.lazyProduct(at.w_reference));
   return true;
 }
 
@@ -150,12 +160,13 @@ LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const
   result.q = landmark.q + at_a - at.stations[0] * slope;
   result.d = landmark.d + slope;
   result.d *= 1 / sqrt(result.d.squaredNorm());
-  result.w = at.w;
+  result.w_reference = at.w_reference;
+  result.w_current = at.w;
   return result;
 }
 
 LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
-  return {reference.q, reference.frame.col(2), Vector4::Zero()};
+  return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
 }
 
 }  // namespace

@@ -29,10 +29,11 @@ namespace plvo {
 
 class LineConstraints final : public ConstraintSet {
  public:
-  // In reference coordinates. w = W c at the last linearisation: what places the ends along the line.
+  // In reference coordinates. w_current = W c and w_reference = −Nᵀ W c at the last linearisation: what the
+  // offsets weigh in each frame, which places the ends along the line.
   struct Landmark {
     Vector3 q, d;
-    Vector4 w;
+    Vector4 w_reference, w_current;
   };
   // What RANSAC needs of the reference measurement again and again.
   struct Reference {

@@ -80,7 +80,7 @@ MinimalSetStatus solve_points(const PointPairs& pairs, Se3& T) {
 // Translation that brings three lines with known rotation together, least squares across the lines: the
 // second step of Zhang & Faugeras [38]. False when they are parallel, or do not meet within their
 // uncertainty.
-bool translation_of_lines(const Primitives& lines, const Matrix3& R, Vector3& t) {
+bool translation_of_lines(const Primitives& lines, const Matrix3& R, double sigma_rotation, Vector3& t) {
   Matrix3 A = Matrix3::Zero();
   Vector3 b = Vector3::Zero();
   for (const Primitive& line : lines) {
@@ -91,12 +91,14 @@ bool translation_of_lines(const Primitives& lines, const Matrix3& R, Vector3& t)
   Cholesky<3> cholesky;
   if (!cholesky.factor(A)) return false;
   t = cholesky.solve(b);
+  const Vector3 centre = (lines[0].p_reference + lines[1].p_reference + lines[2].p_reference) / 3;
   for (const Primitive& line : lines) {
     // The middles of the two segments may lie apart along the line: the direction's error acts over that
-    // lever.
+    // lever, and the rotation's over the distance from the centre, which the translation cannot take up.
     const Vector3 between = R * line.p_reference + t - line.p_current;
     const double lever = line.sigma_d_rad * line.d_current.dot(between);
-    const double variance = line.sigma_p_m * line.sigma_p_m + lever * lever;
+    const double variance = line.sigma_p_m * line.sigma_p_m + lever * lever +
+                            sigma_rotation * sigma_rotation * (line.p_reference - centre).squaredNorm();
     if (between.cross(line.d_current).squaredNorm() > 2 * kConsistencySigmas * kConsistencySigmas * variance)
       return false;
   }
@@ -148,7 +150,9 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
     }
     const double trace = (R_expected.transpose() * R).trace();
     Vector3 t;
-    if (!aligned || trace <= best_trace || !translation_of_lines(lines, R, t)) continue;
+    if (!aligned || trace <= best_trace ||
+        !translation_of_lines(lines, R, sigma / sqrt(largest_sine_squared), t))
+      continue;
     best_trace = trace;
     T = {R, t};
   }

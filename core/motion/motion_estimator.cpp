@@ -7,9 +7,12 @@
 namespace plvo {
 namespace {
 
-// Rounds of "refine, judge the inliers again" after the first: the consensus settles at once or does not
-// matter.
-constexpr int kMaxRejudgements = 2;
+// The first round over the consensus widens the χ² thresholds by this factor: a match far more precise than
+// the motion that RANSAC found would otherwise fail the test for the motion's error, and never get to correct
+// it.
+constexpr double kFirstRoundScale = 4;
+// Rounds of "judge the inliers again, refine" after it: the consensus settles at once or does not matter.
+constexpr int kMaxRounds = 3;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -51,7 +54,8 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
 
 StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& options, std::uint64_t seed,
                  const Se3* prediction, std::span<Candidate> scratch, MotionEstimate& estimate) {
-  Ransac ransac(sets, options.ransac, options.loss, scratch);
+  const MotionProblem::Kernels kernels = MotionProblem::make_kernels(sets, options.loss);
+  Ransac ransac(sets, options.ransac, kernels, scratch);
   if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < options.min_inliers)
     return StatusCode::kTooFewFeatures;
   const double least_share = options.min_inlier_ratio * static_cast<double>(ransac.usable());
@@ -61,18 +65,18 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& opti
 
   Se3 T;
   if (!ransac.run(seed, prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-  ransac.judge(T);
   LevenbergMarquardt<6> solver;
-  for (int round = 0; round <= kMaxRejudgements; ++round) {
+  for (int round = 0; round <= kMaxRounds; ++round) {
+    const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
     if (!consensus()) return StatusCode::kNoConsensus;
-    MotionProblem problem(sets, options.loss, T);
+    if (round > 0 && !changed) break;
+    MotionProblem problem(sets, kernels, T);
     estimate.lm = solver.solve(problem, options.lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
     for (std::size_t kind = 0; kind < sets.size(); ++kind)
       estimate.information[kind] = problem.information(kind);
-    if (round == kMaxRejudgements || !ransac.judge(T)) break;
   }
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
     return StatusCode::kNotConverged;

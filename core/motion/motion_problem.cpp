@@ -3,9 +3,16 @@
 
 namespace plvo {
 
-MotionProblem::MotionProblem(std::span<ConstraintSet* const> sets, RobustLoss loss, const Se3& T)
+MotionProblem::Kernels MotionProblem::make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss) {
+  Kernels kernels;
+  for (std::size_t kind = 0; kind < sets.size() && kind < kMaxConstraintKinds; ++kind)
+    kernels[kind] = RobustKernel(loss, sets[kind]->dof());
+  return kernels;
+}
+
+MotionProblem::MotionProblem(std::span<ConstraintSet* const> sets, const Kernels& kernels, const Se3& T)
     : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
-      loss_(loss),
+      kernels_(kernels),
       T_(T),
       candidate_(T) {
   for (Matrix6& information : information_) information.setZero();
@@ -20,7 +27,7 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
     Matrix6& information = candidate_information_[kind];
     information.setZero();
-    cost += sets_[kind]->linearize(candidate_, RobustKernel(loss_, sets_[kind]->dof()), information, g);
+    cost += sets_[kind]->linearize(candidate_, kernels_[kind], information, g);
     H += information;
   }
   return cost;

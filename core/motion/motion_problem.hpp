@@ -16,8 +16,12 @@ inline constexpr std::size_t kMaxConstraintKinds = 4;
 
 class MotionProblem {
  public:
+  using Kernels = std::array<RobustKernel, kMaxConstraintKinds>;
+  // One kernel per set; made once, for the quantile in it takes longer than a residual.
+  static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
+
   // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T.
-  MotionProblem(std::span<ConstraintSet* const> sets, RobustLoss loss, const Se3& T);
+  MotionProblem(std::span<ConstraintSet* const> sets, const Kernels& kernels, const Se3& T);
 
   double linearize(const Vector6& step, Matrix6& H, Vector6& g);
   void accept();
@@ -28,7 +32,7 @@ class MotionProblem {
 
  private:
   std::span<ConstraintSet* const> sets_;
-  RobustLoss loss_;
+  Kernels kernels_;
   Se3 T_, candidate_;
   std::array<Matrix6, kMaxConstraintKinds> information_, candidate_information_;
 };

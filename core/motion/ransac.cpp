@@ -9,8 +9,9 @@
 namespace plvo {
 namespace {
 
-// A local refinement looks at this many inliers at most: enough for a motion far more precise than a match.
-constexpr int kRefinementInliers = 96;
+// A local refinement looks at every n-th match so that there are about this many: enough for a motion far
+// more precise than a match, at a cost that does not grow with the frame.
+constexpr std::size_t kRefinementMatches = 192;
 // A motion from three matches is less precise than a match: the first rounds forgive it three and two times
 // the distance.
 constexpr double kRoundScales[] = {9, 4, 1};
@@ -18,7 +19,7 @@ constexpr double kRoundScales[] = {9, 4, 1};
 // reach this share of what the best refined one scores so.
 constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
-constexpr int kRefinementSteps = 3;
+constexpr int kRefinementSteps = 2;
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
@@ -26,11 +27,11 @@ bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
 
 }  // namespace
 
-Ransac::Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options, RobustLoss loss,
-               std::span<Candidate> scratch)
+Ransac::Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options,
+               const MotionProblem::Kernels& kernels, std::span<Candidate> scratch)
     : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
       options_(options),
-      loss_(loss) {
+      kernels_(kernels) {
   for (const bool samplable : {true, false})
     for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
       const ConstraintSet& set = *sets_[kind];
@@ -83,29 +84,41 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   return true;
 }
 
-// Scores a hypothesis; if it is the best so far, refines it, keeps it and returns true.
+// Scores a hypothesis; if it promises to be the best so far, refines it; if it is, keeps it and returns true.
 bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   ++summary.hypotheses;
-  const double fresh_score = score(T, kFreshScale, fresh_to_beat_);
+  const double fresh_score = score(T, fresh_to_beat_);
   if (!(fresh_score > fresh_to_beat_)) return false;
   fresh_to_beat_ = fresh_score;
   ++summary.refinements;
   refine(T);
-  const double new_score = score(T, 1, summary.score);
-  if (!(new_score > summary.score)) return false;
-  summary.score = new_score;
+
+  double refined_score = 0;
+  double refined_score_as_fresh = 0;
+  int inliers = 0;
+  for (const Candidate& candidate : candidates_) {
+    const double threshold = threshold_[candidate.kind];
+    const double s = sets_[candidate.kind]->mahalanobis_squared(candidate.index, T, kFreshScale * threshold);
+    if (s <= kFreshScale * threshold) refined_score_as_fresh += kFreshScale * threshold - s;
+    if (s > threshold) continue;
+    refined_score += threshold - s;
+    ++inliers;
+  }
+  if (!(refined_score > summary.score)) return false;
+  summary.score = refined_score;
   best = T;
-  judge(best);
-  const double share = kFreshShare * score(T, kFreshScale, 0);
+  inliers_ = inliers;
+  const double share = kFreshShare * refined_score_as_fresh;
   if (share > fresh_to_beat_) fresh_to_beat_ = share;
   return true;
 }
 
-double Ransac::score(const Se3& T, double scale, double to_beat) const {
+// The score of a fresh hypothesis, or 0 as soon as it cannot exceed to_beat.
+double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
-  for (const Candidate& candidate : candidates_) possible += scale * threshold_[candidate.kind];
+  for (const Candidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.kind];
   for (const Candidate& candidate : candidates_) {
-    const double threshold = scale * threshold_[candidate.kind];
+    const double threshold = kFreshScale * threshold_[candidate.kind];
     const double s = sets_[candidate.kind]->mahalanobis_squared(candidate.index, T, threshold);
     // A gain of threshold − s instead of threshold: what is still possible shrinks by s.
     possible -= s < threshold ? s : threshold;
@@ -115,17 +128,12 @@ double Ransac::score(const Se3& T, double scale, double to_beat) const {
 }
 
 void Ransac::refine(Se3& T) {
+  const int kept_inliers = inliers_;
+  const std::size_t stride = candidates_.size() / kRefinementMatches + 1;
   for (const double scale : kRoundScales) {
-    judge(T, scale);
-    if (inliers_ < 3) return;
-    // Every stride-th inlier, by integer arithmetic, when there are many.
-    const int stride = (inliers_ + kRefinementInliers - 1) / kRefinementInliers;
-    int k = 0;
-    for (const Candidate& candidate : candidates_) {
-      std::uint8_t& flag = sets_[candidate.kind]->inliers()[candidate.index];
-      if (flag != 0 && k++ % stride != 0) flag = 0;
-    }
-    MotionProblem problem(sets_, loss_, T);
+    judge(T, scale, stride);
+    if (inliers_ < 3) break;
+    MotionProblem problem(sets_, kernels_, T);
     LevenbergMarquardt<6> solver;
     LmOptions options;
     options.max_iterations = kRefinementSteps;
@@ -133,15 +141,18 @@ void Ransac::refine(Se3& T) {
     (void)solver.solve(problem, options);
     T = problem.T_current_reference();
   }
+  inliers_ = kept_inliers;
 }
 
-bool Ransac::judge(const Se3& T, double scale) {
+bool Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   bool changed = false;
   inliers_ = 0;
-  for (const Candidate& candidate : candidates_) {
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    const Candidate& candidate = candidates_[k];
     ConstraintSet& set = *sets_[candidate.kind];
     const double threshold = scale * threshold_[candidate.kind];
-    const std::uint8_t flag = set.mahalanobis_squared(candidate.index, T, threshold) <= threshold ? 1 : 0;
+    const std::uint8_t flag =
+        k % stride == 0 && set.mahalanobis_squared(candidate.index, T, threshold) <= threshold ? 1 : 0;
     std::uint8_t& old = set.inliers()[candidate.index];
     changed = changed || flag != old;
     old = flag;

@@ -51,8 +51,8 @@ constexpr std::span<Candidate> take_ransac_scratch(Memory& memory, std::size_t m
 class Ransac {
  public:
   // scratch holds a Candidate for every match of all sets; what does not fit is not looked at.
-  Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options, RobustLoss loss,
-         std::span<Candidate> scratch);
+  Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options,
+         const MotionProblem::Kernels& kernels, std::span<Candidate> scratch);
 
   // Usable matches, all of them, and those that may form minimal sets.
   std::size_t usable() const { return usable_; }
@@ -61,20 +61,20 @@ class Ransac {
   // The best motion found; false when no hypothesis scored at all.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
-  // Sets every inlier flag by the χ² test under T, with the thresholds scaled by `scale`; true when a flag
-  // changed.
-  bool judge(const Se3& T, double scale = 1);
+  // Sets the inlier flag of every stride-th match by the χ² test under T, with the thresholds scaled by
+  // `scale`, and clears the others; true when a flag changed.
+  bool judge(const Se3& T, double scale, std::size_t stride = 1);
   int inliers() const { return inliers_; }
 
  private:
-  double score(const Se3& T, double scale, double to_beat) const;
+  double score(const Se3& T, double to_beat) const;
   void refine(Se3& T);
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
   RansacOptions options_;
-  RobustLoss loss_;
+  MotionProblem::Kernels kernels_;
   std::span<Candidate> candidates_;  // those that may form minimal sets first
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;

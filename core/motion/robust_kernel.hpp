@@ -28,6 +28,7 @@ enum class RobustLoss : std::uint8_t {
 
 class RobustKernel {
  public:
+  RobustKernel() = default;
   RobustKernel(RobustLoss loss, int dof)
       : loss_(loss), dof_(dof), k_squared_(loss == RobustLoss::kHuber ? chi_square_quantile(dof, 0.95) : 0) {}
 
@@ -48,9 +49,9 @@ class RobustKernel {
 
  private:
   static constexpr double kNu = 5;
-  RobustLoss loss_;
-  int dof_;
-  double k_squared_;
+  RobustLoss loss_ = RobustLoss::kNone;
+  int dof_ = 1;
+  double k_squared_ = 0;
 };
 
 }  // namespace plvo

@@ -172,7 +172,7 @@ inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& 
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  MotionProblem problem(bench.sets, loss, start);
+  MotionProblem problem(bench.sets, MotionProblem::make_kernels(bench.sets, loss), start);
   LevenbergMarquardt<6> solver;
   const LmSummary summary = solver.solve(problem);
   T = problem.T_current_reference();
