@@ -18,7 +18,7 @@
 // stations, and the elimination reads
 //   c = e' − N e,   W = (C' + N C Nᵀ)⁻¹,   Schur complement J_ξᵀ W J_ξ,   gradient −J_ξᵀ W c,
 // with C = Vᵀ Λ V: one 4×4 Cholesky per line. Neither U nor the stations influence the result; tests/motion
-// proves it against a dense solve with 6-parameter landmarks and a pseudo-inverse.
+// proves it against a dense solve with 6-parameter landmarks and gauges of its own.
 #pragma once
 
 #include "plvo/base/match.hpp"
