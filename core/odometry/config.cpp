@@ -105,6 +105,7 @@ Config Config::paper() {
   config.depth_noise.registration_px = 0;
   config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
+  config.lines.fit = Line3dConfig::paper();
   return config;
 }
 
