@@ -6,6 +6,14 @@
 #include "plvo/odometry/stage_timer.hpp"
 
 namespace plvo {
+namespace {
+
+// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do. The second
+// stops far below what the sensor can tell.
+constexpr LmOptions kRough{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
+constexpr LmOptions kFine{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
+
+}  // namespace
 
 void PairEstimation::init(const CameraModel& camera, const Config& config) {
   camera_ = camera;
@@ -13,7 +21,8 @@ void PairEstimation::init(const CameraModel& camera, const Config& config) {
 }
 
 MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const FrameFeatures& current,
-                                     const Se3& T_predicted, Arena& scratch, TrackResult& result) {
+                                     const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
+                                     TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t n = point_tracks_.matches.size();
@@ -29,6 +38,7 @@ MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const Frame
   options.ransac.inlier_probability = config_.motion.inlier_probability;
   options.ransac.max_iterations = config_.motion.max_ransac_iterations;
   options.min_inliers = config_.motion.min_inliers;
+  options.lm = lm;
   options.loss = config_.motion.robust ? RobustLoss::kHuber : RobustLoss::kNone;
   ConstraintSet* const sets[] = {&points, &lines};
   const MotionEstimate estimate = estimate_motion(sets, options, config_.seed, &T_predicted, scratch);
@@ -58,7 +68,7 @@ MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const Fr
     match_predicted_lines(camera_.pinhole, reference.lines, current.lines, T_predicted, gates, scratch,
                           line_matches_);
   }
-  const MotionEstimate first = solve(reference, current, T_predicted, scratch, result);
+  const MotionEstimate first = solve(reference, current, T_predicted, kRough, scratch, result);
   if (first.status != StatusCode::kOk) return first;
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
@@ -69,7 +79,7 @@ MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const Fr
     match_predicted_lines(camera_.pinhole, reference.lines, current.lines, first.T_current_reference, gates,
                           scratch, line_matches_);
   }
-  return solve(reference, current, first.T_current_reference, scratch, result);
+  return solve(reference, current, first.T_current_reference, kFine, scratch, result);
 }
 
 }  // namespace plvo

@@ -53,7 +53,7 @@ class PairEstimation {
 
  private:
   MotionEstimate solve(const FrameFeatures& reference, const FrameFeatures& current, const Se3& T_predicted,
-                       Arena& scratch, TrackResult& result);
+                       const LmOptions& lm, Arena& scratch, TrackResult& result);
 
   CameraModel camera_;
   Config config_;

@@ -11,8 +11,10 @@ namespace plvo {
 namespace {
 
 constexpr int kRadius = kPatchRadius - 1;
-constexpr int kSide = 2 * kRadius + 1;
-constexpr int kPixels = kSide * kSide;
+// Eight columns, −4 … 3, and nine rows, −4 … 4: a row of 16-bit numbers fills a vector register of any board.
+constexpr int kColumns = 2 * kRadius;
+constexpr int kRows = 2 * kRadius + 1;
+constexpr int kPixels = kColumns * kRows;
 constexpr int kFractionBits = 5;  // of the bilinear weights: positions are read on a grid of 1/32 px
 
 // The four regressors of the template, in integers: 2·∂T/∂x, 2·∂T/∂y, T less its mean, 1; and their normal
@@ -30,9 +32,9 @@ Template make_template(const Patch& patch) {
   const std::int32_t mean = total / (kPatchSide * kPatchSide);
   std::array<std::int32_t, 10> sums{};
   std::size_t i = 0;
-  for (int y = 1; y <= kSide; ++y) {
+  for (int y = 1; y <= kRows; ++y) {
     const std::uint8_t* row = patch.data() + y * kPatchSide + 1;
-    for (int x = 0; x < kSide; ++x, ++i) {
+    for (int x = 0; x < kColumns; ++x, ++i) {
       const std::int32_t gx = row[x + 1] - row[x - 1];
       const std::int32_t gy = row[x + kPatchSide] - row[x - kPatchSide];
       const std::int32_t value = row[x] - mean;
@@ -62,34 +64,44 @@ struct Moments {
   double squared = 0;                       // Σ I²
 };
 
+// Blends each pixel with its right neighbour, weights g and f of 1/32, three fractional bits left.
+void blend_row(const std::uint8_t* pixels, std::uint16_t f, std::uint16_t g,
+               std::array<std::uint16_t, kColumns>& out) {
+  for (std::size_t c = 0; c < kColumns; ++c)
+    out[c] =
+        static_cast<std::uint16_t>(static_cast<std::uint16_t>(pixels[c] * g + pixels[c + 1] * f + 2) >> 2);
+}
+
 // (x, y): the position of the patch's centre, in 1/32 px; the window must lie inside the image.
 Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_t y) {
   constexpr std::int32_t kOne = 1 << kFractionBits;
-  const std::int32_t fx = x & (kOne - 1);
-  const std::int32_t fy = y & (kOne - 1);
-  const std::int32_t w00 = (kOne - fx) * (kOne - fy);
-  const std::int32_t w10 = fx * (kOne - fy);
-  const std::int32_t w01 = (kOne - fx) * fy;
-  const std::int32_t w11 = fx * fy;
-  const int x0 = (x >> kFractionBits) - kRadius;
-  const int y0 = (y >> kFractionBits) - kRadius;
-  // Intensities keep four fractional bits: at most 4080, so every sum of 81 products stays below 2^31.
-  constexpr int kDropped = 2 * kFractionBits - 4;
-  std::array<std::int32_t, kPixels> values;
-  std::size_t i = 0;
-  for (int dy = 0; dy < kSide; ++dy) {
-    const std::uint8_t* top = image.data + (y0 + dy) * image.stride + x0;
-    const std::uint8_t* bottom = top + image.stride;
-    for (int dx = 0; dx < kSide; ++dx, ++i) {
-      const std::int32_t sum = w00 * top[dx] + w10 * top[dx + 1] + w01 * bottom[dx] + w11 * bottom[dx + 1];
-      values[i] = (sum + (1 << (kDropped - 1))) >> kDropped;
-    }
+  const auto fx = static_cast<std::uint16_t>(x & (kOne - 1));
+  const auto fy = static_cast<std::uint16_t>(y & (kOne - 1));
+  const auto gx = static_cast<std::uint16_t>(kOne - fx);
+  const auto gy = static_cast<std::uint16_t>(kOne - fy);
+  const std::uint8_t* first =
+      image.data + ((y >> kFractionBits) - kRadius) * image.stride + (x >> kFractionBits) - kRadius;
+  // 16 bits throughout: after the horizontal blend three fractional bits are kept (≤ 2040), after the
+  // vertical one four (≤ 4080).
+  std::array<std::uint16_t, kColumns> above;
+  blend_row(first, fx, gx, above);
+  std::array<std::int16_t, kPixels> values;
+  for (std::size_t r = 0; r < kRows; ++r) {
+    std::array<std::uint16_t, kColumns> below;
+    blend_row(first + static_cast<std::ptrdiff_t>(r + 1) * image.stride, fx, gx, below);
+    for (std::size_t c = 0; c < kColumns; ++c)
+      values[r * kColumns + c] = static_cast<std::int16_t>(
+          static_cast<std::uint16_t>(static_cast<std::uint16_t>(above[c] * gy) +
+                                     static_cast<std::uint16_t>(below[c] * fy) + 8) >>
+          4);
+    above = below;
   }
+  // 72 products of at most 4080 · 510: below 2^31. Squares too, 72 · 4080².
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
   std::int32_t with_value = 0;
   std::int32_t sum = 0;
-  std::int64_t squared = 0;
+  std::int32_t squared = 0;
   for (std::size_t k = 0; k < kPixels; ++k) {
     with_gx += values[k] * t.gx[k];
     with_gy += values[k] * t.gy[k];

@@ -28,7 +28,7 @@ struct Alignment {
 };
 
 // patch: cut around whole pixel (px, py) of the reference's level. (start_x, start_y): where that pixel is
-// expected on the same level of the current image. Registers the inner 9×9 pixels.
+// expected on the same level of the current image. Registers an inner window of 8×9 pixels.
 Alignment align_patch(const Patch& patch, GrayView image, double start_x, double start_y,
                       const AlignmentOptions& options);
 

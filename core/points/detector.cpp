@@ -31,48 +31,46 @@ int contrast_threshold(GrayView image, const Cell& cell) {
   return (high - low) / 8;
 }
 
-// The strengths of the pixels of one cell (and a rim of one pixel) that pass the segment test; 0 elsewhere.
+// The segment test's scores in one cell and a rim of one pixel around it.
 class Tile {
  public:
-  explicit Tile(DetectionTile& storage) : strengths_(storage.strengths), mask_(storage.mask) {}
+  explicit Tile(DetectionTile& storage) : scores_(storage.scores) {}
 
-  // Number of pixels that passed.
-  int fill(GrayView image, const Cell& cell, int threshold) {
+  void fill(GrayView image, const Cell& cell) {
     cell_ = cell;
-    width_ = cell.x1 - cell.x0 + 2;
+    for (int y = cell.y0 - 1; y <= cell.y1; ++y)
+      segment_test_row(image.row(y) + cell.x0 - 1, image.stride, cell.x1 - cell.x0 + 2,
+                       scores_.data() + (y - cell.y0 + 1) * kTileSide);
+  }
+
+  // Pixels of the cell that pass at this threshold.
+  int count_above(int threshold) const {
     int count = 0;
-    for (int y = cell.y0 - 1; y <= cell.y1; ++y) {
-      float* line = strengths_.data() + (y - cell.y0 + 1) * kTileSide;
-      std::fill(line, line + width_, 0.0F);
-      const std::uint8_t* row = image.row(y) + cell.x0 - 1;
-      segment_pretest_row(row, image.stride, width_, threshold, mask_.data());
-      for (int i = 0; i < width_; ++i) {
-        if (mask_[static_cast<std::size_t>(i)] == 0 || !segment_test(row + i, image.stride, threshold))
-          continue;
-        line[i] = static_cast<float>(corner_strength(image, cell.x0 - 1 + i, y));
-        ++count;
-      }
+    for (int y = cell_.y0; y < cell_.y1; ++y) {
+      const std::uint8_t* line = at(cell_.x0, y);
+      for (int i = 0; i < cell_.x1 - cell_.x0; ++i) count += line[i] > threshold ? 1 : 0;
     }
     return count;
   }
 
-  // The larger of two equal neighbours is the one that comes first: the suppression has a total order.
+  std::uint8_t score(int x, int y) const { return *at(x, y); }
+
+  // Of equal neighbours the first is the maximum: the suppression has a total order.
   bool is_maximum(int x, int y) const {
-    const float* s = strengths_.data() + (y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1);
-    const float centre = *s;
-    return centre > 0 && s[-kTileSide - 1] < centre && s[-kTileSide] < centre && s[-kTileSide + 1] < centre &&
+    const std::uint8_t* s = at(x, y);
+    const std::uint8_t centre = *s;
+    return s[-kTileSide - 1] < centre && s[-kTileSide] < centre && s[-kTileSide + 1] < centre &&
            s[-1] < centre && s[1] <= centre && s[kTileSide - 1] <= centre && s[kTileSide] <= centre &&
            s[kTileSide + 1] <= centre;
   }
-  float strength(int x, int y) const {
-    return strengths_[static_cast<std::size_t>((y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1))];
-  }
 
  private:
+  const std::uint8_t* at(int x, int y) const {
+    return scores_.data() + (y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1);
+  }
+
   Cell cell_{};
-  int width_ = 0;
-  std::array<float, kTileSide * kTileSide>& strengths_;
-  std::array<std::uint8_t, kTileSide>& mask_;
+  std::array<std::uint8_t, kTileSide * kTileSide>& scores_;
 };
 
 // The strongest of a cell, strongest first; a later equal never overtakes.
@@ -111,22 +109,21 @@ struct Search {
 
 void search_cell(Search& search, Tile& tile, int level, const Cell& cell) {
   const GrayView image = search.pyramid.level(level);
-  // Three thresholds at the most: each halves the one before.
+  tile.fill(image, cell);
+  // Half the threshold and half again, while the cell has too few: at most seven times.
   int threshold = std::max(search.options.noise_floor, contrast_threshold(image, cell));
   constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
-  for (int pass = 0; pass < 3; ++pass) {
-    const int passed = tile.fill(image, cell, threshold);
-    if (passed >= kEnoughPixels || threshold == search.options.noise_floor) break;
+  while (threshold > search.options.noise_floor && tile.count_above(threshold) < kEnoughPixels)
     threshold = std::max(search.options.noise_floor, threshold / 2);
-  }
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int x = cell.x0; x < cell.x1; ++x) {
-      if (!tile.is_maximum(x, y) || tile.strength(x, y) < static_cast<float>(search.options.min_strength))
-        continue;
+      if (tile.score(x, y) <= threshold || !tile.is_maximum(x, y)) continue;
+      const auto strength = static_cast<float>(corner_strength(image, x, y));
+      if (strength < static_cast<float>(search.options.min_strength)) continue;
       ++search.found;
       if (search.depth.at(x << level, y << level) <= 0) continue;
-      best.insert({tile.strength(x, y), static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+      best.insert({strength, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
                    static_cast<std::uint8_t>(level), 0});
     }
   }

@@ -33,7 +33,7 @@ inline constexpr int kKeypointMargin = 17;
 // At most so many keypoints of one cell are considered at all.
 inline constexpr int kKeypointsPerCell = 16;
 
-// A corner that competes for a place, and the map of one cell's corner strengths with a rim of one pixel,
+// A corner that competes for a place, and the map of one cell's segment test scores with a rim of one pixel,
 // which the non-maximum suppression looks at.
 struct DetectionCandidate {
   float strength;
@@ -43,8 +43,7 @@ struct DetectionCandidate {
 };
 struct DetectionTile {
   static constexpr int kSide = kMaxCell + 2;
-  std::array<float, kSide * kSide> strengths;
-  std::array<std::uint8_t, kSide> mask;
+  std::array<std::uint8_t, kSide * kSide> scores;
 };
 
 // Cells of one level.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The segment test (Rosten & Drummond, "Machine learning for high-speed corner detection", ECCV 2006): a
-// pixel is a corner candidate when nine contiguous pixels of the sixteen on the circle of radius three around
-// it are all brighter, or all darker, by more than a threshold.
+// pixel is a corner when nine contiguous pixels of the sixteen on the circle of radius three around it are
+// all brighter, or all darker, by more than a threshold. What is computed here is the largest such threshold,
+// for whole rows at once, so that a threshold can be chosen afterwards.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,10 @@
 
 namespace plvo {
 
-// centre points at the pixel, stride is its image's; three pixels of margin on every side.
-bool segment_test(const std::uint8_t* centre, std::ptrdiff_t stride, int threshold);
-
-// The test of 4 pixels that any corner must pass; for whole rows at once. mask[i] ≠ 0 where segment_test(row
-// + i) may be true; where it is 0, segment_test is false.
-void segment_pretest_row(const std::uint8_t* row, std::ptrdiff_t stride, int width, int threshold,
-                         std::uint8_t* mask);
+// scores[i]: the pixel row[i] passes the segment test for every threshold t < scores[i] (grey levels; 0: for
+// none). row points into an image of that stride with three pixels of margin on every side; scores does not
+// overlap it.
+void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
+                      std::uint8_t* __restrict scores);
 
 }  // namespace plvo
