@@ -11,19 +11,16 @@ void UndistortionTable::init(const CameraModel& camera) {
   active_ = !camera.distortion.is_zero();
   if (!active_) return;
   constexpr double kScale = 1 << kFractionBits;
+  last_x_ = static_cast<std::uint16_t>(((width_ - 1) << kFractionBits) - 1);
+  last_y_ = static_cast<std::uint16_t>(((height_ - 1) << kFractionBits) - 1);
+  const auto entry_of = [](double position_px, std::uint16_t last) {
+    return static_cast<std::uint16_t>(std::clamp(position_px * kScale, 0.0, static_cast<double>(last)));
+  };
   for (int y = 0; y < height_; ++y) {
     Entry* row = entries_.data() + static_cast<std::ptrdiff_t>(y) * width_;
     for (int x = 0; x < width_; ++x) {
       const Vector2 raw = distort_pixel(camera, {static_cast<double>(x), static_cast<double>(y)});
-      // A bilinear read touches the next pixel too: the last row and column count as outside.
-      const bool inside = raw.x() >= 0 && raw.y() >= 0 && raw.x() < width_ - 1 && raw.y() < height_ - 1;
-      row[x] = inside ? Entry{static_cast<std::uint16_t>(raw.x() * kScale),
-                              static_cast<std::uint16_t>(raw.y() * kScale)}
-                      : Entry{kOutside, 0};
-      if (inside) continue;
-      // Remember the nearest border pixel in y, which has room beside the mark in x.
-      const double clamped_y = std::clamp(raw.y(), 0.0, height_ - 1.0);
-      row[x].y = static_cast<std::uint16_t>(clamped_y * kScale);
+      row[x] = {entry_of(raw.x(), last_x_), entry_of(raw.y(), last_y_)};
     }
   }
 }
@@ -36,10 +33,6 @@ void UndistortionTable::undistort(GrayView raw, ImageView<std::uint8_t> ideal) c
     std::uint8_t* out = ideal.row(y);
     for (int x = 0; x < width_; ++x) {
       const Entry entry = row[x];
-      if (entry.x == kOutside) {
-        out[x] = raw.at(x < width_ / 2 ? 0 : width_ - 1, entry.y >> kFractionBits);
-        continue;
-      }
       const std::uint8_t* top =
           raw.data + (entry.y >> kFractionBits) * raw.stride + (entry.x >> kFractionBits);
       const std::uint8_t* bottom = top + raw.stride;

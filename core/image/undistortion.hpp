@@ -44,18 +44,20 @@ class UndistortionTable {
     constexpr int kHalf = 1 << (kFractionBits - 1);
     raw_x = (entry.x + kHalf) >> kFractionBits;
     raw_y = (entry.y + kHalf) >> kFractionBits;
-    return entry.x != kOutside;
+    return entry.x != 0 && entry.y != 0 && entry.x != last_x_ && entry.y != last_y_;
   }
 
  private:
   struct Entry {
     std::uint16_t x, y;  // 1/32 px
   };
-  static constexpr std::uint16_t kOutside = 0xffff;
-
+  // What the camera did not see is entered at the border nearest to it. A bilinear read touches the next
+  // pixel too: the last position is just before the last pixel.
   std::span<Entry> entries_;
   int width_ = 0;
   int height_ = 0;
+  std::uint16_t last_x_ = 0;
+  std::uint16_t last_y_ = 0;
   bool active_ = false;
 };
 

@@ -8,8 +8,8 @@
 namespace plvo {
 namespace {
 
-// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do. The second
-// stops far below what the sensor can tell.
+// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
+// The second stops far below what the sensor can tell.
 constexpr LmOptions kRough{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
 constexpr LmOptions kFine{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
 

@@ -7,6 +7,9 @@
 namespace plvo {
 namespace {
 
+// What only serves to find the motion roughly need not be registered finely.
+constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
+
 // Where the reference keypoint's 3D point is seen after the motion.
 Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
   constexpr double kNearest_m = 0.1;
@@ -21,14 +24,14 @@ Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_
 
 // Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
 void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i, double u,
-                       double v, PointTracks& tracks) {
+                       double v, const AlignmentOptions& options, PointTracks& tracks) {
   const Keypoint& keypoint = reference.keypoints[i];
   const double scale = 1 << keypoint.level;
   // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
   const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
   const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
   const Alignment alignment = align_patch(reference.patches[i], view.pyramid.level(keypoint.level),
-                                          u / scale - offset_x, v / scale - offset_y, AlignmentOptions{});
+                                          u / scale - offset_x, v / scale - offset_y, options);
   if (!alignment.ok) return;
   const Vector2 pixel((alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale);
   const DepthSample depth = view.depth.sample(pixel.x(), pixel.y());
@@ -62,7 +65,7 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   match_points(reference, predictions, current, image.width, image.height, options, scratch, putative);
   for (const Match& match : putative) {
     const Keypoint& found = current.keypoints[match.current];
-    register_keypoint(view, reference, match.reference, found.u, found.v, tracks);
+    register_keypoint(view, reference, match.reference, found.u, found.v, kRough, tracks);
   }
 }
 
@@ -71,7 +74,8 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference, c
   tracks.matches.clear();
   for (std::size_t i = 0; i < reference.keypoints.size(); ++i) {
     const Prediction prediction = predict(view, reference.points[i], T_current_reference);
-    if (prediction.visible) register_keypoint(view, reference, i, prediction.u, prediction.v, tracks);
+    if (prediction.visible)
+      register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{}, tracks);
   }
 }
 

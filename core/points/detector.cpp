@@ -11,7 +11,7 @@ namespace plvo {
 namespace {
 
 using Candidate = DetectionCandidate;
-constexpr int kTileSide = DetectionTile::kSide;
+constexpr int kTileStride = DetectionTile::kStride;
 
 struct Cell {
   int x0, y0, x1, y1;  // pixels of its level, half open
@@ -38,9 +38,12 @@ class Tile {
 
   void fill(GrayView image, const Cell& cell) {
     cell_ = cell;
+    // Whole vectors: the pixels beyond the rim are computed and not looked at. The keypoints' margin keeps
+    // them in the image's memory.
+    const int width = (cell.x1 - cell.x0 + 2 + 15) / 16 * 16;
     for (int y = cell.y0 - 1; y <= cell.y1; ++y)
-      segment_test_row(image.row(y) + cell.x0 - 1, image.stride, cell.x1 - cell.x0 + 2,
-                       scores_.data() + (y - cell.y0 + 1) * kTileSide);
+      segment_test_row(image.row(y) + cell.x0 - 1, image.stride, width,
+                       scores_.data() + (y - cell.y0 + 1) * kTileStride);
   }
 
   // Pixels of the cell that pass at this threshold.
@@ -59,18 +62,18 @@ class Tile {
   bool is_maximum(int x, int y) const {
     const std::uint8_t* s = at(x, y);
     const std::uint8_t centre = *s;
-    return s[-kTileSide - 1] < centre && s[-kTileSide] < centre && s[-kTileSide + 1] < centre &&
-           s[-1] < centre && s[1] <= centre && s[kTileSide - 1] <= centre && s[kTileSide] <= centre &&
-           s[kTileSide + 1] <= centre;
+    return s[-kTileStride - 1] < centre && s[-kTileStride] < centre && s[-kTileStride + 1] < centre &&
+           s[-1] < centre && s[1] <= centre && s[kTileStride - 1] <= centre && s[kTileStride] <= centre &&
+           s[kTileStride + 1] <= centre;
   }
 
  private:
   const std::uint8_t* at(int x, int y) const {
-    return scores_.data() + (y - cell_.y0 + 1) * kTileSide + (x - cell_.x0 + 1);
+    return scores_.data() + (y - cell_.y0 + 1) * kTileStride + (x - cell_.x0 + 1);
   }
 
   Cell cell_{};
-  std::array<std::uint8_t, kTileSide * kTileSide>& scores_;
+  decltype(DetectionTile::scores)& scores_;
 };
 
 // The strongest of a cell, strongest first; a later equal never overtakes.

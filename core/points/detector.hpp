@@ -42,8 +42,8 @@ struct DetectionCandidate {
   std::uint8_t rank;  // among its cell's
 };
 struct DetectionTile {
-  static constexpr int kSide = kMaxCell + 2;
-  std::array<std::uint8_t, kSide * kSide> scores;
+  static constexpr int kStride = (kMaxCell + 2 + 15) / 16 * 16;
+  std::array<std::uint8_t, kStride*(kMaxCell + 2)> scores;
 };
 
 // Cells of one level.
