@@ -78,10 +78,13 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& opti
     for (std::size_t kind = 0; kind < sets.size(); ++kind)
       estimate.information[kind] = problem.information(kind);
   }
+  // What is not determined does not converge either: say the cause, not the symptom.
+  if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
+      !invert_information(solver.hessian(), options, estimate.C_H))
+    return StatusCode::kDegenerate;
+  // kStalled is as good as converged: no step in any direction lowers the cost any more.
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
     return StatusCode::kNotConverged;
-  if (!T.is_finite() || !invert_information(solver.hessian(), options, estimate.C_H))
-    return StatusCode::kDegenerate;
   estimate.T_current_reference = T;
   return StatusCode::kOk;
 }

@@ -31,8 +31,9 @@ struct MotionOptions {
   // matches.
   int min_inliers = 6;
   double min_inlier_ratio = 0.1;
-  // kDegenerate when the SD of the translation (rotation) in its worst direction exceeds this: some degree of
-  // freedom is then held by noise alone (all lines parallel, all points on a line, …).
+  // kDegenerate when the SD of the translation (rotation) in its worst direction exceeds this, when the
+  // information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or when no minimal set of
+  // the consensus is free of degeneracy: all lines parallel, all points on a line, …
   double max_sigma_m = 0.1;
   double max_sigma_rad = 0.1;
 };

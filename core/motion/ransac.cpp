@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/ransac.hpp"
 
-#include "plvo/base/random.hpp"
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -19,6 +18,8 @@ constexpr double kRoundScales[] = {9, 4, 1};
 // reach this share of what the best refined one scores so.
 constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
+// Sets drawn from the consensus until one is not degenerate.
+constexpr int kDegeneracyDraws = 200;
 constexpr int kRefinementSteps = 2;
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
@@ -57,22 +58,8 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
     int needed = iterations_needed();
     while (summary.iterations < needed && summary.draws < 4 * options_.max_iterations) {
       ++summary.draws;
-      // Three different numbers below n without a loop: draw from n, n − 1, n − 2 and step over those already
-      // drawn.
-      std::uint32_t a = random.below(n);
-      std::uint32_t b = random.below(n - 1);
-      std::uint32_t c = random.below(n - 2);
-      if (b >= a) ++b;
-      const std::uint32_t low = a < b ? a : b;
-      const std::uint32_t high = a < b ? b : a;
-      if (c >= low) ++c;
-      if (c >= high) ++c;
-      const auto primitive = [&](std::uint32_t k) {
-        return sets_[candidates_[k].kind]->primitive(candidates_[k].index);
-      };
       Se3 hypothesis;
-      const MinimalSetStatus status =
-          solve_minimal_set({primitive(a), primitive(b), primitive(c)}, R_expected, hypothesis);
+      const MinimalSetStatus status = solve_minimal_set(draw(random, n), R_expected, hypothesis);
       if (status == MinimalSetStatus::kDegenerate) continue;
       ++summary.iterations;
       if (status == MinimalSetStatus::kInconsistent || !hypothesis.is_finite()) continue;
@@ -82,6 +69,41 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   if (!(summary.score > 0)) return false;
   T = best;
   return true;
+}
+
+// Three different matches of the first n, n ≥ 3, without a loop: numbers below n, n − 1 and n − 2 that step
+// over those already drawn.
+std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
+  const std::uint32_t a = random.below(n);
+  std::uint32_t b = random.below(n - 1);
+  std::uint32_t c = random.below(n - 2);
+  if (b >= a) ++b;
+  const std::uint32_t low = a < b ? a : b;
+  const std::uint32_t high = a < b ? b : a;
+  if (c >= low) ++c;
+  if (c >= high) ++c;
+  const auto primitive = [&](std::uint32_t k) {
+    return sets_[candidates_[k].kind]->primitive(candidates_[k].index);
+  };
+  return {primitive(a), primitive(b), primitive(c)};
+}
+
+bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
+  std::uint32_t n = 0;
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (sets_[candidates_[k].kind]->inliers()[candidates_[k].index] == 0) continue;
+    if (k >= samplable_) return true;  // a kind that minimal sets know nothing of: left to its covariance
+    const Candidate inlier = candidates_[k];
+    candidates_[k] = candidates_[n];
+    candidates_[n++] = inlier;
+  }
+  if (n < 3) return false;
+  Random random(seed, 2);
+  Se3 unused;
+  for (int i = 0; i < kDegeneracyDraws; ++i)
+    if (solve_minimal_set(draw(random, n), Matrix3::Identity(), unused) != MinimalSetStatus::kDegenerate)
+      return true;
+  return false;
 }
 
 // Scores a hypothesis; if it promises to be the best so far, refines it; if it is, keeps it and returns true.

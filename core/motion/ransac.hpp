@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <span>
 
+#include "plvo/base/random.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/constraint_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -66,7 +67,13 @@ class Ransac {
   bool judge(const Se3& T, double scale, std::size_t stride = 1);
   int inliers() const { return inliers_; }
 
+  // False when no minimal set of the flagged inliers fixes the motion: all lines parallel, all points on a
+  // line. The covariance cannot tell: noise in the directions of parallel lines looks like information.
+  // Reorders the scratch.
+  bool consensus_fixes_motion(std::uint64_t seed);
+
  private:
+  std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   void refine(Se3& T);
   bool consider(Se3 T, Se3& best, RansacSummary& summary);

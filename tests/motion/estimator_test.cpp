@@ -92,5 +92,212 @@ TEST(Estimator, NaNsAreLeftOut) {
   for (int i : {3, 4, 5}) EXPECT_EQ(bench.points[0].inliers()[static_cast<std::size_t>(i)], 0);
 }
 
+TEST(Estimator, OneWrongHugeCovarianceDoesNoHarm) {
+  Gaussian gaussian(13);
+  SimulatedPair pair = test::simulate(gaussian, 60, 20);
+  Bench bench;
+  const MotionEstimate before = bench.estimate(pair);
+  pair.points_reference[0].Sigma *= 1e12;  // refused: more than a metre
+  pair.lines_reference[0].Sigma *= 1e12;
+  pair.points_reference[1].Sigma = 0.3 * Matrix3::Identity();  // taken, and worth nothing
+  const MotionEstimate after = bench.estimate(pair);
+  ASSERT_EQ(before.status, StatusCode::kOk);
+  ASSERT_EQ(after.status, StatusCode::kOk);
+  expect_finite(after);
+  EXPECT_EQ(after.usable[0], 59);
+  EXPECT_EQ(after.usable[1], 19);
+  EXPECT_LT(test::nees(after.T_current_reference, pair.truth, after.C_H.inverse()), 30);
+}
+
+// Everything that cannot fix six degrees of freedom is refused, never answered with nonsense.
+void expect_refused(const SimulatedPair& pair) {
+  Bench bench;
+  for (const Se3* prediction : {static_cast<const Se3*>(nullptr), &pair.truth}) {
+    const MotionEstimate estimate = bench.estimate(pair, {}, 3, prediction);
+    EXPECT_TRUE(estimate.status == StatusCode::kDegenerate || estimate.status == StatusCode::kNoConsensus)
+        << static_cast<int>(estimate.status);
+    expect_finite(estimate);
+    EXPECT_TRUE(estimate.T_current_reference.R.isIdentity());
+    EXPECT_EQ(estimate.inliers[0] + estimate.inliers[1], 0);
+  }
+}
+
+TEST(Estimator, CollinearPointsAreDegenerate) {
+  Gaussian gaussian(14);
+  SimulatedPair pair;
+  pair.truth = test::random_motion(gaussian);
+  for (int i = 0; i < 40; ++i)
+    pair.add_point(gaussian, Vector3(-0.8, 0.1, 2) + 0.04 * i * Vector3(1, 0.1, 0.2));
+  expect_refused(pair);
+}
+
+TEST(Estimator, ParallelLinesAreDegenerate) {
+  Gaussian gaussian(15);
+  SimulatedPair pair;
+  pair.truth = test::random_motion(gaussian);
+  for (int i = 0; i < 30; ++i) {
+    const Vector3 a = test::random_point(gaussian);
+    pair.add_line(gaussian, a, a + Vector3(0, 0.6, 0));
+  }
+  expect_refused(pair);
+}
+
+TEST(Estimator, CoplanarFeaturesAreFine) {
+  Gaussian gaussian(16);
+  SimulatedPair pair;
+  pair.truth = test::random_motion(gaussian);
+  const auto on_wall = [&] { return Vector3(gaussian.uniform(-1, 1), gaussian.uniform(-0.8, 0.8), 2); };
+  for (int i = 0; i < 40; ++i) pair.add_point(gaussian, on_wall());
+  Bench bench;
+  EXPECT_EQ(bench.estimate(pair).status, StatusCode::kOk);
+  for (int i = 0; i < 20; ++i) pair.add_line(gaussian, on_wall(), on_wall());
+  EXPECT_EQ(bench.estimate(pair).status, StatusCode::kOk);
+  pair.point_matches.clear();
+  EXPECT_EQ(bench.estimate(pair).status, StatusCode::kOk) << "lines alone";
+}
+
+TEST(Estimator, NoiseAloneIsNoConsensus) {
+  Gaussian gaussian(17);
+  const SimulatedPair pair = test::simulate(gaussian, 60, 20, 1.0);
+  Bench bench;
+  const MotionEstimate estimate = bench.estimate(pair);
+  EXPECT_EQ(estimate.status, StatusCode::kNoConsensus);
+  expect_finite(estimate);
+}
+
+TEST(Estimator, BoundsHold) {
+  Gaussian gaussian(18);
+  const SimulatedPair pair = test::simulate(gaussian, 100, 30, 0.9);
+  Bench bench;
+  MotionOptions options;
+  options.ransac.max_iterations = 50;
+  options.lm.max_iterations = 1;
+  const MotionEstimate estimate = bench.estimate(pair, options);
+  EXPECT_LE(estimate.ransac.iterations, 50);
+  EXPECT_LE(estimate.ransac.draws, 200);
+  EXPECT_LE(estimate.lm.iterations, 1);
+  expect_finite(estimate);
+}
+
+TEST(Estimator, APredictionIsHypothesisZero) {
+  Gaussian gaussian(19);
+  const SimulatedPair pair = test::simulate(gaussian, 60, 20, 0.5);
+  Bench bench;
+  MotionOptions options;
+  options.ransac.max_iterations = 0;
+  EXPECT_EQ(bench.estimate(pair, options).status, StatusCode::kNoConsensus);
+  const Se3 rough = boxplus(pair.truth, (Vector6() << 0.01, -0.01, 0.005, 0.005, 0.002, -0.003).finished());
+  const MotionEstimate estimate = bench.estimate(pair, options, 1, &rough);
+  ASSERT_EQ(estimate.status, StatusCode::kOk);
+  EXPECT_EQ(estimate.ransac.draws, 0);
+  EXPECT_LT(test::nees(estimate.T_current_reference, pair.truth, estimate.C_H.inverse()), 30);
+  const Se3 broken = {Matrix3::Constant(kNaN), Vector3::Zero()};
+  expect_finite(bench.estimate(pair, {}, 1, &broken));
+}
+
+TEST(Estimator, AFullArenaIsSaid) {
+  Gaussian gaussian(20);
+  const SimulatedPair pair = test::simulate(gaussian, 60, 0);
+  Bench bench;
+  bench.load(pair);
+  std::vector<std::byte> nothing(64);
+  Arena full{std::span<std::byte>(nothing)};
+  (void)full.take<std::byte>("test", 64);
+  EXPECT_EQ(estimate_motion(bench.sets, {}, 1, nullptr, full).status, StatusCode::kOutOfMemory);
+}
+
+TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
+  Gaussian gaussian(21);
+  const SimulatedPair pair = test::simulate(gaussian, 100, 30);
+  constexpr std::size_t kNeeded = [] {
+    ArenaSizer sizer;
+    size_motion(sizer, 100, 30);
+    return sizer.peak();
+  }();
+  Bench bench(kNeeded + kArenaAlignment);
+  EXPECT_EQ(bench.estimate(pair).status, StatusCode::kOk);
+  EXPECT_FALSE(bench.arena.exhausted());
+  EXPECT_LE(bench.arena.peak(), kNeeded);
+  EXPECT_LT(bench.arena.used(), bench.arena.peak());
+}
+
+// A third kind moves in: points of the current frame on known planes of the reference frame (a stand-in for
+// surface samples from depth alone). One degree of freedom each, no landmark, no part in minimal sets;
+// nothing else changes.
+class PlaneSamples final : public ConstraintSet {
+ public:
+  struct Sample {
+    Vector3 normal, on_plane, measured;  // reference, reference, current
+    double sigma;
+  };
+  PlaneSamples(std::span<const Sample> samples, std::span<std::uint8_t> flags)
+      : ConstraintSet(flags), samples_(samples) {}
+  std::size_t size() const override { return samples_.size(); }
+  int dof() const override { return 1; }
+  bool usable(std::size_t) const override { return true; }
+  Primitive primitive(std::size_t) const override { return {}; }
+  double mahalanobis_squared(std::size_t i, const Se3& T, double) const override {
+    const double r = residual(samples_[i], T) / samples_[i].sigma;
+    return r * r;
+  }
+  void begin() override {}
+  void accept() override {}
+  double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) override {
+    double cost = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (inliers_[i] == 0) continue;
+      const Sample& sample = samples_[i];
+      // r = nᵀ R⁻¹ (x − t) − nᵀ q; with n' = R n: ∂r/∂v = −n', ∂r/∂ω = −(x − t) × n' … of nᵀ Rᵀ Exp(−ω)(x −
+      // t).
+      const Vector3 n = T.R * sample.normal;
+      const Vector3 x = sample.measured - T.t;
+      Vector6 J;
+      J << -n, Vector3(-x.cross(n));
+      const double information = 1 / (sample.sigma * sample.sigma);
+      const double r = residual(sample, T);
+      double weight = 1;
+      cost += 0.5 * kernel(r * r * information, weight);
+      H += weight * information * J * J.transpose();
+      g += weight * information * r * J;
+    }
+    return cost;
+  }
+
+ private:
+  static double residual(const Sample& sample, const Se3& T) {
+    return sample.normal.dot(T.inverse() * sample.measured - sample.on_plane);
+  }
+  std::span<const Sample> samples_;
+};
+
+TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
+  Gaussian gaussian(22);
+  double error_without = 0, error_with = 0, sum_nees = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    const SimulatedPair pair = test::simulate(gaussian, 20, 0);
+    std::vector<PlaneSamples::Sample> samples;
+    for (int i = 0; i < 300; ++i) {
+      const Vector3 normal = Vector3::Unit(i % 3);
+      const Vector3 q = test::random_point(gaussian);
+      samples.push_back({normal, q, pair.truth * Vector3(q + 0.002 * gaussian() * normal), 0.002});
+    }
+    std::vector<std::uint8_t> flags(samples.size());
+    Bench bench;
+    bench.load(pair);
+    PlaneSamples planes(samples, flags);
+    const MotionEstimate without = estimate_motion(bench.sets, {}, 1, nullptr, bench.arena);
+    bench.sets.push_back(&planes);
+    const MotionEstimate with = estimate_motion(bench.sets, {}, 1, nullptr, bench.arena);
+    ASSERT_EQ(without.status, StatusCode::kOk);
+    ASSERT_EQ(with.status, StatusCode::kOk);
+    EXPECT_GT(with.inliers[2], 280);
+    error_without += boxminus(without.T_current_reference, pair.truth).norm();
+    error_with += boxminus(with.T_current_reference, pair.truth).norm();
+    sum_nees += test::nees(with.T_current_reference, pair.truth, with.C_H.inverse());
+  }
+  EXPECT_LT(error_with, 0.5 * error_without);
+  EXPECT_NEAR(sum_nees / 50, 6, 2.5);
+}
+
 }  // namespace
 }  // namespace plvo
