@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/image/depth_sampler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "plvo/base/arena.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kWidth = 48;
+constexpr int kHeight = 36;
+constexpr double kUnit = 5e-5;  // m: fine steps, so that only the sampler's own errors are seen
+
+// A depth image made from a function of the pixel, in metres; no lens.
+struct Scene {
+  template <typename Function>
+  explicit Scene(Function depth_m) : units(kWidth * kHeight) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        units[static_cast<std::size_t>(y * kWidth + x)] =
+            static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
+  }
+  DepthSampler sampler(double registration_px = 0) const {
+    DepthNoise noise;
+    noise.registration_px = registration_px;
+    return {{units.data(), kWidth, kHeight, kWidth, kUnit}, table, noise};
+  }
+  std::vector<std::uint16_t> units;
+  UndistortionTable table;
+};
+
+// A plane of the world is one in inverse depth: q = q0 + qx x + qy y.
+struct Plane {
+  double q0, qx, qy;
+  double operator()(double x, double y) const { return 1 / (q0 + qx * x + qy * y); }
+};
+
+TEST(DepthSampler, ASlantedPlaneIsRecoveredBetweenThePixels) {
+  for (const Plane& plane : {Plane{0.8, 0, 0}, Plane{0.7, 0.002, 0}, Plane{0.9, -0.001, 0.0015}}) {
+    const Scene scene(plane);
+    const DepthSampler sampler = scene.sampler();
+    for (double v = 3; v < kHeight - 3; v += 3.37)
+      for (double u = 3; u < kWidth - 3; u += 4.19)
+        for (int radius : {1, 2, 3}) {
+          const DepthSample sample = sampler.sample(u, v, radius);
+          ASSERT_NEAR(sample.depth_m, plane(u, v), kUnit) << u << " " << v;
+          ASSERT_FALSE(sample.on_edge);
+          ASSERT_NEAR(sample.sigma_m, sampler.noise().sigma(plane(u, v)), 1e-6);
+        }
+  }
+}
+
+TEST(DepthSampler, ASlopeWidensSigmaByTheRegistration) {
+  const Plane plane{0.7, 0.002, 0.001};
+  const Scene scene(plane);
+  const double u = 20.3, v = 17.8;
+  const double z = plane(u, v);
+  const double slope = z * z * std::sqrt(plane.qx * plane.qx + plane.qy * plane.qy);  // m / px
+  for (double registration : {0.5, 2.0}) {
+    const DepthSampler sampler = scene.sampler(registration);
+    const double expected = std::hypot(sampler.noise().sigma(z), registration * slope);
+    EXPECT_NEAR(sampler.sample(u, v).sigma_m, expected, 0.02 * expected);
+    EXPECT_GT(sampler.sample(u, v).sigma_m, sampler.noise().sigma(z));
+  }
+  const Scene flat([](int, int) { return 1.4; });
+  EXPECT_NEAR(flat.sampler(2).sample(u, v).sigma_m, DepthNoise{}.sigma(1.4), 1e-6);
+}
+
+TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
+  // The nearer surface ends with column 23.
+  const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
+  const DepthSampler sampler = scene.sampler();
+  for (double u : {22.0, 23.0, 23.4, 24.0, 25.0}) {
+    const DepthSample sample = sampler.sample(u, 18);
+    EXPECT_NEAR(sample.depth_m, 1.0, 1e-9) << u;
+    EXPECT_TRUE(sample.on_edge) << u;
+    EXPECT_NEAR(sample.sigma_m, 2 * sampler.noise().sigma(1.0), 1e-9) << u;
+  }
+  EXPECT_NEAR(sampler.sample(21, 18).depth_m, 1.0, 1e-9);
+  EXPECT_FALSE(sampler.sample(21, 18).on_edge);
+  EXPECT_NEAR(sampler.sample(26, 18).depth_m, 1.5, 1e-9);
+  EXPECT_FALSE(sampler.sample(26, 18).on_edge);
+}
+
+TEST(DepthSampler, NoiseAndSteepSurfacesAreNoEdge) {
+  // Six sigma, or 4 % of the depth, whichever is more.
+  const auto step = [](double jump_m) {
+    return Scene([=](int x, int) { return x <= 23 ? 1.0 : 1.0 + jump_m; });
+  };
+  EXPECT_FALSE(step(0.039).sampler().sample(23, 18).on_edge);
+  EXPECT_TRUE(step(0.041).sampler().sample(23, 18).on_edge);
+}
+
+TEST(DepthSampler, AHalfEmptyWindowHasNoDepth) {
+  Scene scene([](int, int) { return 1.2; });
+  const auto clear = [&](int count) {
+    // The first `count` pixels of the 5×5 window around (20, 15).
+    for (int i = 0; i < count; ++i)
+      scene.units[static_cast<std::size_t>((13 + i / 5) * kWidth + 18 + i % 5)] = 0;
+  };
+  clear(12);
+  EXPECT_NEAR(scene.sampler().sample(20, 15).depth_m, 1.2, 1e-9) << "13 of 25 are left";
+  clear(13);
+  EXPECT_EQ(scene.sampler().sample(20, 15).depth_m, 0) << "12 of 25 are left";
+  EXPECT_EQ(scene.sampler().sample(20, 15).sigma_m, 0);
+  const Scene empty([](int, int) { return 0.0; });
+  EXPECT_EQ(empty.sampler().sample(20, 15).depth_m, 0);
+}
+
+TEST(DepthSampler, AtTheBorderTheWindowIsWhatTheImageHolds) {
+  const Plane plane{0.7, 0.001, 0.0007};
+  const Scene scene(plane);
+  const DepthSampler sampler = scene.sampler();
+  EXPECT_EQ(sampler.sample(0, 0).depth_m, 0) << "a corner holds 9 of 25 pixels";
+  const double right = kWidth - 1;
+  const double bottom = kHeight - 1;
+  EXPECT_EQ(sampler.sample(right, bottom).depth_m, 0);
+  for (double x : {0.0, right}) EXPECT_NEAR(sampler.sample(x, 18).depth_m, plane(x, 18), kUnit);
+  for (double y : {0.0, bottom}) EXPECT_NEAR(sampler.sample(20, y).depth_m, plane(20, y), kUnit);
+  EXPECT_EQ(sampler.at(-1, 5), 0);
+  EXPECT_EQ(sampler.at(5, -1), 0);
+  EXPECT_EQ(sampler.at(kWidth, 5), 0);
+  EXPECT_EQ(sampler.at(5, kHeight), 0);
+}
+
+TEST(DepthSampler, TheRadiusIsBounded) {
+  const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
+  EXPECT_TRUE(scene.sampler().sample(26, 18, 3).on_edge);
+  EXPECT_FALSE(scene.sampler().sample(27, 18, 3).on_edge);
+  EXPECT_FALSE(scene.sampler().sample(27, 18, 100).on_edge);
+}
+
+TEST(DepthSampler, ReadsThroughTheLens) {
+  CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, {0.1, 0.02, 0.001, 0, 0}};
+  std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
+  Arena arena(memory);
+  Scene scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; });
+  scene.table.carve(arena, kWidth, kHeight);
+  scene.table.init(camera);
+  const DepthSampler sampler = scene.sampler();
+  int unseen = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      int raw_x = 0, raw_y = 0;
+      if (!scene.table.raw_pixel(x, y, raw_x, raw_y)) {
+        ++unseen;
+        ASSERT_EQ(sampler.at(x, y), 0);
+        continue;
+      }
+      ASSERT_NEAR(sampler.at(x, y), 0.5 + 0.01 * raw_x + 0.02 * raw_y, kUnit);
+    }
+  EXPECT_GT(unseen, 0);
+}
+
+}  // namespace
+}  // namespace plvo

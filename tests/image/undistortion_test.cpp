@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table against the lens itself, distort_pixel, evaluated in double precision at every pixel.
+#include "plvo/image/undistortion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "gray_image.hpp"
+#include "plvo/base/arena.hpp"
+
+namespace plvo {
+namespace {
+
+using test::GrayImage;
+
+constexpr int kWidth = 161;
+constexpr int kHeight = 119;
+
+CameraModel camera_with(const Distortion& distortion) {
+  CameraModel camera;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.pinhole = {135, 134, 81.2, 58.7};
+  camera.distortion = distortion;
+  return camera;
+}
+// One lens that shows more than the ideal image, one that leaves its corners unseen, one of each.
+const Distortion kBarrel{-0.25, 0.06, 0, 0, 0};
+const Distortion kPincushion{0.12, 0.02, 0.002, -0.001, 0};
+const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
+
+class Table {
+ public:
+  explicit Table(const CameraModel& camera) : memory_(kWidth * kHeight * 4 + 2 * kArenaAlignment) {
+    Arena arena(memory_);
+    table.carve(arena, camera.width, camera.height);
+    table.init(camera);
+  }
+  UndistortionTable table;
+
+ private:
+  std::vector<std::byte> memory_;
+};
+
+bool seen(const Vector2& raw) {
+  return raw.x() >= 0 && raw.y() >= 0 && raw.x() < kWidth - 1 && raw.y() < kHeight - 1;
+}
+
+double bilinear(GrayView image, const Vector2& at) {
+  const int x = static_cast<int>(at.x());
+  const int y = static_cast<int>(at.y());
+  const double fx = at.x() - x;
+  const double fy = at.y() - y;
+  return (1 - fy) * ((1 - fx) * image.at(x, y) + fx * image.at(x + 1, y)) +
+         fy * ((1 - fx) * image.at(x, y + 1) + fx * image.at(x + 1, y + 1));
+}
+
+TEST(Undistortion, WithoutALensNothingMoves) {
+  const Table owned(camera_with({}));
+  EXPECT_FALSE(owned.table.active());
+  for (int y = 0; y < kHeight; y += 7)
+    for (int x = 0; x < kWidth; x += 5) {
+      int raw_x = -1, raw_y = -1;
+      EXPECT_TRUE(owned.table.raw_pixel(x, y, raw_x, raw_y));
+      EXPECT_EQ(raw_x, x);
+      EXPECT_EQ(raw_y, y);
+    }
+}
+
+TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
+  // Slopes of up to 10 grey levels a pixel: a table in 1/32 px is then good to half a level, and the result
+  // is rounded.
+  GrayImage raw(kWidth, kHeight, 6);
+  raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
+  for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
+    const CameraModel camera = camera_with(lens);
+    ASSERT_TRUE(camera.validate().ok()) << camera.validate().message();
+    const Table owned(camera);
+    ASSERT_TRUE(owned.table.active());
+    GrayImage ideal(kWidth, kHeight, 1);
+    owned.table.undistort(raw.view(), ideal.view());
+    int inside = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Vector2 at = distort_pixel(camera, Vector2(x, y));
+        if (!seen(at)) continue;
+        ++inside;
+        ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), at), 1.0) << x << " " << y;
+      }
+    EXPECT_GT(inside, kWidth * kHeight / 2);
+  }
+}
+
+TEST(Undistortion, TheNearestRawPixelOrNone) {
+  for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
+    const CameraModel camera = camera_with(lens);
+    const Table owned(camera);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Vector2 at = distort_pixel(camera, Vector2(x, y));
+        int raw_x = -1, raw_y = -1;
+        ASSERT_EQ(owned.table.raw_pixel(x, y, raw_x, raw_y), seen(at)) << x << " " << y;
+        if (!seen(at)) continue;
+        // Half a pixel, and the step of the table.
+        ASSERT_LE(std::abs(raw_x - at.x()), 0.5 + 1.0 / 32);
+        ASSERT_LE(std::abs(raw_y - at.y()), 0.5 + 1.0 / 32);
+        ASSERT_TRUE(raw_x >= 0 && raw_y >= 0 && raw_x < kWidth && raw_y < kHeight);
+      }
+  }
+}
+
+TEST(Undistortion, WhatTheCameraDidNotSeeRepeatsItsBorder) {
+  Random random(9);
+  const GrayImage raw = test::random_image(kWidth, kHeight, random);
+  const CameraModel camera = camera_with(kPincushion);
+  const Table owned(camera);
+  GrayImage ideal(kWidth, kHeight);
+  owned.table.undistort(raw.view(), ideal.view());
+  int unseen = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Vector2 at = distort_pixel(camera, Vector2(x, y));
+      if (seen(at)) continue;
+      ++unseen;
+      const int border_y = static_cast<int>(std::clamp(at.y(), 0.0, kHeight - 1.0));
+      ASSERT_EQ(ideal.view().at(x, y), raw.view().at(x < kWidth / 2 ? 0 : kWidth - 1, border_y))
+          << x << " " << y;
+    }
+  EXPECT_GT(unseen, 100);
+}
+
+}  // namespace
+}  // namespace plvo
