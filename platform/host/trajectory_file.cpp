@@ -42,12 +42,12 @@ std::string motion_line(const TrackResult& result) {
 }
 
 Status TrajectoryFile::write(const TrackResult& result) {
-  if (result.state == TrackState::kLost) return {};
+  if (!has_pose(result)) return {};
   return file_.write(trajectory_line(result.stamp_ns, result.T_world_camera));
 }
 
 Status CovarianceFile::write(const TrackResult& result) {
-  if (result.state == TrackState::kLost) return {};
+  if (!has_pose(result)) return {};
   return file_.write(covariance_line(result.stamp_ns, result.pose_covariance));
 }
 

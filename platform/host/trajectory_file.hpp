@@ -23,6 +23,12 @@ inline constexpr const char* kMotionsHeader =
     "# timestamp reference_timestamp tx ty tz qx qy qz qw (camera from reference), then its 6x6 covariance, "
     "row-major";
 
+// A frame that still waits for the first usable one is initialising, too, but says why in its status.
+inline bool has_pose(const TrackResult& result) {
+  return result.state == TrackState::kTracking ||
+         (result.state == TrackState::kInitialising && result.status.ok());
+}
+
 // Decimals are fixed (nine: a nanometre) so that equal results are equal bytes.
 std::string pose_text(const Se3& T);
 std::string trajectory_line(std::int64_t stamp_ns, const Se3& T_world_camera);

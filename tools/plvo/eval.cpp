@@ -11,13 +11,14 @@
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/plvo/exit_code.hpp"
 #include "plvo/plvo/subcommands.hpp"
+#include "plvo/report/report.hpp"
 
 namespace plvo::cli {
 namespace {
 
 struct EvalOptions {
   eval::TrajectorySource ground_truth, estimate;
-  std::string kitti_times, covariance, motions;
+  std::string kitti_times, covariance, motions, report;
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
   double offset_s = 0;
@@ -53,6 +54,15 @@ int eval_command(EvalOptions options) {
     if (trajectory->ignored_rows > 0)
       warn(fmt::format("{}: {} rows with a NaN or a repeated stamp were ignored", source->path.string(),
                        trajectory->ignored_rows));
+  if (!options.report.empty()) {
+    report::ReportInput input;
+    input.title = options.estimate.path.filename().string();
+    input.subtitle = "plvo " PLVO_VERSION ": compared with " + options.ground_truth.path.string();
+    input.trajectory = estimate;
+    input.evaluation = evaluation;
+    if (const Status written = report::write_report(options.report, input); !written.ok())
+      return fail(written);
+  }
   const std::string text = options.json ? to_json(evaluation).dump(2) + '\n' : to_text(evaluation);
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
     return fail("cannot write to standard output");
@@ -112,6 +122,9 @@ void add_eval(CLI::App& app, int& exit_code) {
   command
       ->add_option("--motions", options->motions,
                    "Motions with covariances (plvo run --motions): NEES per motion")
+      ->type_name("FILE");
+  command
+      ->add_option("--report", options->report, "A page that shows the comparison: one HTML file, no network")
       ->type_name("FILE");
   command->add_flag("--json", options->json, "Print JSON instead of text");
   command->footer(kExitCodeHelp);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "plvo/host/trajectory_file.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo::cli {
@@ -17,7 +18,7 @@ struct FrameRecord {
   std::int64_t cpu_ns = 0;  // CPU time of track() alone
 
   bool damaged() const { return !camera_status.ok(); }
-  bool has_pose() const { return !damaged() && result.state != TrackState::kLost; }
+  bool has_pose() const { return !damaged() && plvo::has_pose(result); }
 };
 
 }  // namespace plvo::cli

@@ -14,7 +14,9 @@
 #include "plvo/plvo/exit_code.hpp"
 #include "plvo/plvo/interrupt.hpp"
 #include "plvo/plvo/odometry_options.hpp"
+#include "plvo/plvo/overlay.hpp"
 #include "plvo/plvo/progress.hpp"
+#include "plvo/plvo/run_history.hpp"
 #include "plvo/plvo/run_outputs.hpp"
 #include "plvo/plvo/run_summary.hpp"
 #include "plvo/plvo/subcommands.hpp"
@@ -30,7 +32,8 @@ struct RunOptions {
   CameraOptions camera;
   OdometryOptions odometry;
   OutputOptions outputs;
-  std::string summary;
+  std::string summary, overlay, report;
+  std::size_t report_frames = 60;
   Pace pace = Pace::kFast;
   bool quiet = false;
 };
@@ -76,6 +79,10 @@ class Run {
     summary_ = std::make_unique<RunSummary>(opened_.frame_count.value_or(kUnknownFrameCount));
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
+    history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
+                                            opened_.frame_count.value_or(kUnknownFrameCount));
+    if (!options_.overlay.empty())
+      if (Status status = overlay_.open(options_.overlay); !status.ok()) return status;
     return outputs_.open(options_.outputs);
   }
 
@@ -104,7 +111,10 @@ class Run {
         record.cpu_ns = thread_cpu_ns() - start;
       }
       summary_->add(record);
+      history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());
       if (Status status = outputs_.write(record); !status.ok()) return status;
+      if (!record.damaged())
+        if (Status status = overlay_.write(record.number, block_.odometry()); !status.ok()) return status;
       progress.show(record, summary_->lost());
     }
     return {};
@@ -115,10 +125,14 @@ class Run {
     summary_->interrupted = interrupted();
     summary_->arena_bytes = block_.odometry().memory_used();
     summary_->arena_peak = block_.odometry().memory_peak();
+    if (const Status status = history_->evaluate(opened_); !status.ok()) warn(status.message());
+    summary_->evaluation = history_->evaluation();
     if (!options_.quiet) fmt::print("{}", summary_->to_text());
   }
 
   Status write_summary() {
+    if (!options_.report.empty())
+      if (Status status = history_->write_report(options_.report, *summary_); !status.ok()) return status;
     if (options_.summary.empty()) return {};
     LineFile file;
     return file.open(options_.summary, summary_->to_json().dump(2));
@@ -128,7 +142,9 @@ class Run {
   OpenedCamera opened_;
   OdometryBlock block_;
   RunOutputs outputs_;
+  Overlay overlay_;
   std::unique_ptr<RunSummary> summary_;
+  std::unique_ptr<RunHistory> history_;
   PosixClock clock_;
 };
 
@@ -154,6 +170,16 @@ void add_run(CLI::App& app, int& exit_code) {
        "Motion from the reference of each frame, with its 6x6 covariance");
   file("--stats", options->outputs.stats, "CSV: one row per frame, lost and damaged ones with the reason");
   file("--json", options->summary, "The summary as JSON");
+  file("--report", options->report, "A page that shows the run: one HTML file, no network");
+  command->add_option("--report-frames", options->report_frames, "Frames with pictures in the report, about")
+      ->capture_default_str()
+      ->type_name("NUMBER")
+      ->group(outputs);
+  command
+      ->add_option("--overlay", options->overlay,
+                   "A PNG of each frame with its keypoints, segments and matches")
+      ->type_name("DIR")
+      ->group(outputs);
   command->add_flag("--quiet", options->quiet, "No progress line and no summary")->group(outputs);
   add_odometry_options(*command, options->odometry);
   command->footer(kExitCodeHelp);

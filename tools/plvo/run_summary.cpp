@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "plvo/eval/statistics.hpp"
@@ -42,7 +41,7 @@ void RunSummary::add(const FrameRecord& record) {
   for (std::size_t i = 0; i < kStageCount; ++i)
     stage_ms_[i].push_back(static_cast<double>(result.stage_ns[i]) * 1e-6);
   stage_ms_[kStageCount].push_back(static_cast<double>(record.cpu_ns) * 1e-6);
-  if (result.state == TrackState::kLost) {
+  if (!record.has_pose()) {
     ++lost_;
     ++reasons_[result.status.message()];
     return;
@@ -70,32 +69,50 @@ std::string RunSummary::main_reason() const {
   return reason;
 }
 
+std::vector<std::pair<std::string, std::string>> RunSummary::rows() const {
+  std::vector<std::pair<std::string, std::string>> rows;
+  const auto mebibytes = [](auto bytes) { return static_cast<double>(bytes) / kMebibyte; };
+  rows.emplace_back("frames", fmt::format("{}{}", frames_, interrupted ? " (interrupted)" : ""));
+  rows.emplace_back("tracked", fmt::format("{}", tracked_ + initialised_));
+  rows.emplace_back("lost", fmt::format("{}", lost_));
+  for (const auto& [reason, count] : reasons_) rows.emplace_back(fmt::format("  {} times", count), reason);
+  rows.emplace_back("damaged", fmt::format("{}", damaged_));
+  if (unpaired_images > 0) rows.emplace_back("colour without depth", fmt::format("{}", unpaired_images));
+  rows.emplace_back("path", fmt::format("{:.3f} m", path_m_));
+  rows.emplace_back("inliers, median",
+                    fmt::format("{:.0f} points, {:.0f} lines", eval::statistics(point_inliers_).median,
+                                eval::statistics(line_inliers_).median));
+  const eval::Statistics total = eval::statistics(stage_ms_[kStageCount]);
+  rows.emplace_back("CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.median,
+                                                 total.p95, total.max));
+  rows.emplace_back(
+      "arena", fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak)));
+  rows.emplace_back("resident memory",
+                    fmt::format("{:.2f} MiB after init, {:.2f} at the end", mebibytes(resident_start.total),
+                                mebibytes(resident_end.total)));
+  return rows;
+}
+
 std::string RunSummary::to_text() const {
-  std::string text;
-  const auto add = [&text](const std::string& line) { text += line + '\n'; };
-  add(fmt::format("{}{}: {} frames, {} tracked, {} lost, {} damaged", camera_name,
-                  interrupted ? " (interrupted)" : "", frames_, tracked_ + initialised_, lost_, damaged_));
-  for (const auto& [reason, count] : reasons_) add(fmt::format("  lost {} times: {}", count, reason));
-  if (unpaired_images > 0)
-    add(fmt::format("  {} colour images have no depth image near enough", unpaired_images));
-  const eval::Statistics points = eval::statistics(point_inliers_);
-  const eval::Statistics lines = eval::statistics(line_inliers_);
-  add(fmt::format("path {:.3f} m; inliers (median) {:.0f} points, {:.0f} lines", path_m_, points.median,
-                  lines.median));
-  add(fmt::format("{:<10} {:>8} {:>8} {:>8}   CPU ms per frame, one thread, decoding excluded", "stage",
-                  "median", "p95", "max"));
+  std::string text = camera_name + '\n';
+  for (const auto& [name, value] : rows()) text += fmt::format("{:<22} {}\n", name, value);
+  text += fmt::format("\n{:<10} {:>8} {:>8} {:>8}   CPU ms per frame, one thread, decoding excluded\n",
+                      "stage", "median", "p95", "max");
   for (std::size_t i = 0; i <= kStageCount; ++i) {
     const eval::Statistics s = eval::statistics(stage_ms_[i]);
-    add(fmt::format("{:<10} {:8.2f} {:8.2f} {:8.2f}", stage_name(i), s.median, s.p95, s.max));
+    text += fmt::format("{:<10} {:8.2f} {:8.2f} {:8.2f}\n", stage_name(i), s.median, s.p95, s.max);
   }
-  add(fmt::format(
-      "memory: {:.2f} MiB in the arena (peak of scratch included {:.2f}); resident {:.2f} MiB after init, "
-      "{:.2f} MiB at the end, {:.2f} and {:.2f} of it the program's own",
-      static_cast<double>(arena_bytes) / kMebibyte, static_cast<double>(arena_peak) / kMebibyte,
-      static_cast<double>(resident_start.total) / kMebibyte,
-      static_cast<double>(resident_end.total) / kMebibyte,
-      static_cast<double>(resident_start.anonymous) / kMebibyte,
-      static_cast<double>(resident_end.anonymous) / kMebibyte));
+  if (!evaluation) return text;
+  text += "\nagainst the ground truth (plvo eval says more)\n";
+  for (const eval::RpeResult& r : evaluation->rpe) {
+    const auto& [delta, estimate, still] = r;
+    if (estimate.translation_m.count == 0) continue;
+    text += fmt::format(
+        "RPE over {:<13} {:.1f} mm, {:.3f} deg (a camera that never moves: {:.1f} mm, {:.3f} deg)\n",
+        delta.text, 1e3 * estimate.translation_m.rmse, estimate.rotation_deg.rmse,
+        1e3 * still.translation_m.rmse, still.rotation_deg.rmse);
+  }
+  text += fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
   return text;
 }
 
@@ -113,6 +130,7 @@ nlohmann::ordered_json RunSummary::to_json() const {
     const eval::Statistics s = eval::statistics(stage_ms_[i]);
     json["cpu_ms"][stage_name(i)] = {{"median", s.median}, {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}};
   }
+  if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   json["memory_bytes"] = {{"arena", arena_bytes},
                           {"arena_peak", arena_peak},
                           {"resident_after_init", resident_start.total},

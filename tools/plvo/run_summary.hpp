@@ -6,9 +6,12 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "plvo/eval/evaluation.hpp"
 #include "plvo/plvo/frame_record.hpp"
 #include "plvo/plvo/resident_memory.hpp"
 
@@ -29,6 +32,8 @@ class RunSummary {
   // Why most of the lost frames were lost; empty when none was.
   std::string main_reason() const;
 
+  // The figures as rows of two columns.
+  std::vector<std::pair<std::string, std::string>> rows() const;
   std::string to_text() const;
   nlohmann::ordered_json to_json() const;
 
@@ -38,6 +43,7 @@ class RunSummary {
   std::size_t arena_bytes = 0, arena_peak = 0;
   ResidentMemory resident_start, resident_end;
   bool interrupted = false;
+  std::optional<eval::Evaluation> evaluation;  // where there is ground truth
 
  private:
   std::size_t frames_ = 0, initialised_ = 0, tracked_ = 0, lost_ = 0, damaged_ = 0;

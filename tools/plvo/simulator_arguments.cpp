@@ -29,7 +29,7 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
   const auto add = [&](const char* name, auto& value, const char* what, const char* type) {
     return command.add_option(name, value, what)->type_name(type)->group(group);
   };
-  add("--scene", arguments.scene, "Room: corridor, staircase, hall, desk, bare (default bare)", "NAME");
+  add("--scene", arguments.scene, "Room: corridor, staircase, hall, desk, bare (default corridor)", "NAME");
   add("--light", arguments.light, "constant, or varying: a lamp that swings and dims", "NAME");
   add("--seed", arguments.seed, "Another room, walk and noise of the same kind", "NUMBER");
   add("--fps", arguments.fps, "Frames per second (default 30)", "NUMBER");

@@ -11,7 +11,7 @@
 namespace plvo::cli {
 
 struct SimulatorArguments {
-  std::string scene = "bare", light = "constant";
+  std::string scene = "corridor", light = "constant";
   std::uint64_t seed = 1;
   double fps = 30;
   std::string size;  // WIDTHxHEIGHT

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// `plvo run` and `plvo simulate` as the user runs them: the main job, and every bad input with one line that
+// says what to do. Folders that cannot be written are made without permissions: the tests may run as root.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "plvo/replay/image_writer.hpp"
+#include "temporary_folder.hpp"
+#include "tiny_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::read_file;
+using test::run_command;
+using test::TemporaryFolder;
+using test::write_file;
+
+const std::string kPlvo = PLVO_BINARY;
+constexpr int kFrames = 6;
+
+std::ptrdiff_t lines_of(const fs::path& file) {
+  const std::string text = read_file(file);
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+bool contains(const std::string& text, std::string_view words) {
+  return text.find(words) != std::string::npos;
+}
+
+// A walk through a simulated room, made once; each test works on its own copy.
+const fs::path& master_sequence() {
+  static const TemporaryFolder folder;
+  static const fs::path sequence = [] {
+    const CommandResult made =
+        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --frames " +
+                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return folder / "walk";
+  }();
+  return sequence;
+}
+
+class CliRun : public ::testing::Test {
+ protected:
+  CliRun() : sequence_(folder_ / "walk") {
+    fs::copy(master_sequence(), sequence_, fs::copy_options::recursive);
+  }
+
+  CommandResult run(const std::string& more) const {
+    return run_command(kPlvo + " run " + sequence_.string() + ' ' + more);
+  }
+  std::string file(const char* name) const { return (folder_ / name).string(); }
+  // The file of the k-th line of a list.
+  fs::path image(const char* kind, int k) const {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(sequence_ / kind)) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files.at(static_cast<std::size_t>(k));
+  }
+  void expect_refused(const CommandResult& result, std::string_view words) const {
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_TRUE(contains(result.err, words)) << result.err;
+    EXPECT_EQ(result.err.rfind("plvo: error: ", 0), 0u) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+
+  TemporaryFolder folder_;
+  fs::path sequence_;
+};
+
+TEST_F(CliRun, TheMainJob) {
+  const CommandResult r = run("--out " + file("t.txt") + " --covariance " + file("c.txt") + " --motions " +
+                              file("m.txt") + " --stats " + file("s.csv") + " --json " + file("j.json"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_TRUE(r.err.empty()) << r.err;
+  for (const char* words :
+       {"tracked", "CPU per frame", "matching", "arena", "resident memory", "against the ground truth"})
+    EXPECT_TRUE(contains(r.out, words)) << words << '\n' << r.out;
+  EXPECT_EQ(lines_of(file("t.txt")), 1 + kFrames);
+  EXPECT_EQ(lines_of(file("c.txt")), 1 + kFrames);
+  EXPECT_EQ(lines_of(file("m.txt")), kFrames);
+  EXPECT_EQ(lines_of(file("s.csv")), 1 + kFrames);
+  const auto json = nlohmann::json::parse(read_file(file("j.json")));
+  EXPECT_EQ(json["frames"], kFrames);
+  EXPECT_EQ(json["lost"], 0);
+  EXPECT_GT(json["memory_bytes"]["arena"], 0);
+  EXPECT_LT(json["evaluation"]["ate_m"]["rmse"], 0.05);
+
+  const CommandResult evaluated =
+      run_command(kPlvo + " eval --gt " + (sequence_ / "groundtruth.txt").string() + " --est " +
+                  file("t.txt") + " --covariance " + file("c.txt") + " --motions " + file("m.txt"));
+  EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  EXPECT_TRUE(contains(evaluated.out, "NEES of the motions")) << evaluated.out;
+}
+
+TEST_F(CliRun, SameInputSameBytes) {
+  ASSERT_EQ(run("--quiet --out " + file("a.txt") + " --covariance " + file("ca.txt")).exit_code, 0);
+  ASSERT_EQ(run("--quiet --out " + file("b.txt") + " --covariance " + file("cb.txt")).exit_code, 0);
+  EXPECT_EQ(read_file(file("a.txt")), read_file(file("b.txt")));
+  EXPECT_EQ(read_file(file("ca.txt")), read_file(file("cb.txt")));
+}
+
+TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {
+  ASSERT_EQ(run("--quiet --out " + file("recorded.txt")).exit_code, 0);
+  ASSERT_EQ(run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --seed 3 --quiet --frames :" +
+                        std::to_string(kFrames) + " --out " + file("live.txt"))
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(file("recorded.txt")), read_file(file("live.txt")));
+}
+
+TEST_F(CliRun, QuietSaysNothing) {
+  const CommandResult r = run("--quiet");
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_TRUE(r.out.empty() && r.err.empty()) << r.out << r.err;
+}
+
+TEST_F(CliRun, FrameRange) {
+  ASSERT_EQ(run("--quiet --frames 1:4 --out " + file("t.txt")).exit_code, 0);
+  EXPECT_EQ(lines_of(file("t.txt")), 1 + 3);
+  EXPECT_EQ(run("--frames 4:1").exit_code, 2);
+  expect_refused(run("--frames 50:60"), "the frame range is empty");
+}
+
+TEST_F(CliRun, StepEndsWithItsInput) {
+  const CommandResult r =
+      run("--pace step --out " + file("t.txt"));  // standard input is empty: no frame at all
+  EXPECT_EQ(r.exit_code, 3);
+  EXPECT_TRUE(contains(r.err, "no frame could be tracked")) << r.err;
+}
+
+TEST_F(CliRun, OverlayAndReportAreWritten) {
+  const CommandResult r = run("--quiet --overlay " + file("overlay") + " --report " + file("r.html"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_TRUE(fs::exists(folder_ / "overlay/000000.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "overlay/000005.png"));
+  const std::string page = read_file(file("r.html"));
+  EXPECT_TRUE(contains(page, "data:image/jpeg;base64,"));
+  EXPECT_FALSE(contains(page, "http:") || contains(page, "https:"));  // nothing is loaded from anywhere
+  EXPECT_FALSE(contains(page, "@DATA@") || contains(page, "@SCRIPT@") || contains(page, "@STYLE@"));
+}
+
+TEST_F(CliRun, UsageErrors) {
+  EXPECT_EQ(run_command(kPlvo + " run").exit_code, 2);
+  EXPECT_EQ(run("--camera sim").exit_code, 2);
+  EXPECT_EQ(run("--features circles").exit_code, 2);
+  EXPECT_EQ(run("--pace slow").exit_code, 2);
+  EXPECT_EQ(run("--keyframes --reference previous").exit_code, 2);
+}
+
+TEST_F(CliRun, EmptyFolder) {
+  fs::create_directory(folder_ / "empty");
+  expect_refused(run_command(kPlvo + " run " + file("empty")), "a sequence needs rgb.txt and depth.txt");
+  expect_refused(run_command(kPlvo + " run " + file("none")), "is not a folder");
+}
+
+TEST_F(CliRun, MissingDepthList) {
+  fs::remove(sequence_ / "depth.txt");
+  expect_refused(run(""), "depth.txt; a sequence needs rgb.txt and depth.txt");
+}
+
+TEST_F(CliRun, TruncatedImageInTheMiddleIsSkipped) {
+  const fs::path victim = image("rgb", 2);
+  fs::resize_file(victim, fs::file_size(victim) / 2);
+  const CommandResult r =
+      run("--out " + file("t.txt") + " --stats " + file("s.csv") + " --json " + file("j.json"));
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_TRUE(contains(r.err, "plvo: warning: frame 2 skipped: rgb/")) << r.err;
+  EXPECT_EQ(lines_of(file("t.txt")), 1 + kFrames - 1);
+  EXPECT_TRUE(contains(read_file(file("s.csv")), ",damaged,\"rgb/")) << read_file(file("s.csv"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(file("j.json")))["damaged"], 1);
+}
+
+TEST_F(CliRun, EightBitDepth) {
+  const std::vector<std::uint8_t> grey(160 * 120, 80);
+  ASSERT_TRUE(write_png(image("depth", 0), ColourView{grey.data(), 160, 120, 160, PixelFormat::kGray8}).ok());
+  expect_refused(run("--out " + file("t.txt")), "has 8 bits per channel; depth must be a 16-bit grey PNG");
+  EXPECT_FALSE(fs::exists(file("t.txt")));  // refused before anything was written
+}
+
+TEST_F(CliRun, ColourAndDepthOfDifferentSizes) {
+  ASSERT_TRUE(write_png(image("depth", 0), test::TinyFrame(0).frame.depth).ok());
+  expect_refused(run(""), "colour is 160x120 but depth is 96x64");
+}
+
+TEST_F(CliRun, StampsBackwardsOrDoubled) {
+  const std::string list = read_file(sequence_ / "rgb.txt");
+  const std::string last = list.substr(list.rfind('\n', list.size() - 2) + 1);
+  write_file(sequence_ / "rgb.txt", list + last);
+  expect_refused(run(""), "appears twice; sort the list by stamp and keep each stamp once");
+  write_file(sequence_ / "rgb.txt", last + list);
+  expect_refused(run(""), "runs backwards; sort the list by stamp");
+}
+
+TEST_F(CliRun, AllZeroDepth) {
+  const std::vector<std::uint16_t> none(160 * 120, 0);
+  for (int k = 0; k < kFrames; ++k)
+    ASSERT_TRUE(write_png(image("depth", k), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
+  const CommandResult r = run("--quiet --out " + file("t.txt") + " --stats " + file("s.csv"));
+  EXPECT_EQ(r.exit_code, 3);
+  EXPECT_TRUE(contains(r.err, "plvo: error: no frame could be tracked: ")) << r.err;
+  EXPECT_EQ(lines_of(file("s.csv")), 1 + kFrames);
+  EXPECT_EQ(lines_of(file("t.txt")), 1);  // the header: no frame has a pose
+}
+
+TEST_F(CliRun, NaNInTheCalibration) {
+  write_file(sequence_ / "calibration.txt", "525 nan 79.5 59.5 5000\n");
+  expect_refused(run(""), "fx and fy must be positive numbers");
+}
+
+TEST_F(CliRun, NoCalibration) {
+  fs::remove(sequence_ / "calibration.txt");
+  expect_refused(run(""), "no calibration: give --calibration FILE, --camera-model NAME");
+  EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5").exit_code, 0);
+  expect_refused(run("--camera-model tum-fr9"), "the names are tum-fr1");
+}
+
+TEST_F(CliRun, UnknownDistortionModel) {
+  write_file(
+      folder_ / "info.yaml",
+      "image_width: 160\nimage_height: 120\ncamera_matrix: {data: [131, 0, 79.5, 0, 131, 59.5, 0, 0, 1]}\n"
+      "distortion_model: equidistant\ndistortion_coefficients: {data: [0.1, 0, 0, 0]}\n");
+  expect_refused(run("--calibration " + file("info.yaml")), "'equidistant' is not supported, only plumb_bob");
+}
+
+TEST_F(CliRun, OutputsThatCannotBeWritten) {
+  write_file(folder_ / "plain_file", "");
+  const std::string below_a_file = file("plain_file") + "/t.txt";
+  for (const char* option : {"--out ", "--covariance ", "--motions ", "--stats ", "--json ", "--report "}) {
+    expect_refused(run("--quiet " + std::string(option) + below_a_file), "choose a path that can be written");
+    expect_refused(run("--quiet " + std::string(option) + "/dev/full"), "No space left on device");
+  }
+  expect_refused(run("--quiet --overlay " + file("plain_file") + "/frames"), "cannot make the folder");
+}
+
+TEST_F(CliRun, FullDiskKeepsWhatWasWritten) {
+  // A file may grow to 400 bytes: the header, and as many whole lines as fit.
+  const CommandResult r = run_command("bash -c 'trap \"\" XFSZ; ulimit -f 1; exec " + kPlvo + " run " +
+                                      sequence_.string() + " --quiet --covariance " + file("c.txt") + "'");
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_TRUE(contains(r.err, "plvo: error: cannot write")) << r.err;
+  const std::string text = read_file(file("c.txt"));
+  ASSERT_FALSE(text.empty());
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_EQ(text[0], '#');
+}
+
+TEST(CliSimulate, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "");
+  const CommandResult r = run_command(kPlvo + " simulate --scene bare --size 96x64 --frames 1 --out " +
+                                      (folder / "file").string());
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_EQ(r.err.rfind("plvo: error: ", 0), 0u) << r.err;
+  EXPECT_EQ(run_command(kPlvo + " simulate --scene moon --out " + (folder / "x").string()).exit_code, 1);
+  EXPECT_EQ(run_command(kPlvo + " simulate").exit_code, 2);
+}
+
+TEST(CliRunReal, TracksAKinect) {
+  const char* shared = std::getenv("PLVO_SHARED");
+  const fs::path folder = fs::path(shared == nullptr ? "" : shared) / "data" / "fr1_xyz_10f";
+  if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
+  const TemporaryFolder out;
+  const CommandResult r = run_command(kPlvo + " run " + folder.string() + " --camera-model tum-fr1 --json " +
+                                      (out / "j.json").string());
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const auto json = nlohmann::json::parse(read_file(out / "j.json"));
+  EXPECT_EQ(json["lost"], 0);
+  EXPECT_EQ(json["unpaired_images"], 1);
+  EXPECT_LT(json["evaluation"]["rpe"][0]["translation_m"]["rmse"], 0.012);
+  // Nothing is taken after init: what little the summary's own bookkeeping may add stays below a page or two.
+  EXPECT_LE(json["memory_bytes"]["anonymous_at_end"].get<long>() -
+                json["memory_bytes"]["anonymous_after_init"].get<long>(),
+            16384);
+}
+
+}  // namespace
+}  // namespace plvo

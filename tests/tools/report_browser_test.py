@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Opens a report in headless Chromium, uses it, and looks at what it drew. Python's own library only.
+
+A copy of the page gets a probe: a script before the others that catches errors, and one after them that scrubs, taps a
+chart, turns the 3D view, reads the canvases back and writes its findings into the document, which --dump-dom prints.
+usage: report_browser_test.py PLVO    (exit code 77: no browser here, skipped)
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+CATCH = """<script>
+window.problems = [];
+addEventListener("error", e => problems.push("error: " + e.message));
+addEventListener("unhandledrejection", e => problems.push("rejection: " + e.reason));
+for (const kind of ["error", "warn"]) console[kind] = (...a) => problems.push(kind + ": " + a.join(" "));
+</script>
+"""
+
+PROBE = """<script>
+const wait = ms => new Promise(done => setTimeout(done, ms));
+function colours(canvas) {
+  const d = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+  const seen = new Set();
+  for (let i = 0; i < d.length; i += 4) seen.add((d[i] << 16 | d[i + 1] << 8 | d[i + 2]) + ":" + (d[i + 3] > 0));
+  return seen.size;
+}
+const print = canvas => canvas.toDataURL();
+async function probe() {
+  await wait(500);
+  const found = { problems, requests: performance.getEntriesByType("resource").filter(r => !r.name.startsWith("data:")).map(r => r.name) };
+  found.titles = [...document.querySelectorAll("h2")].map(h => h.textContent);
+  found.blank = [...document.querySelectorAll("canvas")].filter(c => colours(c) < 3).map(c => c.getAttribute("aria-label"));
+  found.width = document.documentElement.scrollWidth;
+  found.window = innerWidth;
+  const scrubber = document.getElementById("scrubber");
+  if (scrubber) {
+    const canvas = document.getElementById("frame"), text = document.getElementById("frame-text");
+    const before = [print(canvas), text.textContent, document.getElementById("depth").src];
+    scrubber.value = Math.floor(scrubber.max / 2) || 1;
+    scrubber.dispatchEvent(new Event("input"));
+    await wait(300);
+    found.scrubbed = [print(canvas) !== before[0], text.textContent !== before[1], document.getElementById("depth").src !== before[2]];
+    found.pictureColours = colours(canvas);
+    const full = print(canvas);
+    found.toggles = [...document.querySelectorAll("#frames input[type=checkbox]")].map(box => {
+      box.click();
+      const changed = print(canvas) !== full;
+      box.click();
+      return changed;
+    });
+    document.querySelector(".chart canvas").dispatchEvent(new PointerEvent("pointerdown", { clientX: 300, clientY: 0, bubbles: true }));
+    await wait(300);
+    found.tapMovedTheScrubber = scrubber.value;
+  }
+  const turn = document.querySelector("canvas.turn"), flat = print(turn);
+  turn.setPointerCapture = () => {};
+  const drag = new PointerEvent("pointermove", { buttons: 1, bubbles: true });
+  Object.defineProperty(drag, "movementX", { value: 60 });
+  Object.defineProperty(drag, "movementY", { value: 20 });
+  turn.dispatchEvent(drag);
+  found.turned = print(turn) !== flat;
+  const result = document.createElement("pre");
+  result.id = "probe";
+  result.textContent = JSON.stringify(found);
+  document.body.append(result);
+}
+probe().catch(e => { document.body.append(Object.assign(document.createElement("pre"), { id: "probe", textContent: JSON.stringify({ problems: ["probe: " + e.stack] }) })); });
+</script>
+"""
+
+
+def look(browser, page, folder, size):
+    """What the probe found in a window of this size."""
+    text = open(page, encoding="utf-8").read()
+    probed = os.path.join(folder, "probed.html")
+    text = text.replace("<head>", "<head>" + CATCH, 1)
+    at = text.rindex("</body>")
+    with open(probed, "w", encoding="utf-8") as f:
+        f.write(text[:at] + PROBE + text[at:])
+    dom = subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile",
+                          f"--window-size={size}", "--virtual-time-budget=8000", "--dump-dom", "file://" + probed],
+                         capture_output=True, text=True, timeout=300).stdout
+    found = re.search(r'<pre id="probe">(.*?)</pre>', dom, re.S)
+    assert found, "the probe wrote nothing; the page may not have run at all"
+    text = found.group(1)
+    for entity, character in (("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")):
+        text = text.replace(entity, character)
+    return json.loads(text)
+
+
+def check(condition, message, found):
+    if not condition:
+        print(json.dumps(found, indent=1)[:4000])
+        sys.exit("FAILED: " + message)
+
+
+def check_common(found, wanted):
+    check(not found["problems"], "errors on the page", found)
+    check(not found["requests"], "the page asked for something from elsewhere", found)
+    for title in wanted:
+        check(any(t.startswith(title) for t in found["titles"]), f"no part '{title}'", found)
+    check(not found["blank"], "an empty chart or picture", found)
+    check(found["turned"], "the 3D view does not turn", found)
+    check(found["width"] <= found["window"] + 1, "the page is wider than its window", found)
+
+
+def main():
+    plvo = sys.argv[1]
+    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if browser is None:
+        print("SKIPPED: no Chromium here (apt install chromium)")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="plvo_report_") as folder:
+        run_page, eval_page, estimate = (os.path.join(folder, n) for n in ("run.html", "eval.html", "estimate.txt"))
+        walk, covariance = os.path.join(folder, "walk"), os.path.join(folder, "covariance.txt")
+        subprocess.run([plvo, "simulate", "--scene", "bare", "--size", "320x240", "--frames", "8", "--out", walk, "--quiet"], check=True)
+        subprocess.run([plvo, "run", walk, "--quiet", "--out", estimate, "--covariance", covariance, "--report", run_page], check=True)
+        subprocess.run([plvo, "eval", "--gt", os.path.join(walk, "groundtruth.txt"), "--est", estimate, "--covariance",
+                        covariance, "--report", eval_page], check=True, stdout=subprocess.DEVNULL)
+        parts = ["Trajectory", "Errors against the ground truth", "Position error, x", "Orientation error, z"]
+        for size in ("1280,900", "500,900"):  # a screen; the narrowest window that headless Chromium makes
+            found = look(browser, run_page, folder, size)
+            check_common(found, parts + ["Frames", "Run", "Points", "Lines", "CPU time by stage", "Brightness"])
+            check(all(found["scrubbed"]), "the scrubber changes nothing", found)
+            check(found["pictureColours"] > 50, "no image under the features", found)
+            check(found["toggles"][0] and found["toggles"][2], "the boxes switch nothing", found)
+        check_common(look(browser, eval_page, folder, "1280,900"), parts)
+    print("the reports load, draw, scrub and turn")
+
+
+main()

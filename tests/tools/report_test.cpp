@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "plvo/report/base64.hpp"
+#include "plvo/report/drawing.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo::report {
+namespace {
+
+std::string encode(const std::string& text) {
+  return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+TEST(Base64, VectorsOfRfc4648) {
+  EXPECT_EQ(encode(""), "");
+  EXPECT_EQ(encode("f"), "Zg==");
+  EXPECT_EQ(encode("fo"), "Zm8=");
+  EXPECT_EQ(encode("foo"), "Zm9v");
+  EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(encode("\xff\xff\xfe"), "///+");
+}
+
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "<script id=\"data\" type=\"application/json\">";
+  const std::size_t first = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(first, page.find("</script>", first) - first));
+}
+
+TEST(Report, HoldsItsDataWhateverTheNames) {
+  ReportInput input;
+  input.title = "</script><b>\"nasty\" @STYLE@ \xff";
+  input.trajectory.poses = {{5'000'000'000, {}},
+                            {5'500'000'000, {Matrix3::Identity(), Vector3(1, -2, 0.333333333)}}};
+  const std::string page = make_report(input);
+  const nlohmann::json data = data_of(page);
+  EXPECT_EQ(data["title"], "</script><b>\"nasty\" @STYLE@ \xEF\xBF\xBD");
+  EXPECT_EQ(data["trajectory"]["t"], nlohmann::json({0.0, 0.5}));
+  EXPECT_EQ(data["trajectory"]["p"], nlohmann::json({0.0, 0.0, 0.0, 1.0, -2.0, 0.33333}));
+  EXPECT_FALSE(data.contains("series") || data.contains("frames") || data.contains("metrics"));
+  EXPECT_NE(page.find("function chart("), std::string::npos);
+}
+
+TEST(Report, WriteFailureIsAStatus) { EXPECT_EQ(write_report("/dev/full", {}).code(), StatusCode::kIo); }
+
+TEST(Drawing, DepthIsBlackWhereThereIsNone) {
+  std::vector<std::uint16_t> depth(16, 0);
+  depth[0] = 2000;   // 0.4 m: red
+  depth[2] = 25000;  // 5 m: blue
+  const Picture picture = draw_depth({depth.data(), 4, 4, 4, 1.0 / 5000});
+  ASSERT_EQ(picture.rgb.size(), 12u);
+  EXPECT_EQ((std::vector<std::uint8_t>(picture.rgb.begin(), picture.rgb.begin() + 6)),
+            (std::vector<std::uint8_t>{255, 0, 0, 0, 0, 255}));
+  EXPECT_EQ((std::vector<std::uint8_t>(picture.rgb.begin() + 6, picture.rgb.end())),
+            std::vector<std::uint8_t>(6, 0));
+}
+
+TEST(Drawing, SegmentsKnowTheirFate) {
+  const std::vector<SegmentView> now = {
+      {0, 0, 9, 0, false}, {0, 1, 9, 1, true}, {0, 2, 9, 2, true}, {0, 3, 9, 3, true}};
+  const std::vector<SegmentView> before(2);
+  const std::vector<LineTrackView> tracks = {
+      {1, 2, true}, {0, 3, false}, {7, 0, true}};  // the last one: nonsense
+  FeatureView view;
+  view.segments = now;
+  view.reference_segments = before;
+  view.line_tracks = tracks;
+  const std::vector<SegmentFate> fates = segment_fates(view);
+  EXPECT_EQ(fates[0].kind, FeatureKind::kPlain);
+  EXPECT_EQ(fates[1].kind, FeatureKind::kWith3d);
+  EXPECT_EQ(fates[2].kind, FeatureKind::kInlier);
+  EXPECT_EQ(fates[2].reference, 1);
+  EXPECT_EQ(fates[3].kind, FeatureKind::kOutlier);
+}
+
+TEST(Drawing, OverlayDrawsInsideTheImageOnly) {
+  const std::vector<std::uint8_t> grey(64, 100);
+  const std::vector<PointTrackView> tracks = {{-50, -50, 4, 4, true}, {1e9F, 0, 2, 2, false}};
+  FeatureView view;
+  view.image = {grey.data(), 8, 8, 8};
+  view.point_tracks = tracks;
+  const Picture picture = draw_overlay(view);
+  ASSERT_EQ(picture.rgb.size(), 192u);
+  EXPECT_EQ(picture.rgb[0], 61);  // the stroke towards the upper left leaves through the corner, in green
+  EXPECT_EQ(picture.rgb[1], 220);
+}
+
+}  // namespace
+}  // namespace plvo::report

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of what the odometry saw: keypoints, segments and matches over the undistorted image, and depth in
+// colours.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plvo/image/frame.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo::report {
+
+// What became of a feature; the report and the overlays use one set of colours for them.
+enum class FeatureKind : std::uint8_t {
+  kPlain,    // a keypoint as detected; a segment without 3D
+  kWith3d,   // a segment lifted to 3D, unmatched
+  kOutlier,  // matched, but against the motion
+  kInlier,
+};
+
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+
+  ColourView view() const {
+    return {rgb.data(), width, height, width * std::ptrdiff_t{3}, PixelFormat::kRgb8};
+  }
+};
+
+// One entry per segment of the current frame; `reference` is −1 without a match.
+struct SegmentFate {
+  FeatureKind kind = FeatureKind::kPlain;
+  int reference = -1;
+};
+std::vector<SegmentFate> segment_fates(const FeatureView& features);
+
+Picture draw_overlay(const FeatureView& features);
+
+// Near is red, far is blue, none is black; at half the size in each direction.
+Picture draw_depth(const DepthView& depth, double near_m = 0.4, double far_m = 5.0);
+
+}  // namespace plvo::report

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the report together from what the data has.
+const data = JSON.parse(document.getElementById("data").textContent);
+const main = document.getElementById("main");
+
+function table(id, title, head, rows, note) {
+  const section = element("section", { id }, element("h2", {}, title), element("div", { class: "table" },
+    element("table", {}, element("thead", {}, element("tr", {}, ...head.map(h => element("th", {}, h)))),
+      element("tbody", {}, ...rows.map(row => element("tr", {}, ...row.map(c => element("td", {}, String(c)))))))));
+  if (note) section.append(element("p", { class: "note" }, note));
+  return section;
+}
+
+function metricsSection(m) {
+  const mm = v => (1e3 * v).toFixed(2), degrees = v => v.toFixed(3);
+  const rows = [];
+  for (const r of m.rpe) {
+    if (!r.pairs) continue;
+    const name = { "1f": "RPE per frame", "1s": "RPE per second" }[r.delta] || `RPE over ${r.delta}`;
+    rows.push([name, mm(r.translation_m.rmse), mm(r.identity.translation_m.rmse), degrees(r.rotation_deg.rmse),
+      degrees(r.identity.rotation_deg.rmse)]);
+  }
+  rows.push(["ATE", mm(m.ate_m.rmse), mm(m.ate_m.identity.rmse), "", ""]);
+  rows.push(["end-point drift", mm(m.end_drift.translation_m), mm(m.end_drift.identity.translation_m),
+    degrees(m.end_drift.rotation_deg), degrees(m.end_drift.identity.rotation_deg)]);
+  const nees = ["nees_motion", "nees_pose"].filter(k => m[k] && m[k].samples).map(k =>
+    `NEES of the ${k.slice(5)}s: ${m[k].mean.toFixed(2)} (6 is consistent), ` +
+    `${(100 * m[k].inside_95_percent_bound).toFixed(0)} % inside the 95 % bound.`).join(" ");
+  return table("errors-table", "Errors against the ground truth",
+    ["RMSE", "mm", "still, mm", "degrees", "still, degrees"], rows,
+    `${m.poses} of ${m.estimate_poses} poses, ${m.duration_s.toFixed(2)} s, ${m.path_m.toFixed(2)} m. ` +
+    `\u201cStill\u201d is what a camera that never moves would score. ${nees}`);
+}
+
+function errorCharts(e, marks) {
+  const axes = ["x", "y", "z"];
+  const group = (title, unit, first, factor) => axes.map((axis, k) => chart(`${title}, ${axis}`, unit, e.t, [{
+    name: "error", y: e.e[first + k].map(v => v * factor), colour: css("--estimate"),
+    band: e.s ? e.s[first + k].map(v => v === null ? null : 3 * v * factor) : null }], marks));
+  return [...group("Position error", "mm", 0, 1e3), ...group("Orientation error", "degrees", 3, 180 / Math.PI)];
+}
+
+function statusMarks(s) {
+  const marks = [];
+  s.state.forEach((state, i) => { if (state === "lost" || state === "damaged") marks.push([s.t[i], s.t[i + 1] ?? s.t[i]]); });
+  return marks;
+}
+
+document.getElementById("title").textContent = data.title;
+document.getElementById("subtitle").textContent = data.subtitle;
+document.title = data.title;
+const marks = data.series ? statusMarks(data.series) : data.lost || [];
+main.append(trajectorySection(data));
+if (data.frames && data.frames.length) main.append(framesSection(data));
+if (data.metrics) main.append(metricsSection(data.metrics));
+if (data.summary) main.append(table("summary", "Run", ["", ""], data.summary));
+if (data.errors) main.append(...errorCharts(data.errors, marks));
+if (data.series) {
+  const s = data.series;
+  const lines = (names, source) => names.map((name, i) => ({ name, y: source[name], colour: palette[i] }));
+  main.append(
+    chart("Points", "per frame", s.t, lines(["detected", "matched", "inliers"], s.points), marks),
+    chart("Lines", "per frame", s.t, lines(["detected", "matched", "inliers"], s.lines), marks),
+    chart("CPU time by stage", "ms", s.t, lines(Object.keys(s.stages), s.stages), marks),
+    chart("Brightness", "mean grey level", s.t, [{ name: "brightness", y: s.brightness, colour: palette[1] }], marks,
+      marks.length ? "Vertical stripes: frames that were lost or damaged." : ""));
+}
+if (data.by_distance && data.by_distance.rows.length) {
+  main.append(table("by-distance", "Error against distance", data.by_distance.head, data.by_distance.rows));
+}
+cursor.move(null);  // the first drawing, now that everything has its size
