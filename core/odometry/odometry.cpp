@@ -2,6 +2,7 @@
 #include "plvo/odometry/odometry.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace plvo {
 namespace {
@@ -9,6 +10,13 @@ namespace {
 constexpr int kNobody = -1;
 // A frame with fewer 3D points than this cannot start a trajectory.
 constexpr int kMinStartFeatures = 20;
+
+// From an earlier stamp to a later one. Stamps may lie anywhere: a difference that does not fit saturates.
+std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
+  const std::uint64_t elapsed = static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  return elapsed > static_cast<std::uint64_t>(kMost) ? kMost : static_cast<std::int64_t>(elapsed);
+}
 
 std::size_t view_segments(const LineFeatures& lines, std::span<SegmentView> views) {
   for (std::size_t i = 0; i < lines.segments.size(); ++i) {
@@ -83,8 +91,9 @@ Status Odometry::check(const RgbdFrame& frame) const {
   const int bytes_per_pixel = frame.colour.format == PixelFormat::kGray8 ? 1 : 3;
   if (frame.colour.stride_bytes < camera_.width * bytes_per_pixel || frame.depth.stride < camera_.width)
     return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
-  if (!(frame.depth.metres_per_unit > 0 && frame.depth.metres_per_unit < 1))
-    return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 0 and 1"};
+  // Within this range the squares of depths and of inverse depths are far from the ends of a double's.
+  if (!(frame.depth.metres_per_unit >= 1e-6 && frame.depth.metres_per_unit < 1))
+    return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
   if (has_stamp_ && frame.stamp_ns <= last_stamp_ns_)
     return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
   return {};
@@ -132,9 +141,9 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   const Se3 T_last_reference = anchors_[static_cast<std::size_t>(last_)].T_world_camera.inverse() *
                                anchors_[static_cast<std::size_t>(reference)].T_world_camera;
   if (motion_ns_ <= 0) return T_last_reference;
-  const std::int64_t elapsed_ns = stamp_ns - frame(last_).stamp_ns;
+  const std::int64_t elapsed = elapsed_ns(frame(last_).stamp_ns, stamp_ns);
   // Beyond a few frames a prediction is worse than none.
-  const double ratio = static_cast<double>(elapsed_ns) / static_cast<double>(motion_ns_);
+  const double ratio = static_cast<double>(elapsed) / static_cast<double>(motion_ns_);
   if (!(ratio < 3)) return T_last_reference;
   const Vector6 velocity = boxminus(T_last_previous_, Se3{});
   return boxplus(Se3{}, ratio * velocity) * T_last_reference;
@@ -160,8 +169,17 @@ void Odometry::start(TrackResult& result) {
             .append(result.points.with_depth + result.lines.with_depth);
     return;
   }
-  // After a loss the anchor is the last good pose, already widened; at the very start it is the world's
-  // origin.
+  // At the very start the anchor is the world's origin; after a loss the last good pose, whose covariance
+  // grows by all the time that nobody saw.
+  if (last_ != kNobody) {
+    const double seconds = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, result.stamp_ns)) * 1e-9;
+    const double sigma_m = config_.motion.unseen_m_per_s * seconds;
+    const double sigma_rad = config_.motion.unseen_rad_per_s * seconds;
+    for (int i = 0; i < 3; ++i) {
+      result.pose_covariance(i, i) += sigma_m * sigma_m;
+      result.pose_covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+    }
+  }
   anchor(current_).T_world_camera = result.T_world_camera;
   anchor(current_).covariance = result.pose_covariance;
   result.state = TrackState::kInitialising;
@@ -187,7 +205,7 @@ void Odometry::accept(const MotionEstimate& motion, int against, TrackResult& re
   anchor(current_) = {T_world_camera, covariance};
 
   T_last_previous_ = T_world_camera.inverse() * anchor(last_).T_world_camera;
-  motion_ns_ = result.stamp_ns - frame(last_).stamp_ns;
+  motion_ns_ = elapsed_ns(frame(last_).stamp_ns, result.stamp_ns);
   lost_frames_ = 0;
   reference_ = against;
   choose_reference(result);
@@ -214,13 +232,6 @@ void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
   if (lost_frames_ < config_.motion.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. The next usable frame starts anew at the last good
   // pose.
-  const double seconds = static_cast<double>(result.stamp_ns - frame(last_).stamp_ns) * 1e-9;
-  const double sigma_m = config_.motion.unseen_m_per_s * seconds;
-  const double sigma_rad = config_.motion.unseen_rad_per_s * seconds;
-  for (int i = 0; i < 3; ++i) {
-    anchor(last_).covariance(i, i) += sigma_m * sigma_m;
-    anchor(last_).covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
-  }
   reference_ = kNobody;
   current_ = (last_ + 1) % 3;
 }

@@ -22,7 +22,7 @@ inline constexpr int kStageCount = 5;
 const char* to_string(Stage stage);
 
 struct FeatureCounts {
-  int detected = 0;    // kept in this frame, after the selection
+  int detected = 0;    // found in this frame, before the selection
   int dropped = 0;     // found, but beyond the capacity
   int with_depth = 0;  // lifted to 3D
   int matched = 0;     // to the reference, putative

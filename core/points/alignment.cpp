@@ -158,12 +158,16 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
     const double variance = t.normal(2, 2) / kPixels - mean * mean;
     const double residual_variance = (residual > 0 ? residual : 0) / (kPixels - 4) / (gain * gain);
     if (!(residual_variance <= options.max_residual * options.max_residual * variance)) return result;
-    // Covariance of (c_x, c_y): the noise of one pixel through the gradients' normal equations.
-    const double half_sum = 0.125 * (t.normal(0, 0) + t.normal(1, 1));
-    const double half_difference = 0.125 * (t.normal(0, 0) - t.normal(1, 1));
-    const double cross = 0.25 * t.normal(0, 1);
-    const double weakest = half_sum - sqrt(half_difference * half_difference + cross * cross);
-    result.sigma_px = sqrt(residual_variance / (weakest > 1 ? weakest : 1));
+    // Covariance of (c_x, c_y): the noise of one pixel through the inverse of the normal equations, so that
+    // what gain and offset take of the gradients' information is not counted. Regressors are twice the
+    // gradients.
+    const Vector4 column_x = factor.solve(Vector4::Unit(0));
+    const Vector4 column_y = factor.solve(Vector4::Unit(1));
+    const double half_sum = 2 * (column_x[0] + column_y[1]);
+    const double half_difference = 2 * (column_x[0] - column_y[1]);
+    const double cross = 4 * column_x[1];
+    const double largest = half_sum + sqrt(half_difference * half_difference + cross * cross);
+    result.sigma_px = sqrt(residual_variance * largest);
     result.ok = true;
   }
   return result;

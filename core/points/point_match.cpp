@@ -79,7 +79,10 @@ BestMatch find_best(const PointFeatures& reference, std::size_t i, const Predict
       second = distance;
     }
   });
-  if (best.distance > options.max_distance || best.distance > options.max_ratio * second) best.index = kNone;
+  // A rival that is just as good refuses the match even at distance 0, where every ratio holds.
+  if (best.distance > options.max_distance || best.distance >= second ||
+      best.distance > options.max_ratio * second)
+    best.index = kNone;
   return best;
 }
 

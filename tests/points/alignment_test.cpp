@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// A patch of a smooth texture, rendered again at known sub-pixel shifts under another light.
+#include "plvo/points/alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "gray_image.hpp"
+#include "plvo/points/descriptor.hpp"
+#include "plvo/points/detector.hpp"
+#include "texture.hpp"
+
+namespace plvo {
+namespace {
+
+using test::GrayImage;
+
+constexpr int kSide = 60;
+constexpr int kCentre = 30;
+// Smooth enough that bilinear interpolation between the pixels is nearly exact.
+constexpr double kGrain = 1.2;
+
+// The texture shifted by (dx, dy), darkened and lifted, with noise of this SD.
+GrayImage render(const test::Texture& texture, double dx, double dy, double gain, double offset, double noise,
+                 Random& random) {
+  GrayImage image(kSide, kSide, 5);
+  image.paint([&](int x, int y) {
+    return gain * std::clamp(texture(x - dx, y - dy), 0.0, 255.0) + offset +
+           (noise > 0 ? noise * test::gaussian(random) : 0);
+  });
+  return image;
+}
+
+// Where a detector would look: the strongest corner near the middle.
+struct Corner {
+  int x = kCentre, y = kCentre;
+};
+Corner strongest_corner(GrayView image) {
+  Corner best;
+  for (int y = 20; y <= 40; ++y)
+    for (int x = 20; x <= 40; ++x)
+      if (corner_strength(image, x, y) > corner_strength(image, best.x, best.y)) best = {x, y};
+  return best;
+}
+
+TEST(Alignment, RecoversShiftsUnderAnotherLight) {
+  const AlignmentOptions options;
+  Random random(1);
+  double worst = 0, square_sum = 0;
+  int tried = 0, found = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const test::Texture texture(seed, 100, kGrain);
+    const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
+    const Corner at = strongest_corner(reference.view());
+    const Patch patch = cut_patch(reference.view(), at.x, at.y);
+    for (int trial = 0; trial < 12; ++trial) {
+      const double dx = 1.6 * random.uniform() - 0.8;
+      const double dy = 1.6 * random.uniform() - 0.8;
+      const GrayImage current = render(texture, dx, dy, 0.6, 30, 0, random);
+      const Alignment got = align_patch(patch, current.view(), at.x, at.y, options);
+      ++tried;
+      if (!got.ok) continue;
+      ++found;
+      const double error = std::hypot(got.x - at.x - dx, got.y - at.y - dy);
+      square_sum += error * error;
+      worst = std::max(worst, error);
+      EXPECT_LE(got.iterations, options.max_iterations);
+    }
+  }
+  const double rms = std::sqrt(square_sum / (2 * found));
+  std::printf("error %.4f px RMS an axis, %.4f px at worst, %d of %d found\n", rms, worst, found, tried);
+  EXPECT_LT(rms, 0.03);
+  EXPECT_LT(worst, 0.1);
+  EXPECT_GE(found, tried * 90 / 100);
+}
+
+TEST(Alignment, TheSamePatchStaysWhereItIs) {
+  Random random(3);
+  const GrayImage image = render(test::Texture(5), 0, 0, 1, 0, 0, random);
+  const Patch patch = cut_patch(image.view(), kCentre, kCentre);
+  const Alignment got = align_patch(patch, image.view(), kCentre, kCentre, {});
+  ASSERT_TRUE(got.ok);
+  EXPECT_NEAR(got.x, kCentre, 1e-6);
+  EXPECT_NEAR(got.y, kCentre, 1e-6);
+  EXPECT_EQ(got.iterations, 1);
+  EXPECT_LT(got.sigma_px, 0.01);
+}
+
+TEST(Alignment, RefusesWhatCannotBeLocated) {
+  // Nothing at all; one straight edge; a patch of one grey level in a rich image.
+  GrayImage flat(kSide, kSide, 0, 90);
+  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kCentre, kCentre), flat.view(), kCentre, kCentre, {}).ok);
+  GrayImage edge(kSide, kSide);
+  edge.paint([](int x, int) { return 40 + 150 / (1 + std::exp(-(x - 30.3))); });
+  EXPECT_FALSE(align_patch(cut_patch(edge.view(), kCentre, kCentre), edge.view(), kCentre, kCentre, {}).ok);
+  Random random(8);
+  const GrayImage rich = render(test::Texture(8), 0, 0, 1, 0, 0, random);
+  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kCentre, kCentre), rich.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(align_patch(cut_patch(rich.view(), kCentre, kCentre), flat.view(), kCentre, kCentre, {}).ok);
+}
+
+TEST(Alignment, RefusesAnotherPatch) {
+  Random random(9);
+  int accepted = 0;
+  constexpr int kTrials = 100;
+  for (int i = 0; i < kTrials; ++i) {
+    const GrayImage a = render(test::Texture(100 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
+    const GrayImage b = render(test::Texture(500 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
+    const Alignment got = align_patch(cut_patch(a.view(), kCentre, kCentre), b.view(), kCentre, kCentre, {});
+    EXPECT_LE(got.iterations, AlignmentOptions{}.max_iterations);
+    accepted += got.ok ? 1 : 0;
+  }
+  EXPECT_LE(accepted, 2);
+}
+
+TEST(Alignment, NeverReadsOutsideTheImage) {
+  // The image is exactly as large as its memory: a sanitizer would see a step beside it. Nor may a start
+  // outside the image, or none at all, do harm.
+  Random random(10);
+  const test::Texture texture(10);
+  GrayImage image(kSide, kSide);
+  image.paint([&](int x, int y) { return texture(x, y); });
+  const Patch patch = cut_patch(image.view(), kCentre, kCentre);
+  for (double along : {-1e300, -100.0, -1.0, 0.0, 2.0, 3.9, kSide - 5.5, kSide - 1.0, kSide + 40.0, 1e300}) {
+    EXPECT_FALSE(align_patch(patch, image.view(), along, kCentre, {}).ok) << along;
+    EXPECT_FALSE(align_patch(patch, image.view(), kCentre, along, {}).ok) << along;
+  }
+  const double nan = std::nan("");
+  EXPECT_FALSE(align_patch(patch, image.view(), nan, kCentre, {}).ok);
+  EXPECT_FALSE(align_patch(patch, image.view(), kCentre, nan, {}).ok);
+  // As near to the border as a keypoint gets, it works.
+  for (int near : {kPatchRadius + 1, kSide - kPatchRadius - 3}) {
+    const Alignment got = align_patch(cut_patch(image.view(), near, near), image.view(), near, near, {});
+    EXPECT_TRUE(got.ok) << near;
+  }
+}
+
+TEST(Alignment, ARunawayIsNotAMatch) {
+  // A wide smooth blob: the registration would go far, and is stopped.
+  Random random(12);
+  GrayImage blob(kSide, kSide), far(kSide, kSide);
+  const auto paint = [](double cx) {
+    return [cx](int x, int y) {
+      return 30 + 190 * std::exp(-((x - cx) * (x - cx) + (y - 30.0) * (y - 30.0)) / 32);
+    };
+  };
+  blob.paint(paint(30));
+  const Patch patch = cut_patch(blob.view(), kCentre, kCentre);
+  far.paint(paint(34.5));
+  EXPECT_FALSE(align_patch(patch, far.view(), kCentre, kCentre, {}).ok);
+  AlignmentOptions patient;
+  patient.max_shift_px = 8;
+  patient.max_iterations = 30;
+  const Alignment got = align_patch(patch, far.view(), kCentre, kCentre, patient);
+  ASSERT_TRUE(got.ok) << "with more patience it is found, so the bound is what refused it";
+  EXPECT_NEAR(got.x, 34.5, 0.05);
+}
+
+TEST(Alignment, StopsAtItsBound) {
+  Random random(13);
+  const test::Texture texture(13);
+  const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
+  const GrayImage current = render(texture, 0.7, -0.6, 1, 0, 0, random);
+  AlignmentOptions options;
+  options.tolerance_px = 0;
+  for (int bound : {0, 1, 3, 8}) {
+    options.max_iterations = bound;
+    const Alignment got =
+        align_patch(cut_patch(reference.view(), kCentre, kCentre), current.view(), kCentre, kCentre, options);
+    EXPECT_FALSE(got.ok) << "a tolerance of zero is never met";
+    EXPECT_EQ(got.iterations, bound);
+  }
+}
+
+TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
+  // Fresh noise in both images, many times; sigma_px is of the worse axis.
+  for (double noise : {1.5, 3.0}) {
+    Random random(17);
+    double ratio_sum = 0;
+    int textures = 0;
+    for (std::uint64_t seed = 31; seed < 37; ++seed) {
+      const test::Texture texture(seed, 100, kGrain);
+      const Corner at = strongest_corner(render(texture, 0, 0, 1, 0, 0, random).view());
+      double xx = 0, xy = 0, yy = 0, sigma_sum = 0;
+      int n = 0;
+      for (int trial = 0; trial < 100; ++trial) {
+        const double dx = random.uniform() - 0.5;
+        const double dy = random.uniform() - 0.5;
+        const GrayImage reference = render(texture, 0, 0, 1, 0, noise, random);
+        const GrayImage current = render(texture, dx, dy, 0.8, 10, noise, random);
+        const Alignment got =
+            align_patch(cut_patch(reference.view(), at.x, at.y), current.view(), at.x, at.y, {});
+        if (!got.ok) continue;
+        const double ex = got.x - at.x - dx;
+        const double ey = got.y - at.y - dy;
+        xx += ex * ex;
+        xy += ex * ey;
+        yy += ey * ey;
+        sigma_sum += got.sigma_px;
+        ++n;
+      }
+      ASSERT_GT(n, 60) << "texture " << seed;
+      const double worse = std::sqrt((0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy)) / n);
+      const double ratio = worse / (sigma_sum / n);
+      EXPECT_GT(ratio, 0.5) << "texture " << seed << ", noise " << noise;
+      EXPECT_LT(ratio, 2.0) << "texture " << seed << ", noise " << noise;
+      ratio_sum += ratio;
+      ++textures;
+    }
+    std::printf("noise %.1f: spread / sigma_px = %.2f on average\n", noise, ratio_sum / textures);
+  }
+}
+
+}  // namespace
+}  // namespace plvo

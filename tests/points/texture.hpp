@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A smooth random texture that can be evaluated anywhere, not only at pixels: a sum of value noises of
+// several grain sizes, interpolated by a cubic B-spline, so that shifts below the pixel are exact.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo::test {
+
+class Texture {
+ public:
+  explicit Texture(std::uint64_t seed, double contrast = 55, double grain = 1)
+      : contrast_(contrast), grain_(grain) {
+    Random random(seed);
+    for (float& value : lattice_) value = static_cast<float>(2 * random.uniform() - 1);
+  }
+
+  // Grey level, roughly 127 ± 2 · contrast; grains of 5, 11 and 24 px times `grain`.
+  double operator()(double x, double y) const {
+    x /= grain_;
+    y /= grain_;
+    return 127 + contrast_ * (1.6 * noise(x / 5, y / 5, 0) + 1.3 * noise(x / 11, y / 11, 17) +
+                              1.0 * noise(x / 24, y / 24, 41));
+  }
+
+ private:
+  static constexpr int kSide = 128;
+
+  static std::array<double, 4> weights(double t) {
+    const double s = 1 - t;
+    return {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+            t * t * t / 6};
+  }
+  double noise(double x, double y, int salt) const {
+    const double x_floor = std::floor(x);
+    const double y_floor = std::floor(y);
+    const std::array<double, 4> wx = weights(x - x_floor);
+    const std::array<double, 4> wy = weights(y - y_floor);
+    const int x0 = static_cast<int>(x_floor) - 1 + salt + 8 * kSide;
+    const int y0 = static_cast<int>(y_floor) - 1 + 3 * salt + 8 * kSide;
+    double sum = 0;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i)
+        sum += wy[static_cast<std::size_t>(j)] * wx[static_cast<std::size_t>(i)] *
+               static_cast<double>(
+                   lattice_[static_cast<std::size_t>(((y0 + j) % kSide) * kSide + (x0 + i) % kSide)]);
+    return sum;
+  }
+
+  double contrast_, grain_;
+  std::array<float, kSide * kSide> lattice_{};
+};
+
+// A standard normal number: the sum of twelve uniform ones, less its mean (Irwin–Hall; tails end at 6).
+inline double gaussian(Random& random) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) sum += random.uniform();
+  return sum;
+}
+
+}  // namespace plvo::test
