@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The same trajectory, byte for byte, from every preset that built the command line: on the simulated camera, and on a
-# recorded sequence where the shared folder is there. compare_presets.sh PRESET… (each already built)
+# The same trajectory, byte for byte, from every preset that built the command line: on a simulated sequence, rendered once,
+# and on a recorded one where the shared folder is there. compare_presets.sh PRESET… (each already built)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -35,9 +35,13 @@ for preset in "$@"; do
 done
 [ -n "$presets" ] || { echo "no preset has built plvo" >&2; exit 1; }
 
-compare simulated --camera sim --size 320x240
+build/"${presets##* }"/bin/plvo simulate --size 320x240 --frames 12 --out "$work/simulated" >"$work/log" 2>&1 || {
+  cat "$work/log" >&2
+  exit 1
+}
+compare simulated "$work/simulated"
 if [ -d "$shared/data/fr1_desk_9f" ]; then
   compare fr1_desk "$shared/data/fr1_desk_9f" --camera-model tum-fr1
 else
-  echo "SKIPPED: no recorded sequences at $shared/data; the presets were compared on the simulated camera only" >&2
+  echo "SKIPPED: no recorded sequences at $shared/data; the presets were compared on the simulated sequence only" >&2
 fi
