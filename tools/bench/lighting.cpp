@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo_bench lighting: the protocol of Lu & Song's Table 1 on simulated closed walks. Each site is walked
+// twice from every seed, under constant light and under a lamp that swings and dims; a walk ends where it
+// began, so the end-point drift (TED) needs no other ground truth. One walk is one unit of work: render,
+// measure every system.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+#include "plvo/bench/campaign.hpp"
+#include "plvo/bench/commands.hpp"
+#include "plvo/bench/lighting_table.hpp"
+#include "plvo/bench/process_pool.hpp"
+#include "plvo/bench/system.hpp"
+#include "plvo/simulator/simulated_camera.hpp"
+#include "plvo/simulator/tum_folder.hpp"
+
+namespace plvo::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LightingOptions {
+  CommonOptions common;
+  std::string sites = "corridor,staircase,hall,desk,bare";
+  std::string lights = "constant,varying";
+  int seeds = 3;
+  int first_seed = 1;
+  int frames = 300;
+  bool discard_images = false;
+};
+
+std::string walk_name(const Walk& walk) {
+  return fmt::format("{}_{}_{}_{}f", walk.site, walk.light, walk.seed, walk.frames);
+}
+
+fs::path walk_folder(const Walk& walk, const fs::path& out) { return out / "walks" / walk.sequence; }
+
+Status list_walks(const LightingOptions& options, std::vector<Walk>& walks) {
+  std::stringstream sites(options.sites);
+  for (std::string site; std::getline(sites, site, ',');) {
+    SceneName scene{};
+    if (Status status = parse_scene(site, scene); !status.ok()) return status;
+    std::stringstream lights(options.lights);
+    for (std::string light; std::getline(lights, light, ',');) {
+      LightName name{};
+      if (Status status = parse_light(light, name); !status.ok()) return status;
+      for (int i = 0; i < options.seeds; ++i) {
+        Walk walk{site, light, options.first_seed + i, options.frames, {}};
+        walk.sequence = walk_name(walk);
+        walks.push_back(walk);
+      }
+    }
+  }
+  return {};
+}
+
+// Renders beside its place and moves it there when it is whole.
+Status render(const Walk& walk, const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error)) return {};
+  SimulatorOptions options;
+  options.seed = static_cast<std::uint64_t>(walk.seed);
+  options.frames = walk.frames;
+  options.threads = 1;  // --jobs is for more
+  if (Status status = parse_scene(walk.site, options.scene); !status.ok()) return status;
+  if (Status status = parse_light(walk.light, options.light); !status.ok()) return status;
+  std::unique_ptr<SimulatedCamera> camera;
+  if (Status status = SimulatedCamera::create(options, camera); !status.ok()) return status;
+  const fs::path part = folder.string() + ".part";
+  fs::remove_all(part, error);
+  fs::create_directories(folder.parent_path(), error);
+  if (Status status = write_tum_folder(*camera, part.string()); !status.ok()) return status;
+  fs::rename(part, folder, error);
+  if (error) return {StatusCode::kIo, fmt::format("{}: {}", folder.string(), error.message())};
+  return {};
+}
+
+std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& systems,
+                         const CommonOptions& common) {
+  return interleaved_jobs({{walk_folder(walk, fs::absolute(common.out)), walk.sequence}}, systems,
+                          common.repeats, common.measuring);
+}
+
+// The command that does one walk alone.
+std::vector<std::string> walk_command(const Walk& walk, const LightingOptions& options) {
+  std::vector<std::string> words = {own_program(),  "walk",
+                                    "--out",        fs::absolute(options.common.out).string(),
+                                    "--sites",      walk.site,
+                                    "--lights",     walk.light,
+                                    "--first-seed", std::to_string(walk.seed),
+                                    "--seeds",      "1",
+                                    "--frames",     std::to_string(walk.frames),
+                                    "--systems",    options.common.systems,
+                                    "--repeats",    std::to_string(options.common.repeats)};
+  if (options.discard_images) words.push_back("--discard-images");
+  return words;
+}
+
+Status walk_alone(const LightingOptions& options) {
+  std::vector<Walk> walks;
+  std::vector<std::string> systems;
+  if (Status status = list_walks(options, walks); !status.ok()) return status;
+  if (Status status = parse_systems(options.common.systems, systems); !status.ok()) return status;
+  if (Status status = make_out(options.common.out); !status.ok()) return status;
+  for (const Walk& walk : walks) {
+    const auto missing = missing_jobs(jobs_of(walk, systems, options.common), options.common.out);
+    if (missing.empty()) continue;
+    const fs::path folder = walk_folder(walk, options.common.out);
+    if (Status status = render(walk, folder); !status.ok()) return status;
+    std::vector<std::vector<std::string>> commands;
+    std::vector<std::string> names;
+    for (const Job& job : missing) {
+      commands.push_back(job.command(own_program(), fs::absolute(options.common.out)));
+      names.push_back(fmt::format("{} {}", job.sequence, job.system));
+    }
+    if (Status status = run_and_report(commands, names, 1); !status.ok()) return status;
+    std::error_code error;
+    if (options.discard_images) fs::remove_all(folder, error);
+  }
+  return {};
+}
+
+Status run_lighting(const LightingOptions& options) {
+  const CommonOptions& common = options.common;
+  std::vector<Walk> walks;
+  std::vector<std::string> systems;
+  if (Status status = list_walks(options, walks); !status.ok()) return status;
+  if (Status status = parse_systems(common.systems, systems); !status.ok()) return status;
+  if (Status status = make_out(common.out); !status.ok()) return status;
+  std::vector<Job> all;
+  std::vector<std::vector<std::string>> commands;
+  std::vector<std::string> names;
+  for (const Walk& walk : walks) {
+    const std::vector<Job> jobs = jobs_of(walk, systems, common);
+    all.insert(all.end(), jobs.begin(), jobs.end());
+    if (missing_jobs(jobs, common.out).empty()) continue;
+    commands.push_back(walk_command(walk, options));
+    names.push_back(walk.sequence);
+  }
+  if (common.list_jobs) {
+    for (const auto& command : commands) fmt::print("{}\n", shell_line(command));
+    return {};
+  }
+  const Host host = describe_host();
+  const Status ran = run_and_report(commands, names, common.jobs);
+  const std::vector<Result> results = read_results(all, common.out);
+  if (Status status = write_report(lighting_report(walks, systems, results), results, host, common.out);
+      !status.ok())
+    return status;
+  return ran;
+}
+
+void add_command(CLI::App& app, int& exit_code, const char* name, const char* what,
+                 Status (*execute)(const LightingOptions&)) {
+  auto options = std::make_shared<LightingOptions>();
+  CLI::App* command = app.add_subcommand(name, what);
+  add_common_options(*command, options->common);
+  command->add_option("--sites", options->sites, "Default: " + options->sites)->type_name("LIST");
+  command->add_option("--lights", options->lights, "Default: " + options->lights)->type_name("LIST");
+  command->add_option("--seeds", options->seeds, "Walks of each site and light (default 3)")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("NUMBER");
+  command->add_option("--first-seed", options->first_seed, "Default 1")->type_name("NUMBER");
+  command->add_option("--frames", options->frames, "Of each walk, at 30 Hz (default 300)")
+      ->check(CLI::Range(2, 1'000'000).description(""))
+      ->type_name("NUMBER");
+  command->add_flag(
+      "--discard-images", options->discard_images,
+      "Remove a walk's images when it is measured; they can be rendered again, bit by bit alike");
+  command->callback([options, execute, &exit_code] { exit_code = finish(execute(*options)); });
+}
+
+}  // namespace
+
+void add_lighting(CLI::App& app, int& exit_code) {
+  add_command(app, exit_code, "lighting", "The paper's Table 1 on simulated walks: drift under two lights",
+              run_lighting);
+  add_command(app, exit_code, "walk", "Walks alone, without the tables, as lighting --list-jobs prints them",
+              walk_alone);
+}
+
+}  // namespace plvo::bench

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenCV's odometries (module rgbd of opencv-contrib), frame to frame with their default settings, driven as
+// the module's own evaluation sample does it: grey images, depth in metres with NaN for none, one frame
+// object each whose cache is kept for its second use, and on failure no motion and on to the next frame.
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/rgbd/depth.hpp>
+
+#include "plvo/bench/system.hpp"
+#include "plvo/image/gray.hpp"
+
+namespace plvo::bench {
+namespace {
+
+using OpencvOdometry = cv::Ptr<cv::rgbd::Odometry>;
+
+OpencvOdometry make_odometry(const std::string& name, const cv::Mat& camera_matrix) {
+  if (name == "opencv-icp") return cv::rgbd::ICPOdometry::create(camera_matrix);
+  if (name == "opencv-rgbdicp") return cv::rgbd::RgbdICPOdometry::create(camera_matrix);
+  return cv::rgbd::RgbdOdometry::create(camera_matrix);
+}
+
+class OpencvSystem final : public System {
+ public:
+  OpencvSystem(const std::string& name, const CameraModel& camera) {
+    cv::setNumThreads(1);
+    const Pinhole& p = camera.pinhole;
+    const cv::Matx33d K(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
+    const Distortion& d = camera.distortion;
+    undistort_ = !d.is_zero();
+    if (undistort_) {
+      const cv::Vec<double, 5> coefficients(d.k1, d.k2, d.p1, d.p2, d.k3);
+      cv::initUndistortRectifyMap(K, coefficients, cv::noArray(), K, {camera.width, camera.height}, CV_32FC1,
+                                  map_x_, map_y_);
+    }
+    odometry_ = make_odometry(name, cv::Mat(cv::Matx33f(K)));
+  }
+
+  void prepare(const RgbdFrame& frame) override {
+    const int width = frame.colour.width;
+    cv::Mat grey(frame.colour.height, width, CV_8UC1);
+    to_gray(frame.colour, {grey.data, width, grey.rows, static_cast<std::ptrdiff_t>(grey.step[0])});
+    const DepthView& view = frame.depth;
+    cv::Mat raw(view.height, view.width, CV_16UC1, const_cast<std::uint16_t*>(view.data),
+                static_cast<std::size_t>(view.stride) * sizeof(std::uint16_t));
+    if (undistort_) {
+      cv::Mat grey_ideal, raw_ideal;
+      cv::remap(grey, grey_ideal, map_x_, map_y_, cv::INTER_LINEAR);
+      cv::remap(raw, raw_ideal, map_x_, map_y_, cv::INTER_NEAREST);
+      grey = grey_ideal;
+      raw = raw_ideal;
+    }
+    cv::Mat depth;
+    raw.convertTo(depth, CV_32FC1, view.metres_per_unit);
+    depth.setTo(std::numeric_limits<float>::quiet_NaN(), raw == 0);
+    current_ = cv::rgbd::OdometryFrame::create(grey, depth);
+  }
+
+  bool track() override {
+    bool tracked = true;
+    if (previous_) {
+      cv::Mat motion;  // of points: current camera → previous camera
+      tracked = odometry_->compute(current_, previous_, motion);
+      if (tracked) {
+        Se3 T_previous_current;
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) T_previous_current.R(i, j) = motion.at<double>(i, j);
+          T_previous_current.t(i) = motion.at<double>(i, 3);
+        }
+        T_world_camera_ = T_world_camera_ * T_previous_current;
+        T_world_camera_.R = renormalise(T_world_camera_.R);
+      }
+    }
+    previous_ = current_;
+    return tracked;
+  }
+
+  Se3 pose() const override { return T_world_camera_; }
+
+ private:
+  OpencvOdometry odometry_;
+  bool undistort_ = false;
+  cv::Mat map_x_, map_y_;
+  cv::Ptr<cv::rgbd::OdometryFrame> current_, previous_;
+  Se3 T_world_camera_;
+};
+
+}  // namespace
+
+std::unique_ptr<System> make_opencv_system(const std::string& name, const CameraModel& camera) {
+  return std::make_unique<OpencvSystem>(name, camera);
+}
+
+std::string opencv_version() { return CV_VERSION; }
+
+}  // namespace plvo::bench
