@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo_bench as the user runs it, over walks of a few frames and our own systems: the shape of its tables,
+// what is left to do after an interruption, and the list of jobs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "command.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::CommandResult;
+using test::read_file;
+using test::run_command;
+using test::TemporaryFolder;
+using test::write_file;
+
+const std::string kBench = PLVO_BENCH_BINARY;
+constexpr int kFrames = 3;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::stringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> rows_with(const std::string& text, const std::string& what) {
+  std::vector<std::string> rows;
+  for (const std::string& line : lines_of(text))
+    if (line.find(what) != std::string::npos) rows.push_back(line);
+  return rows;
+}
+
+std::string lighting(const fs::path& out) {
+  return kBench + " lighting --out " + out.string() +
+         " --sites bare --seeds 1 --systems plvo-points,plvo-both --frames " + std::to_string(kFrames);
+}
+
+// Two walks, rendered once for all tests.
+class Bench : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    const auto listed = lines_of(run_command(lighting(out()) + " --list-jobs").out);
+    ASSERT_EQ(listed.size(), 2U);
+    // One of the two as another machine would do it, the rest by the command itself.
+    EXPECT_EQ(run_command(listed[1]).exit_code, 0);
+    left_after_one_ = lines_of(run_command(lighting(out()) + " --list-jobs").out);
+    EXPECT_EQ(left_after_one_, std::vector<std::string>{listed[0]});
+    lighting_ = run_command(lighting(out()));
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path out() { return *folder_ / "lighting"; }
+  static std::string walk(const std::string& light) {
+    return (out() / "walks" / ("bare_" + light + "_1_" + std::to_string(kFrames) + "f")).string();
+  }
+
+  static std::unique_ptr<TemporaryFolder> folder_;
+  static std::vector<std::string> left_after_one_;
+  static CommandResult lighting_;
+};
+std::unique_ptr<TemporaryFolder> Bench::folder_;
+std::vector<std::string> Bench::left_after_one_;
+CommandResult Bench::lighting_;
+
+TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
+  ASSERT_EQ(lighting_.exit_code, 0) << lighting_.err;
+  // The walk that was there is not walked again.
+  EXPECT_EQ(rows_with(lighting_.err, "[1/1] bare_constant").size(), 1U) << lighting_.err;
+  const auto lines = lines_of(lighting_.out);
+  ASSERT_GE(lines.size(), 7U);
+  EXPECT_EQ(lines[0], "| site | light | path m | plvo-points | plvo-both |");
+  EXPECT_EQ(lines[1], "|---|---|---:|---:|---:|");
+  EXPECT_EQ(lines[2].rfind("| bare | constant | ", 0), 0U) << lines[2];
+  EXPECT_EQ(lines[3].rfind("| bare | varying | ", 0), 0U) << lines[3];
+  EXPECT_EQ(lines[4].rfind("| mean | constant | ", 0), 0U) << lines[4];
+  EXPECT_EQ(lines[6].rfind("| mean | varying / constant | ", 0), 0U) << lines[6];
+  EXPECT_EQ(lighting_.out, read_file(out() / "lighting.md"));
+  EXPECT_EQ(lines_of(read_file(out() / "lighting.csv")).size(), 1U + 2 * 2);
+  EXPECT_TRUE(run_command(lighting(out()) + " --list-jobs").out.empty());
+}
+
+TEST_F(Bench, ComparisonHasARowForEachSystemAndOneForStandingStill) {
+  const fs::path results = *folder_ / "run";
+  const CommandResult run = run_command(kBench + " run " + walk("constant") + ' ' + walk("varying") +
+                                        " --systems ours --repeats 2 --jobs 2 --out " + results.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(lines_of(run.out)[0].rfind("| sequence | system | mm/s |", 0), 0U);
+  EXPECT_EQ(rows_with(run.out, "| never moves |").size(), 2U);
+  for (const char* system : {"plvo-points", "plvo-lines", "plvo-both"})
+    EXPECT_EQ(rows_with(run.out, std::string("| ") + system + " |").size(), 2U) << run.out;
+  const auto csv = lines_of(read_file(results / "comparison.csv"));
+  ASSERT_EQ(csv.size(), 1U + 2 * 4);
+  for (const std::string& line : csv)
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), std::count(csv[0].begin(), csv[0].end(), ','))
+        << line;
+
+  const json all = json::parse(read_file(results / "comparison.json"));
+  ASSERT_EQ(all["results"].size(), 2U * 2 * 3);
+  for (const json& result : all["results"]) {
+    EXPECT_EQ(result["frames"], kFrames);
+    EXPECT_GT(result["cpu_median_ms"], 0);
+    EXPECT_GT(result["peak_mb"], result["growth_mb"]);
+    EXPECT_TRUE(result["estimate"]["rpe_second_mm"].is_null())
+        << "a tenth of a second has no pair a second apart";
+    if (result["system"] == "plvo-points") {
+      EXPECT_LT(result["estimate"]["rpe_frame_mm"], result["identity"]["rpe_frame_mm"]);
+    }
+  }
+  EXPECT_FALSE(all["host"]["cpu"].get<std::string>().empty());
+  EXPECT_NE(read_file(results / "comparison.html").find("<td class=\"t\">plvo-both</td>"), std::string::npos);
+}
+
+TEST_F(Bench, GoesOnWhereItStopped) {
+  const fs::path results = *folder_ / "resumed";
+  const std::string command =
+      kBench + " run " + walk("constant") + " --systems ours --out " + results.string();
+  const std::string list = command + " --list-jobs";
+  EXPECT_EQ(lines_of(run_command(list).out).size(), 3U);
+  ASSERT_EQ(run_command(command).exit_code, 0);
+  EXPECT_TRUE(run_command(list).out.empty());
+
+  // One result is gone, one was cut off by a full disk.
+  const auto job = [&](const std::string& system) {
+    return results / "jobs" / (fs::path(walk("constant")).filename().string() + '.' + system + ".0.json");
+  };
+  ASSERT_TRUE(fs::remove(job("plvo-lines")));
+  write_file(job("plvo-both"), read_file(job("plvo-both")).substr(0, 100));
+  const std::string kept = read_file(job("plvo-points"));
+  const auto left = lines_of(run_command(list).out);
+  ASSERT_EQ(left.size(), 2U);
+  EXPECT_NE(left[0].find("plvo-lines"), std::string::npos);
+  EXPECT_NE(left[1].find("plvo-both"), std::string::npos);
+  EXPECT_EQ(run_command(left[0]).exit_code, 0);
+  const CommandResult again = run_command(command);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(rows_with(again.err, "[1/1]").size(), 1U) << again.err;
+  EXPECT_EQ(read_file(job("plvo-points")), kept);
+
+  // Another question is another measurement.
+  EXPECT_EQ(lines_of(run_command(list + " --frames 2").out).size(), 3U);
+}
+
+TEST_F(Bench, Table2WeighsItsMeanByFrames) {
+  const fs::path results = *folder_ / "tum";
+  const CommandResult run = run_command(kBench + " tum " + walk("constant") + ' ' + walk("varying") +
+                                        " --systems plvo-points --out " + results.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(rows_with(run.out, "| mean, weighted by frames |").size(), 2U) << run.out;
+  EXPECT_EQ(rows_with(run.out, "| never moves |").size(), 3U) << run.out;
+  double sum = 0;  // the walks are equally long
+  const json all = json::parse(read_file(results / "table2.json"));
+  for (const json& result : all["results"]) sum += result["estimate"]["rpe_frame_mm"].get<double>();
+  const auto mean = rows_with(read_file(results / "table2.csv"), "\"mean, weighted by frames\",plvo-points,");
+  ASSERT_EQ(mean.size(), 1U);
+  const std::string rest =
+      mean[0].substr(mean[0].find("plvo-points,6,") + std::string("plvo-points,6,").size());
+  EXPECT_NEAR(std::stod(rest.substr(rest.find(',') + 1)), sum / 2, 1e-5);
+}
+
+TEST_F(Bench, SaysWhatIsWrong) {
+  const std::string out_option = " --out " + (*folder_ / "bad").string();
+  const CommandResult system =
+      run_command(kBench + " run " + walk("constant") + " --systems slam" + out_option);
+  EXPECT_EQ(system.exit_code, 1);
+  EXPECT_NE(system.err.find("plvo-lines"), std::string::npos) << system.err;
+  EXPECT_EQ(run_command(kBench + " run /no/such/folder" + out_option).exit_code, 1);
+  EXPECT_EQ(run_command(kBench + " run " + walk("constant")).exit_code, 2);
+  EXPECT_EQ(run_command(kBench + " lighting --sites moon" + out_option).exit_code, 1);
+
+  // A sequence that cannot be read fails its jobs, and the others are in the table.
+  const fs::path broken = *folder_ / "broken";
+  fs::create_directory(broken);
+  const CommandResult run = run_command(kBench + " run " + broken.string() + ' ' + walk("constant") +
+                                        " --systems plvo-points" + out_option);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("1 of 2 jobs failed"), std::string::npos) << run.err;
+  EXPECT_EQ(rows_with(run.out, "| plvo-points |").size(), 1U) << run.out;
+}
+
+}  // namespace
+}  // namespace plvo
