@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenCV's odometries (module rgbd of opencv-contrib), frame to frame with their default settings, driven as
 // the module's own evaluation sample does it: grey images, depth in metres with NaN for none, one frame
-// object each whose cache is kept for its second use, and on failure no motion and on to the next frame.
+// object each whose cache is kept for its second use, and on failure no motion and on to the next frame. But
+// from the previous frame to the current one, not the other way as there: on our recordings that serves them
+// better.
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -61,15 +63,15 @@ class OpencvSystem final : public System {
   bool track() override {
     bool tracked = true;
     if (previous_) {
-      cv::Mat motion;  // of points: current camera → previous camera
-      tracked = odometry_->compute(current_, previous_, motion);
+      cv::Mat motion;  // of points: previous camera → current camera
+      tracked = odometry_->compute(previous_, current_, motion);
       if (tracked) {
-        Se3 T_previous_current;
+        Se3 T_current_previous;
         for (int i = 0; i < 3; ++i) {
-          for (int j = 0; j < 3; ++j) T_previous_current.R(i, j) = motion.at<double>(i, j);
-          T_previous_current.t(i) = motion.at<double>(i, 3);
+          for (int j = 0; j < 3; ++j) T_current_previous.R(i, j) = motion.at<double>(i, j);
+          T_current_previous.t(i) = motion.at<double>(i, 3);
         }
-        T_world_camera_ = T_world_camera_ * T_previous_current;
+        T_world_camera_ = T_world_camera_ * T_current_previous.inverse();
         T_world_camera_.R = renormalise(T_world_camera_.R);
       }
     }
