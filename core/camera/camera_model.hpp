@@ -23,9 +23,11 @@ struct CameraModel {
   int width = 640, height = 480;  // px
   Pinhole pinhole;
   Distortion distortion;
+  // Rolling shutter: from the exposure of the first row to that of the last, in seconds. 0: all rows at once.
+  double readout_s = 0;
 
-  // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, or
-  // a lens that folds back on itself inside the image.
+  // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, a
+  // readout that is negative or above 0.1 s, or a lens that folds back on itself inside the image.
   Status validate() const;
 };
 

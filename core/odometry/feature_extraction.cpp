@@ -89,8 +89,8 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, PointFeat
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
     const DepthSample depth = depth_sampler.sample(keypoint.u, keypoint.v);
-    points.points[i] =
-        observe_keypoint(camera_.pinhole, config_.points, keypoint.level, keypoint.u, keypoint.v, depth);
+    points.points[i] = observe_point(camera_.pinhole, keypoint.u, keypoint.v, depth.depth_m,
+                                     config_.points.sigma_px * (1 << keypoint.level), depth.sigma_m);
     with_depth += depth.depth_m > 0 ? 1 : 0;
   }
   result.points.with_depth = with_depth;
@@ -119,11 +119,6 @@ void FeatureExtraction::extract_lines(const DepthSampler& depth, Arena& scratch,
     ++lines.count_3d;
   }
   result.lines.with_depth = static_cast<int>(lines.count_3d);
-}
-
-Point3d observe_keypoint(const Pinhole& pinhole, const PointConfig& config, int level, double u, double v,
-                         const DepthSample& depth) {
-  return observe_point(pinhole, u, v, depth.depth_m, config.sigma_px * (1 << level), depth.sigma_m);
 }
 
 }  // namespace plvo

@@ -20,11 +20,6 @@
 
 namespace plvo {
 
-// P2 and P3: the 3D point of a keypoint at (u, v) with the depth found there; σ_p grows with the pyramid
-// level.
-Point3d observe_keypoint(const Pinhole& pinhole, const PointConfig& config, int level, double u, double v,
-                         const DepthSample& depth);
-
 class FeatureExtraction {
  public:
   template <typename Memory>

@@ -5,6 +5,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
+#include "plvo/camera/rolling_shutter.hpp"
 #include "plvo/lines/line_features.hpp"
 #include "plvo/lines/line_match.hpp"
 #include "plvo/math/se3.hpp"
@@ -12,9 +13,10 @@
 namespace plvo {
 
 // Indices are those of the 3D lines of both frames. Lines that the motion puts behind the camera are left
-// out.
-void match_predicted_lines(const Pinhole& pinhole, const LineFeatures& reference, const LineFeatures& current,
-                           const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
+// out. reference_lines: the reference's 3D lines at its mid-exposure; shutter: of the current frame.
+void match_predicted_lines(const Pinhole& pinhole, const RollingShutter& shutter,
+                           const LineFeatures& reference, std::span<const Line3d> reference_lines,
+                           const LineFeatures& current, const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
                            FixedVector<Match>& matches);
 
 // Its scratch.

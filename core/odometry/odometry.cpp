@@ -149,15 +149,29 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   return boxplus(Se3{}, ratio * velocity) * T_last_reference;
 }
 
+PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
+  const Anchor& from = anchors_[static_cast<std::size_t>(reference)];
+  PairPrior prior;
+  prior.T_current_reference = predict_motion(reference, stamp_ns);
+  prior.T_reference_last =
+      from.T_world_camera.inverse() * anchors_[static_cast<std::size_t>(last_)].T_world_camera;
+  prior.seconds_since_last = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, stamp_ns)) * 1e-9;
+  prior.reference_velocity = from.velocity;
+  prior.reference_velocity_known = from.velocity_known;
+  prior.reference_is_last = reference == last_;
+  return prior;
+}
+
 MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result) {
-  const Se3 T_predicted = predict_motion(reference, result.stamp_ns);
+  PairPrior prior = prior_of(reference, result.stamp_ns);
   result.reference_stamp_ns = frame(reference).stamp_ns;
   MotionEstimate motion =
       rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
-                                 T_predicted, config_.points.search_radius_px, arena_, result);
+                                 prior, config_.points.search_radius_px, arena_, result);
   if (motion.status == StatusCode::kOk) return motion;
+  prior.T_current_reference = Se3{};
   return rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
-                                    Se3{}, config_.motion.wide_search_px, arena_, result);
+                                    prior, config_.motion.wide_search_px, arena_, result);
 }
 
 void Odometry::start(TrackResult& result) {
@@ -182,6 +196,7 @@ void Odometry::start(TrackResult& result) {
   }
   anchor(current_).T_world_camera = result.T_world_camera;
   anchor(current_).covariance = result.pose_covariance;
+  anchor(current_).velocity_known = false;
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   reference_ = last_ = current_;
@@ -202,13 +217,25 @@ void Odometry::accept(const MotionEstimate& motion, int against, TrackResult& re
                                                 inverse_covariance(motion.T_current_reference, motion.C_H));
   result.T_world_camera = T_world_camera;
   result.pose_covariance = covariance;
-  anchor(current_) = {T_world_camera, covariance};
+  anchor(current_).T_world_camera = T_world_camera;
+  anchor(current_).covariance = covariance;
 
   T_last_previous_ = T_world_camera.inverse() * anchor(last_).T_world_camera;
   motion_ns_ = elapsed_ns(frame(last_).stamp_ns, result.stamp_ns);
+  note_velocity();
   lost_frames_ = 0;
   reference_ = against;
   choose_reference(result);
+}
+
+// Of the current frame, and so more of the last one.
+void Odometry::note_velocity() {
+  Anchor& last = anchor(last_);
+  Anchor& current = anchor(current_);
+  current.velocity = boxminus(T_last_previous_, Se3{}) / (static_cast<double>(motion_ns_) * 1e-9);
+  current.velocity_known = true;
+  last.velocity = last.velocity_known ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
+  last.velocity_known = true;
 }
 
 // The tracked frame becomes the last good one, and the reference too, unless a keyframe goes on being a good

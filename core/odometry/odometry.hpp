@@ -112,11 +112,17 @@ class Odometry {
   struct Anchor {
     Se3 T_world_camera;
     Matrix6 covariance = Matrix6::Zero();
+    // Per second (rolling_shutter.hpp): since the good frame before it; once the next one is tracked, the mean
+    // of both.
+    Vector6 velocity = Vector6::Zero();
+    bool velocity_known = false;
   };
 
   Status check(const RgbdFrame& frame) const;
   MotionEstimate estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
+  PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
+  void note_velocity();
   void accept(const MotionEstimate& motion, int against, TrackResult& result);
   void start(TrackResult& result);
   void lose(const MotionEstimate& motion, TrackResult& result);

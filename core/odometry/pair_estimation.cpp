@@ -20,18 +20,17 @@ void PairEstimation::init(const CameraModel& camera, const Config& config) {
   config_ = config;
 }
 
-MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const FrameFeatures& current,
-                                     const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
-                                     TrackResult& result) {
+MotionEstimate PairEstimation::solve(const MidExposure& features, const Se3& T_predicted, const LmOptions& lm,
+                                     Arena& scratch, TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t n = point_tracks_.matches.size();
   const PointConstraints::Workspace workspace = PointConstraints::Workspace::take(scratch, n);
-  PointConstraints points(reference.points.points, point_tracks_.points, point_tracks_.matches.span(),
+  PointConstraints points(features.reference_points, point_tracks_.points, point_tracks_.matches.span(),
                           workspace);
   const std::size_t m = line_matches_.size();
   const LineConstraints::Workspace line_workspace = LineConstraints::Workspace::take(scratch, m);
-  LineConstraints lines(reference.lines.lines_3d(), current.lines.lines_3d(), line_matches_.span(),
+  LineConstraints lines(features.reference_lines, features.current_lines, line_matches_.span(),
                         line_workspace);
 
   MotionOptions options;
@@ -56,30 +55,40 @@ MotionEstimate PairEstimation::solve(const FrameFeatures& reference, const Frame
 
 MotionEstimate PairEstimation::estimate(const FrameFeatures& reference, const FrameFeatures& current,
                                         const Pyramid& pyramid, const DepthSampler& depth,
-                                        const Se3& T_predicted, double radius_px, Arena& scratch,
+                                        const PairPrior& prior, double radius_px, Arena& scratch,
                                         TrackResult& result) {
-  const TrackingView view{camera_.pinhole, config_.points, pyramid, depth};
+  MotionEstimate first;
   {
-    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
-    track_by_descriptor(view, reference.points, current.points, T_predicted, radius_px, scratch,
-                        point_tracks_);
-    LineMatchConfig gates = config_.lines.match;
-    gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
-    match_predicted_lines(camera_.pinhole, reference.lines, current.lines, T_predicted, gates, scratch,
-                          line_matches_);
+    const ScratchScope scope(scratch);
+    const Se3& T_predicted = prior.T_current_reference;
+    const MidExposure features = at_mid_exposure(camera_, prior, T_predicted, reference, current, scratch);
+    {
+      const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+      const TrackingView view{camera_.pinhole, config_.points, pyramid, depth, features.current};
+      track_by_descriptor(view, reference.points, features.reference_points, current.points, T_predicted,
+                          radius_px, scratch, point_tracks_);
+      LineMatchConfig gates = config_.lines.match;
+      gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
+      match_predicted_lines(camera_.pinhole, features.current, reference.lines, features.reference_lines,
+                            current.lines, T_predicted, gates, scratch, line_matches_);
+    }
+    first = solve(features, T_predicted, kRough, scratch, result);
+    if (first.status != StatusCode::kOk) return first;
   }
-  const MotionEstimate first = solve(reference, current, T_predicted, kRough, scratch, result);
-  if (first.status != StatusCode::kOk) return first;
+  const ScratchScope scope(scratch);
+  const Se3& T_first = first.T_current_reference;
+  const MidExposure features = at_mid_exposure(camera_, prior, T_first, reference, current, scratch);
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
-    track_by_motion(view, reference.points, first.T_current_reference, point_tracks_);
+    const TrackingView view{camera_.pinhole, config_.points, pyramid, depth, features.current};
+    track_by_motion(view, reference.points, features.reference_points, T_first, point_tracks_);
     LineMatchConfig gates = config_.lines.match;
     gates.max_offset_px = config_.lines.guided_offset_px;
     gates.max_angle_rad = config_.lines.guided_angle_rad;
-    match_predicted_lines(camera_.pinhole, reference.lines, current.lines, first.T_current_reference, gates,
-                          scratch, line_matches_);
+    match_predicted_lines(camera_.pinhole, features.current, reference.lines, features.reference_lines,
+                          current.lines, T_first, gates, scratch, line_matches_);
   }
-  return solve(reference, current, first.T_current_reference, kFine, scratch, result);
+  return solve(features, T_first, kFine, scratch, result);
 }
 
 }  // namespace plvo

@@ -11,6 +11,7 @@
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
 #include "plvo/odometry/line_tracking.hpp"
+#include "plvo/odometry/mid_exposure.hpp"
 #include "plvo/odometry/point_tracking.hpp"
 #include "plvo/odometry/track_result.hpp"
 
@@ -30,6 +31,8 @@ class PairEstimation {
   // Scratch: the larger of the stages, which come one after the other.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
+    const ScratchScope scope(memory);
+    take_mid_exposure(memory, limits);
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
     reserve_line_tracking(memory, limits.segments);
     size_motion(memory, static_cast<std::size_t>(limits.keypoints),
@@ -38,10 +41,10 @@ class PairEstimation {
 
   void init(const CameraModel& camera, const Config& config);
 
-  // T_predicted: T_current_reference as expected; radius_px: how far from it features are looked for. Counts
-  // and times go to `result`, the tracks stay for a look at them.
+  // radius_px: how far from where the prior has them features are looked for. Counts and times go to
+  // `result`, the tracks stay for a look at them.
   MotionEstimate estimate(const FrameFeatures& reference, const FrameFeatures& current,
-                          const Pyramid& pyramid, const DepthSampler& depth, const Se3& T_predicted,
+                          const Pyramid& pyramid, const DepthSampler& depth, const PairPrior& prior,
                           double radius_px, Arena& scratch, TrackResult& result);
 
   std::span<const Match> line_matches() const { return line_matches_.span(); }
@@ -52,8 +55,8 @@ class PairEstimation {
   }
 
  private:
-  MotionEstimate solve(const FrameFeatures& reference, const FrameFeatures& current, const Se3& T_predicted,
-                       const LmOptions& lm, Arena& scratch, TrackResult& result);
+  MotionEstimate solve(const MidExposure& features, const Se3& T_predicted, const LmOptions& lm,
+                       Arena& scratch, TrackResult& result);
 
   CameraModel camera_;
   Config config_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/point_tracking.hpp"
 
-#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/math/trigonometry.hpp"
 #include "plvo/points/alignment.hpp"
 
 namespace plvo {
@@ -10,11 +10,21 @@ namespace {
 // What only serves to find the motion roughly need not be registered finely.
 constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
 
+// Alignment::sigma_px takes the residuals of a patch's pixels for independent. Those of real patches, seen from elsewhere
+// under another light, are not: one in sixteen counts.
+constexpr double kResidualCorrelation = 4;
+
+// σ_p of a keypoint where registration put it, in pixels of its level.
+double registered_sigma_px(const PointConfig& config, const Alignment& alignment) {
+  const double sigma = kResidualCorrelation * alignment.sigma_px;
+  return sqrt(config.sigma_px * config.sigma_px + sigma * sigma);
+}
+
 // Where the reference keypoint's 3D point is seen after the motion.
 Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
   constexpr double kNearest_m = 0.1;
   if (!(point.p.z() > 0)) return {};
-  const Vector3 p = T_current_reference * point.p;
+  const Vector3 p = view.shutter.as_seen(T_current_reference * point.p);
   if (!(p.z() > kNearest_m)) return {};
   const Vector2 pixel = project(view.pinhole, p);
   const GrayView image = view.pyramid.level(0);
@@ -39,15 +49,18 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
   const std::size_t track = tracks.matches.size();
   if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
   tracks.pixels[track] = pixel;
-  tracks.points[track] =
-      observe_keypoint(view.pinhole, view.config, keypoint.level, pixel.x(), pixel.y(), depth);
+  Point3d& point = tracks.points[track];
+  point = observe_point(view.pinhole, pixel.x(), pixel.y(), depth.depth_m,
+                        scale * registered_sigma_px(view.config, alignment), depth.sigma_m);
+  point.p = view.shutter.at_mid_exposure(point.p);
 }
 
 }  // namespace
 
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
-                         const PointFeatures& current, const Se3& T_current_reference, double radius_px,
-                         Arena& scratch, PointTracks& tracks) {
+                         std::span<const Point3d> reference_points, const PointFeatures& current,
+                         const Se3& T_current_reference, double radius_px, Arena& scratch,
+                         PointTracks& tracks) {
   tracks.matches.clear();
   const ScratchScope scope(scratch);
   const std::size_t n = reference.keypoints.size();
@@ -55,7 +68,7 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   FixedVector<Match> putative(scratch.take<Match>("putative matches", n));
   if (predictions.size() < n || putative.capacity() < n) return;
   for (std::size_t i = 0; i < n; ++i)
-    predictions[i] = predict(view, reference.points[i], T_current_reference);
+    predictions[i] = predict(view, reference_points[i], T_current_reference);
 
   PointMatchOptions options;
   options.radius_px = radius_px;
@@ -69,11 +82,12 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   }
 }
 
-void track_by_motion(const TrackingView& view, const PointFeatures& reference, const Se3& T_current_reference,
+void track_by_motion(const TrackingView& view, const PointFeatures& reference,
+                     std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks) {
   tracks.matches.clear();
   for (std::size_t i = 0; i < reference.keypoints.size(); ++i) {
-    const Prediction prediction = predict(view, reference.points[i], T_current_reference);
+    const Prediction prediction = predict(view, reference_points[i], T_current_reference);
     if (prediction.visible)
       register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{}, tracks);
   }

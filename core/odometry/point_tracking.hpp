@@ -12,6 +12,7 @@
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/camera/rolling_shutter.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/math/se3.hpp"
@@ -26,7 +27,7 @@ namespace plvo {
 struct PointTracks {
   FixedVector<Match> matches;
   std::span<Vector2> pixels;  // level-0 px
-  std::span<Point3d> points;  // camera frame of the current frame
+  std::span<Point3d> points;  // camera frame of the current frame, at mid-exposure
 
   template <typename Memory>
   constexpr void carve(Memory& memory, int capacity) {
@@ -43,15 +44,18 @@ struct TrackingView {
   const PointConfig& config;
   const Pyramid& pyramid;
   const DepthSampler& depth;
+  const RollingShutter& shutter;
 };
 
 // Through descriptors, within radius_px of where T_current_reference puts the reference keypoints.
+// reference_points: those of the reference's keypoints, at its mid-exposure.
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
-                         const PointFeatures& current, const Se3& T_current_reference, double radius_px,
+                         std::span<const Point3d> reference_points, const PointFeatures& current, const Se3& T_current_reference, double radius_px,
                          Arena& scratch, PointTracks& tracks);
 
 // By registration alone, from where T_current_reference puts them.
-void track_by_motion(const TrackingView& view, const PointFeatures& reference, const Se3& T_current_reference,
+void track_by_motion(const TrackingView& view, const PointFeatures& reference,
+                     std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks);
 
 // Scratch of track_by_descriptor.

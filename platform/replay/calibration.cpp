@@ -45,19 +45,20 @@ std::vector<std::string> read_words(std::istream& stream) {
 }
 
 Status from_numbers(const fs::path& path, const std::vector<std::string>& words, Calibration& calibration) {
-  if (words.size() != 5 && words.size() != 10) {
+  if (words.size() != 5 && words.size() != 10 && words.size() != 11) {
     return damaged(
         path, fmt::format("has {} numbers; expected 'fx fy cx cy depth_scale' or 'fx fy cx cy depth_scale "
-                          "k1 k2 p1 p2 k3'",
+                          "k1 k2 p1 p2 k3 [readout_s]'",
                           words.size()));
   }
-  std::array<double, 10> values{};
+  std::array<double, 11> values{};
   for (std::size_t i = 0; i < words.size(); ++i)
     if (!parse_number(words[i], values[i]))
       return damaged(path, fmt::format("'{}' is not a number", words[i]));
   calibration.camera.pinhole = {values[0], values[1], values[2], values[3]};
   calibration.depth_units_per_metre = values[4];
   calibration.camera.distortion = {values[5], values[6], values[7], values[8], values[9]};
+  calibration.camera.readout_s = values[10];
   return {};
 }
 
@@ -67,7 +68,7 @@ Status from_keys(const fs::path& path, const std::vector<std::string>& words, Ca
   Pinhole& pinhole = calibration.camera.pinhole;
   Distortion& lens = calibration.camera.distortion;
   pinhole = {0, 0, -1, -1};
-  const std::array<std::pair<std::string_view, double*>, 12> keys = {
+  const std::array<std::pair<std::string_view, double*>, 13> keys = {
       {{"fx", &pinhole.fx},
        {"fy", &pinhole.fy},
        {"cx", &pinhole.cx},
@@ -78,6 +79,7 @@ Status from_keys(const fs::path& path, const std::vector<std::string>& words, Ca
        {"p1", &lens.p1},
        {"p2", &lens.p2},
        {"k3", &lens.k3},
+       {"readout_s", &calibration.camera.readout_s},
        {"width", &width},
        {"height", &height}}};
   for (std::size_t i = 0; i < words.size(); i += 2) {
@@ -86,8 +88,8 @@ Status from_keys(const fs::path& path, const std::vector<std::string>& words, Ca
       if (words[i] == key) target = value;
     if (target == nullptr) {
       return damaged(
-          path, fmt::format("'{}' is not known; the keys are fx fy cx cy depth_scale k1 k2 p1 p2 k3 width "
-                            "height",
+          path, fmt::format("'{}' is not known; the keys are fx fy cx cy depth_scale k1 k2 p1 p2 k3 "
+                            "readout_s width height",
                             words[i]));
     }
     if (i + 1 >= words.size() || !parse_number(words[i + 1], *target))
@@ -129,7 +131,7 @@ Status read_calibration(const fs::path& path, Calibration& calibration) {
   std::ifstream stream(path);
   if (!stream) return {StatusCode::kNotFound, fmt::format("cannot read the calibration {}", path.string())};
   const std::vector<std::string> words = read_words(stream);
-  if (words.empty()) return damaged(path, "is empty; expected 'fx fy cx cy depth_scale [k1 k2 p1 p2 k3]'");
+  if (words.empty()) return damaged(path, "is empty; expected 'fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]'");
   double number = 0;
   Calibration result;
   const Status status =
@@ -144,6 +146,7 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   Calibration result;
   result.has_size = true;
   CameraModel& camera = result.camera;
+  camera.readout_s = kKinectReadout_s;  // all of these are Kinects v1 or their relatives
   if (name == "tum-fr1") {
     camera.pinhole = {517.306408, 516.469215, 318.643040, 255.313989};
     camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};

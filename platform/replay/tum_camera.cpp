@@ -20,6 +20,7 @@ Status TumCamera::open(const fs::path& folder, const Calibration& calibration, c
   if (Status status = calibration.validate(model_.width, model_.height); !status.ok()) return status;
   model_.pinhole = calibration.camera.pinhole;
   model_.distortion = calibration.camera.distortion;
+  model_.readout_s = calibration.camera.readout_s;
   depth_units_per_metre_ = calibration.depth_units_per_metre;
   allocate();
   return {};

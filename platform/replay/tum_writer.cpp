@@ -25,7 +25,9 @@ Status TumWriter::open(const fs::path& folder, const CameraModel& camera, double
   const Pinhole& k = camera.pinhole;
   const Distortion& d = camera.distortion;
   std::string line = fmt::format("{} {} {} {} {}", k.fx, k.fy, k.cx, k.cy, depth_units_per_metre);
-  if (!d.is_zero()) line += fmt::format(" {} {} {} {} {}", d.k1, d.k2, d.p1, d.p2, d.k3);
+  if (!d.is_zero() || camera.readout_s > 0)
+    line += fmt::format(" {} {} {} {} {}", d.k1, d.k2, d.p1, d.p2, d.k3);
+  if (camera.readout_s > 0) line += fmt::format(" {}", camera.readout_s);
   Status status = calibration.open(folder / "calibration.txt");
   if (status.ok()) status = calibration.write(line);
   if (status.ok()) status = colour_list_.open(folder / "rgb.txt");

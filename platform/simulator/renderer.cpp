@@ -52,27 +52,33 @@ Renderer::Renderer(const Scene& scene, const CameraModel& camera, int threads)
 }
 
 void Renderer::render(const Se3& T_world_camera, const LightState& light) {
-  const View view{to_float(T_world_camera.t), to_float(T_world_camera.R.col(0)),
-                  to_float(T_world_camera.R.col(1)), to_float(T_world_camera.R.col(2))};
-  for_rows(threads_, height_, kBand, [&](int a, int b) { trace_rows(view, a, b); });
-  if (light.lamp_on) {
-    for_rows(threads_, grid_height_, 4, [&](int a, int b) { lamp_grid_rows(view, light, a, b); });
-    for_rows(threads_, height_, kBand, [&](int a, int b) { lamp_fill_rows(view, light, a, b); });
-  }
-  for_rows(threads_, height_, kBand, [&](int a, int b) { shade_rows(view, light, a, b); });
+  const std::vector<Se3> rows(static_cast<std::size_t>(height_), T_world_camera);
+  render(rows, light);
 }
 
-void Renderer::trace_rows(const View& view, int begin, int end) {
+void Renderer::render(std::span<const Se3> T_world_row, const LightState& light) {
+  views_.clear();
+  for (const Se3& T : T_world_row)
+    views_.push_back({to_float(T.t), to_float(T.R.col(0)), to_float(T.R.col(1)), to_float(T.R.col(2))});
+  for_rows(threads_, height_, kBand, [&](int a, int b) { trace_rows(a, b); });
+  if (light.lamp_on) {
+    for_rows(threads_, grid_height_, 4, [&](int a, int b) { lamp_grid_rows(light, a, b); });
+    for_rows(threads_, height_, kBand, [&](int a, int b) { lamp_fill_rows(light, a, b); });
+  }
+  for_rows(threads_, height_, kBand, [&](int a, int b) { shade_rows(light, a, b); });
+}
+
+void Renderer::trace_rows(int begin, int end) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y * width_ + x);
-      const Float3 direction = view.to_world(rays_[i]);
-      const Hit hit = scene_.bvh.closest({view.origin, direction}, kNear, kFar);
+      const Float3 direction = view(y).to_world(rays_[i]);
+      const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
       PixelHit& pixel = hits_[i];
       pixel = {};
       if (hit.solid < 0) continue;
       const Solid& solid = scene_.solids[static_cast<std::size_t>(hit.solid)];
-      const Float3 local = solid.to_local(view.origin + direction * hit.t);
+      const Float3 local = solid.to_local(view(y).origin + direction * hit.t);
       const Float3 normal = face_normal(solid, hit.face, local);
       pixel.depth_m = hit.t;  // rays have z = 1
       pixel.cosine = std::abs(dot(normal, solid.rotate_to_local(direction))) / norm(direction);
@@ -81,11 +87,11 @@ void Renderer::trace_rows(const View& view, int begin, int end) {
   }
 }
 
-float Renderer::lamp_visibility(const View& view, const LightState& light, int x, int y) const {
+float Renderer::lamp_visibility(const LightState& light, int x, int y) const {
   const auto i = static_cast<std::size_t>(y * width_ + x);
   const PixelHit& pixel = hits_[i];
   if (pixel.surface < 0) return 0;
-  const Float3 point = view.origin + view.to_world(rays_[i]) * pixel.depth_m;
+  const Float3 point = view(y).origin + view(y).to_world(rays_[i]) * pixel.depth_m;
   const Solid& solid = scene_.solids[static_cast<std::size_t>(pixel.surface / Solid::kFaces)];
   const Float3 normal =
       solid.rotate_to_world(face_normal(solid, pixel.surface % Solid::kFaces, solid.to_local(point)));
@@ -109,17 +115,17 @@ float Renderer::lamp_visibility(const View& view, const LightState& light, int x
   return static_cast<float>(outline + edges) / (kLampEdge * kLampEdge);
 }
 
-void Renderer::lamp_grid_rows(const View& view, const LightState& light, int begin, int end) {
+void Renderer::lamp_grid_rows(const LightState& light, int begin, int end) {
   for (int gy = begin; gy < end; ++gy) {
     for (int gx = 0; gx < grid_width_; ++gx)
       lamp_grid_[static_cast<std::size_t>(gy * grid_width_ + gx)] =
-          lamp_visibility(view, light, std::min(gx * kBlock, width_ - 1), std::min(gy * kBlock, height_ - 1));
+          lamp_visibility(light, std::min(gx * kBlock, width_ - 1), std::min(gy * kBlock, height_ - 1));
   }
 }
 
 // A pixel takes its lamp visibility from the corners of its block that lie on the same surface, where those
 // agree; rims of shadows and of surfaces are traced pixel by pixel.
-void Renderer::lamp_fill_rows(const View& view, const LightState& light, int begin, int end) {
+void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y * width_ + x);
@@ -148,7 +154,7 @@ void Renderer::lamp_fill_rows(const View& view, const LightState& light, int beg
       } else if (same > 0 && highest == lowest) {
         lamp_[i] = lowest;
       } else {
-        lamp_[i] = lamp_visibility(view, light, x, y);
+        lamp_[i] = lamp_visibility(light, x, y);
       }
     }
   }
@@ -230,15 +236,15 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
   return colour;
 }
 
-Rgb Renderer::shade_rim(const View& view, const LightState& light, int x, int y) {
+Rgb Renderer::shade_rim(const LightState& light, int x, int y) {
   const auto i = static_cast<std::size_t>(y * width_ + x);
   const Float3 to_right = x + 1 < width_ ? rays_[i + 1] - rays_[i] : rays_[i] - rays_[i - 1];
   const auto row = static_cast<std::size_t>(width_);
   const Float3 to_below = y + 1 < height_ ? rays_[i + row] - rays_[i] : rays_[i] - rays_[i - row];
   Rgb sum;
   for (const auto& offset : kRimSamples) {
-    const Float3 direction = view.to_world(rays_[i] + to_right * offset[0] + to_below * offset[1]);
-    const Hit hit = scene_.bvh.closest({view.origin, direction}, kNear, kFar);
+    const Float3 direction = view(y).to_world(rays_[i] + to_right * offset[0] + to_below * offset[1]);
+    const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
     if (hit.solid < 0) continue;
     // The lamp's visibility is that of a neighbouring centre on the same surface.
     float lamp_visible = lamp_[i];
@@ -251,17 +257,17 @@ Rgb Renderer::shade_rim(const View& view, const LightState& light, int x, int y)
         found = true;
       }
     }
-    sum = sum + radiance_at(view.origin, direction, hit, 0.5F * pixel_angle_ * hit.t, light, lamp_visible, 0);
+    sum = sum + radiance_at(view(y).origin, direction, hit, 0.5F * pixel_angle_ * hit.t, light, lamp_visible, 0);
   }
   return sum * (1.0F / kRimSamples.size());
 }
 
-void Renderer::shade_rows(const View& view, const LightState& light, int begin, int end) {
+void Renderer::shade_rows(const LightState& light, int begin, int end) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y * width_ + x);
       if (on_rim(x, y)) {
-        radiance_[i] = shade_rim(view, light, x, y);
+        radiance_[i] = shade_rim(light, x, y);
         continue;
       }
       const PixelHit& pixel = hits_[i];
@@ -270,7 +276,7 @@ void Renderer::shade_rows(const View& view, const LightState& light, int begin, 
         continue;
       }
       const Hit hit{pixel.depth_m, pixel.surface / Solid::kFaces, pixel.surface % Solid::kFaces};
-      radiance_[i] = radiance_at(view.origin, view.to_world(rays_[i]), hit, pixel_angle_ * pixel.depth_m,
+      radiance_[i] = radiance_at(view(y).origin, view(y).to_world(rays_[i]), hit, pixel_angle_ * pixel.depth_m,
                                  light, lamp_[i], 0);
     }
   }

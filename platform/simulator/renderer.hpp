@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "plvo/camera/camera_model.hpp"
@@ -29,6 +30,8 @@ class Renderer {
   Renderer(const Scene& scene, const CameraModel& camera, int threads);
 
   void render(const Se3& T_world_camera, const LightState& light);
+  // With a rolling shutter: T_world_camera of each row, from the top.
+  void render(std::span<const Se3> T_world_row, const LightState& light);
 
   ImageView<const PixelHit> hits() const { return {hits_.data(), width_, height_, width_}; }
   ImageView<Rgb> radiance() { return {radiance_.data(), width_, height_, width_}; }
@@ -42,21 +45,23 @@ class Renderer {
     Float3 to_world(Float3 v) const { return right * v.x + down * v.y + forward * v.z; }
   };
 
-  void trace_rows(const View& view, int begin, int end);
-  void lamp_grid_rows(const View& view, const LightState& light, int begin, int end);
-  void lamp_fill_rows(const View& view, const LightState& light, int begin, int end);
-  void shade_rows(const View& view, const LightState& light, int begin, int end);
-  float lamp_visibility(const View& view, const LightState& light, int x, int y) const;
+  void trace_rows(int begin, int end);
+  void lamp_grid_rows(const LightState& light, int begin, int end);
+  void lamp_fill_rows(const LightState& light, int begin, int end);
+  void shade_rows(const LightState& light, int begin, int end);
+  float lamp_visibility(const LightState& light, int x, int y) const;
   Rgb radiance_at(Float3 origin, Float3 direction, const Hit& hit, float footprint, const LightState& light,
                   float lamp_visible, int depth);
+  const View& view(int y) const { return views_[static_cast<std::size_t>(y)]; }
   bool on_rim(int x, int y) const;
-  Rgb shade_rim(const View& view, const LightState& light, int x, int y);
+  Rgb shade_rim(const LightState& light, int x, int y);
 
   const Scene& scene_;
   Lightmap lightmap_;
   int width_, height_, threads_;
   int grid_width_, grid_height_;
   float pixel_angle_;  // rad, between neighbouring pixels at the centre
+  std::vector<View> views_;  // of each row
   std::vector<Float3> rays_;
   std::vector<PixelHit> hits_;
   std::vector<float> lamp_;       // share of the lamp that each pixel's point sees

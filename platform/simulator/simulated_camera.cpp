@@ -30,6 +30,15 @@ struct SimulatedCamera::Parts {
         exact(static_cast<std::size_t>(chosen.camera.width) *
               static_cast<std::size_t>(chosen.camera.height)) {}
 
+  // Of a rolling shutter: the frame's stamp is the moment of its middle row.
+  std::vector<Se3> row_poses(double t_s) const {
+    const int height = options.camera.height;
+    std::vector<Se3> poses;
+    for (int y = 0; y < height; ++y)
+      poses.push_back(trajectory.at(t_s + options.camera.readout_s * (y / (height - 1.0) - 0.5)));
+    return poses;
+  }
+
   SimulatorOptions options;
   std::unique_ptr<sim::Scene> scene;
   sim::Trajectory trajectory;
@@ -101,7 +110,11 @@ Status SimulatedCamera::next(RgbdFrame& frame) {
   const std::int64_t stamp = stamp_ns(k);
   const Se3 T_world_camera = pose(k);
   const double t_s = static_cast<double>(stamp - kFirstStamp_us * 1000) * 1e-9;
-  parts.renderer.render(T_world_camera, parts.lighting.at(t_s, T_world_camera));
+  const sim::LightState light = parts.lighting.at(t_s, T_world_camera);
+  if (camera.readout_s > 0)
+    parts.renderer.render(parts.row_poses(t_s), light);
+  else
+    parts.renderer.render(T_world_camera, light);
 
   const double half_s = 0.5 * parts.film.exposure_s();
   const Se3 T_camera_world = T_world_camera.inverse();

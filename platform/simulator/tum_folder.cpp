@@ -129,8 +129,12 @@ std::string calibration_line(const CameraModel& camera, double metres_per_unit) 
   const int n = std::snprintf(text, sizeof text, "%.9g %.9g %.9g %.9g %.9g", k.fx, k.fy, k.cx, k.cy,
                               1 / metres_per_unit);
   std::string line(text, static_cast<std::size_t>(n));
-  if (!d.is_zero()) {
+  if (!d.is_zero() || camera.readout_s > 0) {
     std::snprintf(text, sizeof text, " %.9g %.9g %.9g %.9g %.9g", d.k1, d.k2, d.p1, d.p2, d.k3);
+    line += text;
+  }
+  if (camera.readout_s > 0) {
+    std::snprintf(text, sizeof text, " %.9g", camera.readout_s);
     line += text;
   }
   return line + "\n";

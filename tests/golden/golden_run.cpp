@@ -33,11 +33,14 @@ Fingerprint fingerprint(const TrackResult& result) {
   return print;
 }
 
-bool run(const char* name, const Config& config, ProceduralSequence& sequence, int frames) {
+bool run(const char* name, const Config& config, ProceduralSequence& sequence, int frames,
+         double readout_s = 0) {
   constexpr Limits kLimits = Limits::qvga();
   std::vector<std::byte> memory(required_bytes(kLimits));
   Odometry odometry;
-  const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+  CameraModel camera = sequence.camera();
+  camera.readout_s = readout_s;
+  const Status status = odometry.init(memory, camera, config, kLimits);
   if (!status.ok()) {
     std::fprintf(stderr, "%s: %s\n", name, status.message());
     return false;
@@ -70,6 +73,6 @@ int main() {
   Config keyframe;
   keyframe.reference = ReferencePolicy::kKeyframe;
   const bool ok = run("default", Config{}, sequence, 16) && run("paper", Config::paper(), sequence, 6) &&
-                  run("keyframe", keyframe, sequence, 6);
+                  run("keyframe", keyframe, sequence, 6) && run("rolling", Config{}, sequence, 6, 0.0261);
   return ok ? 0 : 1;
 }

@@ -111,7 +111,7 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options) {
   const std::string group = "Calibration (default: calibration.txt in the folder)";
   command
       .add_option("--calibration", options.file,
-                  "calibration.txt (fx fy cx cy depth_scale [k1 k2 p1 p2 k3]) or ROS camera_info YAML")
+                  "calibration.txt (fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]) or ROS camera_info YAML")
       ->type_name("FILE")
       ->group(group);
   command.add_option("--camera-model", options.model_name, "A camera by name: " + builtin_names())
@@ -126,6 +126,8 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options) {
   number("--cy", options.cy, "Principal point, px");
   number("--depth-scale", options.depth_scale,
          "Units of the depth images per metre (default 5000; 1000 for mm)");
+  number("--readout", options.readout_s,
+         "Rolling shutter: seconds from the first row to the last (Kinect v1: 0.0261; 0: global shutter)");
   command.add_option("--distortion", options.distortion, "k1 k2 p1 p2 [k3]")
       ->expected(4, 5)
       ->type_name("NUMBERS")
@@ -159,6 +161,7 @@ Status find_calibration(const CalibrationOptions& options, const fs::path& folde
   }
   if (const auto& d = options.distortion; !d.empty())
     calibration.camera.distortion = {d[0], d[1], d[2], d[3], d.size() > 4 ? d[4] : 0.0};
+  calibration.camera.readout_s = options.readout_s.value_or(calibration.camera.readout_s);
   calibration.depth_units_per_metre = options.depth_scale.value_or(calibration.depth_units_per_metre);
   return {};
 }

@@ -21,7 +21,7 @@ namespace plvo::cli {
 
 struct CalibrationOptions {
   std::string file, model_name;
-  std::optional<double> fx, fy, cx, cy, depth_scale;
+  std::optional<double> fx, fy, cx, cy, depth_scale, readout_s;
   std::vector<double> distortion;  // k1 k2 p1 p2 [k3]
 };
 void add_calibration_options(CLI::App& command, CalibrationOptions& options);

@@ -35,6 +35,8 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
   add("--fps", arguments.fps, "Frames per second (default 30)", "NUMBER");
   add("--size", arguments.size, "Image size in pixels (default 640x480)", "WxH")
       ->check(CLI::Validator(check_size, ""));
+  add("--rolling-shutter", arguments.readout_s,
+      "Seconds from the first row to the last (default 0: all rows at once; a Kinect's: 0.0261)", "SECONDS");
   add("--trajectory", arguments.trajectory,
       "TUM ground truth that moves the camera instead of the seeded hand", "FILE");
   add("--threads", arguments.threads, "Of the rendering; the images do not depend on it (default 2)",
@@ -52,6 +54,7 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   options.noise = !arguments.clean;
   options.trajectory_file = arguments.trajectory;
   options.threads = arguments.threads;
+  options.camera.readout_s = arguments.readout_s;
   int width = 0, height = 0;
   if (!arguments.size.empty() && parse_size(arguments.size, width, height)) {
     CameraModel& camera = options.camera;

@@ -14,6 +14,7 @@ struct SimulatorArguments {
   std::string scene = "corridor", light = "constant";
   std::uint64_t seed = 1;
   double fps = 30;
+  double readout_s = 0;
   std::string size;  // WIDTHxHEIGHT
   std::string trajectory;
   bool clean = false;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/mid_exposure.hpp"
+
+namespace plvo {
+namespace {
+
+// A mean velocity over longer than this says nothing of the moment of exposure.
+constexpr double kLongestInterval_s = 0.2;
+
+// Since the last good frame, if this is the motion from the reference.
+Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
+  if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s)) return Vector6::Zero();
+  return boxminus(T_current_reference * prior.T_reference_last, Se3{}) / prior.seconds_since_last;
+}
+
+Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
+  if (!prior.reference_velocity_known) return recent;
+  if (!prior.reference_is_last) return prior.reference_velocity;
+  return 0.5 * (prior.reference_velocity + recent);
+}
+
+Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
+  if (!prior.reference_velocity_known || !prior.reference_is_last) return recent;
+  constexpr double kExtrapolated = 0.5;
+  return recent + 0.5 * kExtrapolated * (recent - prior.reference_velocity);
+}
+
+std::span<const Line3d> carried(const RollingShutter& shutter, std::span<const Line3d> lines, Arena& scratch) {
+  const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    copies[i] = lines[i];
+    copies[i].a = shutter.at_mid_exposure(lines[i].a);
+    copies[i].b = shutter.at_mid_exposure(lines[i].b);
+  }
+  return copies;
+}
+
+}  // namespace
+
+MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
+                            const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch) {
+  MidExposure result;
+  const std::span<const Point3d> points = reference.points.points.first(reference.points.keypoints.size());
+  result.reference_points = points;
+  result.reference_lines = reference.lines.lines_3d();
+  result.current_lines = current.lines.lines_3d();
+  if (!(camera.readout_s > 0)) return result;
+
+  const Vector6 recent = recent_velocity(prior, T_current_reference);
+  result.current = RollingShutter(camera, current_velocity(prior, recent));
+  const RollingShutter shutter(camera, reference_velocity(prior, recent));
+  const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    copies[i] = {shutter.at_mid_exposure(points[i].p), points[i].Sigma};
+  result.reference_points = copies;
+  result.reference_lines = carried(shutter, reference.lines.lines_3d(), scratch);
+  result.current_lines = carried(result.current, current.lines.lines_3d(), scratch);
+  return result;
+}
+
+}  // namespace plvo
