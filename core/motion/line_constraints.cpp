@@ -59,17 +59,16 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   const Vector3 b = G.transpose().lazyProduct(line.b - q);
   offsets.e << a.x(), a.y(), b.x(), b.y();
   offsets.lambda << a.z(), b.z();
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const Matrix3 left = G.transpose().lazyProduct(line.Sigma.block<3, 3>(3 * i, 3 * j));
-      const Matrix3 M = left.lazyProduct(G);
-      offsets.C.block<2, 2>(2 * i, 2 * j) = M.block<2, 2>(0, 0);
-      offsets.C_le.block<1, 2>(i, 2 * j) = M.block<1, 2>(2, 0);
-      if (i != j) {
-        offsets.C.block<2, 2>(2 * j, 2 * i) = M.block<2, 2>(0, 0).transpose();
-        offsets.C_le.block<1, 2>(j, 2 * i) = M.block<2, 1>(0, 2).transpose();
-      }
+  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted.
+  const Matrix<3, 2> U = G.block<3, 2>(0, 0);
+  for (int j = 0; j < 2; ++j) {
+    const Matrix<6, 2> right = line.Sigma.block<6, 3>(0, 3 * j).lazyProduct(U);
+    for (int i = 0; i < 2; ++i) {
+      const Matrix<3, 2> block = right.block<3, 2>(3 * i, 0);
+      offsets.C.block<2, 2>(2 * i, 2 * j) = U.transpose().lazyProduct(block);
+      offsets.C_le.block<1, 2>(i, 2 * j) = G.col(2).transpose().lazyProduct(block);
     }
+  }
   return offsets;
 }
 

@@ -41,10 +41,11 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
     smooth_binomial7(image, smoothed, row);
+    const Describer describe(smoothed);
     for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
       const Keypoint& keypoint = points.keypoints[i];
       if (keypoint.level != level) continue;
-      points.descriptors[i] = describe(smoothed, keypoint.x, keypoint.y);
+      points.descriptors[i] = describe(keypoint.x, keypoint.y);
       points.patches[i] = cut_patch(image, keypoint.x, keypoint.y);
     }
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/points/alignment.hpp"
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <cstdint>
 
+#include "plvo/math/cholesky.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -122,8 +122,8 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
                       const AlignmentOptions& options) {
   Alignment result;
   const Template t = make_template(patch);
-  const Eigen::LDLT<Matrix4> factor(t.normal);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1)) return result;
+  Cholesky<4> factor;
+  if (!factor.factor(t.normal)) return result;
 
   result.x = start_x;
   result.y = start_y;
@@ -143,13 +143,16 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
     const double gain = solution[2];
     if (!(gain > 0.2 && gain < 5)) return result;
     // The regressors are twice the gradients.
-    const double step_x = 2 * solution[0] / gain;
-    const double step_y = 2 * solution[1] / gain;
-    result.x = x / kOne - step_x;
-    result.y = y / kOne - step_y;
+    const double before_x = result.x;
+    const double before_y = result.y;
+    result.x = x / kOne - 2 * solution[0] / gain;
+    result.y = y / kOne - 2 * solution[1] / gain;
     const double dx = result.x - start_x;
     const double dy = result.y - start_y;
     if (!(dx * dx + dy * dy <= max_shift_squared)) return result;
+    // Not the regression's own step: that one starts on the grid of 1/32 px, not where the last one ended.
+    const double step_x = result.x - before_x;
+    const double step_y = result.y - before_y;
     converged = step_x * step_x + step_y * step_y < options.tolerance_px * options.tolerance_px;
     if (!converged) continue;
 

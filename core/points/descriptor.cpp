@@ -48,14 +48,24 @@ int count_bits(std::uint64_t x) {
 
 }  // namespace
 
-Descriptor describe(GrayView smoothed, int x, int y) {
-  const std::uint8_t* centre = smoothed.row(y) + x;
-  Descriptor descriptor{};
+Describer::Describer(GrayView smoothed) : smoothed_(smoothed) {
+  const auto stride = static_cast<std::int32_t>(smoothed.stride);
   for (std::size_t i = 0; i < kPattern.size(); ++i) {
     const PixelPair& pair = kPattern[i];
-    const std::uint8_t a = centre[pair.ay * smoothed.stride + pair.ax];
-    const std::uint8_t b = centre[pair.by * smoothed.stride + pair.bx];
-    descriptor[i / 64] |= static_cast<std::uint64_t>(a < b) << (i % 64);
+    offsets_[i] = {pair.ay * stride + pair.ax, pair.by * stride + pair.bx};
+  }
+}
+
+Descriptor Describer::operator()(int x, int y) const {
+  const std::uint8_t* centre = smoothed_.row(y) + x;
+  Descriptor descriptor{};
+  for (std::size_t word = 0; word < descriptor.size(); ++word) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 64; i-- > 0;) {
+      const Offsets& offsets = offsets_[64 * word + i];
+      bits = bits << 1 | static_cast<std::uint64_t>(centre[offsets.a] < centre[offsets.b]);
+    }
+    descriptor[word] = bits;
   }
   return descriptor;
 }

@@ -7,6 +7,9 @@
 // is the pyramid level's.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "plvo/image/image_view.hpp"
 #include "plvo/points/keypoint.hpp"
 
@@ -14,8 +17,22 @@ namespace plvo {
 
 inline constexpr int kDescriptorRadius = 15;
 
-// smoothed: the keypoint's level after smooth_binomial7. (x, y) at least kDescriptorRadius from its border.
-Descriptor describe(GrayView smoothed, int x, int y);
+// Describes the keypoints of one level.
+class Describer {
+ public:
+  // smoothed: the level after smooth_binomial7, which must outlive the describer.
+  explicit Describer(GrayView smoothed);
+  // (x, y) at least kDescriptorRadius from the border.
+  Descriptor operator()(int x, int y) const;
+
+ private:
+  // Of the two pixels of each comparison from the keypoint's.
+  struct Offsets {
+    std::int32_t a, b;
+  };
+  GrayView smoothed_;
+  std::array<Offsets, 256> offsets_;
+};
 
 // Number of differing bits, 0 … 256.
 int hamming_distance(const Descriptor& a, const Descriptor& b);

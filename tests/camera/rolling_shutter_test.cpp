@@ -67,7 +67,7 @@ TEST(RollingShutter, AsSeenIsTheWayBack) {
                                       uniform(random, 0.5, 5));
     const Vector3 again = shutter.as_seen(shutter.at_mid_exposure(seen));
     const Vector2 error_px = project(camera.pinhole, again) - project(camera.pinhole, seen);
-    EXPECT_LT(error_px.norm(), 0.02) << trial;
+    EXPECT_LT(error_px.norm(), 0.05) << trial;
   }
 }
 

@@ -56,22 +56,22 @@ TEST(Descriptor, AnyStrictlyIncreasingMapOfTheGreyLevelsChangesNothing) {
   bent.paint([&](int x, int y) { return image.view().at(x, y) * image.view().at(x, y) / 140.0; });
   for (int y = kDescriptorRadius; y < 50 - kDescriptorRadius; ++y)
     for (int x = kDescriptorRadius; x < 64 - kDescriptorRadius; ++x) {
-      const Descriptor expected = describe(image.view(), x, y);
-      ASSERT_EQ(describe(brighter.view(), x, y), expected);
-      ASSERT_EQ(describe(bent.view(), x, y), expected);
+      const Descriptor expected = Describer(image.view())(x, y);
+      ASSERT_EQ(Describer(brighter.view())(x, y), expected);
+      ASSERT_EQ(Describer(bent.view())(x, y), expected);
     }
 }
 
 TEST(Descriptor, ReadsOnlyWithinItsRadius) {
   Random random(31);
   GrayImage image = test::random_image(41, 41, random);
-  const Descriptor before = describe(image.view(), 20, 20);
+  const Descriptor before = Describer(image.view())(20, 20);
   const Patch patch = cut_patch(image.view(), 20, 20);
   for (int y = 0; y < 41; ++y)
     for (int x = 0; x < 41; ++x)
       if (std::abs(x - 20) > kDescriptorRadius || std::abs(y - 20) > kDescriptorRadius)
         image.view().at(x, y) = static_cast<std::uint8_t>(255 - image.view().at(x, y));
-  EXPECT_EQ(describe(image.view(), 20, 20), before);
+  EXPECT_EQ(Describer(image.view())(20, 20), before);
   EXPECT_EQ(cut_patch(image.view(), 20, 20), patch);
 }
 
@@ -91,8 +91,8 @@ TEST(Descriptor, HalfOfTheBitsAreSetAndTwoPlacesShareHalf) {
   double set = 0, differ = 0;
   constexpr int kPlaces = 20;
   for (int i = 0; i < kPlaces; ++i) {
-    const Descriptor a = describe(image.view(), 20 + 15 * i, 20);
-    const Descriptor b = describe(image.view(), 25 + 15 * i, 38);
+    const Descriptor a = Describer(image.view())(20 + 15 * i, 20);
+    const Descriptor b = Describer(image.view())(25 + 15 * i, 38);
     set += hamming_distance(a, {}) / 256.0 / kPlaces;
     differ += hamming_distance(a, b) / 256.0 / kPlaces;
   }
@@ -129,8 +129,8 @@ double match_rate(double roll_rad, double scale) {
     for (int x = -100; x <= 100; x += 15) {
       const double u = scale * (std::cos(roll_rad) * x - std::sin(roll_rad) * y) + kWidth / 2;
       const double v = scale * (std::sin(roll_rad) * x + std::cos(roll_rad) * y) + kHeight / 2;
-      before.push_back(describe(reference.view(), x + kWidth / 2, y + kHeight / 2));
-      after.push_back(describe(turned.view(), static_cast<int>(u + 0.5), static_cast<int>(v + 0.5)));
+      before.push_back(Describer(reference.view())(x + kWidth / 2, y + kHeight / 2));
+      after.push_back(Describer(turned.view())(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5)));
     }
   int right = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
