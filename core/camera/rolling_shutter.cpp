@@ -7,8 +7,8 @@
 namespace plvo {
 namespace {
 
-// p after `seconds` at a constant velocity, to second order in the angle: a camera that turns by 2 rad/s errs by
-// 5e-6 rad within half a readout of 30 ms.
+// p after `seconds` at a constant velocity, to second order in the angle: a camera that turns by 2 rad/s errs
+// by 5e-6 rad within half a readout of 30 ms.
 Vector3 moved(const Vector3& p, const Vector3& v, const Vector3& omega, double seconds) {
   const Vector3 theta = seconds * omega;
   const Vector3 step = theta.cross(p) + seconds * v;
@@ -38,7 +38,8 @@ Vector3 RollingShutter::at_mid_exposure(const Vector3& p) const {
 
 Vector3 RollingShutter::as_seen(const Vector3& p_mid) const {
   if (!active_ || !(p_mid.z() > 0)) return p_mid;
-  // The row at which it is seen depends on when it is seen; each guess is twenty times better than the one before.
+  // The row at which it is seen depends on when it is seen; each guess is twenty times better than the one
+  // before.
   Vector3 seen = p_mid;
   constexpr int kGuesses = 3;
   for (int i = 0; i < kGuesses && seen.z() > 0; ++i) seen = moved(p_mid, v_, omega_, delay_s(seen));

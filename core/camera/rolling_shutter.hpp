@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rolling shutter exposes one row after the other, and the camera moves meanwhile: two features of one frame are not
-// seen from one place. With the velocity of the camera known, each can be carried to where it would have been seen
-// while the middle row was exposed, and a frame has one pose again (Ringaby & Forssén, "Scan rectification for
-// structured light range sensors with rolling shutters", ICCV 2011).
+// A rolling shutter exposes one row after the other, and the camera moves meanwhile: two features of one
+// frame are not seen from one place. With the velocity of the camera known, each can be carried to where it
+// would have been seen while the middle row was exposed, and a frame has one pose again (Ringaby & Forssén,
+// "Scan rectification for structured light range sensors with rolling shutters", ICCV 2011).
 #pragma once
 
 #include "plvo/camera/camera_model.hpp"
@@ -20,8 +20,8 @@ class RollingShutter {
   RollingShutter(const CameraModel& camera, const Vector6& velocity);
 
   bool active() const { return active_; }
-  // p as measured, at the row that it projects to → as the middle row's moment would have it. Points at or behind the
-  // camera are returned as they are.
+  // p as measured, at the row that it projects to → as the middle row's moment would have it. Points at or
+  // behind the camera are returned as they are.
   Vector3 at_mid_exposure(const Vector3& p) const;
   // The other way round: where a point of the middle row's moment is when its own row is exposed.
   Vector3 as_seen(const Vector3& p_mid) const;

@@ -27,8 +27,8 @@ Segment predict(const Pinhole& pinhole, const RollingShutter& shutter, const Seg
 
 void match_predicted_lines(const Pinhole& pinhole, const RollingShutter& shutter,
                            const LineFeatures& reference, std::span<const Line3d> reference_lines,
-                           const LineFeatures& current, const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
-                           FixedVector<Match>& matches) {
+                           const LineFeatures& current, const Se3& T_current_reference,
+                           const LineMatchConfig& gates, Arena& scratch, FixedVector<Match>& matches) {
   matches.clear();
   const ScratchScope scope(scratch);
   const std::span<Segment> predicted = scratch.take<Segment>("predicted segments", reference.count_3d);

@@ -16,8 +16,8 @@ namespace plvo {
 // out. reference_lines: the reference's 3D lines at its mid-exposure; shutter: of the current frame.
 void match_predicted_lines(const Pinhole& pinhole, const RollingShutter& shutter,
                            const LineFeatures& reference, std::span<const Line3d> reference_lines,
-                           const LineFeatures& current, const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
-                           FixedVector<Match>& matches);
+                           const LineFeatures& current, const Se3& T_current_reference,
+                           const LineMatchConfig& gates, Arena& scratch, FixedVector<Match>& matches);
 
 // Its scratch.
 template <typename Memory>

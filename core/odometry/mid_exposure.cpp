@@ -9,7 +9,8 @@ constexpr double kLongestInterval_s = 0.2;
 
 // Since the last good frame, if this is the motion from the reference.
 Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
-  if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s)) return Vector6::Zero();
+  if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s))
+    return Vector6::Zero();
   return boxminus(T_current_reference * prior.T_reference_last, Se3{}) / prior.seconds_since_last;
 }
 
@@ -25,7 +26,8 @@ Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
   return recent + 0.5 * kExtrapolated * (recent - prior.reference_velocity);
 }
 
-std::span<const Line3d> carried(const RollingShutter& shutter, std::span<const Line3d> lines, Arena& scratch) {
+std::span<const Line3d> carried(const RollingShutter& shutter, std::span<const Line3d> lines,
+                                Arena& scratch) {
   const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
   for (std::size_t i = 0; i < copies.size(); ++i) {
     copies[i] = lines[i];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a rolling shutter out of the features of a pair. Each frame needs the camera's velocity while it was exposed,
-// and the velocity is what the pair is about to tell: so this is done for every guess of the motion anew. The reference
-// moves as the mean of before and after. The current frame moves as it did since the last good frame, plus half of what
-// extrapolating the change of velocity would add: all of it would add its noise too. What matters is the difference of
-// the two: a common velocity shifts the rows of both images alike.
+// Takes a rolling shutter out of the features of a pair. Each frame needs the camera's velocity while it was
+// exposed, and the velocity is what the pair is about to tell: so this is done for every guess of the motion
+// anew. The reference moves as the mean of before and after. The current frame moves as it did since the last
+// good frame, plus half of what extrapolating the change of velocity would add: all of it would add its noise
+// too. What matters is the difference of the two: a common velocity shifts the rows of both images alike.
 #pragma once
 
 #include <span>
@@ -18,9 +18,9 @@ namespace plvo {
 
 // What is known of a pair before its features are looked at.
 struct PairPrior {
-  Se3 T_current_reference;        // as expected
-  Se3 T_reference_last;           // of the last good frame, which may be the reference itself
-  double seconds_since_last = 0;  // from the last good frame to the current one
+  Se3 T_current_reference;                       // as expected
+  Se3 T_reference_last;                          // of the last good frame, which may be the reference itself
+  double seconds_since_last = 0;                 // from the last good frame to the current one
   Vector6 reference_velocity = Vector6::Zero();  // per second, as of rolling_shutter.hpp
   bool reference_velocity_known = false;
   bool reference_is_last = true;
@@ -32,7 +32,8 @@ struct MidExposure {
   std::span<const Line3d> reference_lines, current_lines;
 };
 
-// Copies into the scratch what changes; with a global shutter nothing does, and the features are used as they are.
+// Copies into the scratch what changes; with a global shutter nothing does, and the features are used as they
+// are.
 MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
                             const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch);
 

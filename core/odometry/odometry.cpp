@@ -166,8 +166,8 @@ MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& d
   PairPrior prior = prior_of(reference, result.stamp_ns);
   result.reference_stamp_ns = frame(reference).stamp_ns;
   MotionEstimate motion =
-      rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
-                                 prior, config_.points.search_radius_px, arena_, result);
+      rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth, prior,
+                                 config_.points.search_radius_px, arena_, result);
   if (motion.status == StatusCode::kOk) return motion;
   prior.T_current_reference = Se3{};
   return rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,

@@ -112,8 +112,8 @@ class Odometry {
   struct Anchor {
     Se3 T_world_camera;
     Matrix6 covariance = Matrix6::Zero();
-    // Per second (rolling_shutter.hpp): since the good frame before it; once the next one is tracked, the mean
-    // of both.
+    // Per second (rolling_shutter.hpp): since the good frame before it; once the next one is tracked, the
+    // mean of both.
     Vector6 velocity = Vector6::Zero();
     bool velocity_known = false;
   };

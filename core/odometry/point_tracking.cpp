@@ -10,8 +10,8 @@ namespace {
 // What only serves to find the motion roughly need not be registered finely.
 constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
 
-// Alignment::sigma_px takes the residuals of a patch's pixels for independent. Those of real patches, seen from elsewhere
-// under another light, are not: one in sixteen counts.
+// Alignment::sigma_px takes the residuals of a patch's pixels for independent. Those of real patches, seen
+// from elsewhere under another light, are not: one in sixteen counts.
 constexpr double kResidualCorrelation = 4;
 
 // σ_p of a keypoint where registration put it, in pixels of its level.

@@ -50,8 +50,9 @@ struct TrackingView {
 // Through descriptors, within radius_px of where T_current_reference puts the reference keypoints.
 // reference_points: those of the reference's keypoints, at its mid-exposure.
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
-                         std::span<const Point3d> reference_points, const PointFeatures& current, const Se3& T_current_reference, double radius_px,
-                         Arena& scratch, PointTracks& tracks);
+                         std::span<const Point3d> reference_points, const PointFeatures& current,
+                         const Se3& T_current_reference, double radius_px, Arena& scratch,
+                         PointTracks& tracks);
 
 // By registration alone, from where T_current_reference puts them.
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,

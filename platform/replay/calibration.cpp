@@ -87,10 +87,10 @@ Status from_keys(const fs::path& path, const std::vector<std::string>& words, Ca
     for (const auto& [key, value] : keys)
       if (words[i] == key) target = value;
     if (target == nullptr) {
-      return damaged(
-          path, fmt::format("'{}' is not known; the keys are fx fy cx cy depth_scale k1 k2 p1 p2 k3 "
-                            "readout_s width height",
-                            words[i]));
+      return damaged(path,
+                     fmt::format("'{}' is not known; the keys are fx fy cx cy depth_scale k1 k2 p1 p2 k3 "
+                                 "readout_s width height",
+                                 words[i]));
     }
     if (i + 1 >= words.size() || !parse_number(words[i + 1], *target))
       return damaged(path, fmt::format("'{}' needs a number after it", words[i]));
@@ -131,7 +131,8 @@ Status read_calibration(const fs::path& path, Calibration& calibration) {
   std::ifstream stream(path);
   if (!stream) return {StatusCode::kNotFound, fmt::format("cannot read the calibration {}", path.string())};
   const std::vector<std::string> words = read_words(stream);
-  if (words.empty()) return damaged(path, "is empty; expected 'fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]'");
+  if (words.empty())
+    return damaged(path, "is empty; expected 'fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]'");
   double number = 0;
   Calibration result;
   const Status status =

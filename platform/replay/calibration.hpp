@@ -17,8 +17,8 @@ namespace plvo {
 
 inline constexpr double kTumDepthUnitsPerMetre = 5000;
 
-// From the first row of a Kinect v1's colour image to the last: 26.1 ms by Ringaby & Forssén (ICCV 2011). On TUM's
-// fr1/rpy our error is least between 20 and 30 ms.
+// From the first row of a Kinect v1's colour image to the last: 26.1 ms by Ringaby & Forssén (ICCV 2011). On
+// TUM's fr1/rpy our error is least between 20 and 30 ms.
 inline constexpr double kKinectReadout_s = 0.0261;
 
 struct Calibration {

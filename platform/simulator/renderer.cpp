@@ -257,7 +257,8 @@ Rgb Renderer::shade_rim(const LightState& light, int x, int y) {
         found = true;
       }
     }
-    sum = sum + radiance_at(view(y).origin, direction, hit, 0.5F * pixel_angle_ * hit.t, light, lamp_visible, 0);
+    sum = sum +
+          radiance_at(view(y).origin, direction, hit, 0.5F * pixel_angle_ * hit.t, light, lamp_visible, 0);
   }
   return sum * (1.0F / kRimSamples.size());
 }
@@ -276,8 +277,8 @@ void Renderer::shade_rows(const LightState& light, int begin, int end) {
         continue;
       }
       const Hit hit{pixel.depth_m, pixel.surface / Solid::kFaces, pixel.surface % Solid::kFaces};
-      radiance_[i] = radiance_at(view(y).origin, view(y).to_world(rays_[i]), hit, pixel_angle_ * pixel.depth_m,
-                                 light, lamp_[i], 0);
+      radiance_[i] = radiance_at(view(y).origin, view(y).to_world(rays_[i]), hit,
+                                 pixel_angle_ * pixel.depth_m, light, lamp_[i], 0);
     }
   }
 }

@@ -60,7 +60,7 @@ class Renderer {
   Lightmap lightmap_;
   int width_, height_, threads_;
   int grid_width_, grid_height_;
-  float pixel_angle_;  // rad, between neighbouring pixels at the centre
+  float pixel_angle_;        // rad, between neighbouring pixels at the centre
   std::vector<View> views_;  // of each row
   std::vector<Float3> rays_;
   std::vector<PixelHit> hits_;

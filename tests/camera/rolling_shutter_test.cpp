@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against a slow statement of the same: the point is moved in a thousand small steps from its row's exposure to that of
-// the middle row.
+// Against a slow statement of the same: the point is moved in a thousand small steps from its row's exposure
+// to that of the middle row.
 #include "plvo/camera/rolling_shutter.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that turns ever faster looks at points through a rolling shutter. What each row saw is computed from the
-// motion itself; the features at mid-exposure must then agree with one motion between the two frames.
+// A camera that turns ever faster looks at points through a rolling shutter. What each row saw is computed
+// from the motion itself; the features at mid-exposure must then agree with one motion between the two
+// frames.
 #include "plvo/odometry/mid_exposure.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +20,13 @@ constexpr int kPoints = 200;
 // T_camera(t)_world: angular velocity and speed change at a constant rate.
 struct Motion {
   Vector3 omega, omega_rate, v;
-  Se3 at(double t) const {
-    return {rotation_exp(t * omega + 0.5 * t * t * omega_rate), t * v};
-  }
+  Se3 at(double t) const { return {rotation_exp(t * omega + 0.5 * t * t * omega_rate), t * v}; }
 };
 
 // T_to_from.
-Se3 motion_between(const Motion& motion, double from, double to) { return motion.at(to) * motion.at(from).inverse(); }
+Se3 motion_between(const Motion& motion, double from, double to) {
+  return motion.at(to) * motion.at(from).inverse();
+}
 
 struct Frame {
   std::vector<std::byte> memory = std::vector<std::byte>(1 << 22);

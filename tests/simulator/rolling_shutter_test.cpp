@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Row by row, a rolling shutter sees what a global one sees from where the camera stood when that row was exposed.
+// Row by row, a rolling shutter sees what a global one sees from where the camera stood when that row was
+// exposed.
 #include <algorithm>
 
 #include "plvo/simulator/renderer.hpp"
@@ -45,10 +46,13 @@ TEST(SimulatedRollingShutter, EachRowIsSeenFromItsOwnPose) {
       const auto i = static_cast<std::size_t>(row * width + x);
       // Stamps are whole nanoseconds: a ray in a thousand may pass an edge on the other side.
       EXPECT_NEAR(rolled[1].exact[i], expected[static_cast<std::size_t>(x)], 1e-3F) << row << ' ' << x;
-      moved += std::abs(expected[static_cast<std::size_t>(x)] - middle[static_cast<std::size_t>(x)]) > 1e-3F ? 1U : 0U;
+      moved += std::abs(expected[static_cast<std::size_t>(x)] - middle[static_cast<std::size_t>(x)]) > 1e-3F
+                   ? 1U
+                   : 0U;
     }
   }
-  EXPECT_GT(moved, static_cast<std::size_t>(width)) << "the shutter must matter for the test to mean something";
+  EXPECT_GT(moved, static_cast<std::size_t>(width))
+      << "the shutter must matter for the test to mean something";
 }
 
 }  // namespace

@@ -110,8 +110,9 @@ bool parse_frame_range(const std::string& text, FrameRange& range) {
 void add_calibration_options(CLI::App& command, CalibrationOptions& options) {
   const std::string group = "Calibration (default: calibration.txt in the folder)";
   command
-      .add_option("--calibration", options.file,
-                  "calibration.txt (fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]) or ROS camera_info YAML")
+      .add_option(
+          "--calibration", options.file,
+          "calibration.txt (fx fy cx cy depth_scale [k1 k2 p1 p2 k3 [readout_s]]) or ROS camera_info YAML")
       ->type_name("FILE")
       ->group(group);
   command.add_option("--camera-model", options.model_name, "A camera by name: " + builtin_names())
