@@ -88,6 +88,29 @@ TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
   EXPECT_TRUE(run_command(lighting(out()) + " --list-jobs").out.empty());
 }
 
+// Rendering and measuring may be done apart, and the images lie anywhere.
+TEST_F(Bench, RendersAloneWhatIsMeasuredLater) {
+  const fs::path results = *folder_ / "apart";
+  const fs::path walks = *folder_ / "elsewhere";
+  const std::string command = kBench +
+                              " lighting --sites bare --seeds 1 --lights constant --frames 2 --out " +
+                              results.string() + " --walks " + walks.string() + " --systems plvo-points";
+  const CommandResult rendered = run_command(command + " --render-only");
+  ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
+  EXPECT_TRUE(rendered.out.empty()) << rendered.out;
+  const fs::path images = walks / "bare_constant_1_2f" / "rgb.txt";
+  ASSERT_TRUE(fs::exists(images));
+  const auto written = fs::last_write_time(images);
+  EXPECT_TRUE(run_command(command + " --render-only --list-jobs").out.empty());
+  EXPECT_EQ(run_command(command + " --render-only --discard-images").exit_code, 2);
+
+  const CommandResult measured = run_command(command);
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(rows_with(measured.out, "| bare | constant |").size(), 2U) << measured.out;
+  EXPECT_EQ(fs::last_write_time(images), written);
+  EXPECT_FALSE(fs::exists(results / "walks"));
+}
+
 TEST_F(Bench, ComparisonHasARowForEachSystemAndOneForStandingStill) {
   const fs::path results = *folder_ / "run";
   const CommandResult run = run_command(kBench + " run " + walk("constant") + ' ' + walk("varying") +

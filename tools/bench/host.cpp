@@ -30,13 +30,14 @@ std::string cpu_name() {
 }  // namespace
 
 nlohmann::ordered_json Host::to_json() const {
-  return {{"cpu", cpu},   {"cores", cores},       {"load", load},    {"kernel", kernel},
-          {"plvo", plvo}, {"compiler", compiler}, {"opencv", opencv}};
+  return {{"cpu", cpu},   {"cores", cores},       {"load", load},     {"kernel", kernel},
+          {"plvo", plvo}, {"compiler", compiler}, {"opencv", opencv}, {"open3d", open3d}};
 }
 
 std::string Host::to_line() const {
-  return fmt::format("{}, {} cores, load {:.1f}; {}; plvo {}, compiled by {}; OpenCV {}.", cpu, cores, load,
-                     kernel, plvo, compiler, opencv.empty() ? "absent" : opencv);
+  return fmt::format("{}, {} cores, load {:.1f}; {}; plvo {}, compiled by {}; OpenCV {}, Open3D {}.", cpu,
+                     cores, load, kernel, plvo, compiler, opencv.empty() ? "absent" : opencv,
+                     open3d.empty() ? "absent" : open3d);
 }
 
 Host describe_host() {
@@ -54,6 +55,7 @@ Host describe_host() {
 #endif
   host.plvo = PLVO_VERSION;
   host.opencv = opencv_version();
+  host.open3d = open3d_version();
   return host;
 }
 

@@ -8,7 +8,7 @@
 namespace plvo::bench {
 
 struct Host {
-  std::string cpu, kernel, compiler, plvo, opencv;
+  std::string cpu, kernel, compiler, plvo, opencv, open3d;
   int cores = 0;
   double load = 0;  // average of the last minute: who else was at work
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo_bench lighting: the protocol of Lu & Song's Table 1 on simulated closed walks. Each site is walked
 // twice from every seed, under constant light and under a lamp that swings and dims; a walk ends where it
-// began, so the end-point drift (TED) needs no other ground truth. One walk is one unit of work: render,
-// measure every system.
+// began, so the end-point drift (TED) needs no other ground truth. One walk is one unit of work: render
+// where there are no images yet, measure every system.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -29,15 +29,21 @@ struct LightingOptions {
   std::string lights = "constant,varying";
   int seeds = 3;
   int first_seed = 1;
-  int frames = 300;
+  int frames = 180;
+  fs::path walks;  // of the images; empty: out/walks
+  bool render_only = false;
   bool discard_images = false;
+
+  fs::path walks_folder() const { return fs::absolute(walks.empty() ? common.out / "walks" : walks); }
 };
 
 std::string walk_name(const Walk& walk) {
   return fmt::format("{}_{}_{}_{}f", walk.site, walk.light, walk.seed, walk.frames);
 }
 
-fs::path walk_folder(const Walk& walk, const fs::path& out) { return out / "walks" / walk.sequence; }
+fs::path walk_folder(const Walk& walk, const LightingOptions& options) {
+  return options.walks_folder() / walk.sequence;
+}
 
 Status list_walks(const LightingOptions& options, std::vector<Walk>& walks) {
   std::stringstream sites(options.sites);
@@ -80,9 +86,9 @@ Status render(const Walk& walk, const fs::path& folder) {
 }
 
 std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& systems,
-                         const CommonOptions& common) {
-  return interleaved_jobs({{walk_folder(walk, fs::absolute(common.out)), walk.sequence}}, systems,
-                          common.repeats, common.measuring);
+                         const LightingOptions& options) {
+  return interleaved_jobs({{walk_folder(walk, options), walk.sequence}}, systems, options.common.repeats,
+                          options.common.measuring);
 }
 
 // The command that does one walk alone.
@@ -95,9 +101,17 @@ std::vector<std::string> walk_command(const Walk& walk, const LightingOptions& o
                                     "--seeds",      "1",
                                     "--frames",     std::to_string(walk.frames),
                                     "--systems",    options.common.systems,
+                                    "--walks",      options.walks_folder().string(),
                                     "--repeats",    std::to_string(options.common.repeats)};
+  if (options.render_only) words.push_back("--render-only");
   if (options.discard_images) words.push_back("--discard-images");
   return words;
+}
+
+bool is_done(const Walk& walk, const std::vector<Job>& jobs, const LightingOptions& options) {
+  std::error_code error;
+  if (options.render_only) return fs::is_directory(walk_folder(walk, options), error);
+  return missing_jobs(jobs, options.common.out).empty();
 }
 
 Status walk_alone(const LightingOptions& options) {
@@ -107,13 +121,14 @@ Status walk_alone(const LightingOptions& options) {
   if (Status status = parse_systems(options.common.systems, systems); !status.ok()) return status;
   if (Status status = make_out(options.common.out); !status.ok()) return status;
   for (const Walk& walk : walks) {
-    const auto missing = missing_jobs(jobs_of(walk, systems, options.common), options.common.out);
-    if (missing.empty()) continue;
-    const fs::path folder = walk_folder(walk, options.common.out);
+    const std::vector<Job> jobs = jobs_of(walk, systems, options);
+    if (is_done(walk, jobs, options)) continue;
+    const fs::path folder = walk_folder(walk, options);
     if (Status status = render(walk, folder); !status.ok()) return status;
+    if (options.render_only) continue;
     std::vector<std::vector<std::string>> commands;
     std::vector<std::string> names;
-    for (const Job& job : missing) {
+    for (const Job& job : missing_jobs(jobs, options.common.out)) {
       commands.push_back(job.command(own_program(), fs::absolute(options.common.out)));
       names.push_back(fmt::format("{} {}", job.sequence, job.system));
     }
@@ -135,9 +150,9 @@ Status run_lighting(const LightingOptions& options) {
   std::vector<std::vector<std::string>> commands;
   std::vector<std::string> names;
   for (const Walk& walk : walks) {
-    const std::vector<Job> jobs = jobs_of(walk, systems, common);
+    const std::vector<Job> jobs = jobs_of(walk, systems, options);
     all.insert(all.end(), jobs.begin(), jobs.end());
-    if (missing_jobs(jobs, common.out).empty()) continue;
+    if (is_done(walk, jobs, options)) continue;
     commands.push_back(walk_command(walk, options));
     names.push_back(walk.sequence);
   }
@@ -147,6 +162,7 @@ Status run_lighting(const LightingOptions& options) {
   }
   const Host host = describe_host();
   const Status ran = run_and_report(commands, names, common.jobs);
+  if (options.render_only) return ran;
   const std::vector<Result> results = read_results(all, common.out);
   if (Status status = write_report(lighting_report(walks, systems, results), results, host, common.out);
       !status.ok())
@@ -158,6 +174,7 @@ void add_command(CLI::App& app, int& exit_code, const char* name, const char* wh
                  Status (*execute)(const LightingOptions&)) {
   auto options = std::make_shared<LightingOptions>();
   CLI::App* command = app.add_subcommand(name, what);
+  options->common.systems = "ours,peers";
   add_common_options(*command, options->common);
   command->add_option("--sites", options->sites, "Default: " + options->sites)->type_name("LIST");
   command->add_option("--lights", options->lights, "Default: " + options->lights)->type_name("LIST");
@@ -165,12 +182,17 @@ void add_command(CLI::App& app, int& exit_code, const char* name, const char* wh
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("NUMBER");
   command->add_option("--first-seed", options->first_seed, "Default 1")->type_name("NUMBER");
-  command->add_option("--frames", options->frames, "Of each walk, at 30 Hz (default 300)")
+  command->add_option("--frames", options->frames, "Of each walk, at 30 Hz (default 180)")
       ->check(CLI::Range(2, 1'000'000).description(""))
       ->type_name("NUMBER");
-  command->add_flag(
+  command->add_option("--walks", options->walks, "Where the images are (default: walks in --out)")
+      ->type_name("DIR");
+  auto* render_only =
+      command->add_flag("--render-only", options->render_only, "Render the walks and measure nothing");
+  auto* discard = command->add_flag(
       "--discard-images", options->discard_images,
       "Remove a walk's images when it is measured; they can be rendered again, bit by bit alike");
+  render_only->excludes(discard);
   command->callback([options, execute, &exit_code] { exit_code = finish(execute(*options)); });
 }
 

@@ -27,8 +27,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       ->required()
       ->type_name("DIR");
   command
-      .add_option("--systems", options.systems,
-                  "all, ours, paper, opencv, or names as the tables show them; separated by commas")
+      .add_option(
+          "--systems", options.systems,
+          "all, ours, paper, peers, opencv, open3d, or names as the tables show them; separated by commas")
       ->type_name("LIST");
   command.add_option("--repeats", options.repeats, "Each job so often, interleaved (default 1)")
       ->check(CLI::PositiveNumber.description(""))

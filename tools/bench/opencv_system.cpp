@@ -5,13 +5,12 @@
 // from the previous frame to the current one, not the other way as there: on our recordings that serves them
 // better.
 #include <limits>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/rgbd/depth.hpp>
 
+#include "plvo/bench/ideal_images.hpp"
 #include "plvo/bench/system.hpp"
-#include "plvo/image/gray.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -26,36 +25,21 @@ OpencvOdometry make_odometry(const std::string& name, const cv::Mat& camera_matr
 
 class OpencvSystem final : public System {
  public:
-  OpencvSystem(const std::string& name, const CameraModel& camera) {
+  OpencvSystem(const std::string& name, const CameraModel& camera) : images_(camera) {
     cv::setNumThreads(1);
     const Pinhole& p = camera.pinhole;
     const cv::Matx33d K(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
-    const Distortion& d = camera.distortion;
-    undistort_ = !d.is_zero();
-    if (undistort_) {
-      const cv::Vec<double, 5> coefficients(d.k1, d.k2, d.p1, d.p2, d.k3);
-      cv::initUndistortRectifyMap(K, coefficients, cv::noArray(), K, {camera.width, camera.height}, CV_32FC1,
-                                  map_x_, map_y_);
-    }
     odometry_ = make_odometry(name, cv::Mat(cv::Matx33f(K)));
   }
 
   void prepare(const RgbdFrame& frame) override {
-    const int width = frame.colour.width;
-    cv::Mat grey(frame.colour.height, width, CV_8UC1);
-    to_gray(frame.colour, {grey.data, width, grey.rows, static_cast<std::ptrdiff_t>(grey.step[0])});
-    const DepthView& view = frame.depth;
-    cv::Mat raw(view.height, view.width, CV_16UC1, const_cast<std::uint16_t*>(view.data),
-                static_cast<std::size_t>(view.stride) * sizeof(std::uint16_t));
-    if (undistort_) {
-      cv::Mat grey_ideal, raw_ideal;
-      cv::remap(grey, grey_ideal, map_x_, map_y_, cv::INTER_LINEAR);
-      cv::remap(raw, raw_ideal, map_x_, map_y_, cv::INTER_NEAREST);
-      grey = grey_ideal;
-      raw = raw_ideal;
-    }
+    images_.make(frame);
+    const cv::Mat rgb(images_.height(), images_.width(), CV_8UC3, images_.rgb());
+    const cv::Mat raw(images_.height(), images_.width(), CV_16UC1, images_.depth());
+    cv::Mat grey;
+    cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
     cv::Mat depth;
-    raw.convertTo(depth, CV_32FC1, view.metres_per_unit);
+    raw.convertTo(depth, CV_32FC1, frame.depth.metres_per_unit);
     depth.setTo(std::numeric_limits<float>::quiet_NaN(), raw == 0);
     current_ = cv::rgbd::OdometryFrame::create(grey, depth);
   }
@@ -83,8 +67,7 @@ class OpencvSystem final : public System {
 
  private:
   OpencvOdometry odometry_;
-  bool undistort_ = false;
-  cv::Mat map_x_, map_y_;
+  IdealImages images_;
   cv::Ptr<cv::rgbd::OdometryFrame> current_, previous_;
   Se3 T_world_camera_;
 };

@@ -144,10 +144,8 @@ Report make_report(const SequencesOptions& options, const std::vector<Result>& r
   Report report;
   report.notes = {fmt::format(
       "RMSE over all pairs, {} ground truth; a lost frame keeps the last good pose and counts. CPU: one "
-      "thread, "
-      "decoding excluded; OpenCV's systems get their images undistorted, grey and in metres outside of the "
-      "timed "
-      "part. \"own MB\": resident memory that came after the program was loaded.",
+      "thread, decoding excluded; peers get their images undistorted, and in the form they take, outside of "
+      "the timed part. \"own MB\": resident memory that came after the program was loaded.",
       options.common.measuring.sampling == eval::GroundTruthSampling::kNearest ? "nearest" : "interpolated")};
   if (options.tum) {
     report.name = "table2";

@@ -39,11 +39,17 @@ class PlvoSystem final : public System {
 bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 bool is_paper(const std::string& name) { return name.find(kPaperSuffix) != std::string::npos; }
 
+bool is_group(const std::string& word) {
+  return word == "all" || word == "ours" || word == "paper" || word == "peers" || word == "opencv" ||
+         word == "open3d";
+}
+
 bool in_group(const std::string& group, const std::string& name) {
   if (group == "all") return true;
   if (group == "ours") return starts_with(name, "plvo-") && !is_paper(name);
   if (group == "paper") return is_paper(name);
-  return group == "opencv" && starts_with(name, "opencv-");
+  if (group == "peers") return !starts_with(name, "plvo-");
+  return (group == "opencv" || group == "open3d") && starts_with(name, (group + '-').c_str());
 }
 
 }  // namespace
@@ -55,6 +61,7 @@ const std::vector<std::string>& system_names() {
       for (const char* features : {"points", "lines", "both"})
         all.push_back(fmt::format("plvo-{}{}", features, suffix));
     if (!opencv_version().empty()) all.insert(all.end(), {"opencv-rgbd", "opencv-icp", "opencv-rgbdicp"});
+    if (!open3d_version().empty()) all.push_back("open3d-hybrid");
     return all;
   }();
   return names;
@@ -64,7 +71,7 @@ Status parse_systems(const std::string& text, std::vector<std::string>& names) {
   names.clear();
   std::stringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
-    bool known = false;
+    bool known = is_group(word);  // also where none of its systems was built
     for (const std::string& name : system_names()) {
       if (name != word && !in_group(word, name)) continue;
       known = true;
@@ -72,11 +79,11 @@ Status parse_systems(const std::string& text, std::vector<std::string>& names) {
     }
     if (!known) {
       return {StatusCode::kInvalidArgument,
-              fmt::format("no system '{}' in this build; there are all, ours, paper, {}", word,
+              fmt::format("no system '{}' in this build; there are all, ours, paper, peers, {}", word,
                           fmt::join(system_names(), ", "))};
     }
   }
-  if (names.empty()) return {StatusCode::kInvalidArgument, "no system was named"};
+  if (names.empty()) return {StatusCode::kInvalidArgument, "no system of those named is in this build"};
   return {};
 }
 
@@ -86,6 +93,10 @@ Status make_system(const std::string& name, const CameraModel& camera, std::uniq
     return {StatusCode::kInvalidArgument, fmt::format("no system '{}' in this build", name)};
   if (starts_with(name, "opencv-")) {
     system = make_opencv_system(name, camera);
+    return {};
+  }
+  if (starts_with(name, "open3d-")) {
+    system = make_open3d_system(camera);
     return {};
   }
   Config config = is_paper(name) ? Config::paper() : Config();

@@ -26,11 +26,11 @@ class System {
 };
 
 // "plvo-points", "plvo-lines", "plvo-both", the same with "-paper" behind for the paper's settings; and,
-// where OpenCV's contrib modules were there when this was built, "opencv-rgbd", "opencv-icp",
-// "opencv-rgbdicp".
+// where its libraries were there when this was built, "opencv-rgbd", "opencv-icp", "opencv-rgbdicp" and
+// "open3d-hybrid".
 const std::vector<std::string>& system_names();
-// Names and the groups "all", "ours", "paper", "opencv", separated by commas, in the order given and each
-// once. kInvalidArgument, listing the names there are.
+// Names and the groups "all", "ours", "paper", "opencv", "open3d", "peers", separated by commas, in the order
+// given and each once. kInvalidArgument, listing the names there are.
 Status parse_systems(const std::string& text, std::vector<std::string>& names);
 
 Status make_system(const std::string& name, const CameraModel& camera, std::unique_ptr<System>& system);
@@ -39,5 +39,8 @@ Status make_system(const std::string& name, const CameraModel& camera, std::uniq
 std::unique_ptr<System> make_opencv_system(const std::string& name, const CameraModel& camera);
 // "4.6.0", or empty.
 std::string opencv_version();
+// For the factory: null without Open3D.
+std::unique_ptr<System> make_open3d_system(const CameraModel& camera);
+std::string open3d_version();
 
 }  // namespace plvo::bench

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a peer gets that knows no lens distortion: the images of a pinhole camera with the same focal length.
+// Colour is interpolated linearly, depth taken from the nearest pixel, since a mean of two surfaces is on
+// neither. Colours come as RGB. What the camera did not see is black and without depth.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/image/frame.hpp"
+
+namespace plvo::bench {
+
+class IdealImages {
+ public:
+  explicit IdealImages(const CameraModel& camera);
+
+  void make(const RgbdFrame& frame);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::uint8_t* rgb() { return rgb_.data(); }       // 3 × width × height
+  std::uint16_t* depth() { return depth_.data(); }  // width × height, in the frame's units, 0 for none
+
+ private:
+  struct Source {
+    int x = -1, y = -1;  // of the upper left of four neighbours; −1 where the camera saw nothing
+    float u = 0, v = 0;
+  };
+
+  int width_, height_;
+  std::vector<Source> sources_;
+  std::vector<std::uint8_t> rgb_;
+  std::vector<std::uint16_t> depth_;
+};
+
+}  // namespace plvo::bench
