@@ -65,6 +65,11 @@ async function probe() {
   Object.defineProperty(drag, "movementY", { value: 20 });
   turn.dispatchEvent(drag);
   found.turned = print(turn) !== flat;
+  const choice = document.querySelector("#trajectory select"), fitted = print(turn);
+  choice.value = "first";
+  choice.dispatchEvent(new Event("change"));
+  found.truthMoved = print(turn) !== fitted;
+  found.tiles = [...document.querySelectorAll(".tiles b")].map(b => b.textContent);
   const result = document.createElement("pre");
   result.id = "probe";
   result.textContent = JSON.stringify(found);
@@ -107,6 +112,8 @@ def check_common(found, wanted):
         check(any(t.startswith(title) for t in found["titles"]), f"no part '{title}'", found)
     check(not found["blank"], "an empty chart or picture", found)
     check(found["turned"], "the 3D view does not turn", found)
+    check(found["truthMoved"], "the ground truth is laid the same way by both choices", found)
+    check(found["tiles"] and not any("NaN" in t or "undefined" in t for t in found["tiles"]), "a key figure is missing", found)
     check(found["width"] <= found["window"] + 1, "the page is wider than its window", found)
 
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -88,6 +89,27 @@ TEST(Drawing, OverlayDrawsInsideTheImageOnly) {
   ASSERT_EQ(picture.rgb.size(), 192u);
   EXPECT_EQ(picture.rgb[0], 61);  // the stroke towards the upper left leaves through the corner, in green
   EXPECT_EQ(picture.rgb[1], 220);
+  EXPECT_EQ(picture.rgb[3 * 7], 70) << "the image is dimmed where nothing is drawn";
+}
+
+TEST(Drawing, StrokesAreAsWideAsTheirPen) {
+  const std::vector<std::uint8_t> black(40 * 40, 0);
+  FeatureView view;
+  view.image = {black.data(), 40, 40, 40};
+  const std::vector<SegmentView> across = {{5, 20, 34, 20, false}};
+  const std::vector<SegmentView> down = {{20, 5, 20, 34, false}};
+  const std::vector<SegmentView> slanted = {{10, 10, 30, 25, false}};
+  const std::vector<LineTrackView> tracks = {{0, 0, true}};
+  view.line_tracks = tracks;
+  for (const auto* segments : {&across, &down, &slanted}) {
+    view.segments = view.reference_segments = *segments;
+    const Picture picture = draw_overlay(view);
+    double covered = 0;  // red is 255 where an orange stroke covers a pixel
+    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) covered += picture.rgb[i] / 255.0;
+    const SegmentView& s = segments->front();
+    const double length = std::hypot(s.b_u - s.a_u, s.b_v - s.a_v);
+    EXPECT_NEAR(covered, 3 * length + 9 * 3.14159 / 4, 0.05 * 3 * length);
+  }
 }
 
 }  // namespace

@@ -2,9 +2,7 @@
 #include "plvo/report/drawing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 
 namespace plvo::report {
 namespace {
@@ -13,39 +11,69 @@ struct Colour {
   std::uint8_t r, g, b;
 };
 
-constexpr std::array<Colour, 4> kKindColours = {
-    {{154, 163, 173}, {255, 210, 63}, {255, 90, 54}, {61, 220, 109}}};
+// The page (page/frames.js) draws with the same colours, widths and dimming.
+constexpr Colour kGrey = {154, 163, 173};
+constexpr Colour kGreen = {61, 220, 109};
+constexpr Colour kOrange = {255, 166, 38};
+constexpr Colour kBlue = {92, 164, 240};
+constexpr Colour kRed = {255, 77, 60};
+constexpr double kDimming = 0.7;  // of the image, so that what is drawn stands out
 
-Colour colour_of(FeatureKind kind) { return kKindColours[static_cast<std::size_t>(kind)]; }
+struct Pen {
+  Colour colour;
+  double width_px;
+};
 
-void set_pixel(Picture& picture, int x, int y, Colour colour) {
-  if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
-  std::uint8_t* p =
-      picture.rgb.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                static_cast<std::size_t>(x));
-  p[0] = colour.r;
-  p[1] = colour.g;
-  p[2] = colour.b;
-}
-
-void draw_line(Picture& picture, double x0, double y0, double x1, double y1, Colour colour) {
-  // A feature may lie a little outside the image, never far: longer strokes are not worth drawing.
-  const double length = std::max(std::abs(x1 - x0), std::abs(y1 - y0));
-  if (!(length < 4096)) return;
-  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
-  for (int i = 0; i <= steps; ++i) {
-    const double f = static_cast<double>(i) / steps;
-    set_pixel(picture, static_cast<int>(std::lround(x0 + f * (x1 - x0))),
-              static_cast<int>(std::lround(y0 + f * (y1 - y0))), colour);
+Pen segment_pen(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::kPlain: return {kGrey, 1.2};
+    case FeatureKind::kWith3d: return {kBlue, 1.6};
+    case FeatureKind::kOutlier: return {kRed, 2};
+    case FeatureKind::kInlier: break;
   }
+  return {kOrange, 3};
 }
 
-void draw_circle(Picture& picture, double x, double y, double radius, Colour colour) {
-  const int steps = std::max(12, static_cast<int>(7 * radius));
-  for (int i = 0; i < steps; ++i) {
-    const double angle = 6.283185307179586 * i / steps;
-    set_pixel(picture, static_cast<int>(std::lround(x + radius * std::cos(angle))),
-              static_cast<int>(std::lround(y + radius * std::sin(angle))), colour);
+std::uint8_t* pixel_at(Picture& picture, int x, int y) {
+  if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return nullptr;
+  return picture.rgb.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                   static_cast<std::size_t>(x));
+}
+
+void blend(Picture& picture, int x, int y, Colour colour, double share) {
+  std::uint8_t* p = pixel_at(picture, x, y);
+  if (p == nullptr || share <= 0) return;
+  const auto mix = [share](std::uint8_t old, std::uint8_t fresh) {
+    return static_cast<std::uint8_t>(std::lround(old + std::min(share, 1.0) * (fresh - old)));
+  };
+  p[0] = mix(p[0], colour.r);
+  p[1] = mix(p[1], colour.g);
+  p[2] = mix(p[2], colour.b);
+}
+
+// A stroke with round ends; a pixel is covered by what its distance from the axis leaves of half the width.
+// Walks along the longer direction, and across it as far as the stroke reaches.
+void draw_stroke(Picture& picture, double x0, double y0, double x1, double y1, Pen pen) {
+  const double dx = x1 - x0;
+  const double dy = y1 - y0;
+  const double squared = dx * dx + dy * dy;
+  // A feature may lie a little outside the image, never far: longer strokes are not worth drawing.
+  if (!(squared < 4096.0 * 4096.0)) return;
+  const bool steep = std::abs(dy) > std::abs(dx);
+  const double reach = 0.5 * pen.width_px + 1;
+  const double from = steep ? std::min(y0, y1) : std::min(x0, x1);
+  const double to = steep ? std::max(y0, y1) : std::max(x0, x1);
+  const double slope = squared > 0 ? (steep ? dx / dy : dy / dx) : 0;
+  for (int along = static_cast<int>(std::floor(from - reach)); along <= to + reach; ++along) {
+    const double axis = steep ? x0 + slope * (along - y0) : y0 + slope * (along - x0);
+    const int across_end = static_cast<int>(std::ceil(axis + 1.5 * reach));
+    for (int across = static_cast<int>(std::floor(axis - 1.5 * reach)); across <= across_end; ++across) {
+      const int x = steep ? across : along;
+      const int y = steep ? along : across;
+      const double f = squared > 0 ? std::clamp(((x - x0) * dx + (y - y0) * dy) / squared, 0.0, 1.0) : 0.0;
+      const double distance = std::hypot(x - x0 - f * dx, y - y0 - f * dy);
+      blend(picture, x, y, pen.colour, 0.5 * pen.width_px + 0.5 - distance);
+    }
   }
 }
 
@@ -72,31 +100,32 @@ std::vector<SegmentFate> segment_fates(const FeatureView& f) {
 Picture draw_overlay(const FeatureView& f) {
   Picture picture{f.image.width, f.image.height, {}};
   for (int y = 0; y < f.image.height; ++y)
-    for (int x = 0; x < f.image.width; ++x) picture.rgb.insert(picture.rgb.end(), 3, f.image.at(x, y));
+    for (int x = 0; x < f.image.width; ++x)
+      picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(kDimming * f.image.at(x, y) + 0.5));
+  for (const Keypoint& k : f.keypoints) draw_stroke(picture, k.u, k.v, k.u, k.v, {kGrey, 2.5});
   const std::vector<SegmentFate> lines = segment_fates(f);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const SegmentView& s = f.segments[i];
-    const Colour colour = colour_of(lines[i].kind);
-    draw_line(picture, s.a_u, s.a_v, s.b_u, s.b_v, colour);
-    draw_line(picture, s.a_u + 1, s.a_v, s.b_u + 1, s.b_v, colour);
+  for (const bool matched : {false, true}) {  // what matters most lies on top
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const SegmentView& s = f.segments[i];
+      if ((lines[i].reference >= 0) == matched)
+        draw_stroke(picture, s.a_u, s.a_v, s.b_u, s.b_v, segment_pen(lines[i].kind));
+    }
   }
-  for (const Keypoint& k : f.keypoints)
-    draw_circle(picture, k.u, k.v, 2.5 * (1 << k.level), colour_of(FeatureKind::kPlain));
   for (const PointTrackView& t : f.point_tracks) {
-    const Colour colour = colour_of(t.inlier ? FeatureKind::kInlier : FeatureKind::kOutlier);
-    draw_circle(picture, t.u, t.v, 2, colour);
-    draw_line(picture, t.u, t.v, t.u_reference, t.v_reference, colour);
+    const Colour colour = t.inlier ? kGreen : kRed;
+    draw_stroke(picture, t.u, t.v, t.u_reference, t.v_reference, {colour, 1.2});
+    draw_stroke(picture, t.u, t.v, t.u, t.v, {colour, 3.5});
   }
   return picture;
 }
 
-Picture draw_depth(const DepthView& depth, double near_m, double far_m) {
+Picture draw_depth(const DepthView& depth) {
   Picture picture{depth.width / 2, depth.height / 2, {}};
   picture.rgb.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 3);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const double d = depth.data[2 * y * depth.stride + 2 * x] * depth.metres_per_unit;
-      if (d > 0) set_pixel(picture, x, y, rainbow((d - near_m) / (far_m - near_m)));
+      if (d > 0) blend(picture, x, y, rainbow((d - kDepthNear_m) / (kDepthFar_m - kDepthNear_m)), 1);
     }
   }
   return picture;

@@ -11,10 +11,10 @@
 
 namespace plvo::report {
 
-// What became of a feature; the report and the overlays use one set of colours for them.
+// What became of a segment; the report and the overlays use one set of colours.
 enum class FeatureKind : std::uint8_t {
-  kPlain,    // a keypoint as detected; a segment without 3D
-  kWith3d,   // a segment lifted to 3D, unmatched
+  kPlain,    // as detected, without 3D
+  kWith3d,   // lifted to 3D, unmatched
   kOutlier,  // matched, but against the motion
   kInlier,
 };
@@ -36,9 +36,14 @@ struct SegmentFate {
 };
 std::vector<SegmentFate> segment_fates(const FeatureView& features);
 
+// The undistorted image, dimmed. Points: grey dots as detected; green where followed, with a stroke to where
+// they were in the reference; red where rejected. Segments: grey; blue with 3D; orange where matched; red
+// where the match was rejected.
 Picture draw_overlay(const FeatureView& features);
 
 // Near is red, far is blue, none is black; at half the size in each direction.
-Picture draw_depth(const DepthView& depth, double near_m = 0.4, double far_m = 5.0);
+constexpr double kDepthNear_m = 0.4;
+constexpr double kDepthFar_m = 5.0;
+Picture draw_depth(const DepthView& depth);
 
 }  // namespace plvo::report

@@ -8,6 +8,7 @@
 
 #include "plvo/host/line_file.hpp"
 #include "plvo/report/base64.hpp"
+#include "plvo/report/drawing.hpp"
 #include "plvo/report/page.hpp"
 
 namespace plvo::report {
@@ -36,7 +37,10 @@ class Writer {
     Json json = {{"title", input_.title}, {"subtitle", input_.subtitle}};
     json["trajectory"] = trajectory();
     if (!input_.series.empty()) json["series"] = series();
-    if (!input_.frames.empty()) json["frames"] = frames();
+    if (!input_.frames.empty()) {
+      json["frames"] = frames();
+      json["depth_range"] = {kDepthNear_m, kDepthFar_m};
+    }
     json["summary"] = Json::array();
     for (const auto& [name, value] : input_.summary) json["summary"].push_back({name, value});
     if (json["summary"].empty()) json.erase("summary");
@@ -101,10 +105,14 @@ class Writer {
 
   void add_evaluation(Json& json, const eval::Evaluation& e) const {
     json["metrics"] = to_json(e);
-    Json truth = Json::array();
-    for (const Se3& T : e.poses.truth)
-      append_position(truth, (e.poses.estimate[0] * (e.poses.truth[0].inverse() * T)).t);
-    json["truth"] = {{"p", truth}};
+    const Se3 T_first = e.poses.estimate[0] * e.poses.truth[0].inverse();
+    const Se3 T_best = e.ate.T_truth_estimate.inverse();
+    Json first = Json::array(), best = Json::array();
+    for (const Se3& T : e.poses.truth) {
+      append_position(first, (T_first * T).t);
+      append_position(best, (T_best * T).t);
+    }
+    json["truth"] = {{"first", first}, {"best", best}};
     json["lost"] = Json::array();
     for (const eval::Interval& i : e.lost) json["lost"].push_back({seconds(i.begin_ns), seconds(i.end_ns)});
     json["errors"] = errors(e);
@@ -115,7 +123,7 @@ class Writer {
                       fmt::format("{:.3f}", d.rotation_deg_per_m.mean),
                       fmt::format("{}", d.translation_percent.count)});
     }
-    json["by_distance"] = {{"head", {"path", "mean, %", "p95, %", "mean, deg/m", "pieces"}}, {"rows", rows}};
+    json["by_distance"] = {{"head", {"path", "mean, %", "p95, %", "mean, °/m", "pieces"}}, {"rows", rows}};
   }
 
   Json errors(const eval::Evaluation& e) const {

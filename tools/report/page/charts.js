@@ -40,8 +40,9 @@ const cursor = {
   move(time) { this.time = time; for (const listener of this.listeners) listener(time); },
 };
 
-// series: [{name, y, colour, band: 3-sigma half-widths or null}]; marks: [[begin, end], …] in x, where tracking was lost.
-function chart(title, unit, x, series, marks = [], note = "") {
+// series: [{name, y, colour, band: 3-sigma half-widths or null, stacked: on top of the stacked ones before it}];
+// marks: [[begin, end], …] in x, where tracking was lost.
+function chart(title, unit, x, series, marks = [], kind = "") {
   const canvas = element("canvas", { role: "img", "aria-label": title });
   const readout = element("div", { class: "readout" });
   const legend = element("div", { class: "legend" });
@@ -50,17 +51,24 @@ function chart(title, unit, x, series, marks = [], note = "") {
     swatch.style.background = s.colour;
     legend.append(element("span", {}, swatch, s.name + (s.band ? " (band: 3\u03c3)" : "")));
   }
-  const section = element("section", { class: "chart" }, element("h2", {}, `${title}${unit ? `, ${unit}` : ""}`), canvas,
-    readout, legend);
-  if (note) section.append(element("p", { class: "note" }, note));
-  const height = 190, left = 52, right = 8, top = 6, bottom = 22;
+  const section = element("section", { class: `chart ${kind}` }, element("h2", {}, title, element("small", {}, unit)), canvas,
+    legend, readout);
+  let floor = x.map(() => 0);
+  for (const s of series) {
+    if (!s.stacked) continue;
+    s.floor = floor;
+    floor = s.top = s.y.map((v, i) => floor[i] + (v ?? 0));
+  }
+  const height = 180, left = 46, right = 8, top = 6, bottom = 22;
   const finite = [];
   for (const s of series) {
     s.y.forEach((v, i) => {
       if (v !== null) finite.push(v);
+      if (s.stacked) finite.push(s.top[i]);
       if (v !== null && s.band && s.band[i] !== null) finite.push(s.band[i], -s.band[i]);
     });
   }
+  if (series.some(s => s.band)) finite.push(0);
   let low = Math.min(...(finite.length ? finite : [0])), high = Math.max(...(finite.length ? finite : [1]));
   if (low > 0 && low < 0.5 * high) low = 0;
   if (low === high) { low -= 0.5; high += 0.5; }
@@ -70,6 +78,15 @@ function chart(title, unit, x, series, marks = [], note = "") {
   const px = t => left + (t - x0) / (x1 - x0) * (width - left - right);
   const py = v => top + (high - v) / (high - low) * (height - top - bottom);
 
+  function drawStacked(context, s) {
+    context.fillStyle = s.colour;
+    context.globalAlpha = 0.75;
+    context.beginPath();
+    x.forEach((t, i) => context[i ? "lineTo" : "moveTo"](px(t), py(s.top[i])));
+    [...x.keys()].reverse().forEach(i => context.lineTo(px(x[i]), py(s.floor[i])));
+    context.fill();
+    context.globalAlpha = 1;
+  }
   function drawBand(context, s) {
     context.fillStyle = css("--band");
     context.beginPath();
@@ -105,6 +122,7 @@ function chart(title, unit, x, series, marks = [], note = "") {
     context.globalAlpha = 1;
     for (const s of series) if (s.band) drawBand(context, s);
     for (const s of series) {
+      if (s.stacked) { drawStacked(context, s); continue; }
       context.strokeStyle = s.colour;
       context.lineWidth = 1.6;
       context.beginPath();

@@ -1,43 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scrubber: recorded frames with what was found in them drawn on top.
+// The scrubber: recorded frames with what was found in them drawn on top, and their depth.
 // Rows, lengths in tenths of a pixel: keypoints u, v, level; tracks u, v, reference u, reference v, inlier; segments
 // au, av, bu, bv, kind and the same four of the reference. Kinds: 0 plain, 1 segment with 3D, 2 outlier, 3 inlier.
-const kindColours = ["#9aa3ad", "#ffd23f", "#ff5a36", "#3ddc6d"];
-const kindNames = ["keypoint, or segment without 3D", "segment with 3D, unmatched", "matched, outlier", "inlier"];
+const pens = {  // as in drawing.cpp
+  plain: ["#9aa3ad", 1.2], with3d: ["#5ca4f0", 1.6], outlier: ["#ff4d3c", 2], inlier: ["#ffa626", 3], followed: ["#3ddc6d", 1.2],
+};
+const segmentPens = [pens.plain, pens.with3d, pens.outlier, pens.inlier];
+const legendTexts = [["followed", "point, with a stroke to where it was in the reference"], ["inlier", "matched line"],
+  ["with3d", "segment with 3D, unmatched"], ["outlier", "rejected"], ["plain", "keypoint, or segment without 3D"]];
+
+function stroke(context, x0, y0, x1, y1, [colour, width]) {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.beginPath(); context.moveTo(x0, y0); context.lineTo(x1, y1); context.stroke();
+}
+
+function dot(context, x, y, radius, colour) {
+  context.fillStyle = colour;
+  context.beginPath(); context.arc(x, y, radius, 0, 2 * Math.PI); context.fill();
+}
+
+function drawSegments(context, rows, matched, withReference) {
+  for (let i = 0; i < rows.length; i += 9) {
+    const kind = rows[i + 4];
+    if ((kind >= 2) !== matched) continue;
+    const ends = k => rows.slice(i + k, i + k + 4).map(v => v / 10);
+    stroke(context, ...ends(0), segmentPens[kind]);
+    if (!withReference || kind < 2) continue;
+    context.setLineDash([4, 3]);
+    context.globalAlpha = 0.6;
+    stroke(context, ...ends(5), [segmentPens[kind][0], 1]);
+    context.globalAlpha = 1;
+    context.setLineDash([]);
+  }
+}
 
 function drawFeatures(context, frame, show) {
-  if (show.segments) {
-    for (let i = 0; i < frame.s.length; i += 9) {
-      const [au, av, bu, bv, kind] = frame.s.slice(i, i + 5).map((v, k) => k < 4 ? v / 10 : v);
-      context.strokeStyle = kindColours[kind];
-      context.lineWidth = 2;
-      context.beginPath(); context.moveTo(au, av); context.lineTo(bu, bv); context.stroke();
-      if (!show.matches || kind < 2) continue;
-      const r = frame.s.slice(i + 5, i + 9).map(v => v / 10);
-      context.globalAlpha = 0.6;
-      context.lineWidth = 1;
-      context.setLineDash([4, 3]);
-      context.beginPath(); context.moveTo(r[0], r[1]); context.lineTo(r[2], r[3]); context.stroke();
-      context.setLineDash([]);
-      context.globalAlpha = 1;
-    }
-  }
-  context.lineWidth = 1.3;
-  if (show.keypoints) {
-    context.strokeStyle = kindColours[0];
-    for (let i = 0; i < frame.k.length; i += 3) {
-      context.beginPath();
-      context.arc(frame.k[i] / 10, frame.k[i + 1] / 10, 2.5 * 2 ** frame.k[i + 2], 0, 2 * Math.PI);
-      context.stroke();
-    }
-  }
+  context.lineCap = "round";
+  if (show.keypoints)
+    for (let i = 0; i < frame.k.length; i += 3) dot(context, frame.k[i] / 10, frame.k[i + 1] / 10, 1.5, pens.plain[0]);
+  if (show.segments) for (const matched of [false, true]) drawSegments(context, frame.s, matched, show.matches);
   if (!show.matches) return;
   for (let i = 0; i < frame.m.length; i += 5) {
     const [u, v, ru, rv] = frame.m.slice(i, i + 4).map(x => x / 10);
-    context.strokeStyle = context.fillStyle = kindColours[frame.m[i + 4] ? 3 : 2];
-    context.beginPath(); context.arc(u, v, 2, 0, 2 * Math.PI); context.fill();
-    context.beginPath(); context.moveTo(u, v); context.lineTo(ru, rv); context.stroke();
+    const colour = (frame.m[i + 4] ? pens.followed : pens.outlier)[0];
+    stroke(context, u, v, ru, rv, [colour, 1.2]);
+    dot(context, u, v, 1.8, colour);
   }
+}
+
+function framesLegend() {
+  const legend = element("div", { class: "legend" });
+  for (const [pen, text] of legendTexts) {
+    const swatch = element("i");
+    swatch.style.background = pens[pen][0];
+    legend.append(element("span", {}, swatch, text));
+  }
+  return legend;
 }
 
 function framesSection(data) {
@@ -48,6 +67,7 @@ function framesSection(data) {
     "aria-label": "Frame" });
   const text = element("div", { class: "readout", id: "frame-text" });
   const play = element("button", { type: "button", id: "play" }, "Play");
+  const counts = element("tbody");
   const show = { keypoints: true, segments: true, matches: true };
   const boxes = Object.keys(show).map(name => {
     const box = element("input", { type: "checkbox", checked: "" });
@@ -61,7 +81,11 @@ function framesSection(data) {
     canvas.width = frame.w;
     canvas.height = frame.h;
     const context = canvas.getContext("2d");
+    context.fillStyle = "#000";
+    context.fillRect(0, 0, frame.w, frame.h);
+    context.globalAlpha = 0.7;  // so that what is drawn stands out
     if (image.complete && image.naturalWidth) context.drawImage(image, 0, 0, frame.w, frame.h);
+    context.globalAlpha = 1;
     drawFeatures(context, frame, show);
   }
   image.addEventListener("load", draw);
@@ -72,8 +96,9 @@ function framesSection(data) {
     const frame = frames[index];
     image.src = `data:image/jpeg;base64,${frame.image}`;
     depth.src = `data:image/jpeg;base64,${frame.depth}`;
-    text.textContent = `frame ${frame.i}, ${frame.t.toFixed(3)} s: ${frame.state}${frame.reason ? ` (${frame.reason})` : ""}; ` +
-      `points ${frame.points.join("/")}, lines ${frame.lines.join("/")} (detected/matched/inliers)`;
+    text.textContent = `frame ${frame.i}, ${frame.t.toFixed(3)} s: ${frame.state}${frame.reason ? ` (${frame.reason})` : ""}`;
+    counts.replaceChildren(...["points", "lines"].map(name =>
+      element("tr", {}, ...[name, ...frame[name]].map(v => element("td", {}, String(v))))));
     draw();
     if (moveCursor) cursor.move(frame.t);
   }
@@ -90,15 +115,11 @@ function framesSection(data) {
     play.textContent = "Stop";
     timer = setInterval(() => select((Number(slider.value) + 1) % frames.length), 200);
   });
-  select(0, false);
-  const legend = element("div", { class: "legend" });
-  kindNames.forEach((name, kind) => {
-    const swatch = element("i");
-    swatch.style.background = kindColours[kind];
-    legend.append(element("span", {}, swatch, name));
-  });
-  legend.append(element("span", {}, "a stroke leads from a feature to where it was in the reference"));
+  select(Math.max(0, frames.findIndex(f => f.state === "tracking")), false);
+  const [near, far] = data.depth_range;
+  const scale = element("div", { class: "scale" }, `${near} m`, element("i"), `${far} m`, element("span", {}, "black: no depth"));
   return element("section", { class: "wide", id: "frames" }, element("h2", {}, "Frames"),
     element("div", { class: "controls" }, play, slider, ...boxes), text,
-    element("div", { class: "frames" }, canvas, depth), legend);
+    element("div", { class: "frames" }, element("div", {}, canvas, framesLegend()), element("div", {}, depth, scale, element("table", {},
+      element("thead", {}, element("tr", {}, ...["", "detected", "matched", "inliers"].map(h => element("th", {}, h)))), counts))));
 }

@@ -11,6 +11,28 @@ function table(id, title, head, rows, note) {
   return section;
 }
 
+const median = values => { const v = [...values].sort((a, b) => a - b); return v[Math.floor(v.length / 2)]; };
+
+// The figures that one asks for first.
+function tiles(data) {
+  const list = [];
+  const s = data.series, m = data.metrics;
+  if (s) list.push(["tracked", `${s.state.filter(x => x === "tracking" || x === "initialising").length}/${s.state.length}`, "frames"]);
+  const second = m && m.rpe.find(r => r.delta === "1s" && r.pairs) || m && m.rpe.find(r => r.pairs);
+  if (second) {
+    const per = second.delta === "1s" ? "per s" : `over ${second.delta}`;
+    list.push([`error ${per}`, (1e3 * second.translation_m.rmse).toFixed(1), "mm"],
+      [`error ${per}`, second.rotation_deg.rmse.toFixed(2), "\u00b0"]);
+  }
+  if (m) list.push(["ATE", (1e3 * m.ate_m.rmse).toFixed(1), "mm"]);
+  if (s) {
+    list.push(["inliers", `${median(s.points.inliers)}+${median(s.lines.inliers)}`, "points, lines"],
+      ["CPU per frame", median(s.stages.total).toFixed(1), "ms, median"]);
+  }
+  return element("div", { class: "tiles wide" }, ...list.map(([name, value, unit]) =>
+    element("div", {}, element("small", {}, name), element("b", {}, value), element("small", {}, unit))));
+}
+
 function metricsSection(m) {
   const mm = v => (1e3 * v).toFixed(2), degrees = v => v.toFixed(3);
   const rows = [];
@@ -26,17 +48,20 @@ function metricsSection(m) {
   const nees = ["nees_motion", "nees_pose"].filter(k => m[k] && m[k].samples).map(k =>
     `NEES of the ${k.slice(5)}s: ${m[k].mean.toFixed(2)} (6 is consistent), ` +
     `${(100 * m[k].inside_95_percent_bound).toFixed(0)} % inside the 95 % bound.`).join(" ");
-  return table("errors-table", "Errors against the ground truth",
-    ["RMSE", "mm", "still, mm", "degrees", "still, degrees"], rows,
+  const section = table("errors-table", "Errors against the ground truth",
+    ["RMSE", "mm", "still", "\u00b0", "still"], rows,
     `${m.poses} of ${m.estimate_poses} poses, ${m.duration_s.toFixed(2)} s, ${m.path_m.toFixed(2)} m. ` +
     `\u201cStill\u201d is what a camera that never moves would score. ${nees}`);
+  const pieces = data.by_distance;
+  if (pieces && pieces.rows.length) section.append(table("by-distance", "Error against distance", pieces.head, pieces.rows));
+  return section;
 }
 
 function errorCharts(e, marks) {
   const axes = ["x", "y", "z"];
   const group = (title, unit, first, factor) => axes.map((axis, k) => chart(`${title}, ${axis}`, unit, e.t, [{
     name: "error", y: e.e[first + k].map(v => v * factor), colour: css("--estimate"),
-    band: e.s ? e.s[first + k].map(v => v === null ? null : 3 * v * factor) : null }], marks));
+    band: e.s ? e.s[first + k].map(v => v === null ? null : 3 * v * factor) : null }], marks, "third"));
   return [...group("Position error", "mm", 0, 1e3), ...group("Orientation error", "degrees", 3, 180 / Math.PI)];
 }
 
@@ -50,7 +75,7 @@ document.getElementById("title").textContent = data.title;
 document.getElementById("subtitle").textContent = data.subtitle;
 document.title = data.title;
 const marks = data.series ? statusMarks(data.series) : data.lost || [];
-main.append(trajectorySection(data));
+main.append(tiles(data), trajectorySection(data));
 if (data.frames && data.frames.length) main.append(framesSection(data));
 if (data.metrics) main.append(metricsSection(data.metrics));
 if (data.summary) main.append(table("summary", "Run", ["", ""], data.summary));
@@ -58,14 +83,14 @@ if (data.errors) main.append(...errorCharts(data.errors, marks));
 if (data.series) {
   const s = data.series;
   const lines = (names, source) => names.map((name, i) => ({ name, y: source[name], colour: palette[i] }));
+  const stages = lines(Object.keys(s.stages), s.stages).map(l => ({ ...l, stacked: l.name !== "total" }));
   main.append(
     chart("Points", "per frame", s.t, lines(["detected", "matched", "inliers"], s.points), marks),
     chart("Lines", "per frame", s.t, lines(["detected", "matched", "inliers"], s.lines), marks),
-    chart("CPU time by stage", "ms", s.t, lines(Object.keys(s.stages), s.stages), marks),
-    chart("Brightness", "mean grey level", s.t, [{ name: "brightness", y: s.brightness, colour: palette[1] }], marks,
-      marks.length ? "Vertical stripes: frames that were lost or damaged." : ""));
+    chart("CPU time by stage", "ms", s.t, stages, marks),
+    chart("Brightness", "mean grey level, 0 to 255", s.t, [{ name: "brightness", y: s.brightness, colour: palette[1] }], marks));
 }
-if (data.by_distance && data.by_distance.rows.length) {
-  main.append(table("by-distance", "Error against distance", data.by_distance.head, data.by_distance.rows));
-}
-cursor.move(null);  // the first drawing, now that everything has its size
+if (marks.length) main.append(element("p", { class: "note wide" }, "Vertical stripes in the charts: frames that were lost or damaged."));
+// The first drawing, now that everything has its size. A link may end with #t=2.5, the second to look at.
+const moment = location.hash.match(/^#t=([0-9.]+)$/);
+cursor.move(moment ? Number(moment[1]) : null);

@@ -17,7 +17,6 @@ function pathBounds(paths) {
 // A picture of the paths through `project`, which maps a point relative to the centre to right and up, in metres.
 function pathView(name, paths, times, project, turning) {
   const canvas = element("canvas", { role: "img", "aria-label": `Trajectory, ${name}` });
-  const { centre, size, radius } = pathBounds(paths);
   const colours = { estimate: "--estimate", truth: "--truth" };
   let yaw = 0.6, pitch = 0.45;
   const rotated = ([x, y, z]) => {
@@ -25,16 +24,30 @@ function pathView(name, paths, times, project, turning) {
     return [a, -y * Math.cos(pitch) + b * Math.sin(pitch)];
   };
   const map = turning ? rotated : project;
+  if (turning) yaw = widestYaw();
+  // Of a few, the angle from which the paths fill most of the picture.
+  function widestYaw() {
+    const area = angle => {
+      yaw = angle;
+      const seen = paths.flatMap(path => path.points.map(rotated));
+      const extent = k => Math.max(...seen.map(p => p[k])) - Math.min(...seen.map(p => p[k]));
+      return extent(0) * extent(1);
+    };
+    const angles = [0.6, 1.1, 1.6, 2.1, 2.6, 3.1];
+    const areas = angles.map(area);
+    return angles[areas.indexOf(Math.max(...areas))] ?? 0.6;
+  }
   function draw() {
+    const { centre, size, radius } = pathBounds(paths);
     const side = canvas.clientWidth || 240;
     const context = prepare(canvas, side, side);
-    const scale = turning ? side * 0.45 / radius : side * 0.84 / size;
+    const scale = turning ? side * 0.47 / radius : side * 0.84 / size;
     const at = p => {
       const [right, up] = map(p.map((v, k) => v - centre[k]));
       return [side / 2 + right * scale, side / 2 - up * scale];
     };
     drawRuler(context, side, scale);
-    if (turning) drawAxes(context, at);
+    if (turning) drawAxes(context, at, 0.18 * size);
     for (const path of paths) {
       context.strokeStyle = css(colours[path.name]);
       context.lineWidth = path.name === "truth" ? 3 : 1.8;
@@ -68,10 +81,10 @@ function pathView(name, paths, times, project, turning) {
     context.fillText(length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(3))} cm`, 10, side - 18);
     context.fillText(name, 10, 18);
   }
-  function drawAxes(context, at) {
+  function drawAxes(context, at, length) {
     const origin = paths[0].points[0] || [0, 0, 0];
     ["x", "y", "z"].forEach((label, k) => {
-      const end = origin.map((v, i) => v + (i === k ? size * 0.18 : 0));
+      const end = origin.map((v, i) => v + (i === k ? length : 0));
       context.strokeStyle = context.fillStyle = ["#d64545", "#2a9d4a", "#3b78e7"][k];
       context.lineWidth = 1.5;
       context.beginPath(); context.moveTo(...at(origin)); context.lineTo(...at(end)); context.stroke();
@@ -93,19 +106,36 @@ function pathView(name, paths, times, project, turning) {
   return canvas;
 }
 
+function triples(flat) {
+  return Array.from({ length: flat.length / 3 }, (_, i) => flat.slice(3 * i, 3 * i + 3));
+}
+
+// How the ground truth is laid onto the estimate. The error charts always start from the first pose.
+function truthChoice(data, truth) {
+  const ways = { best: "best fit, as for the ATE", first: "onto the first pose" };
+  const select = element("select", { "aria-label": "Ground truth laid" },
+    ...Object.entries(ways).map(([value, text]) => element("option", { value }, text)));
+  select.addEventListener("change", () => {
+    truth.points = triples(data.truth[select.value]);
+    cursor.move(cursor.time);
+  });
+  return select;
+}
+
 function trajectorySection(data) {
-  const points = flat => Array.from({ length: flat.length / 3 }, (_, i) => flat.slice(3 * i, 3 * i + 3));
-  const paths = [{ name: "estimate", points: points(data.trajectory.p) }];
-  if (data.truth) paths.push({ name: "truth", points: points(data.truth.p) });
+  const paths = [{ name: "estimate", points: triples(data.trajectory.p) }];
+  const truth = data.truth && { name: "truth", points: triples(data.truth.best) };
+  if (truth) paths.push(truth);
   const views = element("div", { class: "views" },
-    pathView("from above (x right, z up)", paths, data.trajectory.t, ([x, , z]) => [x, z], false),
-    pathView("from the side (z right, y down)", paths, data.trajectory.t, ([, y, z]) => [z, -y], false),
+    pathView("above: x \u2192, z \u2191", paths, data.trajectory.t, ([x, , z]) => [x, z], false),
+    pathView("side: z \u2192, y \u2193", paths, data.trajectory.t, ([, y, z]) => [z, -y], false),
     pathView("in space: drag to turn", paths, data.trajectory.t, null, true));
   const legend = element("div", { class: "legend" });
   for (const path of paths) {
     const swatch = element("i");
     swatch.style.background = `var(--${path.name})`;
-    legend.append(element("span", {}, swatch, path.name === "truth" ? "ground truth, laid onto the first pose" : "estimate"));
+    legend.append(element("span", {}, swatch, path.name === "truth" ? "ground truth, laid " : "estimate"));
   }
+  if (truth) legend.append(truthChoice(data, truth));
   return element("section", { class: "wide", id: "trajectory" }, element("h2", {}, "Trajectory"), views, legend);
 }

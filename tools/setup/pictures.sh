@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes the pictures of the front page anew from what plvo itself draws: the overlays of a recorded and a simulated frame,
+# and a report in a browser. The recording is TUM's freiburg1_rpy from its frame 100 on.
+# usage: tools/setup/pictures.sh FOLDER
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+source tools/setup/packages.sh
+
+if [ $# -ne 1 ]; then
+  say "usage: tools/setup/pictures.sh FOLDER   (freiburg1_rpy from its frame 100 on, as a TUM folder)"
+  exit 2
+fi
+recording=$(realpath "$1")
+install_packages imagemagick chromium fonts-liberation
+plvo=build/release/bin/plvo
+if [ ! -x "$plvo" ]; then say "build it first: tools/setup/demo.sh"; exit 1; fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$plvo" run "$recording" --camera-model tum-fr1 --quiet --overlay "$work/real" --report "$work/report.html"
+"$plvo" run --camera sim --scene corridor --light varying --seed 3 --frames 0:51 --quiet --overlay "$work/simulated"
+convert "$work/real/000120.png" "$work/simulated/000050.png" +append -quality 80 docs/images/tracking.jpg
+
+chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/profile" --virtual-time-budget=5000 \
+  --window-size=1280,1345 --screenshot="$work/report.png" "file://$work/report.html#t=4" > "$work/log" 2>&1
+convert "$work/report.png" -quality 82 docs/images/report.jpg
+say "written: docs/images/tracking.jpg docs/images/report.jpg"
