@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the pictures of the front page anew from what plvo itself draws: the overlays of a recorded and a simulated frame,
-# and a report in a browser. The recording is TUM's freiburg1_rpy from its frame 100 on.
+# a report in a browser, and the simulated rooms. The recording is TUM's freiburg1_rpy from its frame 100 on.
 # usage: tools/setup/pictures.sh FOLDER
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -25,4 +25,12 @@ convert "$work/real/000120.png" "$work/simulated/000050.png" +append -quality 80
 chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/profile" --virtual-time-budget=5000 \
   --window-size=1280,1345 --screenshot="$work/report.png" "file://$work/report.html#t=4" > "$work/log" 2>&1
 convert "$work/report.png" -quality 82 docs/images/report.jpg
-say "written: docs/images/tracking.jpg docs/images/report.jpg"
+pictures=()
+for light in constant varying; do
+  for scene in corridor staircase hall desk bare; do
+    "$plvo" simulate --scene "$scene" --light "$light" --seed 7 --frames 10 --quiet --out "$work/$scene.$light"
+    pictures+=("$(find "$work/$scene.$light/rgb" -name '*.png' | sort | tail -1)")
+  done
+done
+montage "${pictures[@]}" -tile 5x2 -geometry 320x240+1+1 -quality 80 docs/images/simulator.jpg
+say "written: docs/images/tracking.jpg report.jpg simulator.jpg"
