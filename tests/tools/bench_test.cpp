@@ -189,6 +189,23 @@ TEST_F(Bench, Table2WeighsItsMeanByFrames) {
   EXPECT_NEAR(std::stod(rest.substr(rest.find(',') + 1)), sum / 2, 1e-5);
 }
 
+TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
+  const CommandResult table = run_command(std::string(PLVO_STATISTICS_BINARY) + ' ' + walk("constant"));
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  const auto value = [](const std::string& row) { return std::stod(row.substr(row.find(" | ") + 3)); };
+  const auto lines = lines_of(table.out);
+  const auto warped = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.rfind("| warped by the true pose: grey levels, 90 %", 0) == 0;
+  });
+  ASSERT_LT(warped, lines.end() - 1) << table.out;
+  EXPECT_LT(value(warped[0]), 0.7 * value(warped[1])) << table.out;
+  const auto planes = rows_with(table.out, "at 2.5–3 m");  // of the paper's 22.1 mm, 0.55
+  ASSERT_EQ(planes.size(), 1U);
+  EXPECT_NEAR(value(planes[0]), 12.2, 2) << table.out;
+  EXPECT_EQ(run_command(std::string(PLVO_STATISTICS_BINARY) + " /no/such/folder").exit_code, 1);
+  EXPECT_EQ(run_command(PLVO_STATISTICS_BINARY).exit_code, 2);
+}
+
 TEST_F(Bench, SaysWhatIsWrong) {
   const std::string out_option = " --out " + (*folder_ / "bad").string();
   const CommandResult system =

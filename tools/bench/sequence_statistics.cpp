@@ -26,7 +26,7 @@ namespace plvo::bench {
 namespace {
 
 constexpr int kEvery = 5;            // of the frames one is looked at
-constexpr std::size_t kFewest = 10;  // values that a quantile is worth giving of
+constexpr std::size_t kFewest = 10;  // windows that say something about a distance
 constexpr int kWindow = 16;          // px, side of the windows that planes are fitted to
 constexpr std::array<std::array<double, 2>, 6> kDepthBins_m = {
     {{0.7, 1.0}, {1.3, 1.6}, {1.6, 2.0}, {2.0, 2.5}, {2.5, 3.0}, {3.0, 3.5}}};
@@ -195,7 +195,7 @@ Status collect(const std::string& folder, Samples& samples) {
 }
 
 std::string quantile_of(std::vector<double> values, double q, int decimals) {
-  if (values.size() < kFewest) return "–";
+  if (values.empty()) return "–";
   std::sort(values.begin(), values.end());
   return cell(eval::quantile(values, q), decimals);
 }
@@ -223,7 +223,10 @@ int print_table(const std::vector<std::string>& names, const std::vector<Samples
     const auto [low, high] = kDepthBins_m[bin];
     const double formula_mm = 1e3 * DepthNoise().sigma(0.5 * (low + high));
     add(fmt::format("residual of planes at {:g}–{:g} m, mm (formula (2): {:.1f})", low, high, formula_mm),
-        [bin](const Samples& s) { return quantile_of(s.plane_mm[bin], 0.5, 1); });
+        [bin](const Samples& s) {
+          const std::vector<double>& mm = s.plane_mm[bin];
+          return mm.size() < kFewest ? std::string("–") : quantile_of(mm, 0.5, 1);
+        });
   }
   add("pixels without depth, %, median", [](const Samples& s) { return quantile_of(s.holes, 0.5, 1); });
   add("noise of grey levels", [](const Samples& s) { return quantile_of(s.gray_noise, 0.5, 2); });
