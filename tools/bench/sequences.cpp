@@ -11,6 +11,7 @@
 #include "plvo/bench/campaign.hpp"
 #include "plvo/bench/commands.hpp"
 #include "plvo/bench/measure.hpp"
+#include "plvo/bench/paper_table2.hpp"
 #include "plvo/bench/process_pool.hpp"
 #include "plvo/bench/system.hpp"
 
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPeer = "opencv-rgbd";  // whose time is the unit of the last column
 constexpr const char* kIdentity = "never moves";
+constexpr const char* kMean = "mean, weighted by frames";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kExactDecimals = 6;
 
@@ -77,7 +79,7 @@ std::vector<Result> with_weighted_means(const std::vector<Result>& merged) {
     if (std::find(systems.begin(), systems.end(), r.system) == systems.end()) systems.push_back(r.system);
   for (const std::string& system : systems) {
     Result mean;
-    mean.sequence = "mean, weighted by frames";
+    mean.sequence = kMean;
     mean.system = system;
     const auto add = [](Accuracy& sum, const Accuracy& a, double weight) {
       sum.rpe_frame_mm += weight * a.rpe_frame_mm;
@@ -98,6 +100,30 @@ std::vector<Result> with_weighted_means(const std::vector<Result>& merged) {
   return all;
 }
 
+constexpr int kNotSaid = -1;  // lost, in what a paper reports
+
+// Behind each fr1 sequence, or part of one, what the paper reports for the whole; behind the means the
+// paper's, where all nine are there.
+std::vector<Result> with_paper(const std::vector<Result>& measured) {
+  std::vector<Result> all;
+  std::set<std::string> whole;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    all.push_back(measured[i]);
+    const std::string& sequence = measured[i].sequence;
+    if (i + 1 < measured.size() && measured[i + 1].sequence == sequence) continue;
+    const PaperSequence paper = paper_sequence(sequence);
+    if (paper.whole) whole.insert(paper.name);
+    const bool is_mean = sequence == kMean && whole.size() == paper_sequences().size();
+    for (Result row : paper_results(is_mean ? "mean" : paper.name)) {
+      row.sequence = sequence;
+      if (!is_mean && !paper.whole) row.system += ", all of fr1/" + paper.name;
+      row.lost = kNotSaid;
+      all.push_back(row);
+    }
+  }
+  return all;
+}
+
 Table tum_table(const std::vector<Result>& results, int decimals) {
   Table table;
   table.header = {"sequence", "system", "frames", "lost", "mm/frame", "°/frame", "mm/s", "°/s"};
@@ -107,13 +133,13 @@ Table tum_table(const std::vector<Result>& results, int decimals) {
     return {r.sequence,
             r.system,
             std::to_string(r.frames),
-            r.system == kIdentity ? "–" : std::to_string(r.lost),
+            r.system == kIdentity || r.lost == kNotSaid ? "–" : std::to_string(r.lost),
             cell(a.rpe_frame_mm, 1 + decimals),
             cell(a.rpe_frame_deg, 2 + decimals),
             cell(a.rpe_second_mm, 1 + decimals),
             cell(a.rpe_second_deg, 2 + decimals)};
   };
-  add_rows(with_weighted_means(merge_repeats(results)), row, table);
+  add_rows(with_paper(with_weighted_means(merge_repeats(results))), row, table);
   return table;
 }
 
@@ -152,6 +178,8 @@ Report make_report(const SequencesOptions& options, const std::vector<Result>& r
     report.title = "Relative pose error per frame and per second";
     report.table = tum_table(results, 0);
     report.exact = tum_table(results, kExactDecimals);
+    report.notes.push_back(
+        "\"paper\": Table 2 of Lu & Song (ICCV 2015), each figure over the whole sequence.");
   } else {
     report.name = "comparison";
     report.title = "Side by side";
