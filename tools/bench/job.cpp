@@ -12,12 +12,14 @@ std::filesystem::path Job::result_file(const std::filesystem::path& out) const {
 }
 
 nlohmann::ordered_json Job::key() const {
-  return {
+  nlohmann::ordered_json key = {
       {"sequence", sequence},
       {"system", system},
       {"repeat", repeat},
       {"frames_asked", options.frames},
       {"gt_sampling", options.sampling == eval::GroundTruthSampling::kNearest ? "nearest" : "interpolated"}};
+  if (!options.camera_model.empty()) key["camera_model"] = options.camera_model;
+  return key;
 }
 
 std::vector<std::string> Job::command(const std::string& program, const std::filesystem::path& out) const {
@@ -39,8 +41,10 @@ std::vector<Job> interleaved_jobs(const std::vector<NamedFolder>& sequences,
   std::vector<Job> jobs;
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (const NamedFolder& sequence : sequences)
-      for (const std::string& system : systems)
+      for (const std::string& system : systems) {
         jobs.push_back({sequence.folder, sequence.sequence, system, repeat, options});
+        if (!sequence.camera_model.empty()) jobs.back().options.camera_model = sequence.camera_model;
+      }
   return jobs;
 }
 

@@ -16,7 +16,7 @@ namespace plvo::bench {
 // How every job of one run is measured.
 struct JobOptions {
   std::size_t frames = 0;    // 0: all
-  std::string camera_model;  // for folders without a calibration.txt
+  std::string camera_model;  // empty: calibration.txt, or what the folder's name says
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
 };
 
@@ -39,6 +39,7 @@ struct Job {
 struct NamedFolder {
   std::filesystem::path folder;
   std::string sequence;
+  std::string camera_model;  // empty: as the options say
 };
 std::vector<Job> interleaved_jobs(const std::vector<NamedFolder>& sequences,
                                   const std::vector<std::string>& systems, int repeats,

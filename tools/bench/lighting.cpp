@@ -87,7 +87,7 @@ Status render(const Walk& walk, const fs::path& folder) {
 
 std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& systems,
                          const LightingOptions& options) {
-  return interleaved_jobs({{walk_folder(walk, options), walk.sequence}}, systems, options.common.repeats,
+  return interleaved_jobs({{walk_folder(walk, options), walk.sequence, ""}}, systems, options.common.repeats,
                           options.common.measuring);
 }
 

@@ -15,7 +15,8 @@ void add_measuring_options(CLI::App& command, JobOptions& options) {
       {"interpolated", eval::GroundTruthSampling::kInterpolated},
       {"nearest", eval::GroundTruthSampling::kNearest}};
   command.add_option("--frames", options.frames, "Only the first so many")->type_name("NUMBER");
-  command.add_option("--camera-model", options.camera_model, "For folders without a calibration.txt")
+  command
+      .add_option("--camera-model", options.camera_model, "A camera by name, instead of each calibration.txt")
       ->type_name("NAME");
   command.add_option("--gt-sampling", options.sampling, "interpolated, or nearest as TUM's scripts do")
       ->transform(CLI::CheckedTransformer(samplings).description(""))

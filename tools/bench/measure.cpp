@@ -73,10 +73,10 @@ Status evaluate_tracks(const Job& job, const Tracks& tracks, Result& result) {
 }  // namespace
 
 Status find_calibration(const fs::path& folder, const std::string& camera_model, Calibration& calibration) {
+  if (!camera_model.empty()) return builtin_calibration(camera_model, calibration);
   std::error_code error;
   if (fs::exists(folder / "calibration.txt", error))
     return read_calibration(folder / "calibration.txt", calibration);
-  if (!camera_model.empty()) return builtin_calibration(camera_model, calibration);
   const std::string name = folder.filename().string();
   for (const char* number : {"1", "2", "3"}) {
     if (name.find(std::string("freiburg") + number) != std::string::npos ||

@@ -149,19 +149,23 @@ struct SequencesOptions {
   bool tum = false;
 };
 
-// The last part of each path names the sequence, so two may not be alike.
+// DIR, or DIR=MODEL. The last part of each path names the sequence, so two may not be alike.
 Status name_folders(const std::vector<std::string>& folders, std::vector<NamedFolder>& sequences) {
   std::set<std::string> seen;
   for (const std::string& text : folders) {
-    fs::path folder = fs::absolute(text).lexically_normal();
+    std::error_code error;
+    const std::size_t equals = fs::is_directory(text, error) ? std::string::npos : text.rfind('=');
+    const std::string model = equals == std::string::npos ? "" : text.substr(equals + 1);
+    fs::path folder = fs::absolute(text.substr(0, equals)).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
     const std::string name = folder.filename().string();
-    std::error_code error;
+    Calibration known;
+    if (Status status = builtin_calibration(model, known); !model.empty() && !status.ok()) return status;
     if (!fs::is_directory(folder, error))
       return {StatusCode::kNotFound, fmt::format("{}: there is no such folder", text)};
     if (!seen.insert(name).second)
       return {StatusCode::kInvalidArgument, fmt::format("two sequences are called {}; rename one", name)};
-    sequences.push_back({folder, name});
+    sequences.push_back({folder, name, model});
   }
   return {};
 }
@@ -221,9 +225,11 @@ void add_sequences_command(CLI::App& app, int& exit_code, bool tum) {
   CLI::App* command =
       tum ? app.add_subcommand("tum", "The paper's Table 2 over TUM folders: RPE and its frame-weighted mean")
           : app.add_subcommand("run", "Every system over every sequence: accuracy, time, memory");
-  command->add_option("folders", options->folders, "Sequences in TUM's layout, with groundtruth.txt")
+  command
+      ->add_option("folders", options->folders,
+                   "Sequences in TUM's layout, with groundtruth.txt; DIR=MODEL names the camera")
       ->required()
-      ->type_name("DIR");
+      ->type_name("DIR[=MODEL]");
   add_common_options(*command, options->common);
   add_measuring_options(*command, options->common.measuring);
   command->callback([options, &exit_code] { exit_code = finish(run_sequences(*options)); });
