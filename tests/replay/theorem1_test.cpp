@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Theorem 1 of the paper, (25) and (26), on every pair of frames of every sequence there is: with both kinds
+// of features the motion's covariance is below that with either kind alone, eigenvalue by eigenvalue.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/odometry/pair_estimation.hpp"
+#include "plvo/replay/tum_camera.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using Dense6 = Eigen::Matrix<double, 6, 6>;
+
+struct Rooms {
+  FeatureExtraction extraction;
+  PairEstimation estimation;
+  std::array<FrameFeatures, 2> frames;
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    for (FrameFeatures& frame : frames) frame.carve(memory, limits);
+    extraction.carve(memory, limits);
+    estimation.carve(memory, limits);
+  }
+};
+
+// The stages of the odometry, so that the estimate can be seen that its result no longer holds.
+class Pairs {
+ public:
+  explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
+    arena_ = Arena(memory_);
+    rooms_.carve(arena_, Limits::vga());
+    arena_.seal();
+    rooms_.extraction.init(camera, config_);
+    rooms_.estimation.init(camera, config_);
+  }
+
+  // The motion from the frame before.
+  MotionEstimate next(const RgbdFrame& frame) {
+    TrackResult result;
+    const DepthSampler depth = rooms_.extraction.depth_sampler(frame);
+    const FrameFeatures& reference = rooms_.frames[1 - slot_];
+    FrameFeatures& current = rooms_.frames[slot_];
+    rooms_.extraction.extract(frame, depth, arena_, current, result);
+    MotionEstimate motion;
+    if (has_reference_)
+      motion = rooms_.estimation.estimate(reference, current, rooms_.extraction.pyramid(), depth, prior_,
+                                          config_.points.search_radius_px, arena_, result);
+    prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
+    has_reference_ = true;
+    slot_ = 1 - slot_;
+    return motion;
+  }
+
+ private:
+  static std::size_t bytes() {
+    ArenaSizer sizer;
+    Rooms rooms;
+    rooms.carve(sizer, Limits::vga());
+    FeatureExtraction::reserve(sizer, Limits::vga());
+    PairEstimation::reserve(sizer, Limits::vga());
+    return sizer.peak() + kArenaAlignment;
+  }
+
+  Config config_;
+  std::vector<std::byte> memory_;
+  Arena arena_;
+  Rooms rooms_;
+  PairPrior prior_;
+  std::size_t slot_ = 0;
+  bool has_reference_ = false;
+};
+
+Eigen::Vector<double, 6> eigenvalues(const Matrix6& C) {
+  return Eigen::SelfAdjointEigenSolver<Dense6>(Dense6(0.5 * (C + C.transpose()))).eigenvalues();
+}
+
+void expect_theorem1(const MotionEstimate& motion, const std::string& where) {
+  const Matrix6& I_P = motion.information[0];
+  const Matrix6& I_L = motion.information[1];
+  // (26)
+  const Matrix6 product = motion.C_H * Matrix6(I_P + I_L);
+  EXPECT_LT((product - Matrix6::Identity()).norm(), 1e-5) << where;
+  // (25); of a kind that leaves a direction open, C has an infinite eigenvalue, and there is nothing to show.
+  const Eigen::Vector<double, 6> both = eigenvalues(motion.C_H);
+  for (const Matrix6& information : {I_P, I_L}) {
+    const Eigen::Vector<double, 6> alone = eigenvalues(information);
+    for (int i = 0; i < 6; ++i) {
+      if (alone[5 - i] > 1e-9 * alone[5]) {
+        EXPECT_LE(both[i], (1 + 1e-9) / alone[5 - i]) << where << ", eigenvalue " << i;
+      }
+    }
+  }
+}
+
+TEST(Theorem1, HoldsOnEveryPairOfTheProceduralSequence) {
+  ProceduralSequence sequence(320, 240);
+  Pairs pairs(sequence.camera());
+  pairs.next(sequence.render(0));
+  for (int i = 1; i < 12; ++i) {
+    const MotionEstimate motion = pairs.next(sequence.render(i));
+    ASSERT_EQ(motion.status, StatusCode::kOk) << i;
+    EXPECT_GT(motion.inliers[0], 0) << i;
+    EXPECT_GT(motion.inliers[1], 0) << i;
+    expect_theorem1(motion, "frame " + std::to_string(i));
+  }
+}
+
+TEST(Theorem1, HoldsOnEveryPairOfTheRecordedSequences) {
+  const char* shared = std::getenv("PLVO_SHARED");
+  const fs::path data = fs::path(shared == nullptr ? "" : shared) / "data";
+  std::error_code error;
+  if (!fs::is_directory(data, error))
+    GTEST_SKIP() << "the recorded sequences are not here: set PLVO_SHARED to the folder that holds data/";
+  int sequences = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data)) {
+    if (!fs::exists(entry.path() / "rgb.txt")) continue;
+    Calibration calibration;
+    ASSERT_TRUE(read_calibration(entry.path() / "calibration.txt", calibration).ok());
+    TumCamera camera;
+    ASSERT_TRUE(camera.open(entry.path(), calibration, {}).ok());
+    Pairs pairs(camera.model());
+    RgbdFrame frame;
+    int frames = 0;
+    int solved = 0;
+    for (; camera.next(frame).ok(); ++frames) {
+      const MotionEstimate motion = pairs.next(frame);
+      if (motion.status != StatusCode::kOk) continue;
+      ++solved;
+      expect_theorem1(motion, entry.path().filename().string() + ", frame " + std::to_string(frames));
+    }
+    EXPECT_GE(solved, 0.95 * (frames - 1)) << entry.path();
+    ++sequences;
+  }
+  EXPECT_GE(sequences, 1);
+}
+
+}  // namespace
+}  // namespace plvo
