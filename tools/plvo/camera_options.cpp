@@ -107,8 +107,8 @@ bool parse_frame_range(const std::string& text, FrameRange& range) {
   return true;
 }
 
-void add_calibration_options(CLI::App& command, CalibrationOptions& options) {
-  const std::string group = "Calibration (default: calibration.txt in the folder)";
+void add_calibration_options(CLI::App& command, CalibrationOptions& options, const std::string& group,
+                             DepthScale depth_scale) {
   command
       .add_option(
           "--calibration", options.file,
@@ -125,8 +125,9 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options) {
   number("--fy", options.fy, "Focal length, px");
   number("--cx", options.cx, "Principal point, px");
   number("--cy", options.cy, "Principal point, px");
-  number("--depth-scale", options.depth_scale,
-         "Units of the depth images per metre (default 5000; 1000 for mm)");
+  if (depth_scale == DepthScale::kAsked)
+    number("--depth-scale", options.depth_scale,
+           "Units of the depth images per metre (default 5000; 1000 for mm)");
   number("--readout", options.readout_s,
          "Rolling shutter: seconds from the first row to the last (Kinect v1: 0.0261; 0: global shutter)");
   command.add_option("--distortion", options.distortion, "k1 k2 p1 p2 [k3]")
@@ -189,7 +190,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       ->check(CLI::PositiveNumber.description(""))
       ->capture_default_str()
       ->type_name("SECONDS");
-  add_calibration_options(command, options.calibration);
+  add_calibration_options(command, options.calibration,
+                          "Calibration (default: calibration.txt in the folder)", DepthScale::kAsked);
   add_simulator_options(command, options.simulator);
 }
 

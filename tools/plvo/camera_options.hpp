@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -24,7 +25,10 @@ struct CalibrationOptions {
   std::optional<double> fx, fy, cx, cy, depth_scale, readout_s;
   std::vector<double> distortion;  // k1 k2 p1 p2 [k3]
 };
-void add_calibration_options(CLI::App& command, CalibrationOptions& options);
+// group: what the help calls them. The depth scale is asked for only where it is not the camera's own.
+enum class DepthScale : std::uint8_t { kAsked, kFromCamera };
+void add_calibration_options(CLI::App& command, CalibrationOptions& options, const std::string& group,
+                             DepthScale depth_scale);
 
 // What the flags say; without any, folder/calibration.txt. kInvalidArgument, naming the ways to give one,
 // when there is none at all.

@@ -2,7 +2,7 @@
 // The subcommands of plvo. Each lives in its own file: it adds its options to the application and sets a
 // callback that does the work when the subcommand was chosen and stores how it ended in exit_code:
 //   void add_run(CLI::App& app, int& exit_code);
-// main.cpp calls them all; adding one is a file, a declaration here and a line there.
+// command_line.cpp calls them all; adding one is a file, a declaration here and a line there.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,10 @@ namespace plvo::cli {
 
 void add_run(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app, int& exit_code);
+void add_live(CLI::App& app, int& exit_code);
+void add_record(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
+void add_doctor(CLI::App& app, int& exit_code);
+void add_tilt(CLI::App& app, int& exit_code);
 
 }  // namespace plvo::cli
