@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <sstream>
 #include <string_view>
 #include <thread>
 
@@ -17,9 +18,22 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
+// What OpenNI2 and its drivers say, as one line.
+std::string extended_error() {
+  std::string line;
+  std::istringstream words(openni::OpenNI::getExtendedError());
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
 // OpenNI2 knows one error code for almost everything; the driver's words say more.
 Status open_error(const std::string& uri) {
-  const std::string text = openni::OpenNI::getExtendedError();
+  const std::string text = extended_error();
+  if (uri.empty() && contains(text, "no devices found")) {
+    return {
+        StatusCode::kNotFound,
+        "no sensor: none is plugged in, or OpenNI2 has no driver for it; plvo doctor says what is missing"};
+  }
   Status status(StatusCode::kNotFound, "");
   if (contains(text, "LIBUSB_ERROR_ACCESS") || contains(text, "ermission")) {
     status = Status(
@@ -83,7 +97,7 @@ Status OpenNi2Runtime::acquire(std::shared_ptr<OpenNi2Runtime>& runtime) {
   if (openni::OpenNI::initialize() != openni::STATUS_OK) {
     Status status(StatusCode::kNotFound,
                   "OpenNI2 does not start: are its drivers (OpenNI2/Drivers) installed? ");
-    return status.append(openni::OpenNI::getExtendedError());
+    return status.append(extended_error());
   }
   runtime.reset(new OpenNi2Runtime);
   shared_runtime = runtime;
@@ -151,7 +165,7 @@ Status OpenNi2Device::create_stream(openni::VideoStream& stream, openni::SensorT
         .append(" stream in ")
         .append(info_.uri)
         .append(": ")
-        .append(openni::OpenNI::getExtendedError());
+        .append(extended_error());
   }
   if (!is_file_) {
     const bool tenths = options.depth_unit == OpenNi2DepthUnit::kTenthMillimetre;
@@ -201,7 +215,7 @@ Status OpenNi2Device::start() {
           .append(" does not start on ")
           .append(info_.uri)
           .append(": ")
-          .append(openni::OpenNI::getExtendedError());
+          .append(extended_error());
     }
   }
   return {};

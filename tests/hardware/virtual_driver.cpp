@@ -183,6 +183,7 @@ class Driver : public oni::driver::DriverBase {
       plugged = settings.plugged;
     }
     if (plugged) deviceConnected(&info_);
+    ready_ = true;
     return ONI_STATUS_OK;
   }
   oni::driver::DeviceBase* deviceOpen(const char* /*uri*/, const char* /*mode*/) override {
@@ -205,6 +206,7 @@ class Driver : public oni::driver::DriverBase {
       if (settings.plugged == plugged) return;
       settings.plugged = plugged;
     }
+    if (!ready_) return;  // initialize() tells OpenNI2 how things stand
     plugged ? deviceConnected(&info_) : deviceDisconnected(&info_);
   }
 
@@ -213,6 +215,7 @@ class Driver : public oni::driver::DriverBase {
   void listen(const std::string& pipe);
 
   OniDeviceInfo info_{};
+  std::atomic<bool> ready_ = false;
   std::atomic<bool> quit_ = false;
   std::thread control_;
   std::unique_ptr<RawReader> raw_;

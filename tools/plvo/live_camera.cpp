@@ -121,8 +121,10 @@ class OpenNi2LiveCamera final : public LiveCamera {
 Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model) {
   if (!calibration_given(from)) return {};
   Calibration calibration;
-  if (Status status = find_calibration(from, {}, calibration); !status.ok()) return status;
-  if (Status status = calibration.validate(width, height); !status.ok()) return status;
+  Status status = find_calibration(from, {}, calibration);
+  if (status.ok()) status = calibration.validate(width, height);
+  // A file that is not there is no missing sensor.
+  if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};
   calibration.camera.width = width;
   calibration.camera.height = height;
   model = calibration.camera;

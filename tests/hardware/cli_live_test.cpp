@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// `plvo live` over the real OpenNI2 and a virtual device: the same poses as from files, byte for byte, and
+// what each way of ending says.
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <nlohmann/json.hpp>
+
+#include "live_command.hpp"
+
+namespace plvo_test {
+namespace {
+
+using plvo::test::CommandResult;
+
+class CliLive : public LiveCommand {
+ protected:
+  // The same 12 frames of the simulator for the device (raw) and as a folder (walk).
+  void make_walk() {
+    const CommandResult made =
+        run_command(std::string(PLVO_VIRTUAL_FRAMES_BINARY) + ' ' + path("raw") + ' ' + path("walk") + " 12");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  std::string files(const std::string& name) const {
+    return " --quiet --out " + path(name) + ".txt --covariance " + path(name) + ".cov --motions " +
+           path(name) + ".mot";
+  }
+  void expect_same(const std::string& a, const std::string& b, long poses) const {
+    for (const char* end : {".txt", ".cov", ".mot"}) {
+      const std::string one = read_file(path(a + end));
+      EXPECT_EQ(one, read_file(path(b + end))) << a << " and " << b << ": " << end;
+      EXPECT_EQ(lines_in(one), end == std::string(".mot") ? poses : poses + 1);
+    }
+  }
+};
+
+const std::string kSmall = "--mode 320x240 ";
+
+TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
+  make_walk();
+  ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
+  const CommandResult live = plvo("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
+                                      " --every-frame --frames 12 --record " + path("again") + files("live"),
+                                  device("pace 80000", path("raw")));
+  ASSERT_EQ(live.exit_code, 0) << live.err;
+  expect_same("files", "live", 12);
+  // And what the session recorded meanwhile gives them once more.
+  ASSERT_EQ(plvo("run " + path("again") + files("again")).exit_code, 0);
+  expect_same("files", "again", 12);
+}
+
+TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
+  ASSERT_EQ(plvo("record " + path("a.oni") + " --quiet --seconds 1.2 " + kSmall).exit_code, 0);
+  const CommandResult live = plvo("live --device " + path("a.oni") + files("oni"));
+  ASSERT_EQ(live.exit_code, 0) << live.err;
+  const long poses = lines_in(read_file(path("oni.txt"))) - 1;
+  EXPECT_GT(poses, 10);
+  ASSERT_EQ(plvo("record " + path("folder") + " --quiet --device " + path("a.oni")).exit_code, 0);
+  ASSERT_EQ(plvo("run " + path("folder") + files("folder")).exit_code, 0);
+  expect_same("oni", "folder", poses);
+}
+
+TEST_F(CliLive, StandardOutputCarriesNothingButPosesWhenItIsTheStream) {
+  const CommandResult r = plvo("live --frames 8 --every-frame --stream - --stream unix:" + path("socket"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  ASSERT_EQ(lines_in(r.out), 8) << r.out;
+  std::size_t start = 0;
+  std::int64_t last_ns = -1;
+  for (int i = 0; i < 8; ++i) {
+    const std::size_t end = r.out.find('\n', start);
+    const auto pose = nlohmann::json::parse(r.out.substr(start, end - start));
+    EXPECT_GT(pose["stamp_ns"].get<std::int64_t>(), last_ns);
+    last_ns = pose["stamp_ns"];
+    start = end + 1;
+  }
+  EXPECT_TRUE(contains(r.err, "latency")) << "the summary goes where it disturbs nobody: " << r.err;
+  EXPECT_FALSE(std::filesystem::exists(path("socket"))) << "tidied away";
+}
+
+TEST_F(CliLive, ChosenRateDropsOldFramesAndCountsThem) {
+  const CommandResult r = plvo("live --rate 5 --seconds 2.5 " + kSmall + "--json " + path("j"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const auto json = nlohmann::json::parse(read_file(path("j")));
+  const int frames = json["frames"], dropped = json["dropped"], captured = json["camera_frames"];
+  EXPECT_GE(frames, 3);
+  EXPECT_LE(frames, 14);
+  EXPECT_GT(dropped, frames) << "the newest frame wins";
+  // What was captured was tracked, dropped, or lies in the ring (one slot is being written, one ready).
+  EXPECT_LE(frames + dropped, captured);
+  EXPECT_GE(frames + dropped, captured - 4);
+}
+
+TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
+  const auto expect = [](const CommandResult& r, int code, const std::string& words) {
+    EXPECT_EQ(r.exit_code, code) << words << ": " << r.err;
+    const std::size_t at = r.err.rfind("plvo: error: ");
+    ASSERT_NE(at, std::string::npos) << r.err;
+    EXPECT_TRUE(contains(r.err.substr(at), words)) << r.err;
+    EXPECT_EQ(lines_in(r.err.substr(at)), 1) << r.err;
+  };
+  expect(plvo("live", device("unplug")), 4, "no sensor: none is plugged in");
+  expect(plvo("live --device freenect://9-9"), 4, "freenect://9-9");
+  expect(plvo("live --device " + path("none.oni")), 1, "there is no file");
+  expect(plvo("live --mode 1280x1024@15"), 1, "this device offers");
+  expect(plvo("live --calibration " + path("none.txt")), 1, "none.txt");
+  expect(plvo("live --out " + path("no/such/folder.txt")), 1, "choose a path that can be written");
+  expect(plvo("live --record " + path("no/such/folder")), 1, "cannot make the folder");
+  expect(plvo("live --stream nonsense"), 1, "a pose stream is");
+  expect(plvo("live --view nonsense"), 1, "a live view is at");
+  expect(plvo("live --seconds 1.5", device("stall")), 4, "no frame came from Virtual RGB-D");
+  expect(plvo("live --frames 10 --quiet", device("dark 1;zero_depth 1")), 3, "no frame could be tracked: ");
+  EXPECT_EQ(plvo("live --mode big").exit_code, 2);
+  EXPECT_EQ(plvo("live --rate 0").exit_code, 2);
+  EXPECT_EQ(plvo("live --depth-scale 1000").exit_code, 2);
+}
+
+TEST_F(CliLive, AnAddressInUseCostsNoOldTrajectory) {
+  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof here;
+  ASSERT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&here), size), 0);
+  ASSERT_EQ(::listen(fd, 1), 0);
+  ::getsockname(fd, reinterpret_cast<sockaddr*>(&here), &size);
+  const std::string port = std::to_string(ntohs(here.sin_port));
+  plvo::test::write_file(path("old.txt"), "yesterday's poses\n");
+  for (const char* option : {" --view ", " --stream "}) {
+    const CommandResult r = plvo("live --out " + path("old.txt") + option + port);
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_TRUE(contains(r.err, "in use")) << r.err;
+    EXPECT_EQ(read_file(path("old.txt")), "yesterday's poses\n");
+  }
+  ::close(fd);
+}
+
+TEST_F(CliLive, HelpNeedsNoManual) {
+  for (const char* command : {"live", "record", "doctor", "tilt"}) {
+    const CommandResult r = plvo(std::string(command) + " --help");
+    EXPECT_EQ(r.exit_code, 0);
+    EXPECT_TRUE(contains(r.out, "Exit code")) << r.out;
+  }
+  EXPECT_TRUE(contains(plvo("live --help").out, "plvo live --view 8080"));
+}
+
+}  // namespace
+}  // namespace plvo_test
