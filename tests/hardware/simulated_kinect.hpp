@@ -26,6 +26,7 @@ class SimulatedKinect {
  public:
   static constexpr int kWidth = 640;
   static constexpr int kHeight = 480;
+  static constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
   static constexpr int kPictures = 4;  // frame n shows picture n mod kPictures
   static constexpr std::int64_t kFrame_ns = 33333333;
   static constexpr std::int64_t kDepthOffset_ns =
@@ -48,6 +49,9 @@ class SimulatedKinect {
   ~SimulatedKinect();
   SimulatedKinect(const SimulatedKinect&) = delete;
   SimulatedKinect& operator=(const SimulatedKinect&) = delete;
+
+  // Other pictures than those, one after the other; before the first plug().
+  void set_pictures(const std::vector<std::uint16_t>& disparities, const std::vector<std::uint8_t>& mosaics);
 
   // Plugs into port 1-1.3 with a new address each time; ticks: where the camera's 60 MHz clock stands.
   void plug(std::uint32_t ticks = 1000);

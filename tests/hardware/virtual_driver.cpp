@@ -17,12 +17,12 @@
 #include "plvo/openni2/freenect_driver/driver_stream.hpp"
 #include "raw_frames.hpp"
 #include "virtual_device.hpp"
+#include "virtual_settings.hpp"
 
 namespace plvo_test {
 namespace {
 
 constexpr const char* kUri = "virtual://plvo";
-constexpr std::int64_t kWrap_us = 71582788;
 constexpr float kFovX_rad = 1.0226f;  // 58.6° × 45.6°, the Kinect's nominal depth camera
 constexpr float kFovY_rad = 0.7959f;
 
@@ -37,27 +37,6 @@ constexpr OniVideoMode kColourModes[] = {
     {ONI_PIXEL_FORMAT_RGB888, 320, 240, 60},
     {ONI_PIXEL_FORMAT_RGB888, 640, 480, 30},
 };
-
-struct Settings {
-  bool plugged = true;
-  bool colour_runs = true, depth_runs = true;
-  std::int64_t period_us = 0;  // 0: the video mode's
-  std::int64_t pace_us = -1;   // -1: the period
-  std::int64_t clock_us = 1000000;
-  bool wraps = false;
-  std::int64_t shift_us = kPatternDepthOffset_us;
-  std::size_t late = 0;
-  bool dark = false, zero_depth = false;
-  int damage = 0;
-  bool unplug_at_end = false;
-  bool registration = true, mirror_stuck = false, no_fov = false;
-  VirtualSource source = nullptr;
-  void* cookie = nullptr;
-  std::int64_t ticks = 0;
-};
-std::mutex settings_mutex;
-std::mutex source_mutex;  // held while the source runs: set_source() waits for it
-Settings settings;
 
 class Stream : public plvo::DriverStream {
  public:
@@ -225,52 +204,9 @@ bool run_command(const std::string& line) {
   std::istringstream words(line);
   std::string verb, what;
   words >> verb >> what;
-  if (verb == "plug" || verb == "unplug") {
-    if (driver != nullptr) driver->set_plugged(verb == "plug");
-    return driver != nullptr;
-  }
-  const std::int64_t n = std::atoll(what.c_str());
-  const std::lock_guard lock(settings_mutex);
-  Settings& s = settings;
-  if (verb == "reset")
-    s = Settings{.plugged = s.plugged, .source = s.source, .cookie = s.cookie};
-  else if (verb == "run")
-    s.colour_runs = s.depth_runs = true;
-  else if (verb == "stall")
-    s.colour_runs = s.depth_runs = false;
-  else if (verb == "stop" && what == "colour")
-    s.colour_runs = false;
-  else if (verb == "stop" && what == "depth")
-    s.depth_runs = false;
-  else if (verb == "period")
-    s.period_us = n;
-  else if (verb == "pace")
-    s.pace_us = n;
-  else if (verb == "clock")
-    s.clock_us = n;
-  else if (verb == "wrap")
-    s.wraps = true, s.clock_us = kWrap_us - n;
-  else if (verb == "late")
-    s.late = static_cast<std::size_t>(n);
-  else if (verb == "shift")
-    s.shift_us = n;
-  else if (verb == "dark")
-    s.dark = n != 0;
-  else if (verb == "zero_depth")
-    s.zero_depth = n != 0;
-  else if (verb == "damage")
-    s.damage = static_cast<int>(n);
-  else if (verb == "after_end")
-    s.unplug_at_end = what == "unplug";
-  else if (verb == "registration")
-    s.registration = n != 0;
-  else if (verb == "mirror_stuck")
-    s.mirror_stuck = n != 0;
-  else if (verb == "no_fov")
-    s.no_fov = n != 0;
-  else
-    return false;
-  return true;
+  if (verb != "plug" && verb != "unplug") return change_settings(verb, what);
+  if (driver != nullptr) driver->set_plugged(verb == "plug");
+  return driver != nullptr;
 }
 
 void Driver::start_from_environment() {

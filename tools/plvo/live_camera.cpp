@@ -25,7 +25,8 @@ std::string check_mode(const std::string& text) {
 }
 
 bool calibration_given(const CalibrationOptions& o) {
-  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || !o.distortion.empty();
+  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || o.readout_s ||
+         !o.distortion.empty();
 }
 
 }  // namespace

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line over a simulated USB Kinect: libusb, libfreenect, OpenNI2 and our driver are the real
+// ones. umockdev wants the bus and its client in one process, so the commands are called here as functions.
+// PLVO_KINECT_SECONDS sets how long the run at full rate lasts (5).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "allocation_guard.hpp"
+#include "kinect_reference.hpp"
+#include "machine_load.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/plvo/command_line.hpp"
+#include "plvo/replay/tum_camera.hpp"
+#include "plvo/simulator/simulated_camera.hpp"
+#include "temporary_folder.hpp"
+
+// Every call of track() that the command makes comes through here (the linker's --wrap), and its allocations
+// are counted.
+namespace {
+std::atomic<std::int64_t> tracks{0}, allocations{0};
+}
+extern "C" {
+plvo::TrackResult real_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+}
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) {
+  const plvo::AllocationGuard guard;
+  plvo::TrackResult result = real_track(odometry, frame);
+  allocations += guard.calls();
+  ++tracks;
+  return result;
+}
+
+namespace plvo_test {
+namespace {
+
+using plvo::test::read_file;
+
+// The 11-bit disparity that libfreenect turns into this depth, with the simulated Kinect's zero plane (7.5
+// cm, 120 cm, 0.1042 mm) and shift (200): the inverse of its raw-to-millimetres formula.
+std::uint16_t disparity_of(double depth_m) {
+  if (!(depth_m > 0.4)) return 2047;
+  const double cm = depth_m * 100;
+  const double metric = 7.5 * (cm - 120) / cm;
+  const double raw = 4 * (metric / 0.1042 + 0.375) + 800;
+  return raw > 0 && raw < 2047 ? static_cast<std::uint16_t>(std::lround(raw)) : std::uint16_t{2047};
+}
+
+class KinectCommand : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // One line of the command line, as from a shell; what it printed is in out_ and err_.
+  int plvo(std::vector<std::string> words) {
+    words.insert(words.begin(), "plvo");
+    std::vector<const char*> arguments;
+    for (const std::string& word : words) arguments.push_back(word.c_str());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int code = plvo::cli::run_command_line(static_cast<int>(arguments.size()), arguments.data());
+    std::fflush(nullptr);
+    out_ = testing::internal::GetCapturedStdout();
+    err_ = testing::internal::GetCapturedStderr();
+    return code;
+  }
+  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(read_file(path(name))); }
+
+  // A walk of a few frames to and fro, as a Kinect would see it: 0 1 2 1 0 1 2 1 …
+  void show_a_room() {
+    plvo::SimulatorOptions options;
+    options.frames = 3;
+    std::unique_ptr<plvo::SimulatedCamera> camera;
+    ASSERT_TRUE(plvo::SimulatedCamera::create(options, camera).ok());
+    std::vector<std::uint16_t> disparities(SimulatedKinect::kPictures * SimulatedKinect::kPixels);
+    std::vector<std::uint8_t> mosaics(disparities.size());
+    plvo::RgbdFrame frame;
+    for (const std::vector<int>& places : {std::vector<int>{0}, {1, 3}, {2}}) {
+      ASSERT_TRUE(camera->next(frame).ok());
+      const bool bgr = frame.colour.format == plvo::PixelFormat::kBgr8;
+      for (int y = 0; y < SimulatedKinect::kHeight; ++y) {
+        for (int x = 0; x < SimulatedKinect::kWidth; ++x) {
+          int channel = (x + y) % 2 == 0 ? 1 : y % 2 == 0 ? 0 : 2;  // GR over BG
+          if (bgr) channel = 2 - channel;
+          const double depth_m = frame.depth.data[y * frame.depth.stride + x] * frame.depth.metres_per_unit;
+          for (const int place : places) {
+            const std::size_t at = static_cast<std::size_t>(place) * SimulatedKinect::kPixels +
+                                   static_cast<std::size_t>(y * SimulatedKinect::kWidth + x);
+            mosaics[at] = frame.colour.data[y * frame.colour.stride_bytes + 3 * x + channel];
+            disparities[at] = disparity_of(depth_m);
+          }
+        }
+      }
+    }
+    kinect_.set_pictures(disparities, mosaics);
+  }
+
+  plvo::test::TemporaryFolder folder_;
+  SimulatedKinect kinect_;
+  std::string out_, err_;
+};
+
+TEST_F(KinectCommand, LiveAtFullRateWithoutAllocationsInFlatMemory) {
+  const char* given = std::getenv("PLVO_KINECT_SECONDS");
+  const double seconds = given != nullptr ? std::atof(given) : 5;
+  show_a_room();
+  // The clock wraps after a third of the time.
+  kinect_.plug(static_cast<std::uint32_t>(0) - static_cast<std::uint32_t>(seconds / 3 * 60e6));
+  const MachineLoad load;
+  tracks = allocations = 0;
+  ASSERT_EQ(plvo({"live", "--seconds", std::to_string(seconds + 1), "--out", path("t.txt"), "--json",
+                  path("j.json"), "--stream", "unix:" + path("poses"), "--quiet"}),
+            0)
+      << err_;
+  const nlohmann::json json = this->json("j.json");
+  std::printf("camera %.2f Hz, tracked %d of %d, dropped %d; latency %.1f ms median, %.1f p95\n",
+              json["camera_hz"].get<double>(), json["tracked"].get<int>(), json["camera_frames"].get<int>(),
+              json["dropped"].get<int>(), json["latency_ms"]["median"].get<double>(),
+              json["latency_ms"]["p95"].get<double>());
+  if (kFiguresCount) {
+    // Of what the camera brought, and of what was tracked.
+    const double captured = json["camera_frames"].get<double>() - 1;
+    EXPECT_EQ(load.judge(captured, captured / json["camera_hz"].get<double>(), 28), "");
+    const double share = json["frames"].get<double>() / json["camera_frames"].get<double>();
+    EXPECT_EQ(load.judge(captured * share, captured / json["camera_hz"].get<double>(), 28), "");
+  }
+  EXPECT_LE(json["camera_hz"].get<double>(), 33) << "more than the sensor sends";
+  EXPECT_EQ(json["camera_counters"]["clock_wraps"], 1);
+  EXPECT_EQ(json["camera_counters"]["clock_jumps"], 0);
+  EXPECT_EQ(json["lost"], 0) << json;
+  EXPECT_GE(json["tracked"].get<int>(), 10);
+  EXPECT_EQ(tracks, json["frames"].get<std::int64_t>());
+  if (plvo::AllocationGuard::available()) {
+    EXPECT_EQ(allocations, 0) << "by the core, in " << tracks << " frames";
+  }
+  if (kFiguresCount) {
+    const auto growth = json["memory_bytes"]["anonymous_at_end"].get<std::int64_t>() -
+                        json["memory_bytes"]["anonymous_after_start"].get<std::int64_t>();
+    std::printf("memory %+ld kB\n", static_cast<long>(growth / 1024));
+    EXPECT_LT(growth, 1 << 20);
+  }
+}
+
+TEST_F(KinectCommand, RecordKeepsEveryByte) {
+  kinect_.plug();
+  Reference reference;
+  ASSERT_TRUE(reference.take());
+  ASSERT_EQ(plvo({"record", path("walk"), "--frames", "6", "--quiet"}), 0) << err_;
+  plvo::Calibration calibration;
+  ASSERT_TRUE(plvo::read_calibration(path("walk/calibration.txt"), calibration).ok());
+  plvo::TumCamera camera;
+  ASSERT_TRUE(camera.open(path("walk"), calibration).ok());
+  plvo::RgbdFrame frame;
+  int frames = 0;
+  for (; camera.next(frame).ok(); ++frames) {
+    const int picture = Reference::picture_of(frame.colour.data);
+    ASSERT_GE(picture, 0) << frames;
+    EXPECT_EQ(std::memcmp(frame.colour.data, reference.rgb[picture].data(), SimulatedKinect::kPixels * 3), 0);
+    EXPECT_EQ(
+        std::memcmp(frame.depth.data, reference.registered[picture].data(), SimulatedKinect::kPixels * 2), 0);
+    EXPECT_EQ(frame.depth.metres_per_unit, 0.001);
+  }
+  EXPECT_EQ(frames, 6);
+}
+
+TEST_F(KinectCommand, LiveOutlivesAnUnplug) {
+  show_a_room();
+  kinect_.plug();
+  std::thread hand([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    kinect_.unplug();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    kinect_.plug();
+  });
+  const int code = plvo({"live", "--seconds", "8", "--json", path("j.json"), "--stats", path("s.csv")});
+  hand.join();
+  EXPECT_EQ(code, 0) << err_;
+  EXPECT_NE(err_.find("was unplugged; plug it in again to go on"), std::string::npos) << err_;
+  EXPECT_NE(err_.find("frames come again"), std::string::npos) << err_;
+  const nlohmann::json json = this->json("j.json");
+  EXPECT_EQ(json["camera_counters"]["replugged"], 1) << err_;
+  const std::string rows = read_file(path("s.csv"));
+  EXPECT_NE(rows.substr(rows.rfind('\n', rows.size() - 2)).find(",tracking,"), std::string::npos) << rows;
+}
+
+TEST_F(KinectCommand, LiveSaysWhyItCannotHaveTheKinect) {
+  EXPECT_EQ(plvo({"live"}), 4);
+  EXPECT_NE(err_.find("no sensor"), std::string::npos) << err_;
+  kinect_.plug();
+  kinect_.deny();
+  EXPECT_EQ(plvo({"live"}), 4);
+  kinect_.allow();
+  EXPECT_NE(err_.find("60-plvo-rgbd.rules"), std::string::npos) << err_;
+  kinect_.set_faults({.claim_errno = EBUSY});
+  EXPECT_EQ(plvo({"live"}), 4);
+  EXPECT_NE(err_.find("another program holds the sensor"), std::string::npos) << err_;
+}
+
+// The doctor's four cases. The one without a driver is run with another OpenNI2 folder (PLVO_NO_DRIVER).
+class KinectDoctor : public KinectCommand {
+ protected:
+  void SetUp() override {
+    if (std::getenv("PLVO_NO_DRIVER") != nullptr) GTEST_SKIP() << "runs where OpenNI2 has the driver";
+  }
+};
+
+TEST_F(KinectDoctor, NothingPluggedIn) {
+  EXPECT_EQ(plvo({"doctor"}), 4);
+  EXPECT_NE(out_.find("problem  No known RGB-D sensor is plugged in."), std::string::npos) << out_;
+  EXPECT_EQ(out_.find("Test capture"), std::string::npos) << out_;
+}
+
+TEST_F(KinectDoctor, KinectWithoutPermission) {
+  kinect_.plug();
+  kinect_.deny();
+  EXPECT_EQ(plvo({"doctor", "--seconds", "1"}), 4);
+  kinect_.allow();
+  EXPECT_NE(out_.find("problem  No permission to use the Kinect v1 camera (port 1-1.3)"), std::string::npos)
+      << out_;
+  EXPECT_NE(out_.find("60-plvo-rgbd.rules"), std::string::npos) << out_;
+}
+
+TEST_F(KinectDoctor, HealthyKinect) {
+  show_a_room();
+  kinect_.plug();
+  const int code = plvo({"doctor", "--seconds", "1"});
+  EXPECT_NE(out_.find("good     The Kinect v1 camera (port 1-1.3) is ready."), std::string::npos) << out_;
+  // A machine under load may deliver too slowly; the doctor must say so then, and nothing else.
+  const bool slow = out_.find("frames came per second") != std::string::npos;
+  EXPECT_EQ(code, slow ? 4 : 0) << out_;
+  EXPECT_NE(slow, out_.find("good     The test capture is good") != std::string::npos) << out_;
+  EXPECT_NE(out_.find("freenect://1-1.3"), std::string::npos) << out_;
+}
+
+TEST_F(KinectCommand, DoctorMissesTheDriver) {
+  if (std::getenv("PLVO_NO_DRIVER") == nullptr) GTEST_SKIP() << "runs where OpenNI2 has no driver";
+  kinect_.plug();
+  EXPECT_EQ(plvo({"doctor"}), 4);
+  EXPECT_NE(out_.find("problem  OpenNI2 has no driver for the Kinect v1 in"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("-> plvo brings its own"), std::string::npos) << out_;
+}
+
+}  // namespace
+}  // namespace plvo_test
