@@ -41,7 +41,7 @@ TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
   ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
   const CommandResult live = plvo("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
                                       " --every-frame --frames 12 --record " + path("again") + files("live"),
-                                  device("pace 80000", path("raw")));
+                                  device("pace 150000", path("raw")));
   ASSERT_EQ(live.exit_code, 0) << live.err;
   expect_same("files", "live", 12);
   // And what the session recorded meanwhile gives them once more.

@@ -67,7 +67,9 @@ class RawReader {
     }
     width_ = size[0];
     height_ = size[1];
-    return width_ > 0 && height_ > 0;
+    if (width_ <= 0 || height_ <= 0 || std::fseek(file_, 0, SEEK_END) != 0) return false;
+    count_ = (std::ftell(file_) - kHeader_bytes) / frame_bytes();
+    return std::fseek(file_, kHeader_bytes, SEEK_SET) == 0;
   }
   int width() const { return width_; }
   int height() const { return height_; }
@@ -83,10 +85,24 @@ class RawReader {
     return true;
   }
 
+  // The frames forwards, backwards, forwards … without end and without their stamps.
+  bool read_to_and_fro(std::uint8_t* rgb, std::uint16_t* depth) {
+    if (count_ < 2) return false;
+    if (at_ + step_ < 0 || at_ + step_ >= count_) step_ = -step_;
+    at_ += step_;
+    std::int64_t colour_us = 0, depth_us = 0;
+    return std::fseek(file_, kHeader_bytes + at_ * frame_bytes(), SEEK_SET) == 0 &&
+           read(colour_us, depth_us, rgb, depth);
+  }
+
  private:
+  static constexpr long kHeader_bytes = sizeof(kRawMagic) + 2 * sizeof(std::int32_t);
+  long frame_bytes() const { return 16 + 5L * width_ * height_; }
+
   std::FILE* file_ = nullptr;
   int width_ = 0;
   int height_ = 0;
+  long count_ = 0, at_ = -1, step_ = 1;
 };
 
 }  // namespace plvo_test

@@ -3,8 +3,8 @@
 // controls by which a test puts it through what real sensors do. A test in the same process finds the
 // controls with VirtualDevice::find() once OpenNI2 has been initialised; another process (the command line
 // under test) is told by the environment:
-//   PLVO_VIRTUAL_FRAMES   a file of raw frames (raw_frames.hpp) to serve in order, instead of the test
-//   pattern PLVO_VIRTUAL_START    commands (see below), one after the other, separated by ';'
+//   PLVO_VIRTUAL_FRAMES   raw frames (raw_frames.hpp) to serve in order, instead of the test pattern
+//   PLVO_VIRTUAL_START    commands (see below), one after the other, separated by ';'
 //   PLVO_VIRTUAL_CONTROL  a named pipe; each line that arrives is a command
 #pragma once
 
@@ -23,7 +23,8 @@ struct VirtualTick {
   std::uint16_t* depth = nullptr;  // in the units of the depth mode
   std::int64_t colour_us = 0;
   std::int64_t depth_us = 0;
-  bool end = false;  // set by the source: there is no such tick, and none after it
+  bool to_and_fro = false;  // a source of recorded frames shall play them forwards and backwards for ever
+  bool end = false;         // set by the source: there is no such tick, and none after it
 };
 using VirtualSource = void (*)(void* cookie, VirtualTick* tick);
 
@@ -37,19 +38,20 @@ inline std::uint16_t pattern_depth(std::int64_t index, int x, int y) {
 constexpr std::int64_t kPatternDepthOffset_us = 4000;  // depth is stamped this much later than colour
 
 // Commands (0: done, -1: not understood). Images are counted in ticks of the sensor.
-//   plug | unplug                 appear to OpenNI2, vanish from it
-//   reset                         everything below as it was at first
-//   run | stall                   both streams
-//   stop colour|depth             one stream; run undoes it
-//   period N                      microseconds from tick to tick (stamps and pace; default from the video
-//   mode) pace N                        microseconds of real time from tick to tick (stamps stay as they
-//   are); 0: unpaced clock N                       the next tick is stamped N microseconds (both streams; the
-//   clock goes on from there) wrap N                        stamps wrap as the Kinect's do, for the first
-//   time N microseconds from now late N                        depth arrives N ticks after its colour image,
-//   with its own stamps shift N                       depth is stamped N microseconds after colour dark 0|1,
-//   zero_depth 0|1      the camera is covered; the depth sensor sees nothing damage N the next N depth images
-//   have a wrong size after_end unplug|silence      what happens when the source has no more frames (default
-//   silence)
+//   plug | unplug            appear to OpenNI2, vanish from it
+//   reset                    everything below as it was at first
+//   run | stall              both streams
+//   stop colour|depth        one stream; run undoes it
+//   period N                 microseconds from tick to tick: stamps and pace; default from the video mode
+//   pace N                   microseconds of real time from tick to tick, stamps stay; 0: unpaced
+//   clock N                  the next tick is stamped N microseconds, and the clock goes on from there
+//   wrap N                   stamps wrap as the Kinect's do, for the first time N microseconds from now
+//   late N                   depth arrives N ticks after its colour image, with its own stamps
+//   shift N                  depth is stamped N microseconds after colour
+//   dark 0|1, zero_depth 0|1 the camera is covered; the depth sensor sees nothing
+//   damage N                 the next N depth images have a wrong size
+//   after_end unplug|silence what happens when the source has no more frames (default silence)
+//   to_and_fro 0|1           recorded frames are played forwards, backwards, … without end
 // Only before the device is opened:
 //   registration 0|1, mirror_stuck 0|1, no_fov 0|1
 class VirtualDevice {

@@ -220,8 +220,10 @@ void Driver::start_from_environment() {
     settings.cookie = raw_.get();
     settings.source = [](void* cookie, VirtualTick* tick) {
       auto& raw = *static_cast<RawReader*>(cookie);
-      tick->end = raw.width() != tick->width || raw.height() != tick->height ||
-                  !raw.read(tick->colour_us, tick->depth_us, tick->rgb, tick->depth);
+      tick->end = raw.width() != tick->width || raw.height() != tick->height;
+      if (tick->end) return;
+      tick->end = tick->to_and_fro ? !raw.read_to_and_fro(tick->rgb, tick->depth)
+                                   : !raw.read(tick->colour_us, tick->depth_us, tick->rgb, tick->depth);
     };
   }
   if (const char* start = std::getenv("PLVO_VIRTUAL_START")) {
@@ -330,6 +332,7 @@ std::int64_t Device::tick() {
   tick.index = now.ticks;
   tick.colour_us = now.clock_us;
   tick.depth_us = now.clock_us + now.shift_us;
+  tick.to_and_fro = now.to_and_fro;
   fill(now, tick, *colour_);
   if (tick.end) {
     if (now.unplug_at_end && driver != nullptr) driver->set_plugged(false);

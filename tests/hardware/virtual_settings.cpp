@@ -43,6 +43,8 @@ bool change_settings(const std::string& verb, const std::string& what) {
     s.damage = static_cast<int>(n);
   else if (verb == "after_end")
     s.unplug_at_end = what == "unplug";
+  else if (verb == "to_and_fro")
+    s.to_and_fro = n != 0;
   else if (verb == "registration")
     s.registration = n != 0;
   else if (verb == "mirror_stuck")

@@ -23,7 +23,7 @@ struct Settings {
   std::size_t late = 0;
   bool dark = false, zero_depth = false;
   int damage = 0;
-  bool unplug_at_end = false;
+  bool unplug_at_end = false, to_and_fro = false;
   bool registration = true, mirror_stuck = false, no_fov = false;
   VirtualSource source = nullptr;
   void* cookie = nullptr;

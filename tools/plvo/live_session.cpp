@@ -119,7 +119,8 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
 ViewStatus LiveSession::view_status() const {
   const LiveCapture::State capture = capture_->state();
   ViewStatus status;
-  status.camera = capture.last.ok() && capture.frames > 0 ? "camera ok" : capture.words;
+  status.silent = !capture.last.ok() || capture.frames == 0;
+  status.camera = status.silent ? capture.words : "camera ok";
   status.camera_hz = capture.hz;
   status.odometry_hz = meter_.hz(posix_monotonic_ns());
   status.latency_ms = latency_ms_;
@@ -135,7 +136,7 @@ void LiveSession::show_line(const ViewStatus& status, const TrackResult& result)
       summary_.frames() > 0 ? to_string(result.state) : "waiting", status.camera_hz, status.odometry_hz,
       status.latency_ms, result.points.inliers, result.lines.inliers, status.lost, status.dropped);
   if (recording_.wanted()) line += fmt::format("  recorded {}", recording_.frames());
-  if (status.camera != "camera ok") line += "  " + status.camera;
+  if (status.silent) line += "  " + status.camera;
   console_.show_line(line);
 }
 

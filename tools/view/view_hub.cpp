@@ -162,11 +162,13 @@ std::string ViewHub::state_json(const Ask& ask, const Encoded& image) {
   fmt::format_to(
       std::back_inserter(out),
       "{{\"sequence\":{},\"image\":{},\"size\":[{},{}],\"stamp\":\"{}\",\"state\":\"{}\",\"message\":{},"
-      "\"camera\":{},\"camera_hz\":{:.2f},\"odometry_hz\":{:.2f},\"latency_ms\":{:.2f},\"frames\":{},"
+      "\"camera\":{},\"silent\":{},\"camera_hz\":{:.2f},\"odometry_hz\":{:.2f},\"latency_ms\":{:.2f},"
+      "\"frames\":{},"
       "\"lost\":{},\"dropped\":{},\"viewers\":{},\"brightness\":{:.1f}",
       sequence_, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
-      json_string(r.status.message()), json_string(status_.camera), status_.camera_hz, status_.odometry_hz,
-      status_.latency_ms, status_.frames, status_.lost, status_.dropped, watching, r.mean_brightness);
+      json_string(r.status.message()), json_string(status_.camera), status_.silent, status_.camera_hz,
+      status_.odometry_hz, status_.latency_ms, status_.frames, status_.lost, status_.dropped, watching,
+      r.mean_brightness);
   put_array(out, "position", r.T_world_camera.t.data(), 3);
   put_array(out, "orientation", orientation.data(), 4);
   put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: by rows or by columns alike

@@ -17,6 +17,7 @@ namespace plvo {
 // How the session goes, beside what the odometry itself says.
 struct ViewStatus {
   std::string camera = "waiting for the first frame";  // the camera's state, in words
+  bool silent = false;  // no frames come: what else is shown is of the last one that did
   double camera_hz = 0;
   double odometry_hz = 0;
   double latency_ms = 0;  // from a frame's arrival to its pose
