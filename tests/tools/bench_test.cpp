@@ -189,6 +189,22 @@ TEST_F(Bench, Table2WeighsItsMeanByFrames) {
   EXPECT_NEAR(std::stod(rest.substr(rest.find(',') + 1)), sum / 2, 1e-5);
 }
 
+TEST_F(Bench, TheCameraMayBeNamedForEachFolder) {
+  const auto trajectory = [&](const std::string& model) {
+    const fs::path results = *folder_ / ("camera" + model);
+    const CommandResult run = run_command(kBench + " run " + walk("constant") + model +
+                                          " --systems plvo-points --out " + results.string());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return read_file(results / "jobs" /
+                     (fs::path(walk("constant")).filename().string() + ".plvo-points.0.txt"));
+  };
+  EXPECT_NE(trajectory(""), trajectory("=tum-fr1"));
+  const CommandResult unknown =
+      run_command(kBench + " run " + walk("constant") + "=tum-fr9 --out " + (*folder_ / "bad").string());
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.err.find("tum-fr1"), std::string::npos) << unknown.err;
+}
+
 TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
   const CommandResult table = run_command(std::string(PLVO_STATISTICS_BINARY) + ' ' + walk("constant"));
   ASSERT_EQ(table.exit_code, 0) << table.err;
