@@ -147,6 +147,8 @@ Status OpenNi2Camera::Impl::choose_model(const OpenNi2Device::StreamFormat& colo
   model.width = colour.width;
   model.height = colour.height;
   model.pinhole = pinhole_from_fov(colour.width, colour.height, colour.fov_x_rad, colour.fov_y_rad);
+  const bool kinect = info.uri.rfind("freenect://", 0) == 0;  // our driver serves nothing else
+  model.readout_s = options.readout_s.value_or(kinect ? kKinectReadout_s : 0);
   Status warning(StatusCode::kInvalidArgument,
                  "no calibration given: intrinsics guessed from the field of view (fx ");
   warning.append(static_cast<std::int64_t>(model.pinhole.fx + 0.5))

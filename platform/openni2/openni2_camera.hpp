@@ -46,7 +46,10 @@ struct OpenNi2Options {
   std::int64_t pair_tolerance_us =
       0;  // largest |colour − depth| of a pair; 0, or more than half a frame: half a frame
   std::optional<CameraModel> model;  // the colour camera's calibration; without it, the field of view serves
-  Log* log = nullptr;                // borrowed; must outlive the camera
+  // Of the colour camera's rolling shutter, where there is no model: without it, a Kinect's for a Kinect,
+  // else 0.
+  std::optional<double> readout_s;
+  Log* log = nullptr;  // borrowed; must outlive the camera
 };
 
 // What happened since open(). Images are counted per stream, frames are pairs.

@@ -17,10 +17,6 @@ namespace plvo {
 
 inline constexpr double kTumDepthUnitsPerMetre = 5000;
 
-// From the first row of a Kinect v1's colour image to the last: 26.1 ms by Ringaby & Forssén (ICCV 2011). On
-// TUM's fr1/rpy our error is least between 20 and 30 ms.
-inline constexpr double kKinectReadout_s = 0.0261;
-
 struct Calibration {
   CameraModel camera;     // width and height hold for has_size only; else the images decide
   bool has_size = false;  // the source says which image size it is for

@@ -22,8 +22,10 @@ class Gaussian {
   explicit Gaussian(std::uint64_t seed) : random_(seed) {}
   double operator()() {  // Box–Muller
     if (silent_) return 0;
+    // One after the other: the order in which a product's factors are evaluated is the compiler's.
     const double u = random_.uniform() + 1e-12;
-    return std::sqrt(-2 * std::log(u)) * std::cos(6.283185307179586 * random_.uniform());
+    const double angle = 6.283185307179586 * random_.uniform();
+    return std::sqrt(-2 * std::log(u)) * std::cos(angle);
   }
   double uniform(double low, double high) { return low + (high - low) * random_.uniform(); }
   template <int N>

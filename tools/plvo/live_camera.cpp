@@ -151,6 +151,7 @@ Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_
   settings.width = mode.width;
   settings.height = mode.height;
   settings.fps = mode.fps;
+  settings.readout_s = options.calibration.readout_s;
   Status status = calibrate(options.calibration, mode.width, mode.height, settings.model);
   if (status.ok()) status = opened->open(settings);
   if (status.ok()) camera = std::move(opened);
