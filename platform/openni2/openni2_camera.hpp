@@ -3,7 +3,8 @@
 // whatever the driver claims about synchronisation; every image is copied into a buffer of the camera's own
 // as it arrives, so nothing behind next() touches OpenNI2's memory or takes any. What goes wrong with a
 // sensor comes back as a Status within the time limit: no call blocks for longer, no call throws. One thread
-// at a time may use a camera.
+// at a time may use a camera. A thread that used one must not end before the last camera of the process is
+// closed: OpenNI2 2.2 asks after every thread that ever called it, and crashes on one whose stack is gone.
 #pragma once
 
 #include <cstdint>

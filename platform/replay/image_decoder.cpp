@@ -48,7 +48,10 @@ Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
 }
 
 Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t bytes, int format) {
-  if (const int error = spng_decode_image(png, pixels, bytes, format, 0); error != 0)
+  int error = spng_decode_image(png, pixels, bytes, format, 0);
+  // On to the end: the checksum of the last piece of the image is compared only then.
+  if (error == 0) error = spng_decode_chunks(png);
+  if (error != 0)
     return image_error(StatusCode::kDamaged, path,
                        fmt::format("damaged or cut off ({})", spng_strerror(error)));
   return {};

@@ -17,7 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCompressionLevel = 3;  // a third of the default's time for a few percent more bytes
+// A recording at 30 Hz has 33 ms for a pair of images. On those of a real Kinect (640x480) level 1 with one
+// filter takes 14 ms and 655 kB, level 3 with the filter chosen anew for each row 39 ms and 610 kB.
+constexpr int kCompressionLevel = 1;
+constexpr int kColourFilter = SPNG_FILTER_CHOICE_SUB;
+constexpr int kDepthFilter = SPNG_FILTER_CHOICE_NONE;
 
 Status write_failed(const fs::path& path, int reason) {
   const char* advice =
@@ -27,11 +31,12 @@ Status write_failed(const fs::path& path, int reason) {
 }
 
 // Rows without gaps, top to bottom, as libspng wants them.
-Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::uint8_t> pixels) {
+Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::uint8_t> pixels, int filter) {
   const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> png(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   if (png == nullptr) return {StatusCode::kOutOfMemory, "no memory to encode a PNG image"};
   spng_set_option(png.get(), SPNG_ENCODE_TO_BUFFER, 1);
   spng_set_option(png.get(), SPNG_IMG_COMPRESSION_LEVEL, kCompressionLevel);
+  spng_set_option(png.get(), SPNG_FILTER_CHOICE, filter);
   spng_set_ihdr(png.get(), &header);
   int error = spng_encode_image(png.get(), pixels.data(), pixels.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
   std::size_t bytes = 0;
@@ -73,7 +78,7 @@ Status write_png(const fs::path& path, const ColourView& image) {
     for (std::size_t i = 0; i < row_bytes; i += 3) std::swap(row[i], row[i + 2]);
   }
   const auto colour_type = grey ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_TRUECOLOR;
-  return write_rows(path, make_header(image.width, image.height, 8, colour_type), pixels);
+  return write_rows(path, make_header(image.width, image.height, 8, colour_type), pixels, kColourFilter);
 }
 
 Status write_png(const fs::path& path, const DepthView& image) {
@@ -82,7 +87,8 @@ Status write_png(const fs::path& path, const DepthView& image) {
   for (int y = 0; y < image.height; ++y)
     std::memcpy(pixels.data() + static_cast<std::size_t>(y) * row_bytes, image.data + y * image.stride,
                 row_bytes);
-  return write_rows(path, make_header(image.width, image.height, 16, SPNG_COLOR_TYPE_GRAYSCALE), pixels);
+  return write_rows(path, make_header(image.width, image.height, 16, SPNG_COLOR_TYPE_GRAYSCALE), pixels,
+                    kDepthFilter);
 }
 
 std::vector<std::uint8_t> encode_jpeg(const ColourView& image, int quality) {

@@ -77,6 +77,13 @@ TEST_F(CliLive, StandardOutputCarriesNothingButPosesWhenItIsTheStream) {
   EXPECT_FALSE(std::filesystem::exists(path("socket"))) << "tidied away";
 }
 
+TEST_F(CliLive, EndsWhenItsOnlyReaderLeaves) {
+  const CommandResult r = run_command("sh -c '" + kPlvo + " live --seconds 30 --stream - | head -n 3'");
+  EXPECT_EQ(lines_in(r.out), 3);
+  EXPECT_TRUE(contains(r.err, "standard output was closed")) << r.err;
+  EXPECT_FALSE(contains(r.err, "time                   30")) << "long before its time: " << r.err;
+}
+
 TEST_F(CliLive, ChosenRateDropsOldFramesAndCountsThem) {
   const CommandResult r = plvo("live --rate 5 --seconds 2.5 " + kSmall + "--json " + path("j"));
   ASSERT_EQ(r.exit_code, 0) << r.err;

@@ -94,6 +94,11 @@ class OpenNi2LiveCamera final : public LiveCamera {
   OpenNi2Counters counters() const override { return camera_.counters(); }
   bool registered_by_device() const override { return camera_.registered_by_device(); }
 
+  void close() override {
+    stop_oni();
+    camera_.close();
+  }
+
   Status start_oni(const std::string& path) override {
     wanted_ = true;
     return recorder_.start(camera_, path);

@@ -35,6 +35,8 @@ class LiveCamera : public RgbdCamera {
   virtual std::string name() const = 0;  // for people: "Virtual RGB-D (virtual://plvo)"
   virtual OpenNi2Counters counters() const = 0;
   virtual bool registered_by_device() const = 0;
+  // Ends an .oni recording, too. What was asked for above can still be asked.
+  virtual void close() = 0;
 
   // Recording what comes into an .oni file. poll() now and then: kIo when the disk is about to be full and
   // kUnplugged after an unplug; the file is complete in both cases.

@@ -41,12 +41,13 @@ void LiveCapture::run() {
         status.code() != StatusCode::kDamaged)
       break;
   }
+  const OpenNi2Counters counters = camera_.counters();
   {
-    const OpenNi2Counters counters = camera_.counters();
     const std::lock_guard lock(mutex_);
     state_.camera = counters;
   }
   ring_.close();
+  camera_.close();
 }
 
 void LiveCapture::on_frame(const RgbdFrame& frame) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The thread that reads a live camera: frames go into the ring and to the recording, troubles become a state
-// in words. It ends when it is told to, when the recording is over, or when the camera cannot go on.
+// in words. It ends when it is told to, when the recording is over, or when the camera cannot go on, and
+// closes the camera then: a thread that read from OpenNI2 may not end before OpenNI2 does.
 #pragma once
 
 #include <atomic>

@@ -22,7 +22,10 @@ Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight
     if (Status status = open_view(options.view); !status.ok()) return status;
   for (const std::string& address : options.streams)
     if (Status status = open_stream(address); !status.ok()) return status;
-  return files_.open(options.files);
+  const OutputOptions& files = options.files;
+  has_files_ = !files.trajectory.empty() || !files.covariance.empty() || !files.motions.empty() ||
+               !files.stats.empty();
+  return files_.open(files);
 }
 
 Status LiveOutputs::open_view(const std::string& address) {

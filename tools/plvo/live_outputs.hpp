@@ -36,6 +36,8 @@ class LiveOutputs {
   void write_status(const ViewStatus& status);
   void close();
 
+  // Something ended, and nothing is left that anybody could look at: `plvo live --stream - | head`.
+  bool in_vain() const { return !failure_.ok() && streams_.empty() && !view_ && (files_end_ || !has_files_); }
   const Status& failure() const { return failure_; }  // what ended the files or the standard output
   std::uint64_t dropped_lines() const;
 
@@ -45,7 +47,7 @@ class LiveOutputs {
 
   Console& console_;
   RunOutputs files_;
-  bool files_end_ = false;
+  bool has_files_ = false, files_end_ = false;
   std::vector<std::unique_ptr<PoseStream>> streams_;
   std::unique_ptr<ViewServer> view_;
   bool lens_is_straight_ = true;

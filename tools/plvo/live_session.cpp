@@ -66,7 +66,8 @@ Status LiveSession::open() {
 }
 
 bool LiveSession::over() const {
-  return interrupted() || summary_.frames() >= options_.frames ||
+  return interrupted() || (outputs_.in_vain() && !recording_.wanted()) ||
+         summary_.frames() >= options_.frames ||
          static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9 >= options_.seconds;
 }
 
