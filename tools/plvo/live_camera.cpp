@@ -24,11 +24,6 @@ std::string check_mode(const std::string& text) {
   return parse_video_mode(text, mode) ? "" : "expected WIDTHxHEIGHT@FPS, such as 640x480@30: " + text;
 }
 
-bool calibration_given(const CalibrationOptions& o) {
-  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || o.readout_s ||
-         !o.distortion.empty();
-}
-
 }  // namespace
 
 void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
@@ -80,6 +75,11 @@ int exit_code_of_camera(const Status& status, const std::string& device) {
 
 #ifdef PLVO_HAVE_OPENNI2
 namespace {
+
+bool calibration_given(const CalibrationOptions& o) {
+  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || o.readout_s ||
+         !o.distortion.empty();
+}
 
 class OpenNi2LiveCamera final : public LiveCamera {
  public:
