@@ -66,7 +66,10 @@ Status OpenNi2Recorder::check() {
   if (error || space.available >= kReserve_bytes) return {};
   const std::string path = impl_->path;
   stop();
-  return Status(StatusCode::kIo, "the disk is almost full: the recording was ended and is complete so far: ")
+  return Status(StatusCode::kIo,
+                "the disk is almost full: free some space or choose another disk; the recording was ended "
+                "and is "
+                "complete so far: ")
       .append(path);
 }
 

@@ -85,10 +85,12 @@ class LiveCommand : public testing::Test {
   }
   // Ctrl-C, and how it ended; -1 if it did not within the time.
   int interrupt(double limit_s = 15) {
+    if (pid_ <= 0) return -1;  // kill(-1) would reach everybody
     ::kill(pid_, SIGINT);
     return wait(limit_s);
   }
   int wait(double limit_s = 15) {
+    if (pid_ <= 0) return -1;
     const auto start = std::chrono::steady_clock::now();
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {
