@@ -103,7 +103,6 @@ Config Config::paper() {
   config.features = Features::kBoth;
   config.reference = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
-  config.points.sigma_px = 1;
   config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
   config.lines.fit = Line3dConfig::paper();

@@ -32,9 +32,10 @@ enum class ReferencePolicy : std::uint8_t {
 };
 
 struct PointConfig {
-  // σ_p on the finest level, doubling with each. Where a keypoint was found again by registration, its own
-  // uncertainty there is added in quadrature.
-  double sigma_px = 0.25;
+  // σ_p on the finest level, doubling with each; where a keypoint was found again by registration, its
+  // uncertainty there is added in quadrature. Wider than one keypoint alone deserves: those of a scene err
+  // together.
+  double sigma_px = 1.0;
   int pyramid_levels = 3;   // searched for keypoints, 1 … 4
   int cell_px = 40;         // keypoints are spread over cells of this side, 24 … 64
   int noise_floor = 5;      // grey levels: contrast below this is the sensor's noise, 1 … 64
