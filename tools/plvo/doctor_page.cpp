@@ -40,6 +40,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     if (column + (end - at) > kWidth && column > indent) {
+      out.pop_back();  // the space before
       out += '\n' + std::string(indent, ' ');
       column = indent;
     }
@@ -53,6 +54,12 @@ std::string wrapped(const std::string& text, std::size_t indent) {
 
 void put_row(std::string& to, const std::string& name, const std::string& value) {
   fmt::format_to(std::back_inserter(to), "  {:<18} {}\n", name, wrapped(value, 21));
+}
+
+// Packages bring libX.so as a link beside libX.so.0, which is the one that counts.
+bool has_driver_name(const OpenniFacts& openni, const std::string& link) {
+  return std::any_of(openni.files.begin(), openni.files.end(),
+                     [&](const DriverFileFacts& file) { return file.name == link + ".0"; });
 }
 
 void put_system(std::string& to, const SystemFacts& facts) {
@@ -70,12 +77,13 @@ void put_system(std::string& to, const SystemFacts& facts) {
           !openni.built_in ? "not built in"
           : !openni.found  ? "does not load: " + openni.error
                            : "drivers in " + openni.directory);
-  for (const DriverFileFacts& file : openni.files)
-    if (file.name.find(".so") != std::string::npos)
-      put_row(to, "  driver",
-              file.name + (!is_driver_name(file.name) ? ": OpenNI2 does not look at this name"
-                           : file.load_error.empty()  ? ""
-                                                      : ": does not load"));
+  for (const DriverFileFacts& file : openni.files) {
+    if (is_driver_name(file.name)) {
+      put_row(to, "  driver", file.name + (file.load_error.empty() ? "" : ": does not load"));
+    } else if (file.name.find(".so") != std::string::npos && !has_driver_name(openni, file.name)) {
+      put_row(to, "  driver", file.name + ": OpenNI2 does not look at this name");
+    }
+  }
 }
 
 void put_sensors(std::string& to, const DoctorReport& report) {
