@@ -159,8 +159,9 @@ TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
   EXPECT_GT(json["stream_dropped_lines"].get<int>() + json["frames"].get<int>(), 20);
   EXPECT_EQ(json["lost"], 0);
   // Nobody was waited for: a blocked send would show as latency of its whole time-out, two seconds.
-  EXPECT_LT(json["latency_ms"]["max"].get<double>(), 500) << json;
-  EXPECT_LT(json["latency_ms"]["median"].get<double>(), 60) << json;
+  EXPECT_LT(json["latency_ms"]["max"].get<double>(), 1500) << json;
+  EXPECT_LT(json["latency_ms"]["median"].get<double>(), 60 + 3 * json["cpu_ms"]["median"].get<double>())
+      << json;
 }
 
 }  // namespace
