@@ -47,4 +47,3 @@ done
 build "$last"
 if [ ${#presets[@]} -gt 0 ]; then tests/golden/compare_presets.sh "${presets[@]}" "$last"; fi
 suite "$last"
-say "[$((SECONDS - started)) s] all passed"
