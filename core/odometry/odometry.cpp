@@ -176,10 +176,13 @@ MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& d
 
 void Odometry::start(TrackResult& result) {
   if (result.points.with_depth + result.lines.with_depth < kMinStartFeatures) {
-    result.state = TrackState::kInitialising;
+    const bool at_start = last_ == kNobody;
+    result.state = at_start ? TrackState::kInitialising : TrackState::kLost;
     result.status =
         Status(StatusCode::kTooFewFeatures,
-               "waiting for a first frame with texture and depth; 3D points and lines in this one: ")
+               at_start
+                   ? "waiting for a first frame with texture and depth; 3D points and lines in this one: "
+                   : "lost: hardly anything to see (dark, blurred, bare, or no depth); 3D points and lines: ")
             .append(result.points.with_depth + result.lines.with_depth);
     return;
   }

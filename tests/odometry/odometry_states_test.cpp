@@ -283,6 +283,7 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
       const Recorded frame = dark(i);
       const TrackResult lost = instance.track(frame.frame());
       EXPECT_FALSE(lost.status.ok());
+      EXPECT_EQ(lost.state, TrackState::kLost) << "also when the reference has been given up";
       EXPECT_TRUE(same_pose(lost, before));
     }
     const int i = 4 + dark_frames;
