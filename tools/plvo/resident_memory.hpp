@@ -14,9 +14,9 @@ struct ResidentMemory {
 };
 ResidentMemory resident_memory();
 
-// Brings every page of the program, its libraries and its stack into memory now: the first frames then wait
-// for no disk, and what grows later grew because something was taken. Does what the kernel can (Linux 5.14
-// for the code).
+// Brings every page of the program, its libraries, its stack and a piece of its heap into memory now: the
+// first frames then wait for no disk, and what grows later grew because something was taken. Does what the
+// kernel can (Linux 5.14 for the code).
 void prefault_program();
 
 }  // namespace plvo::cli
