@@ -40,11 +40,7 @@ class SegmentDetector {
   SegmentDetector() : SegmentDetector(1, 1) {}
 
   // The most memory that detect takes for a moment from its scratch.
-  static constexpr std::size_t scratch_bytes(int width, int height) {
-    ArenaSizer sizer;
-    carve(sizer, width, height);
-    return sizer.peak();
-  }
+  static constexpr std::size_t scratch_bytes(int width, int height);
 
   // reduced: 8-bit, smoothed against aliasing; its pixel (x, y) lies at (scale x, scale y) of full. out:
   // cleared, then filled with the segments, most meaningful first. Where more are found than fit, half of the
@@ -107,5 +103,12 @@ class SegmentDetector {
   int height_ = 1;
   lsd::FalseAlarms false_alarms_;
 };
+
+// Behind the class: Clang evaluates at compile time only what it has seen the whole of.
+constexpr std::size_t SegmentDetector::scratch_bytes(int width, int height) {
+  ArenaSizer sizer;
+  carve(sizer, width, height);
+  return sizer.peak();
+}
 
 }  // namespace plvo

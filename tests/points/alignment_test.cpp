@@ -120,7 +120,6 @@ TEST(Alignment, RefusesAnotherPatch) {
 TEST(Alignment, NeverReadsOutsideTheImage) {
   // The image is exactly as large as its memory: a sanitizer would see a step beside it. Nor may a start
   // outside the image, or none at all, do harm.
-  Random random(10);
   const test::Texture texture(10);
   GrayImage image(kSide, kSide);
   image.paint([&](int x, int y) { return texture(x, y); });
@@ -141,7 +140,6 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
 
 TEST(Alignment, ARunawayIsNotAMatch) {
   // A wide smooth blob: the registration would go far, and is stopped.
-  Random random(12);
   GrayImage blob(kSide, kSide), far(kSide, kSide);
   const auto paint = [](double cx) {
     return [cx](int x, int y) {
