@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 # What any C++ compiler may ask for, freestanding or not; and sqrt, which IEEE 754 rounds exactly.
-ALLOWED = {"memcpy", "memmove", "memset", "memcmp", "strlen", "sqrt", "_GLOBAL_OFFSET_TABLE_"}
+ALLOWED = {"memcpy", "memmove", "memset", "bcmp", "memcmp", "strlen", "sqrt", "_GLOBAL_OFFSET_TABLE_"}
 # 32-bit ARM: helpers of the compiler's own run-time library for 64-bit integers and block moves.
 ALLOWED_PATTERN = re.compile(
     r"__aeabi_(?:u?l(?:div|2d|2f|asr|lsl|lsr|cmp|mul)(?:mod)?|u?ldivmod|u?idiv(?:mod)?|[df]2u?lz|mem(?:cpy|move|set|clr)[48]?"
