@@ -48,7 +48,7 @@ MemoryUse measure_memory(const Limits& limits, int frames) {
 
 std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga) {
   std::string page =
-      "# Memory\n\n"
+      "<!-- SPDX-License-Identifier: Apache-2.0 -->\n# Memory\n\n"
       "The caller owns one block; `init` carves it once, and nothing is taken from anywhere else, then or "
       "later. This page is\n"
       "written by a test (`tests/odometry/memory_test.cpp`), which fails when the figures are no longer "
