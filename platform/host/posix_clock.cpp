@@ -5,12 +5,18 @@
 #include <ctime>
 
 namespace plvo {
+namespace {
 
-std::int64_t posix_monotonic_ns() {
+std::int64_t read_ns(clockid_t clock) {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
+
+}  // namespace
+
+std::int64_t posix_monotonic_ns() { return read_ns(CLOCK_MONOTONIC); }
+std::int64_t posix_thread_cpu_ns() { return read_ns(CLOCK_THREAD_CPUTIME_ID); }
 
 std::int64_t PosixClock::monotonic_ns() const { return posix_monotonic_ns(); }
 

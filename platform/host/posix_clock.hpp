@@ -12,7 +12,9 @@ class PosixClock final : public Clock {
   void sleep_until_ns(std::int64_t monotonic_ns) override;
 };
 
-// The same clock as a plain function, for Config::stage_clock.
+// The same clock as a plain function.
 std::int64_t posix_monotonic_ns();
+// Processor time of the calling thread, for Config::stage_clock.
+std::int64_t posix_thread_cpu_ns();
 
 }  // namespace plvo

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -20,12 +19,6 @@ namespace {
 constexpr std::size_t kSlots = 4;          // one written, one read, one ready, and one to spare
 constexpr int kPatience_ms = 100;          // so often Ctrl-C and the limits are looked at
 constexpr std::uint64_t kWarmFrames = 30;  // the libraries have taken their memory by then
-
-std::int64_t thread_cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
-}
 
 }  // namespace
 
@@ -48,7 +41,7 @@ Status LiveSession::open() {
   const bool every = options_.every_frame || is_oni_file(options_.camera.device);
   const CameraModel model = camera_->model();
   Config config = make_config(options_.odometry);
-  config.stage_clock = thread_cpu_ns;
+  config.stage_clock = posix_thread_cpu_ns;
   if (Status status = block_.init(model, config); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
@@ -102,19 +95,16 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   if (options_.rate_hz > 0)
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
-  const std::int64_t start = thread_cpu_ns();
+  const std::int64_t start = posix_thread_cpu_ns();
   record_.result = block_.odometry().track(frame);
-  record_.cpu_ns = thread_cpu_ns() - start;
+  record_.cpu_ns = posix_thread_cpu_ns() - start;
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;
   summary_.add(record_, latency_ms_);
   outputs_.write(record_, frame, block_.odometry(), view_status());
   ++record_.number;
-  if (summary_.frames() == kWarmFrames) {
-    summary_.resident_start = resident_memory();  // the first reading takes the memory that reading needs
-    summary_.resident_start = resident_memory();
-  }
+  if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
 }
 
 ViewStatus LiveSession::view_status() const {

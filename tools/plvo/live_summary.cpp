@@ -10,10 +10,6 @@
 namespace plvo::cli {
 namespace {
 
-constexpr double kMebibyte = 1024.0 * 1024.0;
-
-double mebibytes(auto bytes) { return static_cast<double>(bytes) / kMebibyte; }
-
 nlohmann::ordered_json to_json(const DurationHistogram& h) {
   return {{"median", h.quantile_ms(0.5)},
           {"mean", h.mean_ms()},

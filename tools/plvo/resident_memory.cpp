@@ -62,6 +62,7 @@ void prefault_program() {
   dl_iterate_phdr(populate_segments, nullptr);
   touch_stack();
   touch_heap();
+  (void)resident_memory();
 }
 
 }  // namespace plvo::cli

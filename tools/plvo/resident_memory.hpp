@@ -14,9 +14,12 @@ struct ResidentMemory {
 };
 ResidentMemory resident_memory();
 
+constexpr double mebibytes(auto bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
+
 // Brings every page of the program, its libraries, its stack and a piece of its heap into memory now: the
 // first frames then wait for no disk, and what grows later grew because something was taken. Does what the
 // kernel can (Linux 5.14 for the code).
+// And reads resident_memory() once: the first reading takes what reading needs.
 void prefault_program();
 
 }  // namespace plvo::cli

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <unistd.h>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -38,12 +37,6 @@ struct RunOptions {
   bool quiet = false;
 };
 
-std::int64_t thread_cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
-}
-
 // One key a frame: the next line of standard input.
 bool wait_for_enter() {
   char c = 0;
@@ -74,7 +67,7 @@ class Run {
   Status open() {
     if (Status status = open_camera(options_.camera, opened_); !status.ok()) return status;
     Config config = make_config(options_.odometry);
-    config.stage_clock = thread_cpu_ns;
+    config.stage_clock = posix_thread_cpu_ns;
     if (Status status = block_.init(opened_.camera->model(), config); !status.ok()) return status;
     summary_ = std::make_unique<RunSummary>(opened_.frame_count.value_or(kUnknownFrameCount));
     summary_->camera_name = opened_.name;
@@ -90,7 +83,6 @@ class Run {
     Progress progress(clock_, options_.quiet, opened_.frame_count);
     PacedCamera camera(*opened_.camera, options_.pace, clock_, wait_for_enter);
     prefault_program();
-    summary_->resident_start = resident_memory();  // the first reading takes the memory that reading needs
     summary_->resident_start = resident_memory();
     FrameRecord record;
     for (; !interrupted(); ++record.number) {
@@ -106,9 +98,9 @@ class Run {
           warn(fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
         }
       } else {
-        const std::int64_t start = thread_cpu_ns();
+        const std::int64_t start = posix_thread_cpu_ns();
         record.result = block_.odometry().track(frame);
-        record.cpu_ns = thread_cpu_ns() - start;
+        record.cpu_ns = posix_thread_cpu_ns() - start;
       }
       summary_->add(record);
       history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());

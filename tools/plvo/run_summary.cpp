@@ -11,8 +11,6 @@
 namespace plvo::cli {
 namespace {
 
-constexpr double kMebibyte = 1024.0 * 1024.0;
-
 const char* stage_name(std::size_t index) {
   return index < kStageCount ? to_string(static_cast<Stage>(index)) : "total";
 }
@@ -71,7 +69,6 @@ std::string RunSummary::main_reason() const {
 
 std::vector<std::pair<std::string, std::string>> RunSummary::rows() const {
   std::vector<std::pair<std::string, std::string>> rows;
-  const auto mebibytes = [](auto bytes) { return static_cast<double>(bytes) / kMebibyte; };
   rows.emplace_back("frames", fmt::format("{}{}", frames_, interrupted ? " (interrupted)" : ""));
   rows.emplace_back("tracked", fmt::format("{}", tracked_ + initialised_));
   rows.emplace_back("lost", fmt::format("{}", lost_));
