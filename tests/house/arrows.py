@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads every #include and names each arrow between rooms that the design forbids.
 
-tools -> platform -> hal -> core; inside the core odometry -> points | lines | motion -> image -> camera -> math ->
-base. An arrow may skip floors downwards. Points, lines and motion do not know each other. No circle anywhere.
+tools -> platform -> hal -> core; inside the core odometry -> points | lines | surfaces | motion -> image -> camera -> math
+-> base. An arrow may skip floors downwards. Points, lines, surfaces and motion do not know each other. No circle anywhere.
+A path on disk is the include: "plvo/<room>/<file>.hpp" is the file <floor>/plvo/<room>/<file>.hpp of exactly one floor.
 """
 import pathlib
 import sys
@@ -14,18 +15,24 @@ BELOW = {"base": []}
 BELOW["math"] = ["base"]
 BELOW["camera"] = ["base", "math"]
 BELOW["image"] = ["base", "math", "camera"]
-for _middle in ("points", "lines", "motion"):
+for _middle in ("points", "lines", "surfaces", "motion"):
     BELOW[_middle] = ["base", "math", "camera", "image"]
-BELOW["odometry"] = ["base", "math", "camera", "image", "points", "lines", "motion"]
+BELOW["odometry"] = ["base", "math", "camera", "image", "points", "lines", "surfaces", "motion"]
+
+# Made by CMake from a page of HTML.
+GENERATED = {"plvo/view/page.hpp"}
 
 HEIGHT = {"core": 0, "hal": 1, "platform": 2, "tools": 3, "tests": 4}
 
 
+FLOORS = ("core", "hal", "platform", "tools")
+
+
 def rooms_of(root):
     """room name -> floor, as an include names it: plvo/<room>/..."""
-    rooms = {"hal": "hal", "tools": "tools"}
-    for floor in ("core", "platform", "tools"):
-        folder = pathlib.Path(root) / floor
+    rooms = {}
+    for floor in FLOORS:
+        folder = pathlib.Path(root) / floor / "plvo"
         if folder.is_dir():
             rooms.update({path.name: floor for path in sorted(folder.iterdir()) if path.is_dir()})
     return rooms
@@ -33,8 +40,7 @@ def rooms_of(root):
 
 def room_of(root, path):
     parts = path.relative_to(root).parts
-    floor = parts[0]
-    return floor, (parts[1] if len(parts) > 2 else floor)
+    return parts[0], (parts[2] if len(parts) > 3 and parts[1] == "plvo" else parts[0])
 
 
 def forbidden(floor, room, target_floor, target):
@@ -82,7 +88,7 @@ def circle(graph):
 def check(root):
     root = pathlib.Path(root)
     rooms, graph, errors = rooms_of(root), {}, []
-    for path in sources.files(root, ("core", "hal", "platform", "tools")):
+    for path in sources.files(root, FLOORS):
         floor, room = room_of(root, path)
         for number, kind, header in sources.includes(path.read_text(encoding="utf-8")):
             where = f"{path.relative_to(root)}:{number}: {header}: "
@@ -98,6 +104,8 @@ def check(root):
             if target not in rooms:
                 errors.append(where + "there is no such room")
                 continue
+            if not (root / rooms[target] / header).is_file() and header not in GENERATED:
+                errors.append(where + f"there is no file {rooms[target]}/{header}")
             why = forbidden(floor, room, rooms[target], target)
             if why:
                 errors.append(where + why)

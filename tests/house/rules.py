@@ -17,7 +17,7 @@ STANDARD_HEADERS = {
 }
 EIGEN_HEADERS = {"Eigen/Core", "Eigen/LU", "Eigen/Cholesky", "Eigen/Geometry", "Eigen/SVD", "Eigen/Eigenvalues", "Eigen/QR"}
 # The one file that may call the C library's mathematics (sqrt alone, which IEEE 754 rounds exactly).
-CMATH_FILES = {"core/math/trigonometry.cpp"}
+CMATH_FILES = {"core/plvo/math/trigonometry.cpp"}
 
 FORBIDDEN = {
     r"\b(?:malloc|calloc|realloc|aligned_alloc|posix_memalign)\s*\(": "takes memory from the heap",

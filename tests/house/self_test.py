@@ -33,14 +33,14 @@ def include(*headers):
 
 
 GOOD = {
-    "core/base/status.hpp": include(),
-    "core/math/se3.hpp": include("plvo/base/status.hpp"),
-    "core/points/match.hpp": include("plvo/math/se3.hpp"),
-    "core/lines/match.hpp": include("plvo/base/status.hpp"),
-    "core/odometry/odometry.hpp": include("plvo/points/match.hpp", "plvo/lines/match.hpp", "plvo/base/status.hpp"),
-    "hal/clock.hpp": include("plvo/base/status.hpp"),
-    "platform/replay/replay.hpp": include("plvo/hal/clock.hpp", "plvo/odometry/odometry.hpp"),
-    "tools/main.cpp": include("plvo/replay/replay.hpp", "plvo/base/status.hpp"),
+    "core/plvo/base/status.hpp": include(),
+    "core/plvo/math/se3.hpp": include("plvo/base/status.hpp"),
+    "core/plvo/points/match.hpp": include("plvo/math/se3.hpp"),
+    "core/plvo/lines/match.hpp": include("plvo/base/status.hpp"),
+    "core/plvo/odometry/odometry.hpp": include("plvo/points/match.hpp", "plvo/lines/match.hpp", "plvo/base/status.hpp"),
+    "hal/plvo/hal/clock.hpp": include("plvo/base/status.hpp"),
+    "platform/plvo/replay/replay.hpp": include("plvo/hal/clock.hpp", "plvo/odometry/odometry.hpp"),
+    "tools/plvo/cli/main.cpp": include("plvo/replay/replay.hpp", "plvo/base/status.hpp"),
 }
 
 
@@ -54,34 +54,34 @@ class Arrows(unittest.TestCase):
 
     def test_every_forbidden_arrow_is_named(self):
         bad = {
-            "core/base/up.hpp": "plvo/math/se3.hpp",
-            "core/points/sideways.cpp": "plvo/lines/match.hpp",
-            "core/lines/sideways.cpp": "plvo/points/match.hpp",
-            "core/motion/sideways.cpp": "plvo/points/match.hpp",
-            "core/math/far_up.cpp": "plvo/odometry/odometry.hpp",
-            "core/base/to_hal.cpp": "plvo/hal/clock.hpp",
-            "core/odometry/to_platform.cpp": "plvo/replay/replay.hpp",
-            "hal/to_platform.hpp": "plvo/replay/replay.hpp",
-            "platform/replay/to_tools.cpp": "plvo/tools/run.hpp",
-            "core/attic/new_room.cpp": "plvo/base/status.hpp",
-            "tools/nowhere.cpp": "plvo/cellar/door.hpp",
+            "core/plvo/base/up.hpp": "plvo/math/se3.hpp",
+            "core/plvo/points/sideways.cpp": "plvo/lines/match.hpp",
+            "core/plvo/lines/sideways.cpp": "plvo/points/match.hpp",
+            "core/plvo/motion/sideways.cpp": "plvo/points/match.hpp",
+            "core/plvo/math/far_up.cpp": "plvo/odometry/odometry.hpp",
+            "core/plvo/base/to_hal.cpp": "plvo/hal/clock.hpp",
+            "core/plvo/odometry/to_platform.cpp": "plvo/replay/replay.hpp",
+            "hal/plvo/hal/to_platform.hpp": "plvo/replay/replay.hpp",
+            "platform/plvo/replay/to_tools.cpp": "plvo/cli/run.hpp",
+            "core/plvo/attic/new_room.cpp": "plvo/base/status.hpp",
+            "tools/plvo/cli/nowhere.cpp": "plvo/cellar/door.hpp",
         }
         for path, header in bad.items():
-            errors = self.found({path: include(header), "tools/run.hpp": include()})
+            errors = self.found({path: include(header), "tools/plvo/cli/run.hpp": include()})
             self.assertTrue(any(error.startswith(path + ":2:") for error in errors), (path, errors))
 
     def test_roundabout_spellings_do_not_help(self):
         for text in ('#include "../odometry/odometry.hpp"', '#include "odometry.hpp"', '# include <plvo/odometry/odometry.hpp>',
                      '  #  include   "plvo/odometry/odometry.hpp"  // why not'):
-            self.assertTrue(self.found({"core/math/clever.cpp": LICENCE + text + "\n"}), text)
+            self.assertTrue(self.found({"core/plvo/math/clever.cpp": LICENCE + text + "\n"}), text)
 
     def test_a_comment_is_not_an_include(self):
         text = LICENCE + '// #include "plvo/odometry/odometry.hpp"\n/* \n#include "plvo/lines/match.hpp"\n*/\n'
-        self.assertEqual(self.found({"core/math/prose.cpp": text}), [])
+        self.assertEqual(self.found({"core/plvo/math/prose.cpp": text}), [])
 
     def test_a_circle_between_rooms_of_one_floor_is_named(self):
-        errors = self.found({"platform/replay/a.cpp": include("plvo/host/b.hpp"),
-                             "platform/host/b.hpp": include("plvo/replay/replay.hpp")})
+        errors = self.found({"platform/plvo/replay/a.cpp": include("plvo/host/b.hpp"),
+                             "platform/plvo/host/b.hpp": include("plvo/replay/replay.hpp")})
         self.assertTrue(any("circle" in error for error in errors), errors)
 
 
@@ -93,10 +93,10 @@ class Rules(unittest.TestCase):
     def test_a_good_file_passes(self):
         text = LICENCE + ('// new and delete, malloc() and std::vector in prose\n#include <array>\n#include <Eigen/Core>\n'
                           'const char* text = "throw";\nA(const A&) = delete;\nnew (first + i) T;\ndouble y = sqrt(x);\n')
-        self.assertEqual(self.found("core/base/a.hpp", text), [])
+        self.assertEqual(self.found("core/plvo/base/a.hpp", text), [])
 
     def test_a_missing_licence_is_named(self):
-        for name in ("core/base/a.hpp", "tools/x.py", "platform/CMakeLists.txt", "tests/a_test.cpp", "tools/setup/x.sh"):
+        for name in ("core/plvo/base/a.hpp", "tools/x.py", "platform/CMakeLists.txt", "tests/a_test.cpp", "tools/setup/x.sh"):
             self.assertTrue(self.found(name, "\n"), name)
 
     def test_every_forbidden_word_is_named(self):
@@ -104,14 +104,14 @@ class Rules(unittest.TestCase):
                      "free(p);", "int* p = new int;", "auto p = new T[3];", "delete p;", "throw 1;", "try {", "printf(text);",
                      "std::vector<int> v;", "std::string s;", "std::function<void()> f;", "std::stable_sort(a, b);", "x = std::sin(y);",
                      "x = std::pow(y, 2);", "dynamic_cast<A*>(b);", "abort();", "thread_local int x;", "__m128 v;"):
-            self.assertTrue(self.found("core/base/a.cpp", LICENCE + line + "\n"), line)
-            self.assertTrue(self.found("hal/a.hpp", LICENCE + line + "\n"), line)
+            self.assertTrue(self.found("core/plvo/base/a.cpp", LICENCE + line + "\n"), line)
+            self.assertTrue(self.found("hal/plvo/hal/a.hpp", LICENCE + line + "\n"), line)
 
     def test_other_floors_may(self):
-        self.assertEqual(self.found("platform/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
+        self.assertEqual(self.found("platform/plvo/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
 
     def test_a_path_of_one_machine_is_named(self):
-        self.assertTrue(self.found("tools/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
+        self.assertTrue(self.found("tools/plvo/cli/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@
 
 #include "plvo/base/random.hpp"
 #include "plvo/image/pyramid.hpp"
-#include "plvo/lines/lsd.hpp"
+#include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::test {

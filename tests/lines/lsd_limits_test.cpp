@@ -7,7 +7,7 @@
 #include <string>
 
 #include "line_picture.hpp"
-#include "plvo/lines/edge_localisation.hpp"
+#include "plvo/lines/lsd/edge_localisation.hpp"
 
 namespace plvo {
 namespace {

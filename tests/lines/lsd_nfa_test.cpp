@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "plvo/base/random.hpp"
-#include "plvo/lines/nfa.hpp"
+#include "plvo/lines/lsd/nfa.hpp"
 
 namespace plvo::lsd {
 namespace {

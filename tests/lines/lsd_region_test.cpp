@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "line_picture.hpp"
-#include "plvo/lines/line_validation.hpp"
+#include "plvo/lines/lsd/line_validation.hpp"
 
 namespace plvo::lsd {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "plvo/simulator/kinect_depth.hpp"
+#include "plvo/simulator/sensor/kinect_depth.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plvo/simulator/film.hpp"
+#include "plvo/simulator/sensor/film.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {

@@ -7,7 +7,7 @@
 
 #include "plvo/base/random.hpp"
 #include "plvo/camera/camera_model.hpp"
-#include "plvo/simulator/scene.hpp"
+#include "plvo/simulator/scene/scene.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {

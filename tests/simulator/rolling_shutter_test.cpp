@@ -3,8 +3,8 @@
 // exposed.
 #include <algorithm>
 
-#include "plvo/simulator/renderer.hpp"
-#include "plvo/simulator/trajectory.hpp"
+#include "plvo/simulator/motion/trajectory.hpp"
+#include "plvo/simulator/render/renderer.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "plvo/math/trigonometry.hpp"
-#include "plvo/simulator/trajectory.hpp"
+#include "plvo/simulator/motion/trajectory.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {

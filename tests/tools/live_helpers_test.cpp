@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plvo/plvo/doctor_capture.hpp"
-#include "plvo/plvo/duration_histogram.hpp"
-#include "plvo/plvo/rate_meter.hpp"
+#include "plvo/cli/common/duration_histogram.hpp"
+#include "plvo/cli/doctor/doctor_capture.hpp"
+#include "plvo/cli/live/rate_meter.hpp"
 
 namespace plvo::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mock_usb.hpp"
-#include "plvo/plvo/command_line.hpp"
+#include "plvo/cli/command_line.hpp"
 
 namespace plvo {
 namespace {

@@ -10,8 +10,9 @@ foreach(target core hal determinism)
 endforeach()
 install(TARGETS plvo_core plvo_hal plvo_determinism EXPORT plvoTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/core/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/plvo FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/plvo FILES_MATCHING PATTERN "*.hpp")
+foreach(floor core hal)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/plvo DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+endforeach()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/plvo)
 install(EXPORT plvoTargets NAMESPACE plvo:: DESTINATION ${package_dir})

@@ -1,14 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every target of the house shares: the include root, the warnings, and the switches that make the
+# What every target of the house shares: the warnings, and the switches that make the
 # arithmetic the same on every processor.
-
-# Headers sit beside their sources, yet an include reads plvo/<room>/<file>.hpp: a folder of links does it.
-set(PLVO_INCLUDE_ROOT ${CMAKE_BINARY_DIR}/include)
-function(plvo_room path)
-  get_filename_component(room ${path} NAME)
-  file(MAKE_DIRECTORY ${PLVO_INCLUDE_ROOT}/plvo)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${path} ${PLVO_INCLUDE_ROOT}/plvo/${room} SYMBOLIC)
-endfunction()
 
 add_library(plvo_warnings INTERFACE)
 target_compile_options(plvo_warnings INTERFACE
@@ -29,6 +21,6 @@ function(plvo_core_variant name)
   list(TRANSFORM sources PREPEND "${source_dir}/" REGEX "^[^/]")
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC Eigen3::Eigen plvo_determinism)
-  target_include_directories(${name} PUBLIC ${PLVO_INCLUDE_ROOT})
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/core)
   target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics ${ARGN})
 endfunction()

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rectangle that stands for a region (LSD, section 2.4): centred where the gradient magnitude has its
+// centre of mass, along the first principal axis of that mass, just large enough for all pixels of the
+// region. From then on everything is fixed-point, so that "inside" and "aligned" mean the same on every
+// machine.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "plvo/lines/lsd/line_support_region.hpp"
+
+namespace plvo::lsd {
+
+// Precisions p = 2^-3 (that is 22.5° of 180°), 2^-4, …: level 0, 1, …
+inline constexpr int kPrecisionLevels = 11;
+inline constexpr int kNotAligned = -1;
+
+struct Rectangle {
+  // Centre in the field's grid, 2^-8 pixels.
+  std::int32_t x_q8 = 0;
+  std::int32_t y_q8 = 0;
+  // Unit vector · 2^14, the brighter side on its right; that side's direction is (−dy, dx).
+  std::int32_t dx = 1 << kDirectionBits;
+  std::int32_t dy = 0;
+  // Extent along it and across it (towards the brighter side), from the centre, 2^-8 pixels.
+  std::int32_t along_min = 0;
+  std::int32_t along_max = 0;
+  std::int32_t across_min = 0;
+  std::int32_t across_max = 0;
+  // Standard deviation of the gradient's mass across it, 2^-8 pixels.
+  std::int32_t across_sd = 0;
+
+  std::int64_t along_q22(int x, int y) const {
+    return std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy;
+  }
+  std::int64_t across_q22(int x, int y) const {
+    return std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy;
+  }
+  std::int32_t along(int x, int y) const {
+    return static_cast<std::int32_t>(along_q22(x, y) >> kDirectionBits);
+  }
+  std::int32_t across(int x, int y) const {
+    return static_cast<std::int32_t>(across_q22(x, y) >> kDirectionBits);
+  }
+  std::int32_t length_q8() const { return along_max - along_min; }
+  std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted
+};
+
+// region: at least one pixel.
+Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
+
+// Does the region fill at least 70 % of its rectangle?
+bool is_dense(const Rectangle& rectangle, std::size_t region_size);
+
+// tan(22.5° / 2^level) · 2^20.
+inline constexpr std::array<std::int32_t, kPrecisionLevels> kTangents_q20 = {
+    434334, 208575, 103276, 51513, 25741, 12869, 6434, 3217, 1608, 804, 402};
+
+// The finest precision at which a pixel's gradient points across the rectangle, or kNotAligned.
+inline int alignment_level(const Rectangle& rectangle, Direction direction) {
+  const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
+  if (dot <= 0) return kNotAligned;
+  const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
+  const std::int64_t turn = std::int64_t{cross < 0 ? -cross : cross} << 20;
+  int level = kNotAligned;
+  while (level + 1 < kPrecisionLevels &&
+         turn <= std::int64_t{kTangents_q20[static_cast<std::size_t>(level + 1)]} * dot) {
+    ++level;
+  }
+  return level;
+}
+
+// Calls visit(x, y) for every pixel of the field inside the rectangle, row by row.
+template <typename Visit>
+void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
+  // The corners bound the rows; each row is bounded by the two strips, with a pixel to spare, then each pixel
+  // is tested exactly.
+  const double along_min = r.along_min / 256.0 - 0.01;
+  const double along_max = r.along_max / 256.0 + 0.01;
+  const double across_min = r.across_min / 256.0 - 0.01;
+  const double across_max = r.across_max / 256.0 + 0.01;
+  const double dx = r.dx / 16384.0;
+  const double dy = r.dy / 16384.0;
+  const double cx = r.x_q8 / 256.0;
+  const double cy = r.y_q8 / 256.0;
+  const double ya = dy >= 0 ? along_min * dy : along_max * dy;
+  const double yb = dy >= 0 ? along_max * dy : along_min * dy;
+  const double yc = dx >= 0 ? across_min * dx : across_max * dx;
+  const double yd = dx >= 0 ? across_max * dx : across_min * dx;
+  const double top = cy + ya + yc - 1;
+  const double bottom = cy + yb + yd + 1;
+  const int first_row = top < 0 ? 0 : static_cast<int>(top);
+  const int last_row = bottom > field.height - 1 ? field.height - 1 : static_cast<int>(bottom);
+  const double width = field.width;
+  constexpr double kFlat = 1e-3;
+  const double inverse_dx = dx > kFlat || dx < -kFlat ? 1 / dx : 0;
+  const double inverse_dy = dy > kFlat || dy < -kFlat ? 1 / dy : 0;
+  for (int y = first_row; y <= last_row; ++y) {
+    double left = 0;
+    double right = width - 1;
+    const auto cut = [&](double u, double v) {
+      const double lower = u < v ? u : v;
+      const double upper = u < v ? v : u;
+      if (cx + lower - 1 > left) left = cx + lower - 1;
+      if (cx + upper + 1 < right) right = cx + upper + 1;
+    };
+    const double v = y - cy;
+    if (inverse_dx != 0) cut((along_min - v * dy) * inverse_dx, (along_max - v * dy) * inverse_dx);
+    if (inverse_dy != 0) cut((v * dx - across_min) * inverse_dy, (v * dx - across_max) * inverse_dy);
+    if (left > right) continue;
+    const int first = static_cast<int>(left);
+    const int last = static_cast<int>(right);
+    std::int64_t along = r.along_q22(first, y);
+    std::int64_t across = r.across_q22(first, y);
+    for (int x = first; x <= last; ++x, along += 256 * r.dx, across -= 256 * r.dy) {
+      const auto l = static_cast<std::int32_t>(along >> kDirectionBits);
+      const auto t = static_cast<std::int32_t>(across >> kDirectionBits);
+      if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
+      visit(x, y, t);
+    }
+  }
+}
+
+}  // namespace plvo::lsd

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a grown region to a meaningful rectangle, or to none (LSD, sections 2.4–2.6): a region that is bent or
+// ragged is tightened until its rectangle is dense; a rectangle that is not meaningful as it stands is tried
+// at finer precisions and with less width. Every step has a bound, and costs at most a small multiple of the
+// region's size.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/lines/lsd/line_rectangle.hpp"
+#include "plvo/lines/lsd/nfa.hpp"
+
+namespace plvo::lsd {
+
+// Tightens region until is_dense(): first by cutting off what lies beside the edge (ours, not the paper's:
+// under noise the paper's two steps break a long edge to pieces), then by growing anew with a tolerance of
+// twice the spread of the directions near the seed, then pixel by pixel from the far end (radius · 3/4, at
+// most 24 times). Pixels left out are released. False when fewer than min_size pixels remain. storage: the
+// memory that holds the region.
+bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
+             std::span<Pixel> storage);
+
+struct Validation {
+  double meaningfulness = 0;  // −log10 NFA; a segment when ≥ 0
+  std::int32_t aligned = 0;   // pixels
+};
+
+// Tests rectangle, and when it is not meaningful its variants: precision halved up to 5 times; width less by
+// ½ pixel up to 5 times; either side moved in by ½ pixel up to 5 times; precision halved 5 times more.
+// rectangle becomes the variant that is returned. samples: scratch for as many pixels as the rectangle may
+// hold.
+Validation validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
+                    std::span<std::int32_t> samples);
+
+}  // namespace plvo::lsd

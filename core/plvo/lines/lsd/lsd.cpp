@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/lines/lsd/lsd.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "plvo/lines/lsd/edge_localisation.hpp"
+#include "plvo/lines/lsd/line_validation.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kCellColumns = 6;
+constexpr int kCellRows = 4;
+// How well a rectangle's axis is known before it is placed on the full image, in pixels of the reduced one.
+constexpr double kAxisSd_px = 0.15;
+
+std::size_t cell_of(const Vector2& middle, int width, int height) {
+  const int column = std::clamp(static_cast<int>(middle.x() * kCellColumns / width), 0, kCellColumns - 1);
+  const int row = std::clamp(static_cast<int>(middle.y() * kCellRows / height), 0, kCellRows - 1);
+  return static_cast<std::size_t>(row * kCellColumns + column);
+}
+
+}  // namespace
+
+std::size_t SegmentDetector::search(GrayView reduced, Scratch& scratch, SegmentCounts& counts) const {
+  lsd::LevelLineField& field = scratch.field;
+  lsd::compute_field(reduced, field, scratch.region);
+  counts.directed_pixels = static_cast<std::int32_t>(field.seed_count);
+  const std::size_t min_size = min_region(width_, height_);
+  std::size_t found = 0;
+  for (const lsd::Pixel seed : field.seeds.first(field.seed_count)) {
+    if ((field.state[field.index(seed.x, seed.y)] & lsd::kUsed) != 0) continue;
+    lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
+    counts.grown_pixels += static_cast<std::int64_t>(region.pixels.size());
+    if (region.pixels.size() < min_size) continue;
+    ++counts.regions;
+    lsd::Rectangle rectangle = lsd::fit_rectangle(field, region);
+    if (!lsd::is_dense(rectangle, region.pixels.size())) {
+      const bool tightened = lsd::tighten(field, region, rectangle, min_size, scratch.region);
+      counts.grown_pixels += static_cast<std::int64_t>(region.pixels.size());
+      if (!tightened) continue;
+    }
+    ++counts.dense;
+    const lsd::Validation validation = lsd::validate(field, false_alarms_, rectangle, scratch.samples);
+    if (validation.meaningfulness < 0) continue;
+    scratch.candidates[found++] = describe(field, region, rectangle, validation);
+  }
+  counts.meaningful = static_cast<std::int32_t>(found);
+  return found;
+}
+
+SegmentDetector::Candidate SegmentDetector::describe(const lsd::LevelLineField& field,
+                                                     const lsd::Region& region,
+                                                     const lsd::Rectangle& rectangle,
+                                                     const lsd::Validation& validation) {
+  // Entry (x, y) of the field is at (x + ½, y + ½) of the image.
+  const Vector2 centre(rectangle.x_q8 / 256.0 + 0.5, rectangle.y_q8 / 256.0 + 0.5);
+  const Vector2 direction(rectangle.dx / 16384.0, rectangle.dy / 16384.0);
+  std::int64_t sum = 0;
+  for (const lsd::Pixel& pixel : region.pixels) sum += field.magnitude[field.index(pixel.x, pixel.y)];
+  Candidate candidate;
+  candidate.a = centre + direction * (rectangle.along_min / 256.0);
+  candidate.b = centre + direction * (rectangle.along_max / 256.0);
+  candidate.meaningfulness = validation.meaningfulness;
+  candidate.width_px = rectangle.width_q8() / 256.0;
+  candidate.mean_gradient = static_cast<double>(sum) / (32.0 * static_cast<double>(region.pixels.size()));
+  candidate.support = validation.aligned;
+  return candidate;
+}
+
+std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t capacity) const {
+  // Found in a fixed order, so the place in it settles every tie.
+  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].order = static_cast<std::int32_t>(i);
+  const auto more_meaningful = [](const Candidate& p, const Candidate& q) {
+    return p.meaningfulness != q.meaningfulness ? p.meaningfulness > q.meaningfulness : p.order < q.order;
+  };
+  std::sort(candidates.begin(), candidates.end(), more_meaningful);
+  if (candidates.size() <= capacity) return candidates.size();
+  std::array<std::int32_t, kCellColumns * kCellRows> in_cell{};
+  for (Candidate& candidate : candidates) {
+    candidate.rank = in_cell[cell_of(0.5 * (candidate.a + candidate.b), width_, height_)]++;
+  }
+  const std::span<Candidate> rest = candidates.subspan(capacity / 2);
+  std::sort(rest.begin(), rest.end(), [&](const Candidate& p, const Candidate& q) {
+    return p.rank != q.rank ? p.rank < q.rank : more_meaningful(p, q);
+  });
+  std::sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(capacity), more_meaningful);
+  return capacity;
+}
+
+Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Arena& scratch_memory,
+                               FixedVector<Segment>& out, SegmentCounts* counts) const {
+  out.clear();
+  if (reduced.data == nullptr || full.data == nullptr || reduced.width != width_ ||
+      reduced.height != height_) {
+    return {StatusCode::kInvalidArgument,
+            "lines: the image is missing or not of the size that was announced"};
+  }
+  const ScratchScope scope(scratch_memory);
+  Scratch scratch = carve(scratch_memory, width_, height_);
+  if (scratch.candidates.empty()) {
+    return {StatusCode::kOutOfMemory, "lines: the scratch memory is too small for this image size"};
+  }
+  SegmentCounts done;
+  const std::span<Candidate> candidates = scratch.candidates.first(search(reduced, scratch, done));
+  const std::size_t kept = select(candidates, out.capacity());
+  out.add_dropped(candidates.size() - kept);
+  for (const Candidate& candidate : candidates.first(kept)) {
+    Segment segment;
+    segment.a = candidate.a * scale;
+    segment.b = candidate.b * scale;
+    segment.width_px = candidate.width_px * scale;
+    segment.meaningfulness = candidate.meaningfulness;
+    segment.mean_gradient = candidate.mean_gradient / scale;
+    segment.support = candidate.support;
+    done.placed += lsd::localise(full, kAxisSd_px * scale, segment) ? 1 : 0;
+    out.push_back(segment);
+  }
+  if (counts != nullptr) *counts = done;
+  return {};
+}
+
+}  // namespace plvo

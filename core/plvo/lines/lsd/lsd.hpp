@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// L1 of the paper: line segments, after Grompone von Gioi et al., "LSD: a fast line segment detector with a
+// false detection control" (PAMI 2010), written from the published description. Segments are found on a
+// reduced level of the image pyramid (half resolution serves VGA) and then placed on the full-resolution
+// image. No threshold on contrast decides what a segment is, the number of false alarms does.
+//
+// Time is bounded: each pixel is added to a region at most kMaxGrowths = 6 times and looked at by its 8
+// neighbours each time; every other pass over a region or its rectangle costs at most a constant times the
+// region's size, and at most max_segments segments are placed.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/status.hpp"
+#include "plvo/image/image_view.hpp"
+#include "plvo/lines/lsd/line_validation.hpp"
+#include "plvo/lines/segment.hpp"
+
+namespace plvo {
+
+// What one detection did: for the bookkeeping of a frame and the tests of its bounds.
+struct SegmentCounts {
+  std::int32_t directed_pixels = 0;  // whose gradient is above the quantisation noise
+  std::int32_t regions = 0;          // grown to at least the smallest size that can be meaningful
+  std::int32_t dense = 0;            // of these, long and full enough to be tested
+  std::int32_t meaningful = 0;       // of these, with NFA ≤ 1
+  std::int32_t placed = 0;           // of those kept, moved onto the full-resolution edge
+  std::int64_t grown_pixels = 0;     // pixels added to regions, repeats included
+};
+
+class SegmentDetector {
+ public:
+  // The size of the image that detect searches (the reduced one).
+  SegmentDetector(int width, int height) : width_(width), height_(height), false_alarms_(width, height) {}
+  SegmentDetector() : SegmentDetector(1, 1) {}
+
+  // The most memory that detect takes for a moment from its scratch.
+  static constexpr std::size_t scratch_bytes(int width, int height);
+
+  // reduced: 8-bit, smoothed against aliasing; its pixel (x, y) lies at (scale x, scale y) of full. out:
+  // cleared, then filled with the segments, most meaningful first. Where more are found than fit, half of the
+  // room goes to the most meaningful; the other half goes round a 6 × 4 grid of cells, the best of every cell
+  // (by its middle) before the second of any; the rest is counted in out.dropped(). Fails on images of
+  // another size than announced, on an image that is not there, and when scratch is too small.
+  Status detect(GrayView reduced, double scale, GrayView full, Arena& scratch, FixedVector<Segment>& out,
+                SegmentCounts* counts = nullptr) const;
+
+ private:
+  // A meaningful rectangle, in pixels of the reduced image.
+  struct Candidate {
+    Vector2 a, b;
+    double meaningfulness = 0;
+    double width_px = 0;
+    double mean_gradient = 0;
+    std::int32_t support = 0;
+    std::int32_t order = 0;  // in which it was found
+    std::int32_t rank = 0;   // within its cell
+  };
+  struct Scratch {
+    lsd::LevelLineField field;
+    std::span<lsd::Pixel> region;
+    std::span<std::int32_t> samples;
+    std::span<Candidate> candidates;
+  };
+
+  // A smaller region is not meaningful even when all of it is aligned: 8^n < 11 (width · height)^(5/2), in
+  // powers of two rounded down.
+  static constexpr std::size_t min_region(int width, int height) {
+    const std::size_t log2_area = std::bit_width(scratch_pixels(width, height));
+    return log2_area > 2 ? (5 * (log2_area - 1) / 2 + 3 + 2) / 3 : 2;
+  }
+
+  template <typename Memory>
+  static constexpr Scratch carve(Memory& memory, int width, int height) {
+    Scratch scratch;
+    scratch.field = lsd::carve_field(memory, width, height);
+    const std::size_t pixels = scratch_pixels(width, height);
+    scratch.region = memory.template take<lsd::Pixel>("lines/lsd", pixels);
+    scratch.samples = memory.template take<std::int32_t>("lines/lsd", pixels);
+    // No two meaningful regions share a pixel: that bounds their number.
+    scratch.candidates = memory.template take<Candidate>("lines/lsd", pixels / min_region(width, height) + 1);
+    return scratch;
+  }
+  static constexpr std::size_t scratch_pixels(int width, int height) {
+    return width > 1 && height > 1
+               ? static_cast<std::size_t>(width - 1) * static_cast<std::size_t>(height - 1)
+               : 0;
+  }
+
+  // The number of candidates found; at most one per min_region pixels.
+  std::size_t search(GrayView reduced, Scratch& scratch, SegmentCounts& counts) const;
+  static Candidate describe(const lsd::LevelLineField& field, const lsd::Region& region,
+                            const lsd::Rectangle& rectangle, const lsd::Validation& validation);
+  // Brings those to be kept to the front and returns their number.
+  std::size_t select(std::span<Candidate> candidates, std::size_t capacity) const;
+
+  int width_ = 1;
+  int height_ = 1;
+  lsd::FalseAlarms false_alarms_;
+};
+
+// Behind the class: Clang evaluates at compile time only what it has seen the whole of.
+constexpr std::size_t SegmentDetector::scratch_bytes(int width, int height) {
+  ArenaSizer sizer;
+  carve(sizer, width, height);
+  return sizer.peak();
+}
+
+}  // namespace plvo

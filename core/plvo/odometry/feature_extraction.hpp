@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P1–P3 and L1–L3: from the two images of a frame to features with 3D positions and
+// covariances.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/frame.hpp"
+#include "plvo/image/pyramid.hpp"
+#include "plvo/image/undistortion.hpp"
+#include "plvo/lines/lsd/lsd.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/stage_timer.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/points/detector.hpp"
+
+namespace plvo {
+
+class FeatureExtraction {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    table_.carve(memory, limits.width, limits.height);
+    pyramid_.carve(memory, limits.width, limits.height);
+    segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
+  }
+  // Scratch: the stages come one after the other, so the largest counts.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    const auto pixels = static_cast<std::size_t>(limits.width) * static_cast<std::size_t>(limits.height);
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("raw grey image", pixels);
+    }
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("smoothed image", pixels);
+      take_smoothing_row(memory, limits.width);
+    }
+    reserve_detection(memory, limits.width, limits.height);
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::byte>(
+          "segment detection",
+          SegmentDetector::scratch_bytes((limits.width + 1) / 2, (limits.height + 1) / 2));
+    }
+  }
+
+  void init(const CameraModel& camera, const Config& config);
+
+  // A sampler of the frame's own depth: as long as the frame's views are valid.
+  DepthSampler depth_sampler(const RgbdFrame& frame) const {
+    return {frame.depth, table_, config_.depth_noise};
+  }
+
+  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
+               TrackResult& result);
+
+  // Of the last frame: what matching refines against.
+  const Pyramid& pyramid() const { return pyramid_; }
+
+ private:
+  void lift_points(const DepthSampler& depth, PointFeatures& points, TrackResult& result) const;
+  void prepare_image(const ColourView& colour, Arena& scratch);
+  void extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points, TrackResult& result);
+  void extract_lines(const DepthSampler& depth, Arena& scratch, LineFeatures& lines, TrackResult& result);
+  void describe_points(Arena& scratch, PointFeatures& points);
+
+  CameraModel camera_;
+  Config config_;
+  UndistortionTable table_;
+  Pyramid pyramid_;
+  std::span<SegmentDetector> segment_detector_;  // one
+};
+
+}  // namespace plvo

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded TUM trajectory as the hand that moves the simulated camera.
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "plvo/math/trigonometry.hpp"
+#include "plvo/simulator/motion/trajectory.hpp"
+
+namespace plvo::sim {
+namespace {
+
+constexpr double kStep_s = 0.01;       // motion capture runs at 100 Hz
+constexpr double kSmoothing_s = 0.02;  // standard deviation of the Gaussian that takes away the 0.1 mm steps
+constexpr int kSmoothingReach = 6;     // steps to each side
+constexpr double kLongest_s = 3600;
+
+struct Sample {
+  double t_s = 0;
+  Se3 T_world_camera;
+};
+
+Status damaged(const std::string& path, int line, const char* what) {
+  return Status(StatusCode::kDamaged, path.substr(0, 120))
+      .append(", line ")
+      .append(static_cast<std::int64_t>(line))
+      .append(": ")
+      .append(what);
+}
+
+Status read_samples(const std::string& path, std::vector<Sample>& samples) {
+  std::ifstream file(path);
+  if (!file) {
+    const StatusCode code = errno == EACCES ? StatusCode::kPermission : StatusCode::kNotFound;
+    return Status(code, "cannot read the trajectory file ").append(path.substr(0, 160));
+  }
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::size_t text = line.find_first_not_of(" \t\r");
+    if (text == std::string::npos || line[text] == '#') continue;
+    std::array<double, 8> v{};
+    if (std::sscanf(line.c_str(), "%lf %lf %lf %lf %lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3], &v[4], &v[5],
+                    &v[6], &v[7]) != 8)
+      return damaged(path, number, "expected \"t tx ty tz qx qy qz qw\"");
+    for (const double x : v) {
+      if (!std::isfinite(x)) return damaged(path, number, "not a finite number");
+    }
+    if (v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7] < 0.25)
+      return damaged(path, number, "the quaternion is far from unit length");
+    if (!samples.empty() && v[0] <= samples.back().t_s)
+      return damaged(path, number, "the stamps do not increase");
+    if (!samples.empty() && v[0] - samples.front().t_s > kLongest_s)
+      return damaged(path, number, "the trajectory is longer than an hour");
+    samples.push_back({v[0], {to_rotation({v[4], v[5], v[6], v[7]}), Vector3(v[1], v[2], v[3])}});
+  }
+  if (samples.size() < 2)
+    return Status(StatusCode::kDamaged, path.substr(0, 160)).append(" holds fewer than two poses");
+  return {};
+}
+
+// Evenly spaced poses; gaps are bridged at constant velocity.
+std::vector<Se3> resample(const std::vector<Sample>& samples) {
+  std::vector<Se3> poses;
+  const double duration_s = samples.back().t_s - samples.front().t_s;
+  const auto count = static_cast<std::size_t>(duration_s / kStep_s + 1e-6) + 1;
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t_s = samples.front().t_s + static_cast<double>(i) * kStep_s;
+    while (k + 2 < samples.size() && samples[k + 1].t_s <= t_s) ++k;
+    const double u = (t_s - samples[k].t_s) / (samples[k + 1].t_s - samples[k].t_s);
+    poses.push_back(boxplus(samples[k].T_world_camera,
+                            u * boxminus(samples[k + 1].T_world_camera, samples[k].T_world_camera)));
+  }
+  return poses;
+}
+
+std::vector<Se3> smooth(const std::vector<Se3>& poses) {
+  std::vector<Se3> smoothed;
+  const auto n = static_cast<int>(poses.size());
+  for (int i = 0; i < n; ++i) {
+    const Se3& centre = poses[static_cast<std::size_t>(i)];
+    Vector6 sum = Vector6::Zero();
+    double weights = 0;
+    // Symmetric, so that the ends are not dragged inwards.
+    const int reach = std::min({kSmoothingReach, i, n - 1 - i});
+    for (int k = -reach; k <= reach; ++k) {
+      const double x = k * kStep_s / kSmoothing_s;
+      const double w = plvo::exp(-0.5 * x * x);
+      sum += w * boxminus(poses[static_cast<std::size_t>(i + k)], centre);
+      weights += w;
+    }
+    smoothed.push_back(boxplus(centre, sum / weights));
+  }
+  return smoothed;
+}
+
+double heading(const Matrix3& R) { return plvo::atan2(R(1, 2), R(0, 2)); }
+
+}  // namespace
+
+Status Trajectory::from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory) {
+  std::vector<Sample> samples;
+  const Status read = read_samples(path, samples);
+  if (!read.ok()) return read;
+  std::vector<Se3> poses = smooth(resample(samples));
+  if (poses.size() < 2)
+    return Status(StatusCode::kDamaged, path.substr(0, 160)).append(" is shorter than 20 ms");
+
+  // Turn about the vertical so that the first view looks where the walk's would.
+  const WalkPoint& begin = scene.stroll.front();
+  const double turn = static_cast<double>(begin.yaw) - heading(poses.front().R);
+  const Matrix3 R_scene_recording = rotation_exp(Vector3(0, 0, turn));
+  const Vector3 origin = poses.front().t;
+  Vector3 lo = Vector3::Zero();
+  Vector3 hi = Vector3::Zero();
+  for (Se3& pose : poses) {
+    pose = {R_scene_recording * pose.R, R_scene_recording * (pose.t - origin)};
+    lo = lo.cwiseMin(pose.t);
+    hi = hi.cwiseMax(pose.t);
+  }
+  double scale = 1;
+  Vector3 start;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double room = static_cast<double>(scene.free_hi[axis]) - static_cast<double>(scene.free_lo[axis]);
+    if (hi(axis) - lo(axis) > 0) scale = std::min(scale, room / (hi(axis) - lo(axis)));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    start(axis) = std::clamp(static_cast<double>(begin.position[axis]),
+                             static_cast<double>(scene.free_lo[axis]) - scale * lo(axis),
+                             std::max(static_cast<double>(scene.free_lo[axis]) - scale * lo(axis),
+                                      static_cast<double>(scene.free_hi[axis]) - scale * hi(axis)));
+  for (Se3& pose : poses) pose.t = start + scale * pose.t;
+
+  trajectory = {};
+  trajectory.scale_ = scale;
+  trajectory.step_s_ = kStep_s;
+  trajectory.duration_s_ = kStep_s * static_cast<double>(poses.size() - 1);
+  trajectory.poses_ = std::move(poses);
+  return {};
+}
+
+}  // namespace plvo::sim

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/simulator/scene/bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace plvo::sim {
+namespace {
+
+constexpr std::size_t kLeafSize = 2;
+constexpr int kMaxDepth = 40;  // deeper nodes become leaves, so that the stack of a traversal suffices
+
+Float3 min3(Float3 a, Float3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+Float3 max3(Float3 a, Float3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+float half_area(Float3 lo, Float3 hi) {
+  const Float3 d = hi - lo;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+Float3 inverse_direction(Float3 d) {
+  const auto inverse = [](float x) { return 1.0F / (x > 0 ? std::max(x, 1e-12F) : std::min(x, -1e-12F)); };
+  return {inverse(d.x), inverse(d.y), inverse(d.z)};
+}
+
+}  // namespace
+
+void Bvh::build(const std::vector<Solid>& solids) {
+  solids_ = &solids;
+  lo_.clear();
+  hi_.clear();
+  binary_.clear();
+  nodes_.clear();
+  order_.clear();
+  std::vector<std::uint32_t> items;
+  for (const Solid& solid : solids) {
+    Float3 extent;
+    const Float3 h = solid.half;
+    const auto& a = solid.axes;
+    extent.x = std::abs(a[0].x) * h.x + std::abs(a[1].x) * h.y + std::abs(a[2].x) * h.z;
+    extent.y = std::abs(a[0].y) * h.x + std::abs(a[1].y) * h.y + std::abs(a[2].y) * h.z;
+    extent.z = std::abs(a[0].z) * h.x + std::abs(a[1].z) * h.y + std::abs(a[2].z) * h.z;
+    constexpr Float3 kMargin{1e-4F, 1e-4F, 1e-4F};  // rounding, and flat solids
+    lo_.push_back(solid.centre - extent - kMargin);
+    hi_.push_back(solid.centre + extent + kMargin);
+    items.push_back(static_cast<std::uint32_t>(items.size()));
+  }
+  if (items.empty()) return;
+  build_node(items, 0, items.size(), 0);
+  collapse(0);
+}
+
+std::uint32_t Bvh::build_node(std::vector<std::uint32_t>& items, std::size_t begin, std::size_t end,
+                              int depth) {
+  const auto index = static_cast<std::uint32_t>(binary_.size());
+  binary_.emplace_back();
+  Float3 lo{1e30F, 1e30F, 1e30F};
+  Float3 hi{-1e30F, -1e30F, -1e30F};
+  for (std::size_t i = begin; i < end; ++i) {
+    lo = min3(lo, lo_[items[i]]);
+    hi = max3(hi, hi_[items[i]]);
+  }
+  binary_[index].lo = lo;
+  binary_[index].hi = hi;
+
+  const std::size_t count = end - begin;
+  const auto by_axis = [this](int axis) {
+    return [this, axis](std::uint32_t a, std::uint32_t b) {
+      const float ca = lo_[a][axis] + hi_[a][axis];
+      const float cb = lo_[b][axis] + hi_[b][axis];
+      return ca != cb ? ca < cb : a < b;
+    };
+  };
+  float best_cost = 1e30F;
+  int best_axis = -1;
+  std::size_t best_split = 0;
+  if (count > kLeafSize && depth < kMaxDepth) {
+    std::vector<float> left_area(count);
+    for (int axis = 0; axis < 3; ++axis) {
+      std::sort(items.begin() + static_cast<std::ptrdiff_t>(begin),
+                items.begin() + static_cast<std::ptrdiff_t>(end), by_axis(axis));
+      Float3 a = lo_[items[begin]];
+      Float3 b = hi_[items[begin]];
+      for (std::size_t i = 0; i < count; ++i) {
+        a = min3(a, lo_[items[begin + i]]);
+        b = max3(b, hi_[items[begin + i]]);
+        left_area[i] = half_area(a, b);
+      }
+      a = lo_[items[end - 1]];
+      b = hi_[items[end - 1]];
+      for (std::size_t i = count - 1; i > 0; --i) {
+        a = min3(a, lo_[items[begin + i]]);
+        b = max3(b, hi_[items[begin + i]]);
+        const float cost =
+            left_area[i - 1] * static_cast<float>(i) + half_area(a, b) * static_cast<float>(count - i);
+        if (cost < best_cost) {
+          best_cost = cost;
+          best_axis = axis;
+          best_split = i;
+        }
+      }
+    }
+  }
+  if (best_axis < 0) {
+    binary_[index].first = static_cast<std::uint32_t>(order_.size());
+    binary_[index].count = static_cast<std::uint32_t>(count);
+    for (std::size_t i = begin; i < end; ++i) order_.push_back(items[i]);
+    return index;
+  }
+  std::sort(items.begin() + static_cast<std::ptrdiff_t>(begin),
+            items.begin() + static_cast<std::ptrdiff_t>(end), by_axis(best_axis));
+  build_node(items, begin, begin + best_split, depth + 1);
+  const std::uint32_t right = build_node(items, begin + best_split, end, depth + 1);
+  binary_[index].first = right;
+  return index;
+}
+
+// A node of up to four children from a binary node: the child of the largest surface is opened until four are
+// there.
+std::uint32_t Bvh::collapse(std::uint32_t binary_index) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  std::array<std::uint32_t, kWidth> open{binary_index};
+  int size = 1;
+  while (size < kWidth) {
+    int largest = -1;
+    for (int k = 0; k < size; ++k) {
+      const BinaryNode& candidate = binary_[open[static_cast<std::size_t>(k)]];
+      if (candidate.count != 0) continue;
+      const auto area = [&](int i) {
+        const BinaryNode& node = binary_[open[static_cast<std::size_t>(i)]];
+        return half_area(node.lo, node.hi);
+      };
+      if (largest < 0 || area(k) > area(largest)) largest = k;
+    }
+    if (largest < 0) break;
+    const std::uint32_t parent = open[static_cast<std::size_t>(largest)];
+    open[static_cast<std::size_t>(largest)] = parent + 1;
+    open[static_cast<std::size_t>(size++)] = binary_[parent].first;
+  }
+  for (int k = 0; k < size; ++k) {
+    const BinaryNode& child = binary_[open[static_cast<std::size_t>(k)]];
+    const Child link = child.count != 0 ? Child{child.first, child.count}
+                                        : Child{collapse(open[static_cast<std::size_t>(k)]), 0};
+    Node& node = nodes_[index];
+    for (int axis = 0; axis < 3; ++axis) {
+      node.lo[axis][k] = child.lo[axis];
+      node.hi[axis][k] = child.hi[axis];
+    }
+    node.child[k] = link;
+  }
+  nodes_[index].size = size;
+  return index;
+}
+
+// Parameters at which a ray enters and leaves four boxes at once (Kay & Kajiya's slabs).
+inline void Bvh::slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max,
+                       Lanes& near, Lanes& far) {
+  near = Lanes{t_min, t_min, t_min, t_min};
+  far = Lanes{t_max, t_max, t_max, t_max};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float o = ray.origin[axis];
+    const float s = inverse[axis];
+    const Lanes enter = ((s < 0 ? node.hi[axis] : node.lo[axis]) - o) * s;
+    const Lanes leave = ((s < 0 ? node.lo[axis] : node.hi[axis]) - o) * s;
+    near = enter > near ? enter : near;
+    far = leave < far ? leave : far;
+  }
+}
+
+namespace {
+
+constexpr float kRounding = 1.00001F;  // boxes are a little too long rather than too short
+
+}  // namespace
+
+Hit Bvh::closest(const Ray& ray, float t_min, float t_max) const {
+  struct Entry {
+    Child child;
+    float near;
+  };
+  Hit best;
+  best.t = t_max;
+  if (nodes_.empty()) return best;
+  const Float3 inverse = inverse_direction(ray.direction);
+  std::array<Entry, 3 * kMaxDepth + 4> stack;
+  std::size_t top = 0;
+  stack[top++] = {{0, 0}, t_min};
+  while (top > 0) {
+    const Entry entry = stack[--top];
+    if (entry.near > best.t * kRounding) continue;
+    if (entry.child.count != 0) {
+      for (std::uint32_t i = entry.child.first; i < entry.child.first + entry.child.count; ++i) {
+        float t = 0;
+        int face = 0;
+        if (intersect((*solids_)[order_[i]], ray, t_min, best.t, t, face))
+          best = {t, static_cast<int>(order_[i]), face};
+      }
+      continue;
+    }
+    const Node& node = nodes_[entry.child.first];
+    Lanes near;
+    Lanes far;
+    slabs(node, ray, inverse, t_min, best.t, near, far);
+    // The nearest child goes on top.
+    const std::size_t base = top;
+    for (int k = 0; k < node.size; ++k) {
+      if (near[k] > far[k] * kRounding) continue;
+      std::size_t at = top++;
+      for (; at > base && stack[at - 1].near < near[k]; --at) stack[at] = stack[at - 1];
+      stack[at] = {node.child[k], near[k]};
+    }
+  }
+  return best;
+}
+
+bool Bvh::occluded(const Ray& ray, float t_min, float t_max) const {
+  if (nodes_.empty()) return false;
+  const Float3 inverse = inverse_direction(ray.direction);
+  std::array<std::uint32_t, 3 * kMaxDepth + 4> stack;
+  std::size_t top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    Lanes near;
+    Lanes far;
+    slabs(node, ray, inverse, t_min, t_max, near, far);
+    for (int k = 0; k < node.size; ++k) {
+      if (near[k] > far[k] * kRounding) continue;
+      const Child child = node.child[k];
+      if (child.count == 0) {
+        stack[top++] = child.first;
+        continue;
+      }
+      for (std::uint32_t i = child.first; i < child.first + child.count; ++i) {
+        float t = 0;
+        int face = 0;
+        if (intersect((*solids_)[order_[i]], ray, t_min, t_max, t, face)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace plvo::sim

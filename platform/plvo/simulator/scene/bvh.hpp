@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A bounding volume hierarchy over the solids of a room: split by the surface area heuristic (MacDonald &
+// Booth, "Heuristics for ray tracing using space subdivision", 1990), swept exactly, since rooms have
+// hundreds of solids, not millions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plvo/simulator/scene/solid.hpp"
+
+namespace plvo::sim {
+
+class Bvh {
+ public:
+  // Keeps the reference: the solids must live as long as this does and stay where they are.
+  void build(const std::vector<Solid>& solids);
+
+  // The nearest hit at t in (t_min, t_max); Hit::solid is −1 when there is none. Among hits at the same t the
+  // one that the fixed order of the tree meets first wins.
+  Hit closest(const Ray& ray, float t_min, float t_max) const;
+  // Is there any hit at t in (t_min, t_max)?
+  bool occluded(const Ray& ray, float t_min, float t_max) const;
+
+ private:
+  static constexpr int kWidth = 4;
+  // A child: an inner node (count 0) or a run of solids in order_.
+  struct Child {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+  // Four floats that compilers keep in one register where there is one; lane by lane the arithmetic of plain
+  // floats.
+  using Lanes = float __attribute__((vector_size(16)));
+  struct Node {
+    Lanes lo[3] = {};
+    Lanes hi[3] = {};
+    Child child[kWidth];
+    int size = 0;
+  };
+  struct BinaryNode {
+    Float3 lo, hi;
+    std::uint32_t first =
+        0;  // leaf: index into order_; inner: index of the right child (the left one follows)
+    std::uint32_t count = 0;  // leaf: number of solids; inner: 0
+  };
+
+  std::uint32_t build_node(std::vector<std::uint32_t>& items, std::size_t begin, std::size_t end, int depth);
+  static void slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max, Lanes& near,
+                    Lanes& far);
+  std::uint32_t collapse(std::uint32_t binary_index);
+
+  const std::vector<Solid>* solids_ = nullptr;
+  std::vector<Float3> lo_, hi_;  // bounds of the solids
+  std::vector<BinaryNode> binary_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace plvo::sim

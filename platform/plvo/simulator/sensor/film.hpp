@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// From radiance to the 8-bit picture: motion blur along each pixel's image velocity, an exposure that follows
+// the scene's brightness with a lag, the sensor's noise (photon noise and read-out noise, both amplified in
+// the dark), and the sRGB curve (IEC 61966-2-1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plvo/image/image_view.hpp"
+#include "plvo/math/se3.hpp"
+#include "plvo/simulator/render/renderer.hpp"
+
+namespace plvo::sim {
+
+class Film {
+ public:
+  Film(const CameraModel& camera, std::uint64_t seed, bool noise, int threads);
+
+  // How long the shutter of the coming frame stays open, in seconds; known before the frame is rendered.
+  double exposure_s() const { return exposure_s_; }
+
+  // Develops what the renderer saw at mid-exposure. T_mid_begin, T_mid_end: the camera when the shutter
+  // opened and closed, in the camera frame at mid-exposure. Then adapts the exposure of the next frame,
+  // `frame_s` later.
+  void develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
+               double frame_s);
+
+  // 8-bit RGB, width·3 bytes a row.
+  const std::uint8_t* pixels() const { return pixels_.data(); }
+
+ private:
+  void meter(ImageView<const Rgb> radiance);
+  void blur_rows(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, int begin, int end);
+  void expose_rows(std::uint32_t frame, int begin, int end);
+
+  CameraModel camera_;
+  std::uint32_t seed_;
+  bool noise_;
+  int threads_;
+  bool metered_ = false;
+  double level_ = 1;     // radiance that the exposure takes for the scene's mean
+  double measured_ = 1;  // of the last frame
+  double exposure_s_ = 0.01;
+  float amplification_ = 1;  // of the noise
+  std::vector<Rgb> blurred_;
+  std::vector<double> row_sums_;
+  std::vector<std::uint8_t> curve_;
+  std::vector<std::uint8_t> pixels_;
+};
+
+}  // namespace plvo::sim

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The structured-light depth sensor: from the exact depth of every pixel to what a Kinect v1 would report,
+// registered to the colour image. Disparity d = f·b/z against a projector at baseline b along +x; noise is
+// added to the disparity, which is then rounded to 1/8 px. The standard deviation of the sum of both, in
+// depth, is noise_scale · σ_d(z) of equation (2) wherever (2) asks for more than the rounding alone gives.
+// Holes: out of range; hidden from the projector (bands at the left of near objects); too little light back
+// (dark, distant, grazing or polished surfaces); the projector's own mirror image.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plvo/simulator/render/renderer.hpp"
+#include "plvo/simulator/simulator_options.hpp"
+
+namespace plvo::sim {
+
+constexpr double kMetresPerUnit = 0.0002;  // TUM's 5000 units a metre
+
+class KinectDepth {
+ public:
+  KinectDepth(const Scene& scene, const CameraModel& camera, const DepthSensorOptions& options,
+              std::uint64_t seed, int threads);
+
+  void sense(ImageView<const PixelHit> hits, std::uint32_t frame);
+  // The noise-free twin: exact depth, rounded to the format's unit.
+  void copy_exact(ImageView<const PixelHit> hits);
+
+  DepthView view() const;
+
+ private:
+  void sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_seed, int y);
+
+  const Scene& scene_;
+  DepthSensorOptions options_;
+  std::uint32_t seed_;
+  int width_, height_, threads_;
+  float colour_to_infrared_;  // pixels of the infrared camera per pixel of the colour camera
+  std::vector<std::uint16_t> depth_;
+};
+
+}  // namespace plvo::sim

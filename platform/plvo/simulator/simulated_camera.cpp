@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/simulator/simulated_camera.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "plvo/simulator/motion/trajectory.hpp"
+#include "plvo/simulator/render/renderer.hpp"
+#include "plvo/simulator/scene/lighting.hpp"
+#include "plvo/simulator/scene/scene.hpp"
+#include "plvo/simulator/sensor/film.hpp"
+#include "plvo/simulator/sensor/kinect_depth.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr std::int64_t kFirstStamp_us = 1'600'000'000'000'000;
+
+}  // namespace
+
+struct SimulatedCamera::Parts {
+  Parts(const SimulatorOptions& chosen, std::unique_ptr<sim::Scene> room, sim::Trajectory walk)
+      : options(chosen),
+        scene(std::move(room)),
+        trajectory(std::move(walk)),
+        lighting(chosen.light, chosen.seed),
+        renderer(*scene, chosen.camera, chosen.threads),
+        film(chosen.camera, chosen.seed, chosen.noise, chosen.threads),
+        sensor(*scene, chosen.camera, chosen.depth, chosen.seed, chosen.threads),
+        exact(static_cast<std::size_t>(chosen.camera.width) *
+              static_cast<std::size_t>(chosen.camera.height)) {}
+
+  // Of a rolling shutter: the frame's stamp is the moment of its middle row.
+  std::vector<Se3> row_poses(double t_s) const {
+    const int height = options.camera.height;
+    std::vector<Se3> poses;
+    for (int y = 0; y < height; ++y)
+      poses.push_back(trajectory.at(t_s + options.camera.readout_s * (y / (height - 1.0) - 0.5)));
+    return poses;
+  }
+
+  SimulatorOptions options;
+  std::unique_ptr<sim::Scene> scene;
+  sim::Trajectory trajectory;
+  sim::Lighting lighting;
+  sim::Renderer renderer;
+  sim::Film film;
+  sim::KinectDepth sensor;
+  std::vector<float> exact;
+  int frames = 0;
+  int next = 0;
+};
+
+Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<SimulatedCamera>& camera) {
+  const Status valid = options.validate();
+  if (!valid.ok()) return valid;
+  std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed);
+  if (scene == nullptr)
+    return Status(StatusCode::kInvalidArgument, "simulator: the scene is none of those there are");
+  // From the first frame's stamp to the last one's.
+  const double duration_s = (options.frames - 1) / options.fps;
+  sim::Trajectory trajectory;
+  if (options.trajectory_file.empty()) {
+    trajectory = sim::Trajectory::hand_held(*scene, options.seed, duration_s);
+  } else {
+    const Status read = sim::Trajectory::from_tum(options.trajectory_file, *scene, trajectory);
+    if (!read.ok()) return read;
+  }
+  auto parts = std::make_unique<Parts>(options, std::move(scene), std::move(trajectory));
+  parts->frames = options.frames;
+  if (!options.trajectory_file.empty())
+    parts->frames =
+        std::min(options.frames, static_cast<int>(parts->trajectory.duration_s() * options.fps + 1e-6) + 1);
+  camera.reset(new SimulatedCamera(std::move(parts)));
+  return {};
+}
+
+SimulatedCamera::SimulatedCamera(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SimulatedCamera::~SimulatedCamera() = default;
+
+CameraModel SimulatedCamera::model() const { return parts_->options.camera; }
+const SimulatorOptions& SimulatedCamera::options() const { return parts_->options; }
+int SimulatedCamera::frames() const { return parts_->frames; }
+
+std::int64_t SimulatedCamera::stamp_ns(int frame) const {
+  return (kFirstStamp_us + static_cast<std::int64_t>(frame * 1e6 / parts_->options.fps + 0.5)) * 1000;
+}
+
+Se3 SimulatedCamera::ground_truth(std::int64_t stamp_ns) const {
+  return parts_->trajectory.at(static_cast<double>(stamp_ns - kFirstStamp_us * 1000) * 1e-9);
+}
+
+Se3 SimulatedCamera::pose(int frame) const {
+  // A closed walk ends where it began to the last bit, although stamps are whole microseconds.
+  if (frame > 0 && frame + 1 == parts_->options.frames && parts_->options.trajectory_file.empty())
+    return pose(0);
+  return ground_truth(stamp_ns(frame));
+}
+
+ImageView<const float> SimulatedCamera::exact_depth() const {
+  const CameraModel& camera = parts_->options.camera;
+  return {parts_->exact.data(), camera.width, camera.height, camera.width};
+}
+
+Status SimulatedCamera::next(RgbdFrame& frame) {
+  Parts& parts = *parts_;
+  if (parts.next >= parts.frames) return Status(StatusCode::kEndOfStream, "the simulated walk is over");
+  const int k = parts.next++;
+  const CameraModel& camera = parts.options.camera;
+  const std::int64_t stamp = stamp_ns(k);
+  const Se3 T_world_camera = pose(k);
+  const double t_s = static_cast<double>(stamp - kFirstStamp_us * 1000) * 1e-9;
+  const sim::LightState light = parts.lighting.at(t_s, T_world_camera);
+  if (camera.readout_s > 0)
+    parts.renderer.render(parts.row_poses(t_s), light);
+  else
+    parts.renderer.render(T_world_camera, light);
+
+  const double half_s = 0.5 * parts.film.exposure_s();
+  const Se3 T_camera_world = T_world_camera.inverse();
+  parts.film.develop(parts.renderer, T_camera_world * parts.trajectory.at(t_s - half_s),
+                     T_camera_world * parts.trajectory.at(t_s + half_s), static_cast<std::uint32_t>(k),
+                     1 / parts.options.fps);
+  const ImageView<const sim::PixelHit> hits = parts.renderer.hits();
+  if (parts.options.noise) {
+    parts.sensor.sense(hits, static_cast<std::uint32_t>(k));
+  } else {
+    parts.sensor.copy_exact(hits);
+  }
+  for (std::size_t i = 0; i < parts.exact.size(); ++i) parts.exact[i] = hits.data[i].depth_m;
+
+  frame.stamp_ns = stamp;
+  frame.depth_stamp_ns = stamp;
+  frame.colour = {parts.film.pixels(), camera.width, camera.height,
+                  static_cast<std::ptrdiff_t>(camera.width) * 3, PixelFormat::kRgb8};
+  frame.depth = parts.sensor.view();
+  return {};
+}
+
+}  // namespace plvo

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/common/console.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "plvo/host/posix_clock.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 100'000'000;
+
+const char* prefix(LogLevel level) {
+  switch (level) {
+    case LogLevel::kError: return "plvo: error: ";
+    case LogLevel::kWarning: return "plvo: warning: ";
+    case LogLevel::kInfo: return "plvo: ";
+  }
+  return "plvo: ";
+}
+
+}  // namespace
+
+Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void Console::write(LogLevel level, std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  if ((quiet_ && level == LogLevel::kInfo) || message == last_) return;
+  last_ = message;
+  erase_line();
+  fmt::print(stderr, "{}{}\n", prefix(level), message);
+}
+
+bool Console::wants_line() {
+  if (quiet_ || !terminal_) return false;
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = posix_monotonic_ns();
+  if (now < next_ns_) return false;
+  next_ns_ = now + kPeriod_ns;
+  return true;
+}
+
+void Console::show_line(std::string_view line) {
+  const std::lock_guard lock(mutex_);
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void Console::clear() {
+  const std::lock_guard lock(mutex_);
+  erase_line();
+}
+
+// Under mutex_.
+void Console::erase_line() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+  shown_ = false;
+}
+
+}  // namespace plvo::cli

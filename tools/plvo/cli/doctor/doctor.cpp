@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo doctor: one page about everything between a sensor and its pictures.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/doctor/doctor_page.hpp"
+#include "plvo/usb/usb_bus.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "Looks at the USB, permissions, OpenNI2 and its drivers, then captures for three seconds, and says what "
+    "is\n"
+    "wrong and what to type. Exit code 0: pictures come. 4: they do not; the last part of the page says "
+    "why.\n"
+    "\n";
+
+struct DoctorOptions {
+  LiveCameraOptions camera;
+  double seconds = 3;
+  bool no_capture = false;
+  bool json = false;
+};
+
+#ifdef PLVO_HAVE_USB
+#ifdef PLVO_HAVE_OPENNI2
+constexpr bool kOpenNi2BuiltIn = true;
+#else
+constexpr bool kOpenNi2BuiltIn = false;
+#endif
+
+// Nothing known on the USB, yet OpenNI2 has a camera: a network camera, a virtual one. No problem, then.
+void excuse_unknown_sensors(DoctorReport& report) {
+  if (report.openni_devices.empty()) return;
+  for (Finding& f : report.findings) {
+    if (f.code != FindingCode::kNothingPluggedIn) continue;
+    f.severity = Severity::kNote;
+    f.what = "No sensor on the USB is one that plvo knows, but OpenNI2 has a camera.";
+    f.remedy.clear();
+  }
+}
+
+int doctor_command(const DoctorOptions& options) {
+  catch_interrupt();
+  DoctorReport report;
+  UsbBus bus;
+  GatherOptions gather;
+  gather.openni_built_in = kOpenNi2BuiltIn;
+  report.system = gather_facts(bus, gather);
+  report.findings = diagnose(report.system);
+  const Status listed = list_live_cameras(report.openni_devices);
+  excuse_unknown_sensors(report);
+  // Without any camera the findings above say why; a capture would only fail once more.
+  const bool something = !report.openni_devices.empty() || !options.camera.device.empty();
+  if (!options.no_capture && something && listed.ok()) {
+    if (!options.json && isatty(STDERR_FILENO) == 1)
+      fmt::print(stderr, "plvo: capturing for {:g} s\n", options.seconds);
+    report.capture = capture(options.camera, options.seconds);
+    report.capture_findings = judge(report.capture);
+  }
+  const std::string text = options.json ? to_json(report).dump(2) + '\n' : to_text(report);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+    return fail("cannot write to standard output");
+  return report.healthy() ? kExitSuccess : kExitNoSensor;
+}
+
+#else
+
+int doctor_command(const DoctorOptions&) {
+  return fail(
+      "this plvo was built without libusb: sudo apt install libusb-1.0-0-dev, then configure and build "
+      "again");
+}
+
+#endif
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DoctorOptions>();
+  CLI::App* command = app.add_subcommand("doctor", "Say what is wrong with the sensor, and what to do");
+  add_live_camera_options(*command, options->camera);
+  command->add_option("--seconds", options->seconds, "How long the test capture lasts")
+      ->check(CLI::PositiveNumber.description(""))
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  command->add_flag("--no-capture", options->no_capture, "Look, but do not open the camera");
+  command->add_flag("--json", options->json, "For machines");
+  command->footer(std::string(kHelp) + kExitCodeHelp);
+  command->callback([options, &exit_code] { exit_code = doctor_command(*options); });
+}
+
+}  // namespace plvo::cli

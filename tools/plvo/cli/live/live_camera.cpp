@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/live/live_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "plvo/cli/common/exit_code.hpp"
+
+#ifdef PLVO_HAVE_OPENNI2
+#include "plvo/openni2/openni2_recorder.hpp"
+#endif
+
+namespace plvo::cli {
+namespace {
+
+bool parse_positive(std::string_view text, int& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && value > 0 && value <= 10000;
+}
+
+std::string check_mode(const std::string& text) {
+  VideoMode mode;
+  return parse_video_mode(text, mode) ? "" : "expected WIDTHxHEIGHT@FPS, such as 640x480@30: " + text;
+}
+
+}  // namespace
+
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
+  command
+      .add_option("--device", options.device,
+                  "The sensor by its OpenNI2 URI (plvo doctor lists them), or an .oni file; without it, the "
+                  "first sensor")
+      ->type_name("URI|FILE.oni");
+  command
+      .add_option(
+          "--mode", options.mode,
+          "Size and rate of colour and depth: 640x480@30, 320x240@30, 320x240@60; what the sensor has "
+          "(.oni files keep their own)")
+      ->check(CLI::Validator(check_mode, ""))
+      ->capture_default_str()
+      ->type_name("WxH@FPS");
+  add_calibration_options(command, options.calibration,
+                          "Calibration (default: the field of view that the sensor states, with a warning)",
+                          DepthScale::kFromCamera);
+}
+
+bool parse_video_mode(const std::string& text, VideoMode& mode) {
+  const std::string_view all = text;
+  const std::size_t cross = all.find('x');
+  const std::size_t at = all.find('@');
+  if (cross == std::string_view::npos || (at != std::string_view::npos && at < cross)) return false;
+  VideoMode result;
+  const std::size_t height_length = at == std::string_view::npos ? at : at - cross - 1;
+  if (!parse_positive(all.substr(0, cross), result.width) ||
+      !parse_positive(all.substr(cross + 1, height_length), result.height) ||
+      (at != std::string_view::npos && !parse_positive(all.substr(at + 1), result.fps)))
+    return false;
+  mode = result;
+  return true;
+}
+
+bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
+
+int exit_code_of_camera(const Status& status, const std::string& device) {
+  switch (status.code()) {
+    case StatusCode::kNotFound: return is_oni_file(device) ? kExitFailure : kExitNoSensor;
+    case StatusCode::kPermission:
+    case StatusCode::kBusy:
+    case StatusCode::kTimeout:
+    case StatusCode::kUnplugged: return kExitNoSensor;
+    default: return kExitFailure;
+  }
+}
+
+#ifdef PLVO_HAVE_OPENNI2
+namespace {
+
+bool calibration_given(const CalibrationOptions& o) {
+  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || o.readout_s ||
+         !o.distortion.empty();
+}
+
+class OpenNi2LiveCamera final : public LiveCamera {
+ public:
+  Status open(const OpenNi2Options& options) { return camera_.open(options); }
+
+  CameraModel model() const override { return camera_.model(); }
+  Status next(RgbdFrame& frame) override { return camera_.next(frame); }
+  std::string name() const override {
+    const OpenNi2DeviceInfo info = camera_.device();
+    return is_oni_file(info.uri) ? info.uri : fmt::format("{} ({})", info.name, info.uri);
+  }
+  OpenNi2Counters counters() const override { return camera_.counters(); }
+  bool registered_by_device() const override { return camera_.registered_by_device(); }
+
+  void close() override {
+    stop_oni();
+    camera_.close();
+  }
+
+  Status start_oni(const std::string& path) override {
+    wanted_ = true;
+    return recorder_.start(camera_, path);
+  }
+  Status poll_oni() override {
+    if (!wanted_) return {};
+    Status status = recorder_.check();
+    if (status.ok() && !recorder_.recording())
+      status = {StatusCode::kUnplugged,
+                "the sensor was unplugged, which ends an .oni recording; it is complete so far"};
+    if (!status.ok()) wanted_ = false;
+    return status;
+  }
+  void stop_oni() override {
+    wanted_ = false;
+    recorder_.stop();
+  }
+
+ private:
+  OpenNi2Camera camera_;
+  OpenNi2Recorder recorder_;
+  bool wanted_ = false;
+};
+
+// The user's calibration for images of this size.
+Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model) {
+  if (!calibration_given(from)) return {};
+  Calibration calibration;
+  Status status = find_calibration(from, {}, calibration);
+  if (status.ok()) status = calibration.validate(width, height);
+  // A file that is not there is no missing sensor.
+  if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};
+  calibration.camera.width = width;
+  calibration.camera.height = height;
+  model = calibration.camera;
+  return {};
+}
+
+}  // namespace
+
+Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
+  VideoMode mode;
+  if (!parse_video_mode(options.mode, mode)) return {StatusCode::kInvalidArgument, "not a video mode"};
+  OpenNi2Options settings;
+  settings.uri = options.device;
+  settings.log = &log;
+  auto opened = std::make_unique<OpenNi2LiveCamera>();
+  if (is_oni_file(options.device) && calibration_given(options.calibration)) {
+    // A recording has a size of its own, which the calibration must fit.
+    OpenNi2Options look = settings;
+    look.log = nullptr;
+    if (Status status = opened->open(look); !status.ok()) return status;
+    mode = {opened->model().width, opened->model().height, mode.fps};
+  }
+  settings.width = mode.width;
+  settings.height = mode.height;
+  settings.fps = mode.fps;
+  settings.readout_s = options.calibration.readout_s;
+  Status status = calibrate(options.calibration, mode.width, mode.height, settings.model);
+  if (status.ok()) status = opened->open(settings);
+  if (status.ok()) camera = std::move(opened);
+  return status;
+}
+
+Status list_live_cameras(std::vector<OpenNi2DeviceInfo>& devices) { return OpenNi2Camera::list(devices); }
+
+#else
+
+namespace {
+
+Status not_built() {
+  return {
+      StatusCode::kUnsupported,
+      "this plvo was built without live sensors: sudo apt install libopenni2-dev, then configure and build "
+      "again"};
+}
+
+}  // namespace
+
+Status open_live_camera(const LiveCameraOptions&, Log&, std::unique_ptr<LiveCamera>&) { return not_built(); }
+Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); }
+
+#endif
+
+}  // namespace plvo::cli

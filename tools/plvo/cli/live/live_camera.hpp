@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sensor that `plvo live`, `record` and `doctor` read, as the command line names it, and its recorder for
+// .oni files. One thread at a time may use it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "plvo/cli/common/camera_options.hpp"
+#include "plvo/hal/log.hpp"
+#include "plvo/hal/rgbd_camera.hpp"
+#include "plvo/openni2/openni2_camera.hpp"
+
+namespace plvo::cli {
+
+struct LiveCameraOptions {
+  std::string device;  // an OpenNI2 URI or an .oni file; empty: the first sensor
+  std::string mode = "640x480@30";
+  CalibrationOptions calibration;
+};
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options);
+
+struct VideoMode {
+  int width = 0, height = 0, fps = 30;
+};
+// "WIDTHxHEIGHT" or "WIDTHxHEIGHT@FPS".
+bool parse_video_mode(const std::string& text, VideoMode& mode);
+
+// A file instead of a sensor: every frame of it is wanted, and it waits for whoever reads.
+bool is_oni_file(const std::string& path);
+
+class LiveCamera : public RgbdCamera {
+ public:
+  virtual std::string name() const = 0;  // for people: "Virtual RGB-D (virtual://plvo)"
+  virtual OpenNi2Counters counters() const = 0;
+  virtual bool registered_by_device() const = 0;
+  // Ends an .oni recording, too. What was asked for above can still be asked.
+  virtual void close() = 0;
+
+  // Recording what comes into an .oni file. poll() now and then: kIo when the disk is about to be full and
+  // kUnplugged after an unplug; the file is complete in both cases.
+  virtual Status start_oni(const std::string& path) = 0;
+  virtual Status poll_oni() = 0;
+  virtual void stop_oni() = 0;
+};
+
+// kUnsupported, naming the package, where plvo was built without OpenNI2. `log` must outlive the camera.
+Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera);
+Status list_live_cameras(std::vector<OpenNi2DeviceInfo>& devices);
+
+// How a command ends that a camera refused: kExitNoSensor when there is none to be had, else kExitFailure.
+int exit_code_of_camera(const Status& status, const std::string& device);
+
+}  // namespace plvo::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thread that reads a live camera: frames go into the ring and to the recording, troubles become a state
+// in words. It ends when it is told to, when the recording is over, or when the camera cannot go on, and
+// closes the camera then: a thread that read from OpenNI2 may not end before OpenNI2 does.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "plvo/cli/common/console.hpp"
+#include "plvo/cli/live/live_camera.hpp"
+#include "plvo/cli/live/rate_meter.hpp"
+#include "plvo/cli/record/recording.hpp"
+#include "plvo/host/frame_ring.hpp"
+
+namespace plvo::cli {
+
+class LiveCapture {
+ public:
+  struct State {
+    std::string words = "waiting for the first frame";
+    Status last;      // of the last call of next(): ok while frames come
+    Status end;       // why the camera cannot go on; ok otherwise
+    Status recorder;  // why the recording ended by itself; ok otherwise
+    std::uint64_t frames = 0, damaged = 0, timeouts = 0;
+    double hz = 0;          // over the last second
+    double average_hz = 0;  // from the first frame to the last
+    OpenNi2Counters camera;
+  };
+
+  // All are borrowed.
+  LiveCapture(LiveCamera& camera, FrameRing& ring, Recording& recording, Console& console)
+      : camera_(camera), ring_(ring), recording_(recording), console_(console) {}
+  ~LiveCapture() { stop(); }
+  LiveCapture(const LiveCapture&) = delete;
+  LiveCapture& operator=(const LiveCapture&) = delete;
+
+  void start();
+  // Returns within the camera's time limit.
+  void stop();
+  State state() const;
+
+ private:
+  void run();
+  void on_frame(const RgbdFrame& frame);
+  void on_trouble(const Status& status);
+  void poll_recording();
+
+  LiveCamera& camera_;
+  FrameRing& ring_;
+  Recording& recording_;
+  Console& console_;
+  std::thread thread_;
+  std::atomic<bool> stop_{false};
+
+  mutable std::mutex mutex_;  // state_, meter_ and the three times
+  State state_;
+  RateMeter meter_;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;  // arrivals
+  std::int64_t trouble_since_ns_ = 0;        // 0: none
+};
+
+}  // namespace plvo::cli

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/live/live_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include "plvo/host/posix_clock.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr std::int64_t kStatusPeriod_ns = 250'000'000;
+
+std::string with_brackets(const std::string& host) {
+  return host.find(':') == std::string::npos ? host : '[' + host + ']';
+}
+
+}  // namespace
+
+Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
+  lens_is_straight_ = lens_is_straight;
+  if (!options.view.empty())
+    if (Status status = open_view(options.view); !status.ok()) return status;
+  for (const std::string& address : options.streams)
+    if (Status status = open_stream(address); !status.ok()) return status;
+  const OutputOptions& files = options.files;
+  has_files_ = !files.trajectory.empty() || !files.covariance.empty() || !files.motions.empty() ||
+               !files.stats.empty();
+  return files_.open(files);
+}
+
+Status LiveOutputs::open_view(const std::string& address) {
+  std::string host;
+  int port = 0;
+  if (!split_address(address, host, port))
+    return Status(StatusCode::kInvalidArgument, "a live view is at [ADDRESS:]PORT, not at '")
+        .append(address)
+        .append("'");
+  view_ = std::make_unique<ViewServer>();
+  if (Status status = view_->start(host, port); !status.ok()) return status;
+  if (!is_loopback(host))
+    console_.write(
+        LogLevel::kWarning,
+        "everybody who reaches this address can look through the camera; --view PORT alone stays on "
+        "this machine");
+  console_.write(LogLevel::kInfo,
+                 fmt::format("live view: http://{}:{}/", with_brackets(host), view_->port()));
+  return {};
+}
+
+Status LiveOutputs::open_stream(const std::string& address) {
+  auto stream = std::make_unique<PoseStream>();
+  if (Status status = stream->open(address); !status.ok()) return status;
+  if (stream->port() != 0) {
+    std::string host;
+    int port = 0;
+    split_address(address, host, port);
+    if (!is_loopback(host))
+      console_.write(LogLevel::kWarning, "everybody who reaches this address can read the poses");
+    console_.write(LogLevel::kInfo, fmt::format("poses: {}:{}", with_brackets(host), stream->port()));
+  }
+  streams_.push_back(std::move(stream));
+  return {};
+}
+
+void LiveOutputs::write(const FrameRecord& record, const RgbdFrame& frame, const Odometry& odometry,
+                        const ViewStatus& status) {
+  if (!files_end_) {
+    if (const Status written = files_.write(record); !written.ok()) {
+      files_end_ = true;
+      failure_ = written;
+      console_.write(LogLevel::kError,
+                     fmt::format("{}; the files end here, the odometry goes on", written.message()));
+    }
+  }
+  std::erase_if(streams_, [&](const std::unique_ptr<PoseStream>& stream) {
+    const Status written = stream->write(record.result);
+    if (!written.ok()) {
+      failure_ = written;
+      console_.write(LogLevel::kError, written.message());
+    }
+    return !written.ok();
+  });
+  if (view_) view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
+}
+
+void LiveOutputs::write_status(const ViewStatus& status) {
+  const std::int64_t now = posix_monotonic_ns();
+  if (!view_ || now < next_status_ns_) return;
+  next_status_ns_ = now + kStatusPeriod_ns;
+  view_->publish_status(status);
+}
+
+void LiveOutputs::close() {
+  for (const auto& stream : streams_) stream->close();
+  if (view_) view_->stop();
+}
+
+std::uint64_t LiveOutputs::dropped_lines() const {
+  std::uint64_t sum = 0;
+  for (const auto& stream : streams_) sum += stream->dropped_lines();
+  return sum;
+}
+
+}  // namespace plvo::cli

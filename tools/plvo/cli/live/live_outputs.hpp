@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that `plvo live` tells while it runs: files, pose streams, the live view. None of them may hold
+// the odometry up or end it: a full disk ends the files alone.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plvo/cli/common/console.hpp"
+#include "plvo/cli/common/frame_record.hpp"
+#include "plvo/cli/run/run_outputs.hpp"
+#include "plvo/host/pose_stream.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/view/view_server.hpp"
+
+namespace plvo::cli {
+
+struct LiveOutputOptions {
+  OutputOptions files;
+  std::vector<std::string> streams;
+  std::string view;  // [ADDR:]PORT; empty: none
+};
+
+class LiveOutputs {
+ public:
+  explicit LiveOutputs(Console& console) : console_(console) {}
+
+  // Addresses first, then the files: an address in use must not cost an old trajectory. Says where to look.
+  Status open(const LiveOutputOptions& options, bool lens_is_straight);
+
+  // After each frame.
+  void write(const FrameRecord& record, const RgbdFrame& frame, const Odometry& odometry,
+             const ViewStatus& status);
+  // While there is no frame: four times a second at most.
+  void write_status(const ViewStatus& status);
+  void close();
+
+  // Something ended, and nothing is left that anybody could look at: `plvo live --stream - | head`.
+  bool in_vain() const { return !failure_.ok() && streams_.empty() && !view_ && (files_end_ || !has_files_); }
+  const Status& failure() const { return failure_; }  // what ended the files or the standard output
+  std::uint64_t dropped_lines() const;
+
+ private:
+  Status open_view(const std::string& address);
+  Status open_stream(const std::string& address);
+
+  Console& console_;
+  RunOutputs files_;
+  bool has_files_ = false, files_end_ = false;
+  std::vector<std::unique_ptr<PoseStream>> streams_;
+  std::unique_ptr<ViewServer> view_;
+  bool lens_is_straight_ = true;
+  std::int64_t next_status_ns_ = 0;
+  Status failure_;
+};
+
+}  // namespace plvo::cli

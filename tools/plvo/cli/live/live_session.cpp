@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/live/live_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/interrupt.hpp"
+#include "plvo/host/line_file.hpp"
+#include "plvo/host/posix_clock.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr std::size_t kSlots = 4;          // one written, one read, one ready, and one to spare
+constexpr int kPatience_ms = 100;          // so often Ctrl-C and the limits are looked at
+constexpr std::uint64_t kWarmFrames = 30;  // the libraries have taken their memory by then
+
+}  // namespace
+
+int LiveSession::run() {
+  catch_interrupt();
+  ignore_broken_outputs();
+  if (const Status status = open(); !status.ok()) {
+    console_.clear();
+    fail(status);
+    return camera_ == nullptr ? exit_code_of_camera(status, options_.camera.device) : kExitFailure;
+  }
+  loop();
+  finish();
+  return judge();
+}
+
+// Everything that can be wrong is found before the first file is made.
+Status LiveSession::open() {
+  if (Status status = open_live_camera(options_.camera, console_, camera_); !status.ok()) return status;
+  const bool every = options_.every_frame || is_oni_file(options_.camera.device);
+  const CameraModel model = camera_->model();
+  Config config = make_config(options_.odometry);
+  config.stage_clock = posix_thread_cpu_ns;
+  if (Status status = block_.init(model, config); !status.ok()) return status;
+  ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
+                                      every ? RingPolicy::kEvery : RingPolicy::kNewest);
+  if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
+    return status;
+  if (!options_.record.empty())
+    if (Status status = recording_.open(options_.record, *camera_, every); !status.ok()) return status;
+  summary_.camera_name = camera_->name();
+  summary_.recording = options_.record;
+  capture_ = std::make_unique<LiveCapture>(*camera_, *ring_, recording_, console_);
+  prefault_program();
+  console_.write(LogLevel::kInfo,
+                 fmt::format("{}, {}x{}; Ctrl-C ends", summary_.camera_name, model.width, model.height));
+  return {};
+}
+
+bool LiveSession::over() const {
+  return interrupted() || (outputs_.in_vain() && !recording_.wanted()) ||
+         summary_.frames() >= options_.frames ||
+         static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9 >= options_.seconds;
+}
+
+void LiveSession::loop() {
+  start_ns_ = posix_monotonic_ns();
+  capture_->start();
+  RgbdFrame frame;
+  std::int64_t arrival_ns = 0;
+  while (!over()) {
+    if (!wait_for_turn()) continue;
+    const FrameRing::Take take = ring_->take(frame, arrival_ns, kPatience_ms);
+    if (take == FrameRing::Take::kClosed) return;
+    if (take == FrameRing::Take::kFrame) handle(frame, arrival_ns);
+    if (take == FrameRing::Take::kTimeout) outputs_.write_status(view_status());
+    if (console_.wants_line()) show_line(view_status(), record_.result);
+  }
+}
+
+// False, after a short sleep, while the chosen rate says that it is too early for the next frame.
+bool LiveSession::wait_for_turn() {
+  if (options_.rate_hz <= 0) return true;
+  const std::int64_t now = posix_monotonic_ns();
+  if (now < next_turn_ns_) {
+    std::this_thread::sleep_for(
+        std::chrono::nanoseconds(std::min<std::int64_t>(next_turn_ns_ - now, kPatience_ms * 1'000'000)));
+    return false;
+  }
+  return true;
+}
+
+void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
+  if (options_.rate_hz > 0)
+    next_turn_ns_ =
+        std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
+  const std::int64_t start = posix_thread_cpu_ns();
+  record_.result = block_.odometry().track(frame);
+  record_.cpu_ns = posix_thread_cpu_ns() - start;
+  const std::int64_t now = posix_monotonic_ns();
+  meter_.tick(now);
+  latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;
+  summary_.add(record_, latency_ms_);
+  outputs_.write(record_, frame, block_.odometry(), view_status());
+  ++record_.number;
+  if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
+}
+
+ViewStatus LiveSession::view_status() const {
+  const LiveCapture::State capture = capture_->state();
+  ViewStatus status;
+  status.silent = !capture.last.ok() || capture.frames == 0;
+  status.camera = status.silent ? capture.words : "camera ok";
+  status.camera_hz = capture.hz;
+  status.odometry_hz = meter_.hz(posix_monotonic_ns());
+  status.latency_ms = latency_ms_;
+  status.frames = summary_.frames();
+  status.lost = summary_.lost();
+  status.dropped = ring_->counters().dropped;
+  return status;
+}
+
+void LiveSession::show_line(const ViewStatus& status, const TrackResult& result) {
+  std::string line = fmt::format(
+      "{}  camera {:.1f} Hz  odometry {:.1f} Hz  latency {:.0f} ms  points {}  lines {}  lost {}  dropped {}",
+      summary_.frames() > 0 ? to_string(result.state) : "waiting", status.camera_hz, status.odometry_hz,
+      status.latency_ms, result.points.inliers, result.lines.inliers, status.lost, status.dropped);
+  if (recording_.wanted()) line += fmt::format("  recorded {}", recording_.frames());
+  if (status.silent) line += "  " + status.camera;
+  console_.show_line(line);
+}
+
+void LiveSession::finish() {
+  capture_->stop();
+  recorder_failure_ = recording_.stop();
+  if (!recorder_failure_.ok()) console_.write(LogLevel::kError, recorder_failure_.message());
+  outputs_.close();
+  console_.clear();
+  if (summary_.frames() < kWarmFrames) summary_.resident_start = resident_memory();
+  summary_.resident_end = resident_memory();
+  summary_.seconds = static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9;
+  summary_.interrupted = interrupted();
+  summary_.capture = capture_->state();
+  summary_.dropped = ring_->counters().dropped;
+  summary_.recorded = recording_.frames();
+  summary_.not_recorded = recording_.dropped();
+  summary_.dropped_lines = outputs_.dropped_lines();
+  summary_.arena_bytes = block_.odometry().memory_used();
+  summary_.arena_peak = block_.odometry().memory_peak();
+  if (options_.quiet) return;
+  // Where standard output carries the poses, nothing else may.
+  const auto& streams = options_.outputs.streams;
+  const bool taken = std::find(streams.begin(), streams.end(), "-") != streams.end();
+  fmt::print(taken ? stderr : stdout, "{}", summary_.to_text());
+}
+
+int LiveSession::judge() {
+  if (!options_.summary.empty()) {
+    LineFile file;
+    if (Status status = file.open(options_.summary, summary_.to_json().dump(2)); !status.ok())
+      return fail(status);
+  }
+  const LiveCapture::State& capture = summary_.capture;
+  if (!capture.end.ok()) {
+    fail(capture.end);
+    return exit_code_of_camera(capture.end, options_.camera.device);
+  }
+  if (!outputs_.failure().ok() || !capture.recorder.ok() || !recorder_failure_.ok()) return kExitFailure;
+  if (capture.frames == 0) {
+    fail(fmt::format("no frame came from {}: {}; plvo doctor looks into it", summary_.camera_name,
+                     capture.words));
+    return kExitNoSensor;
+  }
+  if (summary_.tracked() > 0) return kExitSuccess;
+  fail(fmt::format("no frame could be tracked{}{}", summary_.main_reason().empty() ? "" : ": ",
+                   summary_.main_reason()));
+  return kExitNothingTracked;
+}
+
+}  // namespace plvo::cli

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo record: what a sensor sees, kept for later.
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "plvo/cli/common/console.hpp"
+#include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/live/live_capture.hpp"
+#include "plvo/host/posix_clock.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr int kPatience_ms = 100;
+constexpr const char* kHelp =
+    "Examples:\n"
+    "  plvo record walk                            a new folder walk/ with PNG images; then: plvo run walk\n"
+    "  plvo record walk.oni --seconds 60           one file of OpenNI2; then: plvo live --device walk.oni\n"
+    "  plvo record walk --device walk.oni          the one from the other\n"
+    "\n"
+    "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n"
+    "\n";
+
+struct RecordOptions {
+  LiveCameraOptions camera;
+  std::string path;
+  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
+  double seconds = std::numeric_limits<double>::infinity();
+  bool quiet = false;
+};
+
+void show_line(Console& console, const LiveCapture::State& state, const Recording& recording) {
+  std::string line = fmt::format("recorded {}  camera {:.1f} Hz  dropped {}", recording.frames(), state.hz,
+                                 recording.dropped());
+  if (!state.last.ok()) line += "  " + state.words;
+  console.show_line(line);
+}
+
+int judge(const RecordOptions& options, const LiveCapture::State& state, const Status& stopped) {
+  if (!state.end.ok()) {
+    fail(state.end);
+    return exit_code_of_camera(state.end, options.camera.device);
+  }
+  if (!state.recorder.ok()) return exit_code_of_camera(state.recorder, {});
+  if (!stopped.ok()) return fail(stopped);
+  if (state.frames > 0) return kExitSuccess;
+  fail(fmt::format("no frame came: {}; plvo doctor looks into it", state.words));
+  return kExitNoSensor;
+}
+
+int record_command(const RecordOptions& options) {
+  catch_interrupt();
+  ignore_broken_outputs();
+  Console console(options.quiet);
+  std::unique_ptr<LiveCamera> camera;
+  if (Status status = open_live_camera(options.camera, console, camera); !status.ok()) {
+    fail(status);
+    return exit_code_of_camera(status, options.camera.device);
+  }
+  // Here the ring only says that frames come: the recording has one of its own.
+  const CameraModel model = camera->model();
+  FrameRing ring(model.width, model.height, 3, RingPolicy::kNewest);
+  Recording recording;
+  if (Status status =
+          recording.open(options.path, *camera, is_oni_file(options.camera.device), options.frames);
+      !status.ok())
+    return fail(status);
+  console.write(LogLevel::kInfo, fmt::format("{}, {}x{}, into {}; Ctrl-C ends", camera->name(), model.width,
+                                             model.height, options.path));
+  LiveCapture capture(*camera, ring, recording, console);
+  const std::int64_t start_ns = posix_monotonic_ns();
+  const auto seconds = [start_ns] { return static_cast<double>(posix_monotonic_ns() - start_ns) * 1e-9; };
+  capture.start();
+  RgbdFrame frame;
+  std::int64_t arrival_ns = 0;
+  while (!interrupted() && seconds() < options.seconds) {
+    if (ring.take(frame, arrival_ns, kPatience_ms) == FrameRing::Take::kClosed) break;
+    const LiveCapture::State state = capture.state();
+    if (state.frames >= options.frames || !state.recorder.ok()) break;
+    if (console.wants_line()) show_line(console, state, recording);
+  }
+  capture.stop();
+  const Status stopped = recording.stop();
+  console.clear();
+  const LiveCapture::State state = capture.state();
+  if (!options.quiet) {
+    fmt::print("{} frames in {} ({:.1f} s{})", recording.frames(), options.path, seconds(),
+               interrupted() ? ", ended by Ctrl-C" : "");
+    if (recording.dropped() > 0)
+      fmt::print(
+          "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
+          recording.dropped());
+    fmt::print("; next: plvo {}{}\n", is_oni_file(options.path) ? "live --device " : "run ", options.path);
+  }
+  return judge(options, state, stopped);
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand("record", "Keep what a sensor sees, as a folder or an .oni file");
+  command->add_option("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file")
+      ->required()
+      ->type_name("DIR|FILE.oni");
+  add_live_camera_options(*command, options->camera);
+  command
+      ->add_option("--frames", options->frames,
+                   "End after so many frames (an .oni file may get one or two more)")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("NUMBER");
+  command->add_option("--seconds", options->seconds, "End after so long")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("SECONDS");
+  command->add_flag("--quiet", options->quiet, "No progress line and no summary; warnings remain");
+  command->footer(std::string(kHelp) + kExitCodeHelp);
+  command->callback([options, &exit_code] { exit_code = record_command(*options); });
+}
+
+}  // namespace plvo::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/record/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace plvo::cli {
+
+namespace fs = std::filesystem;
+
+Recording::~Recording() { [[maybe_unused]] const Status nobody_asks_any_more = stop(); }
+
+Status Recording::open(const std::string& path, LiveCamera& camera, bool every_frame,
+                       std::uint64_t max_frames) {
+  path_ = path;
+  max_frames_ = max_frames;
+  oni_ = is_oni_file(path);
+  std::error_code error;
+  if (oni_) {
+    if (fs::exists(path, error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} exists already: remove it or choose another name", path)};
+    const Status status = camera.start_oni(path);
+    if (status.ok()) camera_ = &camera;
+    return status;
+  }
+  if (fs::exists(fs::path(path) / "rgb.txt", error))
+    return {StatusCode::kInvalidArgument,
+            fmt::format("{} holds a recording already: remove it or choose another folder", path)};
+  // The folder itself waits for the first frame, which says what unit depth is in; that it can be made is
+  // found out now.
+  fs::create_directory(path, error);
+  if (error || !fs::is_directory(path, error))
+    return {StatusCode::kIo, fmt::format("cannot make the folder {}: {}; choose a path that can be written",
+                                         path, error ? error.message() : "it is a file")};
+  camera_ = &camera;
+  model_ = camera.model();
+  ring_ = std::make_unique<FrameRing>(model_.width, model_.height, kSlots,
+                                      every_frame ? RingPolicy::kEvery : RingPolicy::kInOrder);
+  thread_ = std::thread([this] { write_frames(); });
+  return {};
+}
+
+void Recording::push(const RgbdFrame& frame) {
+  if (camera_ == nullptr || ended_ || offered_ >= max_frames_) return;
+  ++offered_;
+  if (oni_) {
+    ++frames_;
+  } else {
+    ring_->push(frame, 0);
+  }
+}
+
+Status Recording::poll() {
+  if (camera_ == nullptr || ended_) return {};
+  const Status status = oni_ ? camera_->poll_oni() : take_failure();
+  if (!status.ok()) ended_ = true;
+  return status;
+}
+
+Status Recording::take_failure() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failure_, Status());
+}
+
+Status Recording::stop() {
+  if (camera_ == nullptr) return {};
+  if (oni_) {
+    camera_->stop_oni();
+  } else if (thread_.joinable()) {
+    ring_->close();
+    thread_.join();
+  }
+  return take_failure();
+}
+
+std::uint64_t Recording::dropped() const { return ring_ ? ring_->counters().dropped : 0; }
+
+void Recording::write_frames() {
+  TumWriter writer;
+  bool made = false;
+  RgbdFrame frame;
+  std::int64_t arrival_ns = 0;
+  for (;;) {
+    const FrameRing::Take take = ring_->take(frame, arrival_ns, 1000);
+    if (take == FrameRing::Take::kClosed) return;
+    if (take == FrameRing::Take::kTimeout) continue;
+    Status status;
+    if (!made) status = writer.open(path_, model_, std::round(1 / frame.depth.metres_per_unit));
+    made = true;
+    if (status.ok()) status = writer.write(frame);
+    if (status.ok()) {
+      ++frames_;
+      continue;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      failure_ = Status(status.code(), "the recording ends here, what was written is whole: ")
+                     .append(status.message());
+    }
+    ring_->close();  // nobody waits for room that will never come
+    return;
+  }
+}
+
+}  // namespace plvo::cli

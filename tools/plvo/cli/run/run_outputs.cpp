@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/run/run_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "plvo/host/stamp_text.hpp"
+
+namespace plvo::cli {
+namespace {
+
+// RFC 4180: quotes inside are doubled.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (char c : text) {
+    if (c == '"') result += c;
+    result += c;
+  }
+  return result + '"';
+}
+
+void append_counts(std::string& row, const FeatureCounts& c) {
+  fmt::format_to(std::back_inserter(row), ",{},{},{},{},{}", c.detected, c.dropped, c.with_depth, c.matched,
+                 c.inliers);
+}
+
+}  // namespace
+
+Status RunOutputs::open(const OutputOptions& options) {
+  Status status;
+  if (!options.trajectory.empty()) status = trajectory_.open(options.trajectory);
+  if (status.ok() && !options.covariance.empty()) status = covariance_.open(options.covariance);
+  if (status.ok() && !options.motions.empty()) status = motions_.open(options.motions);
+  if (status.ok() && !options.stats.empty()) status = stats_.open(options.stats, stats_header());
+  return status;
+}
+
+Status RunOutputs::write(const FrameRecord& record) {
+  Status status;
+  if (!record.damaged()) {
+    status = trajectory_.write(record.result);
+    if (status.ok()) status = covariance_.write(record.result);
+    if (status.ok()) status = motions_.write(record.result);
+  }
+  return status.ok() ? stats_.write(stats_row(record)) : status;
+}
+
+std::string stats_header() {
+  std::string header = "frame,timestamp,state,reason,reference_timestamp,brightness";
+  for (const char* kind : {"points", "lines"})
+    for (const char* count : {"detected", "dropped", "with_depth", "matched", "inliers"})
+      fmt::format_to(std::back_inserter(header), ",{}_{}", kind, count);
+  header += ",ransac_iterations,lm_iterations";
+  for (int i = 0; i < kStageCount; ++i)
+    fmt::format_to(std::back_inserter(header), ",{}_ms", to_string(static_cast<Stage>(i)));
+  return header + ",total_ms";
+}
+
+std::string stats_row(const FrameRecord& record) {
+  const TrackResult& result = record.result;
+  const Status& status = record.damaged() ? record.camera_status : result.status;
+  std::string row =
+      fmt::format("{},{},{},{},{},{:.2f}", record.number, format_stamp(result.stamp_ns),
+                  record.damaged() ? "damaged" : to_string(result.state), quoted(status.message()),
+                  format_stamp(result.reference_stamp_ns), result.mean_brightness);
+  append_counts(row, result.points);
+  append_counts(row, result.lines);
+  fmt::format_to(std::back_inserter(row), ",{},{}", result.ransac_iterations, result.lm_iterations);
+  for (std::int64_t ns : result.stage_ns)
+    fmt::format_to(std::back_inserter(row), ",{:.4f}", static_cast<double>(ns) * 1e-6);
+  fmt::format_to(std::back_inserter(row), ",{:.4f}", static_cast<double>(record.cpu_ns) * 1e-6);
+  return row;
+}
+
+}  // namespace plvo::cli
