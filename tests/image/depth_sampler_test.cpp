@@ -86,6 +86,38 @@ TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
   EXPECT_FALSE(sampler.sample(26, 18).on_edge);
 }
 
+TEST(DepthSampler, OneOrTwoPixelsThatFlyBeforeTheSurfaceAreNone) {
+  for (const int flying : {1, 2}) {
+    Scene scene([](int, int) { return 1.5; });
+    for (int i = 0; i < flying; ++i) scene.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
+    const DepthSample sample = scene.sampler().sample(23, 18);
+    EXPECT_NEAR(sample.depth_m, 1.5, 1e-9) << flying;
+  }
+  // Three are a surface.
+  Scene thin([](int, int) { return 1.5; });
+  for (int i = 0; i < 3; ++i) thin.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
+  EXPECT_NEAR(thin.sampler().sample(23, 18).depth_m, 0.75, 1e-3);
+}
+
+TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
+  // A camera that turns by 1 rad/s sees the border of the nearer surface elsewhere when depth is exposed.
+  const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
+  CameraModel camera;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.pinhole = {500, 500, 20, 18};
+  camera.depth_timing = {true, 0, 0};
+  Vector6 velocity = Vector6::Zero();
+  velocity[4] = 1;  // dX/dt = ω × X: what is seen moves to larger u
+  const double shift_px = 500 * 0.01;
+  const DepthSampler at_rest = scene.sampler();
+  const DepthSampler turning = at_rest.with(Exposure(camera, velocity, 0.01));
+  for (const double u : {14.0, 16.0, 22.0, 26.0})
+    EXPECT_NEAR(turning.sample(u, 18).depth_m, at_rest.sample(u + shift_px, 18).depth_m, 0.01) << u;
+  EXPECT_NEAR(turning.sample(22, 18).depth_m, 1.5, 0.01);
+  EXPECT_NEAR(at_rest.sample(22, 18).depth_m, 1.0, 0.01);
+}
+
 TEST(DepthSampler, NoiseAndSteepSurfacesAreNoEdge) {
   // Six sigma, or 4 % of the depth, whichever is more.
   const auto step = [](double jump_m) {

@@ -41,6 +41,7 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
   const int trials = 1500;
   double nees = 0, nees_ends = 0;
   Line3dConfig config = Line3dConfig::paper();  // its noise is independent from sample to sample
+  config.trust_segment = true;
   config.sigma_p_px = 0.8;
   config.inlier_chi_square = 16;  // no truncation of the noise's tails
   for (int trial = 0; trial < trials; ++trial) {

@@ -247,8 +247,7 @@ TEST_P(Gradient, IsThatOfTheEliminatedCost) {
 }
 INSTANTIATE_TEST_SUITE_P(KindsAndLosses, Gradient,
                          ::testing::Combine(::testing::Values(0, 1),
-                                            ::testing::Values(RobustLoss::kNone, RobustLoss::kHuber,
-                                                              RobustLoss::kStudentT)));
+                                            ::testing::Values(RobustLoss::kNone, RobustLoss::kHuber)));
 
 // The gauge: which end is called A, in either frame, how long the measured stretch of the landmark is stated
 // to be, and a common rotation of the reference axes (which turns the basis across every line) must not show

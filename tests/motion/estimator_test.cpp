@@ -34,11 +34,11 @@ TEST_P(Outliers, AreFound) {
   const Case& c = GetParam();
   Gaussian gaussian(7);
   Bench bench;
-  MotionOptions options;
-  options.ransac.max_iterations = 500;
+  MotionConfig config;
+  config.max_ransac_iterations = 500;
   for (int trial = 0; trial < 20; ++trial) {
     const SimulatedPair pair = test::simulate(gaussian, c.points, c.lines, c.outliers);
-    const MotionEstimate estimate = bench.estimate(pair, options, static_cast<std::uint64_t>(trial));
+    const MotionEstimate estimate = bench.estimate(pair, config, static_cast<std::uint64_t>(trial));
     ASSERT_EQ(estimate.status, StatusCode::kOk) << "trial " << trial;
     expect_finite(estimate);
     // χ²(6) exceeds 30 once in 25 000.
@@ -169,10 +169,9 @@ TEST(Estimator, BoundsHold) {
   Gaussian gaussian(18);
   const SimulatedPair pair = test::simulate(gaussian, 100, 30, 0.9);
   Bench bench;
-  MotionOptions options;
-  options.ransac.max_iterations = 50;
-  options.lm.max_iterations = 1;
-  const MotionEstimate estimate = bench.estimate(pair, options);
+  MotionConfig config;
+  config.max_ransac_iterations = 50;
+  const MotionEstimate estimate = bench.estimate(pair, config, 1, nullptr, {.max_iterations = 1});
   EXPECT_LE(estimate.ransac.iterations, 50);
   EXPECT_LE(estimate.ransac.draws, 200);
   EXPECT_LE(estimate.lm.iterations, 1);
@@ -183,11 +182,11 @@ TEST(Estimator, APredictionIsHypothesisZero) {
   Gaussian gaussian(19);
   const SimulatedPair pair = test::simulate(gaussian, 60, 20, 0.5);
   Bench bench;
-  MotionOptions options;
-  options.ransac.max_iterations = 0;
-  EXPECT_EQ(bench.estimate(pair, options).status, StatusCode::kNoConsensus);
+  MotionConfig config;
+  config.max_ransac_iterations = 0;
+  EXPECT_EQ(bench.estimate(pair, config).status, StatusCode::kNoConsensus);
   const Se3 rough = boxplus(pair.truth, (Vector6() << 0.01, -0.01, 0.005, 0.005, 0.002, -0.003).finished());
-  const MotionEstimate estimate = bench.estimate(pair, options, 1, &rough);
+  const MotionEstimate estimate = bench.estimate(pair, config, 1, &rough);
   ASSERT_EQ(estimate.status, StatusCode::kOk);
   EXPECT_EQ(estimate.ransac.draws, 0);
   EXPECT_LT(test::nees(estimate.T_current_reference, pair.truth, estimate.C_H.inverse()), 30);
@@ -203,7 +202,7 @@ TEST(Estimator, AFullArenaIsSaid) {
   std::vector<std::byte> nothing(64);
   Arena full{std::span<std::byte>(nothing)};
   (void)full.take<std::byte>("test", 64);
-  EXPECT_EQ(estimate_motion(bench.sets, {}, 1, nullptr, full).status, StatusCode::kOutOfMemory);
+  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status, StatusCode::kOutOfMemory);
 }
 
 TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
@@ -211,7 +210,7 @@ TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
   const SimulatedPair pair = test::simulate(gaussian, 100, 30);
   constexpr std::size_t kNeeded = [] {
     ArenaSizer sizer;
-    size_motion(sizer, 100, 30);
+    size_motion(sizer, 1, 100, 30);
     return sizer.peak();
   }();
   Bench bench(kNeeded + kArenaAlignment);
@@ -285,9 +284,9 @@ TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
     Bench bench;
     bench.load(pair);
     PlaneSamples planes(samples, flags);
-    const MotionEstimate without = estimate_motion(bench.sets, {}, 1, nullptr, bench.arena);
+    const MotionEstimate without = estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     bench.sets.push_back(&planes);
-    const MotionEstimate with = estimate_motion(bench.sets, {}, 1, nullptr, bench.arena);
+    const MotionEstimate with = estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     ASSERT_EQ(without.status, StatusCode::kOk);
     ASSERT_EQ(with.status, StatusCode::kOk);
     EXPECT_GT(with.inliers[2], 280);

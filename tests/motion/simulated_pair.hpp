@@ -148,12 +148,13 @@ struct Bench {
                        LineConstraints::Workspace::take(arena, pair.line_matches.size()));
     sets = {&points.back(), &lines.back()};
   }
-  MotionEstimate estimate(const SimulatedPair& pair, const MotionOptions& options = {},
-                          std::uint64_t seed = 1, const Se3* prediction = nullptr) {
+  MotionEstimate estimate(const SimulatedPair& pair, const MotionConfig& config = {}, std::uint64_t seed = 1,
+                          const Se3* prediction = nullptr,
+                          const LmOptions& lm = {.max_iterations = 20, .step_tolerance = 1e-7}) {
     points.clear();
     lines.clear();
     load(pair);
-    return estimate_motion(sets, options, seed, prediction, arena);
+    return estimate_motion(sets, MotionReferences{}, config, lm, seed, prediction, arena);
   }
 
   std::vector<std::byte> memory;
@@ -174,7 +175,7 @@ inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& 
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  MotionProblem problem(bench.sets, MotionProblem::make_kernels(bench.sets, loss), start);
+  MotionProblem problem(bench.sets, MotionReferences{}, MotionProblem::make_kernels(bench.sets, loss), start);
   LevenbergMarquardt<6> solver;
   const LmSummary summary = solver.solve(problem);
   T = problem.T_current_reference();

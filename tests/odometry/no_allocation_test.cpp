@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Configs, NoAllocation,
                          testing::Values([] { return Config{}; }, [] { return Config::paper(); },
                                          [] {
                                            Config config;
-                                           config.reference = ReferencePolicy::kKeyframe;
+                                           config.references.policy = ReferencePolicy::kKeyframe;
                                            return config;
                                          }));
 
@@ -83,7 +83,7 @@ TEST(NoAllocationWhenLostForGood, GivesUpTheReferenceAndStartsAnew) {
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   std::vector<std::byte> memory(required_bytes(kLimits));
   Config config;
-  config.motion.max_lost_frames = 3;
+  config.references.max_lost_frames = 3;
   Odometry odometry;
   ASSERT_TRUE(odometry.init(memory, sequence.camera(), config, kLimits).ok());
   AllocationGuard guard;

@@ -155,8 +155,8 @@ TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
   config.motion.min_inliers = 2;
   EXPECT_TRUE(contains(init(camera(), config, kLimits), "motion.min_inliers"));
   config = {};
-  config.points.cell_px = 65;
-  EXPECT_TRUE(contains(init(camera(), config, kLimits), "points.cell_px"));
+  config.points.detector.cell_px = 65;
+  EXPECT_TRUE(contains(init(camera(), config, kLimits), "points.detector.cell_px"));
   config = {};
   config.depth_noise.c1 = nan;
   EXPECT_TRUE(contains(init(camera(), config, kLimits), "depth_noise"));
@@ -253,7 +253,7 @@ TEST(OdometryTrack, LostInTheDarkAndFoundAgainAtTheSamePose) {
     }
     const TrackResult after = instance.track(good(7));
     EXPECT_EQ(after.state, TrackState::kTracking) << after.status.message();
-    EXPECT_EQ(after.reference_stamp_ns, before.stamp_ns);
+    EXPECT_EQ(after.reference_stamp_ns, before.reference_stamp_ns) << "the keyframe is kept";
     EXPECT_LT(position_error(after, 7), 0.05);
   }
 }
@@ -275,7 +275,7 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
   // up.
   for (int dark_frames : {4, 12}) {
     Config config;
-    config.motion.max_lost_frames = 4;
+    config.references.max_lost_frames = 4;
     Instance instance(config);
     TrackResult before;
     for (int i = 0; i < 4; ++i) before = instance.track(good(i));
@@ -293,7 +293,7 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
     EXPECT_TRUE(same_pose(anew, before));
     const double seconds = static_cast<double>(good(i).stamp_ns - before.stamp_ns) * 1e-9;
     for (int k = 0; k < 6; ++k) {
-      const double rate = k < 3 ? config.motion.unseen_m_per_s : config.motion.unseen_rad_per_s;
+      const double rate = k < 3 ? config.references.unseen_m_per_s : config.references.unseen_rad_per_s;
       const double expected = before.pose_covariance(k, k) + (rate * seconds) * (rate * seconds);
       EXPECT_NEAR(anew.pose_covariance(k, k), expected, 1e-9 * expected);
     }
@@ -305,7 +305,7 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
 
 TEST(OdometryTrack, GarbageIsNeverMoreThanLost) {
   Config config;
-  config.motion.max_lost_frames = 3;
+  config.references.max_lost_frames = 3;
   Instance instance(config);
   Random random(666);
   ASSERT_EQ(instance.track(good(0)).state, TrackState::kInitialising);
@@ -342,8 +342,8 @@ TEST(OdometryTrack, StampsMayLieAnywhere) {
 TEST(OdometryTrack, AKeyframeStaysAsLongAsItIsSeen) {
   const auto references = [](ReferencePolicy policy, double ratio) {
     Config config;
-    config.reference = policy;
-    config.motion.keyframe_inlier_ratio = ratio;
+    config.references.policy = policy;
+    config.references.keyframe_inlier_ratio = ratio;
     Instance instance(config);
     std::vector<std::int64_t> stamps;
     for (int i = 0; i < 12; ++i) {

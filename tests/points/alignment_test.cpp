@@ -61,7 +61,7 @@ TEST(Alignment, RecoversShiftsUnderAnotherLight) {
       const double dx = 1.6 * random.uniform() - 0.8;
       const double dy = 1.6 * random.uniform() - 0.8;
       const GrayImage current = render(texture, dx, dy, 0.6, 30, 0, random);
-      const Alignment got = align_patch(patch, current.view(), at.x, at.y, options);
+      const Alignment got = align_patch(patch, kWholeWindow, current.view(), at.x, at.y, options);
       ++tried;
       if (!got.ok) continue;
       ++found;
@@ -82,25 +82,34 @@ TEST(Alignment, TheSamePatchStaysWhereItIs) {
   Random random(3);
   const GrayImage image = render(test::Texture(5), 0, 0, 1, 0, 0, random);
   const Patch patch = cut_patch(image.view(), kCentre, kCentre);
-  const Alignment got = align_patch(patch, image.view(), kCentre, kCentre, {});
+  const Alignment got = align_patch(patch, kWholeWindow, image.view(), kCentre, kCentre, {});
   ASSERT_TRUE(got.ok);
-  EXPECT_NEAR(got.x, kCentre, 1e-6);
-  EXPECT_NEAR(got.y, kCentre, 1e-6);
+  // The template is kept in quarters of a grey level.
+  EXPECT_NEAR(got.x, kCentre, 5e-3);
+  EXPECT_NEAR(got.y, kCentre, 5e-3);
   EXPECT_EQ(got.iterations, 1);
-  EXPECT_LT(got.sigma_px, 0.01);
+  EXPECT_LT(got.sigma_px, 0.02);
 }
 
 TEST(Alignment, RefusesWhatCannotBeLocated) {
   // Nothing at all; one straight edge; a patch of one grey level in a rich image.
   GrayImage flat(kSide, kSide, 0, 90);
-  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kCentre, kCentre), flat.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(
+      align_patch(cut_patch(flat.view(), kCentre, kCentre), kWholeWindow, flat.view(), kCentre, kCentre, {})
+          .ok);
   GrayImage edge(kSide, kSide);
   edge.paint([](int x, int) { return 40 + 150 / (1 + std::exp(-(x - 30.3))); });
-  EXPECT_FALSE(align_patch(cut_patch(edge.view(), kCentre, kCentre), edge.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(
+      align_patch(cut_patch(edge.view(), kCentre, kCentre), kWholeWindow, edge.view(), kCentre, kCentre, {})
+          .ok);
   Random random(8);
   const GrayImage rich = render(test::Texture(8), 0, 0, 1, 0, 0, random);
-  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kCentre, kCentre), rich.view(), kCentre, kCentre, {}).ok);
-  EXPECT_FALSE(align_patch(cut_patch(rich.view(), kCentre, kCentre), flat.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(
+      align_patch(cut_patch(flat.view(), kCentre, kCentre), kWholeWindow, rich.view(), kCentre, kCentre, {})
+          .ok);
+  EXPECT_FALSE(
+      align_patch(cut_patch(rich.view(), kCentre, kCentre), kWholeWindow, flat.view(), kCentre, kCentre, {})
+          .ok);
 }
 
 TEST(Alignment, RefusesAnotherPatch) {
@@ -110,7 +119,8 @@ TEST(Alignment, RefusesAnotherPatch) {
   for (int i = 0; i < kTrials; ++i) {
     const GrayImage a = render(test::Texture(100 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
     const GrayImage b = render(test::Texture(500 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
-    const Alignment got = align_patch(cut_patch(a.view(), kCentre, kCentre), b.view(), kCentre, kCentre, {});
+    const Alignment got =
+        align_patch(cut_patch(a.view(), kCentre, kCentre), kWholeWindow, b.view(), kCentre, kCentre, {});
     EXPECT_LE(got.iterations, AlignmentOptions{}.max_iterations);
     accepted += got.ok ? 1 : 0;
   }
@@ -125,15 +135,16 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
   image.paint([&](int x, int y) { return texture(x, y); });
   const Patch patch = cut_patch(image.view(), kCentre, kCentre);
   for (double along : {-1e300, -100.0, -1.0, 0.0, 2.0, 3.9, kSide - 5.5, kSide - 1.0, kSide + 40.0, 1e300}) {
-    EXPECT_FALSE(align_patch(patch, image.view(), along, kCentre, {}).ok) << along;
-    EXPECT_FALSE(align_patch(patch, image.view(), kCentre, along, {}).ok) << along;
+    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), along, kCentre, {}).ok) << along;
+    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kCentre, along, {}).ok) << along;
   }
   const double nan = std::nan("");
-  EXPECT_FALSE(align_patch(patch, image.view(), nan, kCentre, {}).ok);
-  EXPECT_FALSE(align_patch(patch, image.view(), kCentre, nan, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), nan, kCentre, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kCentre, nan, {}).ok);
   // As near to the border as a keypoint gets, it works.
   for (int near : {kPatchRadius + 1, kSide - kPatchRadius - 3}) {
-    const Alignment got = align_patch(cut_patch(image.view(), near, near), image.view(), near, near, {});
+    const Alignment got =
+        align_patch(cut_patch(image.view(), near, near), kWholeWindow, image.view(), near, near, {});
     EXPECT_TRUE(got.ok) << near;
   }
 }
@@ -149,11 +160,11 @@ TEST(Alignment, ARunawayIsNotAMatch) {
   blob.paint(paint(30));
   const Patch patch = cut_patch(blob.view(), kCentre, kCentre);
   far.paint(paint(34.5));
-  EXPECT_FALSE(align_patch(patch, far.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, far.view(), kCentre, kCentre, {}).ok);
   AlignmentOptions patient;
   patient.max_shift_px = 8;
   patient.max_iterations = 30;
-  const Alignment got = align_patch(patch, far.view(), kCentre, kCentre, patient);
+  const Alignment got = align_patch(patch, kWholeWindow, far.view(), kCentre, kCentre, patient);
   ASSERT_TRUE(got.ok) << "with more patience it is found, so the bound is what refused it";
   EXPECT_NEAR(got.x, 34.5, 0.05);
 }
@@ -167,8 +178,8 @@ TEST(Alignment, StopsAtItsBound) {
   options.tolerance_px = 0;
   for (int bound : {0, 1, 3, 8}) {
     options.max_iterations = bound;
-    const Alignment got =
-        align_patch(cut_patch(reference.view(), kCentre, kCentre), current.view(), kCentre, kCentre, options);
+    const Alignment got = align_patch(cut_patch(reference.view(), kCentre, kCentre), kWholeWindow,
+                                      current.view(), kCentre, kCentre, options);
     EXPECT_FALSE(got.ok) << "a tolerance of zero is never met";
     EXPECT_EQ(got.iterations, bound);
   }
@@ -190,8 +201,8 @@ TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
         const double dy = random.uniform() - 0.5;
         const GrayImage reference = render(texture, 0, 0, 1, 0, noise, random);
         const GrayImage current = render(texture, dx, dy, 0.8, 10, noise, random);
-        const Alignment got =
-            align_patch(cut_patch(reference.view(), at.x, at.y), current.view(), at.x, at.y, {});
+        const Alignment got = align_patch(cut_patch(reference.view(), at.x, at.y), kWholeWindow,
+                                          current.view(), at.x, at.y, {});
         if (!got.ok) continue;
         const double ex = got.x - at.x - dx;
         const double ey = got.y - at.y - dy;

@@ -56,7 +56,7 @@ struct Detection {
   int candidates = 0;
 };
 
-Detection detect(const Frame& frame, const DetectorOptions& options, std::size_t capacity) {
+Detection detect(const Frame& frame, const DetectorConfig& options, std::size_t capacity) {
   ArenaSizer sizer;
   reserve_detection(sizer, kWidth, kHeight);
   std::vector<std::byte> memory(sizer.peak() + kArenaAlignment);
@@ -91,7 +91,7 @@ bool is_maximum(GrayView image, int x, int y) {
 // (rank, −strength, level, y, x): the order in which candidates are kept.
 using Place = std::tuple<int, float, int, int, int>;
 
-std::vector<Place> reference_candidates(const Frame& frame, const DetectorOptions& options) {
+std::vector<Place> reference_candidates(const Frame& frame, const DetectorConfig& options) {
   std::vector<Place> all;
   const DepthSampler depth = frame.depth();
   for (int level = 0; level < options.levels; ++level) {
@@ -169,7 +169,7 @@ TEST(Detector, KeepsWhatTheRuleSays) {
     Random random(seed);
     for (int i = 0; i < 8000; ++i)
       frame.clear_depth(static_cast<int>(random.below(kWidth)), static_cast<int>(random.below(kHeight)));
-    DetectorOptions options;
+    DetectorConfig options;
     options.cell_px = seed == 12 ? 24 : 40;
     options.levels = seed == 12 ? 4 : 3;
     std::vector<Place> expected = reference_candidates(frame, options);
@@ -261,7 +261,7 @@ TEST(Detector, TheSpreadLeavesNoTexturedCellEmpty) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth / 2; ++x)
       image.view().at(x, y) = static_cast<std::uint8_t>(60 + image.view().at(x, y) / 2);
-  DetectorOptions options;
+  DetectorConfig options;
   options.levels = 1;
   const std::size_t cells = detection_cells(kWidth, kHeight, options.cell_px);
   const Detection got = detect(Frame(image), options, cells);
@@ -279,7 +279,7 @@ TEST(Detector, TheSpreadLeavesNoTexturedCellEmpty) {
 TEST(Detector, FindsRenderedCornersBelowThePixel) {
   // A bright square on dark ground, edges blended by area, at known places below the pixel. The strength of a
   // corner peaks a little inside it; what counts is that the place moves with the corner.
-  DetectorOptions options;
+  DetectorConfig options;
   options.levels = 1;
   double square_sum = 0, worst = 0;
   int n = 0;

@@ -46,7 +46,7 @@ class Frame {
 };
 
 std::vector<Match> match(const Frame& reference, const std::vector<Prediction>& predictions,
-                         const Frame& current, const PointMatchOptions& options) {
+                         const Frame& current, const PointMatchConfig& options) {
   std::vector<std::byte> memory(scratch_bytes());
   Arena scratch(memory);
   std::vector<Match> storage(kCapacity);
@@ -60,7 +60,7 @@ std::vector<Match> match(const Frame& reference, const std::vector<Prediction>& 
 
 // The rule in its own words. Best: fewest bits, then the smaller index. Second: any other candidate in reach.
 std::vector<Match> reference_match(const PointFeatures& reference, const std::vector<Prediction>& predictions,
-                                   const PointFeatures& current, const PointMatchOptions& options) {
+                                   const PointFeatures& current, const PointMatchConfig& options) {
   const auto in_reach = [&](std::size_t i, std::size_t j) {
     const Keypoint& k = current.keypoints[j];
     const double du = k.u - predictions[i].u;
@@ -149,7 +149,7 @@ TEST(PointMatch, IsTheBruteForceResult) {
     for (int j = 0; j < n; ++j)
       current.add(random.uniform() * (kWidth - 1), random.uniform() * (kHeight - 1),
                   static_cast<int>(random.below(3)), draw());
-    PointMatchOptions options;
+    PointMatchConfig options;
     options.radius_px = trial % 4 == 0 ? 12 : trial % 4 == 1 ? 30 : trial % 4 == 2 ? 75.5 : 1000;
     options.max_ratio = trial % 5 == 0 ? 1.0 : 0.85;
     const std::vector<Match> expected =
@@ -173,7 +173,7 @@ class PointMatchPair : public testing::Test {
   Descriptor descriptor_;
   Frame reference_, current_;
   std::vector<Prediction> predictions_;
-  PointMatchOptions options_;
+  PointMatchConfig options_;
 };
 
 TEST_F(PointMatchPair, TheRadiusTheLevelAndTheDistanceBound) {

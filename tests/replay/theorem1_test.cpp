@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "plvo/odometry/feature_extraction.hpp"
-#include "plvo/odometry/pair_estimation.hpp"
+#include "plvo/odometry/reference_tracking.hpp"
 #include "plvo/replay/tum_camera.hpp"
 #include "procedural_sequence.hpp"
 
@@ -22,14 +22,14 @@ using Dense6 = Eigen::Matrix<double, 6, 6>;
 
 struct Rooms {
   FeatureExtraction extraction;
-  PairEstimation estimation;
+  ReferenceTracking tracking;
   std::array<FrameFeatures, 2> frames;
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
     for (FrameFeatures& frame : frames) frame.carve(memory, limits);
     extraction.carve(memory, limits);
-    estimation.carve(memory, limits);
+    tracking.carve(memory, limits);
   }
 };
 
@@ -41,20 +41,26 @@ class Pairs {
     rooms_.carve(arena_, Limits::vga());
     arena_.seal();
     rooms_.extraction.init(camera, config_);
-    rooms_.estimation.init(camera, config_);
+    rooms_.tracking.init(camera, config_);
   }
 
   // The motion from the frame before.
   MotionEstimate next(const RgbdFrame& frame) {
     TrackResult result;
     const DepthSampler depth = rooms_.extraction.depth_sampler(frame);
-    const FrameFeatures& reference = rooms_.frames[1 - slot_];
     FrameFeatures& current = rooms_.frames[slot_];
-    rooms_.extraction.extract(frame, depth, arena_, current, result);
+    const NoiseScales noise = config_.noise.initial;
+    rooms_.extraction.extract(frame, depth, noise, arena_, current, result);
     MotionEstimate motion;
-    if (has_reference_)
-      motion = rooms_.estimation.estimate(reference, current, rooms_.extraction.pyramid(), depth, prior_,
-                                          config_.points.search_radius_px, arena_, result);
+    if (has_reference_) {
+      const Reference reference{&rooms_.frames[1 - slot_], prior_, {}};
+      const CurrentFrame now{current, rooms_.extraction, depth, noise};
+      motion = rooms_.tracking.find(reference, now, config_.points.match.radius_px, arena_, result).motion;
+      if (motion.status == StatusCode::kOk)
+        motion =
+            rooms_.tracking.refine({&reference, 1}, now, motion.T_current_reference, arena_, result).motion;
+    }
+    rooms_.extraction.lift_points(depth, noise, current.points);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
     has_reference_ = true;
     slot_ = 1 - slot_;
@@ -67,7 +73,7 @@ class Pairs {
     Rooms rooms;
     rooms.carve(sizer, Limits::vga());
     FeatureExtraction::reserve(sizer, Limits::vga());
-    PairEstimation::reserve(sizer, Limits::vga());
+    ReferenceTracking::reserve(sizer, Limits::vga());
     return sizer.peak() + kArenaAlignment;
   }
 

@@ -24,6 +24,10 @@ Status CameraModel::validate() const {
   if (!finite(lens.k1) || !finite(lens.k2) || !finite(lens.p1) || !finite(lens.p2) || !finite(lens.k3))
     return invalid("the distortion coefficients k1 k2 p1 p2 k3 must be numbers");
   if (!(readout_s >= 0 && readout_s <= 0.1)) return invalid("the readout must lie between 0 and 0.1 s");
+  if (!(depth_timing.readout_s >= 0 && depth_timing.readout_s <= 0.1))
+    return invalid("the readout of depth must lie between 0 and 0.1 s");
+  if (!(depth_timing.delay_s >= -0.1 && depth_timing.delay_s <= 0.1))
+    return invalid("the delay of depth must lie between -0.1 and 0.1 s");
   // The lens must keep the order of the pixels: the Jacobian of the distortion keeps a positive determinant.
   constexpr int kSteps = 16;
   for (int row = 0; row <= kSteps; ++row) {

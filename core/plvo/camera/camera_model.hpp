@@ -23,15 +23,26 @@ struct Distortion {
 // TUM's fr1/rpy our error is least between 20 and 30 ms.
 inline constexpr double kKinectReadout_s = 0.0261;
 
+// When depth is exposed. Where it is not known, a depth pixel is taken to be exposed with the colour pixel of
+// the same place, and the depth image's stamp is not looked at.
+struct DepthTiming {
+  bool known = false;
+  double delay_s =
+      0;  // depth's middle row is exposed so long after depth's stamp; colour's, at colour's stamp
+  double readout_s = 0;  // as CameraModel::readout_s, of the depth image
+};
+
 struct CameraModel {
   int width = 640, height = 480;  // px
   Pinhole pinhole;
   Distortion distortion;
   // Rolling shutter: from the exposure of the first row to that of the last, in seconds. 0: all rows at once.
   double readout_s = 0;
+  DepthTiming depth_timing = {};
 
   // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, a
-  // readout that is negative or above 0.1 s, or a lens that folds back on itself inside the image.
+  // readout that is negative or above 0.1 s, a depth delay beyond ±0.1 s, or a lens that folds back on itself
+  // inside the image.
   Status validate() const;
 };
 

@@ -21,4 +21,12 @@ struct DepthNoise {
   }
 };
 
+// The variances that the residuals show over those that the models state, one factor for each kind of
+// measurement: across the image and along the ray for points, all of it for lines.
+struct NoiseScales {
+  double image = 1;
+  double depth = 1;
+  double lines = 1;
+};
+
 }  // namespace plvo

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "plvo/math/trigonometry.hpp"
 
@@ -47,37 +48,93 @@ class InverseDepthPlane {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, q_ = 0, qx_ = 0, qy_ = 0;
 };
 
+struct Reading {
+  double x, y, z;  // offset from (u, v) in px; m
+};
+
+// A jump is what neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
+double jump_behind(double depth_m, const DepthNoise& noise) {
+  return std::max(6 * noise.sigma(depth_m), 0.04 * depth_m);
+}
+
+// The nearest depth of a surface that at least three readings show: one or two may fly before everything
+// else. 0 when there is none.
+double nearest_surface(std::span<const Reading> readings, const DepthNoise& noise) {
+  const std::size_t least = readings.size() < 3 ? readings.size() : 3;
+  double nearest = 0;
+  for (std::size_t tries = 0; tries < 3; ++tries) {
+    double next = 0;
+    for (const Reading& reading : readings)
+      if (reading.z > nearest && (next == 0 || reading.z < next)) next = reading.z;
+    if (next == 0) return 0;
+    nearest = next;
+    const double end = nearest + jump_behind(nearest, noise);
+    std::size_t support = 0;
+    for (const Reading& reading : readings) support += reading.z >= nearest && reading.z <= end ? 1 : 0;
+    if (support >= least) return nearest;
+  }
+  return 0;
+}
+
 }  // namespace
 
+bool DepthSampler::locate(Vector2& pixel) const {
+  if (!exposure_.depth_apart()) return true;
+  // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
+  // rotation's, the same for every depth.
+  constexpr int kGuesses = 3;
+  constexpr double kUnknownDepth_m = 2;
+  constexpr double kNearest_m = 0.1;
+  const Pinhole& pinhole = exposure_.pinhole();
+  double depth_m = kUnknownDepth_m;
+  Vector2 located = pixel;
+  for (int i = 0; i < kGuesses; ++i) {
+    const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
+    if (read > 0) depth_m = read;
+    const Vector3 p =
+        exposure_.at_depth_time(back_project(pinhole, pixel.x(), pixel.y(), depth_m), pixel.y(), located.y());
+    if (!(p.z() > kNearest_m)) return false;
+    located = project(pinhole, p);
+    if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
+      return false;
+  }
+  pixel = located;
+  return true;
+}
+
 DepthSample DepthSampler::sample(double u, double v, int radius) const {
-  struct Entry {
-    double x, y, z;  // offset from (u, v) in px; m
-  };
-  std::array<Entry, kMaxWindow> window;
+  Vector2 located(u, v);
+  if (!locate(located)) return {};
+  DepthSample result = sample_window(located.x(), located.y(), radius);
+  if (result.depth_m > 0) result.depth_m = at_colour_time(v, located, result.depth_m);
+  if (!(result.depth_m > 0)) return {};
+  return result;
+}
+
+DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
+  std::array<Reading, kMaxWindow> window;
   std::size_t count = 0;
   const int x0 = static_cast<int>(u + 0.5);
   const int y0 = static_cast<int>(v + 0.5);
   radius = std::min(radius, kMaxRadius);
-  double nearest = 0;
   for (int y = y0 - radius; y <= y0 + radius; ++y) {
     for (int x = x0 - radius; x <= x0 + radius; ++x) {
       const double z = at(x, y);
-      if (z <= 0) continue;
-      window[count++] = {x - u, y - v, z};
-      if (nearest == 0 || z < nearest) nearest = z;
+      if (z > 0) window[count++] = {x - u, y - v, z};
     }
   }
   const auto side = static_cast<std::size_t>(2 * radius + 1);
   // Where half the window has no depth, the rest is a rim of bad depth.
   if (2 * count < side * side) return {};
+  const double nearest = nearest_surface({window.data(), count}, noise_);
+  if (!(nearest > 0)) return {};
 
-  // A jump is what neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
-  const double jump = std::max(6 * noise_.sigma(nearest), 0.04 * nearest);
+  const double jump = jump_behind(nearest, noise_);
   InverseDepthPlane plane;
   double sum = 0;
   std::size_t near_count = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (window[i].z > nearest + jump) continue;
+    if (window[i].z < nearest || window[i].z > nearest + jump) continue;
     plane.add(window[i].x, window[i].y, 1 / window[i].z);
     sum += window[i].z;
     ++near_count;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the depth that belongs to a pixel of the undistorted grey image. On a depth edge a keypoint belongs
-// to the nearer surface (it is the nearer surface's outline), but registration and the lens leave the edge a
-// pixel or two off: so a small window is looked at, a plane is fitted to the nearer surface's depths, and a
-// mixed window says so.
+// Reads the depth that belongs to a pixel of the undistorted grey image: where that pixel's surface was when
+// depth was exposed, and carried back to the moment of the colour pixel (exposure.hpp). On a depth edge a
+// keypoint belongs to the nearer surface (it is the nearer surface's outline), but registration and the lens
+// leave the edge a pixel or two off: so a small window is looked at, a plane is fitted to the nearer
+// surface's depths, and a mixed window says so.
 #pragma once
 
 #include <cstdint>
 
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/camera/exposure.hpp"
 #include "plvo/image/image_view.hpp"
 #include "plvo/image/undistortion.hpp"
 
@@ -21,10 +23,25 @@ struct DepthSample {
 
 class DepthSampler {
  public:
-  DepthSampler(const DepthView& depth, const UndistortionTable& table, const DepthNoise& noise)
-      : depth_(depth), table_(table), noise_(noise) {}
+  DepthSampler(const DepthView& depth, const UndistortionTable& table, const DepthNoise& noise,
+               const Exposure& exposure = {})
+      : depth_(depth), table_(table), noise_(noise), exposure_(exposure) {}
 
-  // Depth at one pixel, in metres, 0 where there is none or (x, y) is outside the image.
+  // The same images, with another idea of how the camera moved while they were exposed.
+  DepthSampler with(const Exposure& exposure) const { return {depth_, table_, noise_, exposure}; }
+
+  // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
+  // place itself unless depth is exposed apart.
+  bool locate(Vector2& pixel) const;
+  // A depth read at `located`, as it was when colour's row v was exposed.
+  double at_colour_time(double v, const Vector2& located, double depth_m) const {
+    if (!exposure_.depth_apart()) return depth_m;
+    return exposure_
+        .from_depth_time(back_project(exposure_.pinhole(), located.x(), located.y(), depth_m), v, located.y())
+        .z();
+  }
+
+  // Depth at one pixel of the depth image, in metres, 0 where there is none or (x, y) is outside the image.
   double at(int x, int y) const {
     int raw_x = 0;
     int raw_y = 0;
@@ -34,16 +51,19 @@ class DepthSampler {
   }
 
   static constexpr int kMaxRadius = 3;
-  // The depth at (u, v), inside the image, from a plane fitted to the window of (2·radius+1)² pixels around
-  // it.
+  // The depth at colour pixel (u, v), inside the image, from a plane fitted to the nearer surface in the
+  // window of (2·radius+1)² pixels around it; with radius 0 the one reading there.
   DepthSample sample(double u, double v, int radius = 2) const;
 
   const DepthNoise& noise() const { return noise_; }
 
  private:
+  DepthSample sample_window(double u, double v, int radius) const;
+
   DepthView depth_;
   const UndistortionTable& table_;
   DepthNoise noise_;
+  Exposure exposure_;
 };
 
 }  // namespace plvo

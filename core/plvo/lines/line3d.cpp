@@ -232,7 +232,7 @@ double samples_per_independent_one(const Samples& samples, const PlaneLine& line
 // Of (S_A, S_B): how well the segment is located across itself.
 bool transverse_covariance(const Segment& segment, const Samples& samples, const PlaneLine& line,
                            const Line3dConfig& config, Matrix2& covariance) {
-  if (segment.sigma_px > 0) {
+  if (config.trust_segment && segment.sigma_px > 0) {
     // The floor holds at either end by itself.
     const double half = 0.5 * segment.length_px();
     const double floor2 = 0.5 * config.transverse_floor_px * config.transverse_floor_px;

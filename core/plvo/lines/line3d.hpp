@@ -38,7 +38,9 @@ struct Line3dConfig {
   // Divide it by more where the residuals show more correlation than that, or are larger than (4) says.
   bool trust_residuals = true;
   // Where the line lies across itself: the segment's own σ (at the middle, and of the angle) and, in
-  // quadrature, this at either end; the paper's independent σ_p per sample where the segment states none.
+  // quadrature, transverse_floor_px at either end. false, or where the segment states none: the paper's
+  // independent σ_p per sample.
+  bool trust_segment = true;
   double transverse_floor_px = 0.1;
   std::uint64_t seed = 1;
 
@@ -48,6 +50,7 @@ struct Line3dConfig {
     config.side_reach_px = 0;
     config.depth_correlation_px = 1;
     config.trust_residuals = false;
+    config.trust_segment = false;
     config.transverse_floor_px = 0;
     return config;
   }

@@ -72,9 +72,10 @@ int sample_count(const Segment& segment, int max_samples);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
-// depth.at(int x, int y) returns metres at a pixel, 0 where there is none or outside the image (DepthSampler
-// does). side_reach_px (0 … kMaxSideReach): how far the profile reaches to either side; 0 is the paper, which
-// looks only under the segment.
+// depth, which DepthSampler is: locate(Vector2&) finds where the depth image shows what is seen at a pixel,
+// at(int x, int y) returns metres there, 0 where there is none or outside the image, and at_colour_time(v,
+// located, metres) carries a reading back to the moment of colour's row v. side_reach_px (0 … kMaxSideReach):
+// how far the profile reaches to either side; 0 is the paper, which looks only under the segment.
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, int max_samples, int side_reach_px,
                     const Depth& depth, LineSamples& out) {
@@ -95,7 +96,9 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, int max_sam
   };
   for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
     const double t = i * step - 0.5 * length;
-    const Vector2 p = middle + t * along;
+    const Vector2 seen = middle + t * along;
+    Vector2 p = seen;
+    if (!depth.locate(p)) continue;
     const float here = read(p, 0);
     const float left = side_reach_px > 0 ? read(p, -side_reach_px) : here;
     const float right = side_reach_px > 0 ? read(p, side_reach_px) : here;
@@ -104,14 +107,16 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, int max_sam
     if (one_surface(left, here, right, sigma_here)) {
       const double slope = static_cast<double>(right - left) * per_px;
       const double misread = slope * noise.registration_px;
-      sample = {t, static_cast<double>(here), sqrt(sigma_here * sigma_here + misread * misread)};
+      sample = {t, depth.at_colour_time(seen.y(), p, static_cast<double>(here)),
+                sqrt(sigma_here * sigma_here + misread * misread)};
     } else {
       for (int o = -side_reach_px; o <= side_reach_px; ++o)
         profile[static_cast<std::size_t>(o + side_reach_px)] = read(p, o);
       const SurfaceReading reading = nearer_surface(readings, noise);
       if (!(reading.depth_m > 0)) continue;
       const double sigma = noise.sigma(reading.depth_m);
-      sample = {t, reading.depth_m, reading.mixed ? kMixedInflation * sigma : sigma};
+      sample = {t, depth.at_colour_time(seen.y(), p, reading.depth_m),
+                reading.mixed ? kMixedInflation * sigma : sigma};
       out.mixed += reading.mixed ? 1 : 0;
     }
     ++out.count;

@@ -49,6 +49,16 @@ class ConstraintSet {
   virtual double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) = 0;
   virtual void accept() = 0;
 
+  // Which of the references the matches are with (motion_problem.hpp), 0 unless said otherwise; and ρ, the
+  // correlation between the residuals of any two matches: errors that the features of a scene share do not
+  // average out, so n matches weigh as n / (1 + (n − 1) ρ) independent ones.
+  void set_reference(std::size_t reference, double correlation) {
+    reference_ = reference;
+    correlation_ = correlation;
+  }
+  std::size_t reference() const { return reference_; }
+  double correlation() const { return correlation_; }
+
   // One flag per match, written by RANSAC, read by the refinement and by the caller.
   std::span<std::uint8_t> inliers() { return inliers_; }
   std::span<const std::uint8_t> inliers() const { return inliers_; }
@@ -60,6 +70,10 @@ class ConstraintSet {
   ~ConstraintSet() = default;  // never deleted through the base
 
   std::span<std::uint8_t> inliers_;
+
+ private:
+  std::size_t reference_ = 0;
+  double correlation_ = 0;
 };
 
 }  // namespace plvo

@@ -21,7 +21,7 @@ double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).value
 
 // C = H⁻¹, or false when H does not determine all six degrees of freedom, by the two rules stated in the
 // header.
-bool invert_information(const Matrix6& H, const MotionOptions& options, Matrix6& C) {
+bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C) {
   if (!H.allFinite() || !(H.diagonal().minCoeff() > 0)) return false;
   // To a unit diagonal first: metres and radians then weigh alike, and the eigenvalues mean something.
   Vector6 scale;
@@ -38,8 +38,8 @@ bool invert_information(const Matrix6& H, const MotionOptions& options, Matrix6&
     for (int j = 0; j < 6; ++j) C(i, j) *= scale[i] * scale[j];
   const Matrix3 C_translation = C.block<3, 3>(0, 0);
   const Matrix3 C_rotation = C.block<3, 3>(3, 3);
-  return C.allFinite() && largest_eigenvalue(C_translation) <= options.max_sigma_m * options.max_sigma_m &&
-         largest_eigenvalue(C_rotation) <= options.max_sigma_rad * options.max_sigma_rad;
+  return C.allFinite() && largest_eigenvalue(C_translation) <= config.max_sigma_m * config.max_sigma_m &&
+         largest_eigenvalue(C_rotation) <= config.max_sigma_rad * config.max_sigma_rad;
 }
 
 void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
@@ -52,15 +52,17 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
   }
 }
 
-StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& options, std::uint64_t seed,
-                 const Se3* prediction, std::span<Candidate> scratch, MotionEstimate& estimate) {
-  const MotionProblem::Kernels kernels = MotionProblem::make_kernels(sets, options.loss);
-  Ransac ransac(sets, options.ransac, kernels, scratch);
-  if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < options.min_inliers)
+StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed, const Se3* prediction,
+                 std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
+  const MotionProblem::Kernels kernels =
+      MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
+  Ransac ransac(sets, references, config, kernels, scratch);
+  if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
-  const double least_share = options.min_inlier_ratio * static_cast<double>(ransac.usable());
+  const double least_share = config.min_inlier_ratio * static_cast<double>(ransac.usable());
   const auto consensus = [&] {
-    return ransac.inliers() >= options.min_inliers && ransac.inliers() >= least_share;
+    return ransac.inliers() >= config.min_inliers && ransac.inliers() >= least_share;
   };
 
   Se3 T;
@@ -70,8 +72,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& opti
     const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
     if (!consensus()) return StatusCode::kNoConsensus;
     if (round > 0 && !changed) break;
-    MotionProblem problem(sets, kernels, T);
-    estimate.lm = solver.solve(problem, options.lm);
+    MotionProblem problem(sets, references, kernels, T);
+    estimate.lm = solver.solve(problem, lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -80,7 +82,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& opti
   }
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
-      !invert_information(solver.hessian(), options, estimate.C_H))
+      !invert_information(solver.hessian(), config, estimate.C_H))
     return StatusCode::kDegenerate;
   // kStalled is as good as converged: no step in any direction lowers the cost any more.
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
@@ -91,8 +93,9 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionOptions& opti
 
 }  // namespace
 
-MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionOptions& options,
-                               std::uint64_t seed, const Se3* prediction, Arena& arena) {
+MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                               const Se3* prediction, Arena& arena) {
   if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
   std::size_t matches = 0;
   for (ConstraintSet* set : sets) {
@@ -100,10 +103,11 @@ MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const Motio
     for (std::uint8_t& flag : set->inliers()) flag = 0;
   }
   const ScratchScope<Arena> scope(arena);
-  const std::span<Candidate> scratch = take_ransac_scratch(arena, matches);
+  const std::span<RansacCandidate> scratch = take_ransac_scratch(arena, matches);
   MotionEstimate estimate;
-  estimate.status = scratch.size() < matches ? StatusCode::kOutOfMemory
-                                             : solve(sets, options, seed, prediction, scratch, estimate);
+  estimate.status = scratch.size() < matches
+                        ? StatusCode::kOutOfMemory
+                        : solve(sets, references, config, lm, seed, prediction, scratch, estimate);
   if (estimate.status == StatusCode::kOk) {
     count(sets, estimate);
     return estimate;

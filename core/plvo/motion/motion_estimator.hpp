@@ -13,30 +13,12 @@
 #include "plvo/math/levenberg_marquardt.hpp"
 #include "plvo/motion/constraint_set.hpp"
 #include "plvo/motion/line_constraints.hpp"
+#include "plvo/motion/motion_config.hpp"
 #include "plvo/motion/motion_problem.hpp"
 #include "plvo/motion/point_constraints.hpp"
 #include "plvo/motion/ransac.hpp"
 
 namespace plvo {
-
-struct MotionOptions {
-  RansacOptions ransac;
-  // Huber by default: robust where the covariances are too optimistic, honest where they are right
-  // (robust_kernel.hpp).
-  RobustLoss loss = RobustLoss::kHuber;
-  // Steps below 1e-7 (m, rad) are five orders below the sensor; the cost tolerance is left to the solver's
-  // default.
-  LmOptions lm{.max_iterations = 20, .step_tolerance = 1e-7};
-  // kNoConsensus with fewer inliers than this, all kinds together, or than this fraction of the usable
-  // matches.
-  int min_inliers = 6;
-  double min_inlier_ratio = 0.1;
-  // kDegenerate when the SD of the translation (rotation) in its worst direction exceeds this, when the
-  // information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or when no minimal set of
-  // the consensus is free of degeneracy: all lines parallel, all points on a line, …
-  double max_sigma_m = 0.1;
-  double max_sigma_rad = 0.1;
-};
 
 struct MotionEstimate {
   // kOk; kTooFewFeatures: fewer than three usable matches that may form a minimal set, or fewer than
@@ -60,19 +42,26 @@ struct MotionEstimate {
 };
 
 // sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
+// references: the frames that they match with; the motion is that from the base, reference 0.
 // prediction, if any, is tried as hypothesis number zero, and decides between rotations that perpendicular
 // lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch) is taken from
 // the arena and given back; an arena without room for it is kOutOfMemory.
-MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionOptions& options,
-                               std::uint64_t seed, const Se3* prediction, Arena& arena);
+// kDegenerate also when the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or
+// when no minimal set of the consensus is free of degeneracy: all lines parallel, all points on a line, …
+MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                               const Se3* prediction, Arena& arena);
 
-// What points, lines and estimate_motion take between mark and rewind, for sizing.
+// What points, lines (of each reference) and estimate_motion take between mark and rewind, for sizing.
 template <typename Memory>
-constexpr void size_motion(Memory& memory, std::size_t max_points, std::size_t max_lines) {
+constexpr void size_motion(Memory& memory, std::size_t references, std::size_t max_points,
+                           std::size_t max_lines) {
   const ScratchScope<Memory> scope(memory);
-  (void)PointConstraints::Workspace::take(memory, max_points);
-  (void)LineConstraints::Workspace::take(memory, max_lines);
-  (void)take_ransac_scratch(memory, max_points + max_lines);
+  for (std::size_t r = 0; r < references; ++r) {
+    (void)PointConstraints::Workspace::take(memory, max_points);
+    (void)LineConstraints::Workspace::take(memory, max_lines);
+  }
+  (void)take_ransac_scratch(memory, references * (max_points + max_lines));
 }
 
 }  // namespace plvo

@@ -12,7 +12,22 @@
 
 namespace plvo {
 
-inline constexpr std::size_t kMaxConstraintKinds = 4;
+inline constexpr std::size_t kMaxConstraintKinds = 4;  // sets: kinds times references
+inline constexpr std::size_t kMaxReferences = 2;
+
+// A frame that matches are with. The motion is solved against the base, reference 0; the pose of any other
+// relative to it is known with a covariance (of the ⊞-perturbation of T_reference_base), and marginalised:
+// with the Schur complement H of its own motion it leaves (H⁻¹ + B C Bᵀ)⁻¹, B the derivative of
+// T_current_reference with respect to that perturbation.
+struct MotionReference {
+  Se3 T_reference_base;
+  Matrix6 covariance = Matrix6::Zero();
+};
+using MotionReferences = std::array<MotionReference, kMaxReferences>;
+
+// T_current_reference of every reference, of one T_current_base.
+using MotionsToCurrent = std::array<Se3, kMaxReferences>;
+MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionReferences& references);
 
 class MotionProblem {
  public:
@@ -21,7 +36,9 @@ class MotionProblem {
   static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
 
   // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T.
-  MotionProblem(std::span<ConstraintSet* const> sets, const Kernels& kernels, const Se3& T);
+  // marginalise: false takes the references' poses for exact.
+  MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                const Kernels& kernels, const Se3& T, bool marginalise = true);
 
   double linearize(const Vector6& step, Matrix6& H, Vector6& g);
   void accept();
@@ -32,6 +49,8 @@ class MotionProblem {
 
  private:
   std::span<ConstraintSet* const> sets_;
+  MotionReferences references_;
+  bool marginalise_;
   Kernels kernels_;
   Se3 T_, candidate_;
   std::array<Matrix6, kMaxConstraintKinds> information_, candidate_information_;

@@ -29,6 +29,10 @@ class PointConstraints final : public ConstraintSet {
   PointConstraints(std::span<const Point3d> reference, std::span<const Point3d> current,
                    std::span<const Match> matches, const Workspace& workspace);
 
+  // The two measurements of match i.
+  const Point3d& reference_point(std::size_t i) const { return reference_[matches_[i].reference]; }
+  const Point3d& current_point(std::size_t i) const { return current_[matches_[i].current]; }
+
   std::size_t size() const override { return matches_.size(); }
   int dof() const override { return 3; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }

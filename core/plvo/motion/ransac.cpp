@@ -28,15 +28,17 @@ bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
 
 }  // namespace
 
-Ransac::Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options,
-               const MotionProblem::Kernels& kernels, std::span<Candidate> scratch)
+Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+               const MotionConfig& config, const MotionProblem::Kernels& kernels,
+               std::span<RansacCandidate> scratch)
     : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
-      options_(options),
+      references_(references),
+      config_(config),
       kernels_(kernels) {
   for (const bool samplable : {true, false})
     for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
       const ConstraintSet& set = *sets_[kind];
-      threshold_[kind] = chi_square_quantile(set.dof(), options_.inlier_probability);
+      threshold_[kind] = chi_square_quantile(set.dof(), config_.inlier_probability);
       for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
         if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
         scratch[usable_++] = {static_cast<std::uint8_t>(kind), static_cast<std::uint16_t>(i)};
@@ -56,7 +58,7 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
     Random random(seed);
     const auto n = static_cast<std::uint32_t>(samplable_);
     int needed = iterations_needed();
-    while (summary.iterations < needed && summary.draws < 4 * options_.max_iterations) {
+    while (summary.iterations < needed && summary.draws < 4 * config_.max_ransac_iterations) {
       ++summary.draws;
       Se3 hypothesis;
       const MinimalSetStatus status = solve_minimal_set(draw(random, n), R_expected, hypothesis);
@@ -83,7 +85,13 @@ std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
   if (c >= low) ++c;
   if (c >= high) ++c;
   const auto primitive = [&](std::uint32_t k) {
-    return sets_[candidates_[k].kind]->primitive(candidates_[k].index);
+    const ConstraintSet& set = *sets_[candidates_[k].kind];
+    Primitive match = set.primitive(candidates_[k].index);
+    if (set.reference() == 0) return match;
+    const Se3 T_base_reference = references_[set.reference()].T_reference_base.inverse();
+    match.p_reference = T_base_reference * match.p_reference;
+    if (match.shape == Primitive::Shape::kLine) match.d_reference = T_base_reference.R * match.d_reference;
+    return match;
   };
   return {primitive(a), primitive(b), primitive(c)};
 }
@@ -93,7 +101,7 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (sets_[candidates_[k].kind]->inliers()[candidates_[k].index] == 0) continue;
     if (k >= samplable_) return true;  // a kind that minimal sets know nothing of: left to its covariance
-    const Candidate inlier = candidates_[k];
+    const RansacCandidate inlier = candidates_[k];
     candidates_[k] = candidates_[n];
     candidates_[n++] = inlier;
   }
@@ -118,9 +126,12 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   double refined_score = 0;
   double refined_score_as_fresh = 0;
   int inliers = 0;
-  for (const Candidate& candidate : candidates_) {
+  const MotionsToCurrent motions = motions_to_current(T, references_);
+  for (const RansacCandidate& candidate : candidates_) {
     const double threshold = threshold_[candidate.kind];
-    const double s = sets_[candidate.kind]->mahalanobis_squared(candidate.index, T, kFreshScale * threshold);
+    const ConstraintSet& set = *sets_[candidate.kind];
+    const double s =
+        set.mahalanobis_squared(candidate.index, motions[set.reference()], kFreshScale * threshold);
     if (s <= kFreshScale * threshold) refined_score_as_fresh += kFreshScale * threshold - s;
     if (s > threshold) continue;
     refined_score += threshold - s;
@@ -138,10 +149,12 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 // The score of a fresh hypothesis, or 0 as soon as it cannot exceed to_beat.
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
-  for (const Candidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.kind];
-  for (const Candidate& candidate : candidates_) {
+  const MotionsToCurrent motions = motions_to_current(T, references_);
+  for (const RansacCandidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.kind];
+  for (const RansacCandidate& candidate : candidates_) {
     const double threshold = kFreshScale * threshold_[candidate.kind];
-    const double s = sets_[candidate.kind]->mahalanobis_squared(candidate.index, T, threshold);
+    const ConstraintSet& set = *sets_[candidate.kind];
+    const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
     // A gain of threshold − s instead of threshold: what is still possible shrinks by s.
     possible -= s < threshold ? s : threshold;
     if (possible <= to_beat) return 0;
@@ -155,7 +168,7 @@ void Ransac::refine(Se3& T) {
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
-    MotionProblem problem(sets_, kernels_, T);
+    MotionProblem problem(sets_, references_, kernels_, T, false);
     LevenbergMarquardt<6> solver;
     LmOptions options;
     options.max_iterations = kRefinementSteps;
@@ -169,12 +182,16 @@ void Ransac::refine(Se3& T) {
 bool Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   bool changed = false;
   inliers_ = 0;
+  const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    const Candidate& candidate = candidates_[k];
+    const RansacCandidate& candidate = candidates_[k];
     ConstraintSet& set = *sets_[candidate.kind];
     const double threshold = scale * threshold_[candidate.kind];
     const std::uint8_t flag =
-        k % stride == 0 && set.mahalanobis_squared(candidate.index, T, threshold) <= threshold ? 1 : 0;
+        k % stride == 0 &&
+                set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold
+            ? 1
+            : 0;
     std::uint8_t& old = set.inliers()[candidate.index];
     changed = changed || flag != old;
     old = flag;
@@ -184,13 +201,13 @@ bool Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 }
 
 int Ransac::iterations_needed() const {
-  if (inliers_ < 3) return options_.max_iterations;
+  if (inliers_ < 3) return config_.max_ransac_iterations;
   // 1 − (1 − w³)^k ≥ confidence, w the share of inliers among the matches.
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;
   if (all_good > 1 - 1e-9) return 1;
-  const double k = log(1 - options_.confidence) / log(1 - all_good);
-  return k < options_.max_iterations ? static_cast<int>(k) + 1 : options_.max_iterations;
+  const double k = log(1 - config_.ransac_confidence) / log(1 - all_good);
+  return k < config_.max_ransac_iterations ? static_cast<int>(k) + 1 : config_.max_ransac_iterations;
 }
 
 }  // namespace plvo

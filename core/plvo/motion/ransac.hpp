@@ -19,16 +19,10 @@
 #include "plvo/base/random.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/constraint_set.hpp"
+#include "plvo/motion/motion_config.hpp"
 #include "plvo/motion/motion_problem.hpp"
 
 namespace plvo {
-
-struct RansacOptions {
-  double inlier_probability = 0.99;  // of a true match to pass the χ² test, for every kind; 0 < p < 1
-  double confidence = 0.999;         // to have drawn a set of true matches before stopping; 0 < p < 1
-  int max_iterations =
-      300;  // non-degenerate sets drawn: iterations ≤ max_iterations; draws ≤ 4 max_iterations
-};
 
 struct RansacSummary {
   int draws = 0;       // sets drawn
@@ -39,21 +33,22 @@ struct RansacSummary {
 };
 
 // A match that may be an inlier.
-struct Candidate {
+struct RansacCandidate {
   std::uint8_t kind = 0;
   std::uint16_t index = 0;
 };
 
 template <typename Memory>
-constexpr std::span<Candidate> take_ransac_scratch(Memory& memory, std::size_t max_matches) {
-  return memory.template take<Candidate>("motion: candidates", max_matches);
+constexpr std::span<RansacCandidate> take_ransac_scratch(Memory& memory, std::size_t max_matches) {
+  return memory.template take<RansacCandidate>("motion: candidates", max_matches);
 }
 
 class Ransac {
  public:
-  // scratch holds a Candidate for every match of all sets; what does not fit is not looked at.
-  Ransac(std::span<ConstraintSet* const> sets, const RansacOptions& options,
-         const MotionProblem::Kernels& kernels, std::span<Candidate> scratch);
+  // scratch holds a RansacCandidate for every match of all sets; what does not fit
+  // is not looked at.
+  Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
+         const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch);
 
   // Usable matches, all of them, and those that may form minimal sets.
   std::size_t usable() const { return usable_; }
@@ -80,9 +75,10 @@ class Ransac {
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
-  RansacOptions options_;
+  MotionReferences references_;
+  MotionConfig config_;
   MotionProblem::Kernels kernels_;
-  std::span<Candidate> candidates_;  // those that may form minimal sets first
+  std::span<RansacCandidate> candidates_;  // those that may form minimal sets first
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;
   int inliers_ = 0;

@@ -15,22 +15,17 @@ enum class RobustLoss : std::uint8_t {
   // ρ(s) = s: the paper's maximum likelihood for Gaussian noise.
   kNone,
   // ρ(s) = s up to k², 2 k √s − k² beyond. k² is the 95 % quantile of χ²(dof), so that 19 of 20 good matches
-  // keep
-  // weight 1 whatever their kind: C stays honest under Gaussian noise, and the problem stays convex where it
-  // was.
+  // keep weight 1 whatever their kind: C stays honest under Gaussian noise, and the problem stays convex
+  // where
+  // it was.
   kHuber,
-  // −2 log of a multivariate Student density, ρ(s) = (ν + dof) log(1 + s/ν), ν = 5: for noise with heavier
-  // tails than
-  // the covariances admit. Weights of small residuals exceed 1; under truly Gaussian noise C is some 10 % too
-  // small.
-  kStudentT,
 };
 
 class RobustKernel {
  public:
   RobustKernel() = default;
   RobustKernel(RobustLoss loss, int dof)
-      : loss_(loss), dof_(dof), k_squared_(loss == RobustLoss::kHuber ? chi_square_quantile(dof, 0.95) : 0) {}
+      : loss_(loss), k_squared_(loss == RobustLoss::kHuber ? chi_square_quantile(dof, 0.95) : 0) {}
 
   // ρ(s) and, in weight, ρ'(s).
   double operator()(double s, double& weight) const {
@@ -39,18 +34,12 @@ class RobustKernel {
       weight = ks / s;
       return 2 * ks - k_squared_;
     }
-    if (loss_ == RobustLoss::kStudentT) {
-      weight = (kNu + dof_) / (kNu + s);
-      return (kNu + dof_) * log(1 + s / kNu);
-    }
     weight = 1;
     return s;
   }
 
  private:
-  static constexpr double kNu = 5;
   RobustLoss loss_ = RobustLoss::kNone;
-  int dof_ = 1;
   double k_squared_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/config.hpp"
 
+#include "plvo/image/depth_sampler.hpp"
+
 namespace plvo {
 namespace {
 
@@ -20,14 +22,31 @@ Status validate(const DepthNoise& noise) {
 }
 
 Status validate(const PointConfig& points) {
+  const DetectorConfig& detector = points.detector;
   if (!within(points.sigma_px, 0.01, 20)) return out_of_range("points.sigma_px", "between 0.01 and 20");
-  if (!within(points.pyramid_levels, 1, 4)) return out_of_range("points.pyramid_levels", "1 to 4");
-  if (!within(points.cell_px, 24, 64)) return out_of_range("points.cell_px", "24 to 64");
-  if (!within(points.noise_floor, 1, 64)) return out_of_range("points.noise_floor", "1 to 64");
-  if (!within(points.min_strength, 0, 1e5)) return out_of_range("points.min_strength", "0 to 100000");
-  if (!within(points.search_radius_px, 1, 1000)) return out_of_range("points.search_radius_px", "1 to 1000");
-  if (!within(points.max_distance, 0, 256)) return out_of_range("points.max_distance", "0 to 256");
-  if (!within(points.max_ratio, 0.1, 1)) return out_of_range("points.max_ratio", "between 0.1 and 1");
+  if (!within(points.depth_reach_px, 0, DepthSampler::kMaxRadius))
+    return out_of_range("points.depth_reach_px", "0 to 3");
+  if (!within(detector.levels, 1, 4)) return out_of_range("points.detector.levels", "1 to 4");
+  if (!within(detector.cell_px, kMinCell, kMaxCell))
+    return out_of_range("points.detector.cell_px", "24 to 64");
+  if (!within(detector.noise_floor, 1, 64)) return out_of_range("points.detector.noise_floor", "1 to 64");
+  if (!within(detector.min_strength, 0, 1e5))
+    return out_of_range("points.detector.min_strength", "0 to 100000");
+  if (!within(points.match.radius_px, 1, 1000)) return out_of_range("points.match.radius_px", "1 to 1000");
+  if (!within(points.match.max_distance, 0, 256))
+    return out_of_range("points.match.max_distance", "0 to 256");
+  if (!within(points.match.max_ratio, 0.1, 1))
+    return out_of_range("points.match.max_ratio", "between 0.1 and 1");
+  return {};
+}
+
+Status validate(const NoiseConfig& noise) {
+  if (!within(noise.initial.image, 0.01, 100) || !within(noise.initial.depth, 0.01, 100) ||
+      !within(noise.initial.lines, 0.01, 100))
+    return out_of_range("noise.initial image, depth, lines", "between 0.01 and 100");
+  if (!within(noise.learning_rate, 0, 0.5)) return out_of_range("noise.learning_rate", "0 to 0.5");
+  if (!within(noise.point_correlation, 0, 1) || !within(noise.line_correlation, 0, 1))
+    return out_of_range("noise.point_correlation, line_correlation", "0 to 1");
   return {};
 }
 
@@ -71,13 +90,23 @@ Status validate(const MotionConfig& motion) {
   if (!within(motion.max_ransac_iterations, 1, 100000))
     return out_of_range("motion.max_ransac_iterations", "1 to 100000");
   if (!within(motion.min_inliers, 3, 10000)) return out_of_range("motion.min_inliers", "3 to 10000");
-  if (!within(motion.wide_search_px, 1, 4000)) return out_of_range("motion.wide_search_px", "1 to 4000");
-  if (!within(motion.keyframe_inlier_ratio, 0, 1))
-    return out_of_range("motion.keyframe_inlier_ratio", "0 to 1");
-  if (!within(motion.max_lost_frames, 1, 1000000))
-    return out_of_range("motion.max_lost_frames", "1 to 1000000");
-  if (!within(motion.unseen_m_per_s, 0, 100) || !within(motion.unseen_rad_per_s, 0, 100))
-    return out_of_range("motion.unseen_m_per_s, unseen_rad_per_s", "0 to 100");
+  if (!within(motion.ransac_confidence, 0.5, 0.999999))
+    return out_of_range("motion.ransac_confidence", "between 0.5 and 0.999999");
+  if (!within(motion.min_inlier_ratio, 0, 1)) return out_of_range("motion.min_inlier_ratio", "0 to 1");
+  if (!within(motion.max_sigma_m, 1e-6, 100) || !within(motion.max_sigma_rad, 1e-6, 10))
+    return out_of_range("motion.max_sigma_m, max_sigma_rad", "between 1e-6 and 100 m, 10 rad");
+  return {};
+}
+
+Status validate(const ReferenceConfig& references) {
+  if (!within(references.wide_search_px, 1, 4000))
+    return out_of_range("references.wide_search_px", "1 to 4000");
+  if (!within(references.keyframe_inlier_ratio, 0, 1))
+    return out_of_range("references.keyframe_inlier_ratio", "0 to 1");
+  if (!within(references.max_lost_frames, 1, 1000000))
+    return out_of_range("references.max_lost_frames", "1 to 1000000");
+  if (!within(references.unseen_m_per_s, 0, 100) || !within(references.unseen_rad_per_s, 0, 100))
+    return out_of_range("references.unseen_m_per_s, unseen_rad_per_s", "0 to 100");
   return {};
 }
 
@@ -95,17 +124,21 @@ Status Config::validate() const {
   if (Status status = plvo::validate(depth_noise); !status.ok()) return status;
   if (Status status = plvo::validate(points); !status.ok()) return status;
   if (Status status = plvo::validate(lines); !status.ok()) return status;
+  if (Status status = plvo::validate(noise); !status.ok()) return status;
+  if (Status status = plvo::validate(references); !status.ok()) return status;
   return plvo::validate(motion);
 }
 
 Config Config::paper() {
   Config config;
-  config.features = Features::kBoth;
-  config.reference = ReferencePolicy::kPreviousFrame;
+  config.references.policy = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
+  config.noise = {.initial = {}, .learning_rate = 0, .point_correlation = 0, .line_correlation = 0};
+  config.points.registered = false;
+  config.points.sigma_px = 1;
+  config.points.depth_reach_px = 0;
   config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
-  config.lines.fit = Line3dConfig::paper();
   return config;
 }
 

@@ -9,17 +9,20 @@
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/lines/line3d.hpp"
 #include "plvo/lines/line_match.hpp"
+#include "plvo/motion/motion_config.hpp"
+#include "plvo/points/detector.hpp"
+#include "plvo/points/point_match.hpp"
 
 namespace plvo {
 
 // Capacities: fixed by init, never exceeded. What does not fit is dropped by a stated rule and counted.
 struct Limits {
-  int width = 640;       // px, largest image
-  int height = 480;      // px
-  int keypoints = 1000;  // per frame
-  int segments = 256;    // per frame
+  int width = 640;      // px, largest image
+  int height = 480;     // px
+  int keypoints = 400;  // per frame
+  int segments = 256;   // per frame
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 500, 128}; }
+  static constexpr Limits qvga() { return {320, 240, 250, 128}; }
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
@@ -27,23 +30,23 @@ struct Limits {
 enum class Features : std::uint8_t { kPoints, kLines, kBoth };
 
 enum class ReferencePolicy : std::uint8_t {
-  kPreviousFrame,  // the paper: every frame against the one before
-  kKeyframe,       // against the last keyframe, replaced when too few of its features are still seen
+  kPreviousFrame,        // the paper: every frame against the one before
+  kKeyframe,             // against the last keyframe, replaced when too few of its features are still seen
+  kKeyframeAndPrevious,  // against both in one estimate: the keyframe holds the drift, the last frame the
+                         // rest
 };
 
 struct PointConfig {
-  // σ_p on the finest level, doubling with each; where a keypoint was found again by registration, its
-  // uncertainty there is added in quadrature. Wider than one keypoint alone deserves: those of a scene err
-  // together.
-  double sigma_px = 1.0;
-  int pyramid_levels = 3;   // searched for keypoints, 1 … 4
-  int cell_px = 40;         // keypoints are spread over cells of this side, 24 … 64
-  int noise_floor = 5;      // grey levels: contrast below this is the sensor's noise, 1 … 64
-  double min_strength = 8;  // least corner strength, (grey levels / px)²
-  double search_radius_px =
-      30;                   // around the predicted position; a second search, when the first fails, is wider
-  int max_distance = 64;    // Hamming, of 256 bits
-  double max_ratio = 0.85;  // best distance / second best
+  DetectorConfig detector;
+  PointMatchConfig match;
+  // Keypoints are found again by registering their patches (alignment.hpp). false: by their descriptors
+  // alone, as in the paper, each frame's keypoint being where its detector put it.
+  bool registered = true;
+  // σ_p on the finest level, doubling with each: what registration is never better than. Without registration
+  // it is that of a detected keypoint.
+  double sigma_px = 0.1;
+  int depth_reach_px =
+      2;  // depth is that of a plane through the pixels so far around, 0 … 3; 0: of the pixel alone
 };
 
 struct LineConfig {
@@ -53,19 +56,27 @@ struct LineConfig {
   double guided_angle_rad = 0.1;
 };
 
-struct MotionConfig {
-  double inlier_probability = 0.99;  // of the chi-square test that decides inliers, points and lines alike
-  int max_ransac_iterations = 300;
-  int min_inliers = 10;
-  bool robust = true;  // down-weight large residuals in the maximum-likelihood refinement
+// How far the models of the noise are believed. How good the image and the depth are depends on the sensor,
+// its exposure and the scene: no constants serve all.
+struct NoiseConfig {
+  // Where the scales start: plane residuals of real Kinects are half of σ_d (2), their square a quarter.
+  NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1};
+  // Each frame moves the scales by this share of what its residuals show; 0: they stay.
+  double learning_rate = 0.1;
+  // The correlation between the residuals of any two points, or lines, of a frame: what they share
+  // (reflections, the lens, the clock) does not average out.
+  double point_correlation = 0.05;
+  double line_correlation = 0.005;
+};
 
-  // A keyframe is kept while at least this share of its keypoints are inliers.
-  double keyframe_inlier_ratio = 0.5;
-
+struct ReferenceConfig {
+  ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
+  // A keyframe is kept while at least this share of its features are inliers.
+  double keyframe_inlier_ratio = 0.3;
   // When tracking fails, features are looked for this far from where they were, whatever the prediction.
   double wide_search_px = 120;
-  // After so many lost frames in a row the reference is given up and tracking starts anew from the last good
-  // pose, whose covariance then grows by the motion that nobody saw: at most this fast (SD per second).
+  // After so many lost frames in a row the references are given up and tracking starts anew from the last
+  // good pose, whose covariance then grows by the motion that nobody saw: at most this fast (SD per second).
   int max_lost_frames = 15;
   double unseen_m_per_s = 0.5;
   double unseen_rad_per_s = 0.5;
@@ -73,8 +84,9 @@ struct MotionConfig {
 
 struct Config {
   Features features = Features::kBoth;
-  ReferencePolicy reference = ReferencePolicy::kPreviousFrame;
+  ReferenceConfig references;
   DepthNoise depth_noise;
+  NoiseConfig noise;
   PointConfig points;
   LineConfig lines;
   MotionConfig motion;

@@ -6,7 +6,9 @@
 #include "plvo/camera/observation.hpp"
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
+#include "plvo/math/trigonometry.hpp"
 #include "plvo/points/descriptor.hpp"
+#include "plvo/points/own_surface.hpp"
 
 namespace plvo {
 
@@ -37,7 +39,7 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) {
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
   const std::span<std::uint16_t> row = take_smoothing_row(scratch, camera_.width);
-  for (int level = 0; level < config_.points.pyramid_levels; ++level) {
+  for (int level = 0; level < config_.points.detector.levels; ++level) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
     smooth_binomial7(image, smoothed, row);
@@ -51,8 +53,8 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) {
   }
 }
 
-void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch,
-                                FrameFeatures& features, TrackResult& result) {
+void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, const NoiseScales& noise,
+                                Arena& scratch, FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
     const StageTimer timer(config_.stage_clock, result, Stage::kImage);
@@ -63,42 +65,59 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
   features.lines.segments.clear();
   features.lines.count_3d = 0;
   if (config_.features != Features::kLines) extract_points(depth, scratch, features.points, result);
-  if (config_.features != Features::kPoints) extract_lines(depth, scratch, features.lines, result);
+  if (config_.features != Features::kPoints) extract_lines(depth, noise, scratch, features.lines, result);
 }
 
 void FeatureExtraction::extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                        TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kPoints);
-  DetectorOptions options;
-  options.levels = config_.points.pyramid_levels;
-  options.cell_px = config_.points.cell_px;
-  options.noise_floor = config_.points.noise_floor;
-  options.min_strength = config_.points.min_strength;
-  const DetectionSummary summary = detect_keypoints(pyramid_, depth, options, scratch, points.keypoints);
+  const DetectionSummary summary =
+      detect_keypoints(pyramid_, depth, config_.points.detector, scratch, points.keypoints);
   describe_points(scratch, points);
-  lift_points(depth, points, result);
+  result.points.with_depth =
+      static_cast<int>(points.keypoints.size());  // the detector passes over what has none
 
   result.points.detected = summary.candidates;
   result.points.dropped = static_cast<int>(points.keypoints.dropped());
 }
 
-void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, PointFeatures& points,
-                                    TrackResult& result) const {
-  // P2, P3. A keypoint whose window turns out to have no usable depth keeps a covariance of zero: "no 3D
-  // point".
-  int with_depth = 0;
+void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
+                                    PointFeatures& points) const {
+  // A registered patch is a landmark by definition, wherever its centre lies: only its depth is uncertain.
+  // The little across the ray keeps its covariance invertible.
+  constexpr double kPatchCentre_px = 0.02;
+  const PointConfig& config = config_.points;
+  const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
+  const double depth_scale = sqrt(noise.depth);
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
-    const DepthSample depth = depth_sampler.sample(keypoint.u, keypoint.v);
-    points.points[i] = observe_point(camera_.pinhole, keypoint.u, keypoint.v, depth.depth_m,
-                                     config_.points.sigma_px * (1 << keypoint.level), depth.sigma_m);
-    with_depth += depth.depth_m > 0 ? 1 : 0;
+    const auto u = static_cast<double>(keypoint.u);
+    const auto v = static_cast<double>(keypoint.v);
+    const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
+    // One whose window turns out to have no usable depth is at the camera's centre: "no 3D point".
+    points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
+                                     depth_scale * depth.sigma_m);
+    points.masks[i] = depth.depth_m > 0 ? own_surface(depth_sampler, keypoint, depth.depth_m) : WindowMask{};
   }
-  result.points.with_depth = with_depth;
 }
 
-void FeatureExtraction::extract_lines(const DepthSampler& depth, Arena& scratch, LineFeatures& lines,
-                                      TrackResult& result) {
+bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
+                                  Line3d& line) const {
+  const Line3dReport report =
+      observe_line(segment, depth, camera_.pinhole, config_.depth_noise, config_.lines.fit, line);
+  if (report.outcome != Line3dOutcome::kOk) return false;
+  line.Sigma *= noise.lines;
+  return true;
+}
+
+void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseScales& noise,
+                                         LineFeatures& lines) const {
+  for (std::size_t i = 0; i < lines.count_3d; ++i)
+    (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
+}
+
+void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+                                      LineFeatures& lines, TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kLines);
   constexpr int kLevel = 1;
   constexpr double kScale = 1 << kLevel;
@@ -111,10 +130,7 @@ void FeatureExtraction::extract_lines(const DepthSampler& depth, Arena& scratch,
 
   for (std::size_t i = 0; i < lines.segments.size(); ++i) {
     const Segment segment = lines.segments[i];
-    Line3d& line = lines.lines[lines.count_3d];
-    if (observe_line(segment, depth, camera_.pinhole, config_.depth_noise, config_.lines.fit, line).outcome !=
-        Line3dOutcome::kOk)
-      continue;
+    if (!lift_line(depth, noise, segment, lines.lines[lines.count_3d])) continue;
     std::swap(lines.segments[i], lines.segments[lines.count_3d]);
     lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / kScale, segment);
     ++lines.count_3d;

@@ -57,18 +57,26 @@ class FeatureExtraction {
     return {frame.depth, table_, config_.depth_noise};
   }
 
-  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`.
-  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
-               TrackResult& result);
+  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Its points have
+  // no 3D yet.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+               FrameFeatures& features, TrackResult& result);
+  // P2, P3, and what belongs to each keypoint's own surface: when the motion during the exposure is known as
+  // well as it will be.
+  void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
+  // L2, L3 once more, with a better idea of the motion. A line that has no 3D any more keeps what it had.
+  void lift_lines_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
 
   // Of the last frame: what matching refines against.
   const Pyramid& pyramid() const { return pyramid_; }
 
  private:
-  void lift_points(const DepthSampler& depth, PointFeatures& points, TrackResult& result) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
   void extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points, TrackResult& result);
-  void extract_lines(const DepthSampler& depth, Arena& scratch, LineFeatures& lines, TrackResult& result);
+  void extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
+                     TrackResult& result);
+  bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
+                 Line3d& line) const;
   void describe_points(Arena& scratch, PointFeatures& points);
 
   CameraModel camera_;

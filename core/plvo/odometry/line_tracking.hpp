@@ -5,7 +5,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
-#include "plvo/camera/rolling_shutter.hpp"
+#include "plvo/camera/exposure.hpp"
 #include "plvo/lines/line_features.hpp"
 #include "plvo/lines/line_match.hpp"
 #include "plvo/math/se3.hpp"
@@ -13,11 +13,11 @@
 namespace plvo {
 
 // Indices are those of the 3D lines of both frames. Lines that the motion puts behind the camera are left
-// out. reference_lines: the reference's 3D lines at its mid-exposure; shutter: of the current frame.
-void match_predicted_lines(const Pinhole& pinhole, const RollingShutter& shutter,
-                           const LineFeatures& reference, std::span<const Line3d> reference_lines,
-                           const LineFeatures& current, const Se3& T_current_reference,
-                           const LineMatchConfig& gates, Arena& scratch, FixedVector<Match>& matches);
+// out. reference_lines: the reference's 3D lines at its mid-exposure; exposure: of the current frame.
+void match_predicted_lines(const Pinhole& pinhole, const Exposure& exposure, const LineFeatures& reference,
+                           std::span<const Line3d> reference_lines, const LineFeatures& current,
+                           const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
+                           FixedVector<Match>& matches);
 
 // Its scratch.
 template <typename Memory>

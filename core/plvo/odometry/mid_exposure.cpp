@@ -26,8 +26,7 @@ Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
   return recent + 0.5 * kExtrapolated * (recent - prior.reference_velocity);
 }
 
-std::span<const Line3d> carried(const RollingShutter& shutter, std::span<const Line3d> lines,
-                                Arena& scratch) {
+std::span<const Line3d> carried(const Exposure& shutter, std::span<const Line3d> lines, Arena& scratch) {
   const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
   for (std::size_t i = 0; i < copies.size(); ++i) {
     copies[i] = lines[i];
@@ -39,6 +38,11 @@ std::span<const Line3d> carried(const RollingShutter& shutter, std::span<const L
 
 }  // namespace
 
+Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference) {
+  const Vector6 recent = recent_velocity(prior, T_current_reference);
+  return {camera, current_velocity(prior, recent), prior.depth_after_colour_s};
+}
+
 MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
                             const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch) {
   MidExposure result;
@@ -46,11 +50,11 @@ MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, c
   result.reference_points = points;
   result.reference_lines = reference.lines.lines_3d();
   result.current_lines = current.lines.lines_3d();
+  result.current = current_exposure(camera, prior, T_current_reference);
   if (!(camera.readout_s > 0)) return result;
 
   const Vector6 recent = recent_velocity(prior, T_current_reference);
-  result.current = RollingShutter(camera, current_velocity(prior, recent));
-  const RollingShutter shutter(camera, reference_velocity(prior, recent));
+  const Exposure shutter(camera, reference_velocity(prior, recent), 0);
   const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
   for (std::size_t i = 0; i < copies.size(); ++i)
     copies[i] = {shutter.at_mid_exposure(points[i].p), points[i].Sigma};

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
-#include "plvo/camera/rolling_shutter.hpp"
+#include "plvo/camera/exposure.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/frame_features.hpp"
@@ -21,16 +21,20 @@ struct PairPrior {
   Se3 T_current_reference;                       // as expected
   Se3 T_reference_last;                          // of the last good frame, which may be the reference itself
   double seconds_since_last = 0;                 // from the last good frame to the current one
-  Vector6 reference_velocity = Vector6::Zero();  // per second, as of rolling_shutter.hpp
+  Vector6 reference_velocity = Vector6::Zero();  // per second, as of exposure.hpp
   bool reference_velocity_known = false;
   bool reference_is_last = true;
+  double depth_after_colour_s = 0;  // of the current frame, as of exposure.hpp
 };
 
 struct MidExposure {
-  RollingShutter current;
+  Exposure current;
   std::span<const Point3d> reference_points;
   std::span<const Line3d> reference_lines, current_lines;
 };
+
+// How the camera moved while the current frame was exposed, if this is the motion.
+Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference);
 
 // Copies into the scratch what changes; with a global shutter nothing does, and the features are used as they
 // are.

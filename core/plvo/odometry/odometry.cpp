@@ -73,7 +73,8 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   camera_ = camera;
   config_ = config;
   rooms_.extraction.init(camera, config);
-  rooms_.estimation.init(camera, config);
+  rooms_.tracking.init(camera, config);
+  noise_ = config.noise.initial;
   ready_ = true;
   return {};
 }
@@ -115,31 +116,45 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   last_stamp_ns_ = input.stamp_ns;
   view_slot_ = current_;
   has_stamp_ = true;
+  depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
-  rooms_.extraction.extract(input, depth, arena_, frame(current_), result);
+  const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
+  rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_), result);
   segment_count_ = view_segments(frame(current_).lines, rooms_.segment_views);
-  if (reference_ == kNobody) {
+  if (keyframe_ == kNobody) {
+    rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).points);
     start(result);
     return result;
   }
-  MotionEstimate motion = estimate_motion_to(reference_, depth, result);
-  int against = reference_;
-  if (motion.status != StatusCode::kOk && last_ != reference_) {
-    motion = estimate_motion_to(last_, depth, result);
-    against = last_;
+  const TrackedMotion tracked = estimate_motion(depth, result);
+  fill_views(tracked.motion);
+  if (tracked.motion.status == StatusCode::kOk) {
+    rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).points);
+    accept(tracked, result);
+  } else {
+    lose(tracked.motion, result);
   }
-  fill_views(motion, against);
-  if (motion.status == StatusCode::kOk)
-    accept(motion, against, result);
-  else
-    lose(motion, result);
   return result;
+}
+
+double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
+  if (!camera_.depth_timing.known) return 0;
+  // Stamps farther apart than this do not belong to one frame, whoever paired them.
+  constexpr double kMost_s = 0.1;
+  const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
+  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera_.depth_timing.delay_s;
+}
+
+// How the camera moves while the frame is exposed, if it goes on as it did.
+Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
+  if (last_ == kNobody) return {};
+  const PairPrior prior = prior_of(last_, stamp_ns);
+  return current_exposure(camera_, prior, prior.T_current_reference);
 }
 
 // The motion from the reference to now, if the camera goes on as it did between the last two good frames.
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
-  const Se3 T_last_reference = anchors_[static_cast<std::size_t>(last_)].T_world_camera.inverse() *
-                               anchors_[static_cast<std::size_t>(reference)].T_world_camera;
+  const Se3 T_last_reference = anchor(last_).T_world_camera.inverse() * anchor(reference).T_world_camera;
   if (motion_ns_ <= 0) return T_last_reference;
   const std::int64_t elapsed = elapsed_ns(frame(last_).stamp_ns, stamp_ns);
   // Beyond a few frames a prediction is worse than none.
@@ -150,28 +165,51 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
 }
 
 PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
-  const Anchor& from = anchors_[static_cast<std::size_t>(reference)];
+  const Anchor& from = anchor(reference);
   PairPrior prior;
   prior.T_current_reference = predict_motion(reference, stamp_ns);
-  prior.T_reference_last =
-      from.T_world_camera.inverse() * anchors_[static_cast<std::size_t>(last_)].T_world_camera;
+  prior.T_reference_last = from.T_world_camera.inverse() * anchor(last_).T_world_camera;
   prior.seconds_since_last = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, stamp_ns)) * 1e-9;
   prior.reference_velocity = from.velocity;
   prior.reference_velocity_known = from.velocity_known;
   prior.reference_is_last = reference == last_;
+  prior.depth_after_colour_s = depth_after_colour_s_;
   return prior;
 }
 
-MotionEstimate Odometry::estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result) {
-  PairPrior prior = prior_of(reference, result.stamp_ns);
-  result.reference_stamp_ns = frame(reference).stamp_ns;
-  MotionEstimate motion =
-      rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth, prior,
-                                 config_.points.search_radius_px, arena_, result);
-  if (motion.status == StatusCode::kOk) return motion;
-  prior.T_current_reference = Se3{};
-  return rooms_.estimation.estimate(frame(reference), frame(current_), rooms_.extraction.pyramid(), depth,
-                                    prior, config_.motion.wide_search_px, arena_, result);
+// The keyframe, which is the base, and the last good frame, as far as the policy wants both.
+std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
+  references[0] = {&frame(keyframe_), prior_of(keyframe_, stamp_ns), {}};
+  if (last_ == keyframe_ || config_.references.policy != ReferencePolicy::kKeyframeAndPrevious) return 1;
+  const Se3 T_last_keyframe = anchor(last_).T_world_camera.inverse() * anchor(keyframe_).T_world_camera;
+  references[1] = {
+      &frame(last_), prior_of(last_, stamp_ns), {T_last_keyframe, anchor(last_).motion_covariance}};
+  return 2;
+}
+
+// A first motion from the latest reference, where it is predicted; failing that from each, wherever it may
+// be. Then the motion from all of them.
+TrackedMotion Odometry::estimate_motion(const DepthSampler& depth, TrackResult& result) {
+  References references;
+  const std::size_t count = choose_references(result.stamp_ns, references);
+  const CurrentFrame current{frame(current_), rooms_.extraction, depth, noise_};
+  result.reference_stamp_ns = frame(keyframe_).stamp_ns;
+  TrackedMotion tracked;
+  for (std::size_t attempt = 0; attempt <= count; ++attempt) {
+    const bool wide = attempt > 0;
+    Reference from = references[count - (wide ? attempt : 1)];
+    if (wide) from.prior.T_current_reference = Se3{};
+    tracked = rooms_.tracking.find(from, current,
+                                   wide ? config_.references.wide_search_px : config_.points.match.radius_px,
+                                   arena_, result);
+    if (tracked.motion.status != StatusCode::kOk) continue;
+    if (!config_.points.registered) return tracked;
+    const Se3 T_current_base = tracked.motion.T_current_reference * from.pose.T_reference_base;
+    tracked =
+        rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, result);
+    if (tracked.motion.status == StatusCode::kOk) return tracked;
+  }
+  return tracked;
 }
 
 void Odometry::start(TrackResult& result) {
@@ -190,8 +228,8 @@ void Odometry::start(TrackResult& result) {
   // grows by all the time that nobody saw.
   if (last_ != kNobody) {
     const double seconds = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, result.stamp_ns)) * 1e-9;
-    const double sigma_m = config_.motion.unseen_m_per_s * seconds;
-    const double sigma_rad = config_.motion.unseen_rad_per_s * seconds;
+    const double sigma_m = config_.references.unseen_m_per_s * seconds;
+    const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
     for (int i = 0; i < 3; ++i) {
       result.pose_covariance(i, i) += sigma_m * sigma_m;
       result.pose_covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
@@ -200,19 +238,21 @@ void Odometry::start(TrackResult& result) {
   anchor(current_).T_world_camera = result.T_world_camera;
   anchor(current_).covariance = result.pose_covariance;
   anchor(current_).velocity_known = false;
+  anchor(current_).motion_covariance.setZero();
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
-  reference_ = last_ = current_;
+  keyframe_ = last_ = current_;
   current_ = (current_ + 1) % 3;
   motion_ns_ = 0;
   lost_frames_ = 0;
 }
 
-void Odometry::accept(const MotionEstimate& motion, int against, TrackResult& result) {
+void Odometry::accept(const TrackedMotion& tracked, TrackResult& result) {
+  const MotionEstimate& motion = tracked.motion;
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
   result.motion_covariance = motion.C_H;
-  const Anchor& from = anchor(against);
+  const Anchor& from = anchor(keyframe_);
   const Se3 T_reference_current = motion.T_current_reference.inverse();
   Se3 T_world_camera = from.T_world_camera * T_reference_current;
   T_world_camera.R = renormalise(T_world_camera.R);
@@ -222,13 +262,14 @@ void Odometry::accept(const MotionEstimate& motion, int against, TrackResult& re
   result.pose_covariance = covariance;
   anchor(current_).T_world_camera = T_world_camera;
   anchor(current_).covariance = covariance;
+  anchor(current_).motion_covariance = motion.C_H;
 
   T_last_previous_ = T_world_camera.inverse() * anchor(last_).T_world_camera;
   motion_ns_ = elapsed_ns(frame(last_).stamp_ns, result.stamp_ns);
   note_velocity();
   lost_frames_ = 0;
-  reference_ = against;
-  choose_reference(result);
+  learn(config_.noise, tracked.shown, noise_);
+  choose_keyframe();
 }
 
 // Of the current frame, and so more of the last one.
@@ -241,48 +282,51 @@ void Odometry::note_velocity() {
   last.velocity_known = true;
 }
 
-// The tracked frame becomes the last good one, and the reference too, unless a keyframe goes on being a good
+// The tracked frame becomes the last good one, and the keyframe too, unless the keyframe goes on being a good
 // one.
-void Odometry::choose_reference(const TrackResult& result) {
+void Odometry::choose_keyframe() {
   last_ = current_;
-  const FrameFeatures& features = frame(reference_);
-  const auto available = static_cast<double>(features.points.keypoints.size() + features.lines.count_3d);
-  const bool keep =
-      config_.reference == ReferencePolicy::kKeyframe &&
-      result.points.inliers + result.lines.inliers >= config_.motion.keyframe_inlier_ratio * available;
-  if (!keep) reference_ = last_;
+  const FrameFeatures& features = frame(keyframe_);
+  std::size_t available = features.lines.count_3d;
+  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
+    available += point.p.z() > 0 ? 1 : 0;
+  const double least = config_.references.keyframe_inlier_ratio * static_cast<double>(available);
+  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame &&
+                    rooms_.tracking.tracks(0).inliers >= least;
+  if (!keep) keyframe_ = last_;
   current_ = 0;
-  while (current_ == reference_ || current_ == last_) ++current_;
+  while (current_ == keyframe_ || current_ == last_) ++current_;
 }
 
 void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
   result.state = TrackState::kLost;
   result.status = explain_loss(motion, result);
   ++lost_frames_;
-  if (lost_frames_ < config_.motion.max_lost_frames) return;
+  if (lost_frames_ < config_.references.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. The next usable frame starts anew at the last good
   // pose.
-  reference_ = kNobody;
+  keyframe_ = kNobody;
   current_ = (last_ + 1) % 3;
 }
 
-void Odometry::fill_views(const MotionEstimate& motion, int against) {
-  const PointTracks& tracks = rooms_.estimation.point_tracks();
-  const PointFeatures& reference = frame(against).points;
-  const std::span<const std::uint8_t> inliers = rooms_.estimation.point_inliers();
-  const bool solved = motion.status == StatusCode::kOk;
-  point_track_count_ = tracks.matches.size();
+// Of the latest reference; without a motion there is nothing to show.
+void Odometry::fill_views(const MotionEstimate& motion) {
+  if (motion.status != StatusCode::kOk) return;
+  const bool both = last_ != keyframe_ && config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
+  const FrameFeatures& reference = frame(both ? last_ : keyframe_);
+  const ReferenceTracks& tracks = rooms_.tracking.tracks(both ? 1 : 0);
+  point_track_count_ = tracks.points.matches.size();
   for (std::size_t i = 0; i < point_track_count_; ++i) {
-    const Keypoint& from = reference.keypoints[tracks.matches[i].reference];
-    rooms_.point_track_views[i] = {from.u, from.v, static_cast<float>(tracks.pixels[i].x()),
-                                   static_cast<float>(tracks.pixels[i].y()), solved && inliers[i] != 0};
+    const Keypoint& from = reference.points.keypoints[tracks.points.matches[i].reference];
+    const Vector2& to = tracks.points.pixels[i];
+    rooms_.point_track_views[i] = {from.u, from.v, static_cast<float>(to.x()), static_cast<float>(to.y()),
+                                   tracks.point_inliers[i] != 0};
   }
-  reference_segment_count_ = view_segments(frame(against).lines, rooms_.reference_segment_views);
-  const std::span<const Match> matches = rooms_.estimation.line_matches();
-  const std::span<const std::uint8_t> line_inliers = rooms_.estimation.line_inliers();
-  line_track_count_ = matches.size();
+  reference_segment_count_ = view_segments(reference.lines, rooms_.reference_segment_views);
+  line_track_count_ = tracks.lines.size();
   for (std::size_t i = 0; i < line_track_count_; ++i)
-    rooms_.line_track_views[i] = {matches[i].reference, matches[i].current, solved && line_inliers[i] != 0};
+    rooms_.line_track_views[i] = {tracks.lines[i].reference, tracks.lines[i].current,
+                                  tracks.line_inliers[i] != 0};
 }
 
 FeatureView Odometry::features() const {

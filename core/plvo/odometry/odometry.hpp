@@ -25,7 +25,7 @@
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
-#include "plvo/odometry/pair_estimation.hpp"
+#include "plvo/odometry/reference_tracking.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
@@ -56,8 +56,8 @@ struct FeatureView {
 // What init carves, in order; on an ArenaSizer the same code counts it.
 struct OdometryRooms {
   FeatureExtraction extraction;
-  PairEstimation estimation;
-  std::array<FrameFeatures, 3> frames;  // the reference, the last good frame, the frame being tracked
+  ReferenceTracking tracking;
+  std::array<FrameFeatures, 3> frames;  // the keyframe, the last good frame, the frame being tracked
   std::span<PointTrackView> point_track_views;
   std::span<LineTrackView> line_track_views;
   std::span<SegmentView> segment_views, reference_segment_views;
@@ -72,13 +72,13 @@ struct OdometryRooms {
     segment_views = memory.template take<SegmentView>("feature view", segments);
     reference_segment_views = memory.template take<SegmentView>("feature view", segments);
     extraction.carve(memory, limits);
-    estimation.carve(memory, limits);
+    tracking.carve(memory, limits);
   }
   // The stages of one frame come one after the other: of their scratch the largest counts.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
     FeatureExtraction::reserve(memory, limits);
-    PairEstimation::reserve(memory, limits);
+    ReferenceTracking::reserve(memory, limits);
   }
 };
 
@@ -109,29 +109,36 @@ class Odometry {
   FeatureView features() const;
 
  private:
+  // What is known of the frame in a slot of rooms_.frames, once it is tracked.
   struct Anchor {
     Se3 T_world_camera;
-    Matrix6 covariance = Matrix6::Zero();
-    // Per second (rolling_shutter.hpp): since the good frame before it; once the next one is tracked, the
-    // mean of both.
+    Matrix6 covariance = Matrix6::Zero();         // of T_world_camera
+    Matrix6 motion_covariance = Matrix6::Zero();  // of T_camera_keyframe, the keyframe being the present one
+    // Per second (exposure.hpp): since the good frame before it; once the next one is tracked, the mean of
+    // both.
     Vector6 velocity = Vector6::Zero();
     bool velocity_known = false;
   };
+  using References = std::array<Reference, kMaxReferences>;
 
   Status check(const RgbdFrame& frame) const;
-  MotionEstimate estimate_motion_to(int reference, const DepthSampler& depth, TrackResult& result);
+  double depth_after_colour_s(const RgbdFrame& frame) const;
+  Exposure predict_exposure(std::int64_t stamp_ns) const;
+  std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
+  TrackedMotion estimate_motion(const DepthSampler& depth, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   void note_velocity();
-  void accept(const MotionEstimate& motion, int against, TrackResult& result);
+  void accept(const TrackedMotion& tracked, TrackResult& result);
   void start(TrackResult& result);
   void lose(const MotionEstimate& motion, TrackResult& result);
-  void choose_reference(const TrackResult& result);
-  void fill_views(const MotionEstimate& motion, int against);
+  void choose_keyframe();
+  void fill_views(const MotionEstimate& motion);
 
   FrameFeatures& frame(int slot) { return rooms_.frames[static_cast<std::size_t>(slot)]; }
   const FrameFeatures& frame(int slot) const { return rooms_.frames[static_cast<std::size_t>(slot)]; }
   Anchor& anchor(int slot) { return anchors_[static_cast<std::size_t>(slot)]; }
+  const Anchor& anchor(int slot) const { return anchors_[static_cast<std::size_t>(slot)]; }
 
   Arena arena_;
   OdometryRooms rooms_;
@@ -139,12 +146,14 @@ class Odometry {
   Config config_;
   bool ready_ = false;
 
-  // Slots of rooms_.frames. Until the first usable frame there is no reference (−1).
-  int reference_ = -1;
+  // Slots of rooms_.frames. Until the first usable frame there is no keyframe (−1).
+  int keyframe_ = -1;
   int last_ = -1;
   int current_ = 0;
   std::array<Anchor, 3> anchors_;
-  std::int64_t last_stamp_ns_ = 0;  // of the last frame that was looked at, good or not
+  NoiseScales noise_;                // learnt so far
+  double depth_after_colour_s_ = 0;  // of the current frame
+  std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
   bool has_stamp_ = false;
   Se3 T_last_previous_;  // the last motion, and how long it took: the prediction of the next one
   std::int64_t motion_ns_ = 0;

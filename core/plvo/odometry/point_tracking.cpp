@@ -10,26 +10,35 @@ namespace {
 // What only serves to find the motion roughly need not be registered finely.
 constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
 
-// Alignment::sigma_px takes the residuals of a patch's pixels for independent. Those of real patches, seen
-// from elsewhere under another light, are not: one in sixteen counts.
-constexpr double kResidualCorrelation = 4;
-
 // σ_p of a keypoint where registration put it, in pixels of its level.
 double registered_sigma_px(const PointConfig& config, const Alignment& alignment) {
-  const double sigma = kResidualCorrelation * alignment.sigma_px;
-  return sqrt(config.sigma_px * config.sigma_px + sigma * sigma);
+  return sqrt(config.sigma_px * config.sigma_px + alignment.sigma_px * alignment.sigma_px);
 }
 
 // Where the reference keypoint's 3D point is seen after the motion.
 Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
   constexpr double kNearest_m = 0.1;
   if (!(point.p.z() > 0)) return {};
-  const Vector3 p = view.shutter.as_seen(T_current_reference * point.p);
+  const Vector3 p = view.exposure.as_seen(T_current_reference * point.p);
   if (!(p.z() > kNearest_m)) return {};
   const Vector2 pixel = project(view.pinhole, p);
   const GrayView image = view.pyramid.level(0);
   if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height)) return {};
   return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+}
+
+// Adds a track of reference keypoint i, found at `pixel`, if there is depth.
+void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, double sigma_px,
+               PointTracks& tracks) {
+  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y(), view.config.depth_reach_px);
+  if (!(depth.depth_m > 0)) return;
+  const std::size_t track = tracks.matches.size();
+  if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
+  tracks.pixels[track] = pixel;
+  Point3d& point = tracks.points[track];
+  point = observe_point(view.pinhole, pixel.x(), pixel.y(), depth.depth_m, sqrt(view.noise.image) * sigma_px,
+                        sqrt(view.noise.depth) * depth.sigma_m);
+  point.p = view.exposure.at_mid_exposure(point.p);
 }
 
 // Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
@@ -40,19 +49,12 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
   // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
   const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
   const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
-  const Alignment alignment = align_patch(reference.patches[i], view.pyramid.level(keypoint.level),
-                                          u / scale - offset_x, v / scale - offset_y, options);
+  const Alignment alignment =
+      align_patch(reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
+                  u / scale - offset_x, v / scale - offset_y, options);
   if (!alignment.ok) return;
-  const Vector2 pixel((alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale);
-  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y());
-  if (!(depth.depth_m > 0)) return;
-  const std::size_t track = tracks.matches.size();
-  if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
-  tracks.pixels[track] = pixel;
-  Point3d& point = tracks.points[track];
-  point = observe_point(view.pinhole, pixel.x(), pixel.y(), depth.depth_m,
-                        scale * registered_sigma_px(view.config, alignment), depth.sigma_m);
-  point.p = view.shutter.at_mid_exposure(point.p);
+  add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
+            scale * registered_sigma_px(view.config, alignment), tracks);
 }
 
 }  // namespace
@@ -70,15 +72,17 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   for (std::size_t i = 0; i < n; ++i)
     predictions[i] = predict(view, reference_points[i], T_current_reference);
 
-  PointMatchOptions options;
-  options.radius_px = radius_px;
-  options.max_distance = view.config.max_distance;
-  options.max_ratio = view.config.max_ratio;
+  PointMatchConfig config = view.config.match;
+  config.radius_px = radius_px;
   const GrayView image = view.pyramid.level(0);
-  match_points(reference, predictions, current, image.width, image.height, options, scratch, putative);
+  match_points(reference, predictions, current, image.width, image.height, config, scratch, putative);
   for (const Match& match : putative) {
     const Keypoint& found = current.keypoints[match.current];
-    register_keypoint(view, reference, match.reference, found.u, found.v, kRough, tracks);
+    if (view.config.registered)
+      register_keypoint(view, reference, match.reference, found.u, found.v, kRough, tracks);
+    else
+      add_track(view, match.reference, {static_cast<double>(found.u), static_cast<double>(found.v)},
+                view.config.sigma_px * (1 << found.level), tracks);
   }
 }
 

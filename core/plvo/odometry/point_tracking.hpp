@@ -12,7 +12,7 @@
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/camera/camera_model.hpp"
-#include "plvo/camera/rolling_shutter.hpp"
+#include "plvo/camera/exposure.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/math/se3.hpp"
@@ -44,10 +44,12 @@ struct TrackingView {
   const PointConfig& config;
   const Pyramid& pyramid;
   const DepthSampler& depth;
-  const RollingShutter& shutter;
+  const Exposure& exposure;
+  const NoiseScales& noise;
 };
 
-// Through descriptors, within radius_px of where T_current_reference puts the reference keypoints.
+// Through descriptors, within radius_px of where T_current_reference puts the reference keypoints; registered
+// roughly from there, or, without registration, where the current frame's detector put them.
 // reference_points: those of the reference's keypoints, at its mid-exposure.
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
                          std::span<const Point3d> reference_points, const PointFeatures& current,

@@ -10,37 +10,87 @@
 namespace plvo {
 namespace {
 
-constexpr int kRadius = kPatchRadius - 1;
-// Eight columns, −4 … 3, and nine rows, −4 … 4: a row of 16-bit numbers fills a vector register of any board.
-constexpr int kColumns = 2 * kRadius;
-constexpr int kRows = 2 * kRadius + 1;
+// Eight columns and nine rows: a row of 16-bit numbers fills a vector register of any board.
+constexpr int kColumns = kWindowColumns;
+constexpr int kRows = kWindowRows;
 constexpr int kPixels = kColumns * kRows;
-constexpr int kFractionBits = 5;  // of the bilinear weights: positions are read on a grid of 1/32 px
+constexpr int kLeastPixels = kPixels / 3;
+constexpr int kFractionBits = 5;  // positions are read on a grid of 1/32 px
+constexpr int kTaps = 4;          // of the cubic B-spline
 
-// The four regressors of the template, in integers: 2·∂T/∂x, 2·∂T/∂y, T less its mean, 1; and their normal
-// equations.
+// The spline's weights at every fraction, in 1/128; they sum to 128.
+using Weights = std::array<std::int16_t, kTaps>;
+constexpr std::array<Weights, 1 << kFractionBits> make_weights() {
+  std::array<Weights, 1 << kFractionBits> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double f = static_cast<double>(i) / (1 << kFractionBits);
+    const double g = 1 - f;
+    const std::array<double, kTaps> exact = {g * g * g / 6, (4 + f * f * (3 * f - 6)) / 6,
+                                             (4 + g * g * (3 * g - 6)) / 6, f * f * f / 6};
+    int sum = 0;
+    for (std::size_t k = 0; k < kTaps; ++k) {
+      table[i][k] = static_cast<std::int16_t>(exact[k] * 128 + 0.5);
+      sum += table[i][k];
+    }
+    // What rounding left goes to the largest.
+    const std::size_t largest = f < 0.5 ? 1 : 2;
+    table[i][largest] = static_cast<std::int16_t>(table[i][largest] + 128 - sum);
+  }
+  return table;
+}
+constexpr auto kWeights = make_weights();
+
+// The four regressors of the smoothed template, in quarters of a grey level: 2·∂T/∂x, 2·∂T/∂y, T less its
+// mean; and one. All zero where the mask is. And their normal equations, in grey levels.
 struct Template {
-  std::array<std::int16_t, kPixels> gx, gy, value;
+  std::array<std::int16_t, kPixels> gx, gy, value, one;
+  int pixels = 0;
   Matrix4 normal;
 };
+constexpr double kTemplateUnit = 0.25;
 
-Template make_template(const Patch& patch) {
+// The window and one pixel around it, smoothed, in quarters of a grey level.
+constexpr int kSide = 2 * kWindowReach + 3;
+using Smoothed = std::array<std::int16_t, kSide * kSide>;
+
+Smoothed smooth(const Patch& patch) {
+  Smoothed out;
+  std::array<std::int16_t, kSide * kPatchSide> rows;
+  for (int y = 0; y < kPatchSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const std::uint8_t* p = patch.data() + y * kPatchSide + x;
+      rows[static_cast<std::size_t>(y * kSide + x)] = static_cast<std::int16_t>(p[0] + 4 * p[1] + p[2]);
+    }
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const std::int16_t* r = rows.data() + y * kSide + x;
+      out[static_cast<std::size_t>(y * kSide + x)] =
+          static_cast<std::int16_t>(((r[0] + 4 * r[kSide] + r[2 * kSide]) * 4 + 18) / 36);
+    }
+  return out;
+}
+
+Template make_template(const Patch& patch, const WindowMask& mask) {
   Template t;
+  const Smoothed smoothed = smooth(patch);
   // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
   std::int32_t total = 0;
-  for (std::uint8_t value : patch) total += value;
-  const std::int32_t mean = total / (kPatchSide * kPatchSide);
-  std::array<std::int32_t, 10> sums{};
+  for (const std::int16_t value : smoothed) total += value;
+  const std::int32_t mean = total / (kSide * kSide);
+  std::array<std::int32_t, 9> sums{};
   std::size_t i = 0;
-  for (int y = 1; y <= kRows; ++y) {
-    const std::uint8_t* row = patch.data() + y * kPatchSide + 1;
+  for (std::size_t y = 0; y < kRows; ++y) {
+    const std::int16_t* row = smoothed.data() + (y + 1) * kSide + 1;
     for (int x = 0; x < kColumns; ++x, ++i) {
-      const std::int32_t gx = row[x + 1] - row[x - 1];
-      const std::int32_t gy = row[x + kPatchSide] - row[x - kPatchSide];
-      const std::int32_t value = row[x] - mean;
+      const std::int32_t on = (mask[y] >> x) & 1;
+      const std::int32_t gx = on * (row[x + 1] - row[x - 1]);
+      const std::int32_t gy = on * (row[x + kSide] - row[x - kSide]);
+      const std::int32_t value = on * (row[x] - mean);
       t.gx[i] = static_cast<std::int16_t>(gx);
       t.gy[i] = static_cast<std::int16_t>(gy);
       t.value[i] = static_cast<std::int16_t>(value);
+      t.one[i] = static_cast<std::int16_t>(on);
+      t.pixels += on;
       sums[0] += gx * gx;
       sums[1] += gx * gy;
       sums[2] += gx * value;
@@ -52,10 +102,12 @@ Template make_template(const Patch& patch) {
       sums[8] += value;
     }
   }
-  sums[9] = kPixels;
   constexpr int kRow[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
   for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) t.normal(r, c) = sums[static_cast<std::size_t>(kRow[r][c])];
+    for (int c = 0; c < 4; ++c) {
+      const double unit = (r < 3 ? kTemplateUnit : 1) * (c < 3 ? kTemplateUnit : 1);
+      t.normal(r, c) = unit * (r + c == 6 ? t.pixels : sums[static_cast<std::size_t>(kRow[r][c])]);
+    }
   return t;
 }
 
@@ -64,39 +116,30 @@ struct Moments {
   double squared = 0;                       // Σ I²
 };
 
-// Blends each pixel with its right neighbour, weights g and f of 1/32, three fractional bits left.
-void blend_row(const std::uint8_t* pixels, std::uint16_t f, std::uint16_t g,
-               std::array<std::uint16_t, kColumns>& out) {
-  for (std::size_t c = 0; c < kColumns; ++c)
-    out[c] =
-        static_cast<std::uint16_t>(static_cast<std::uint16_t>(pixels[c] * g + pixels[c + 1] * f + 2) >> 2);
-}
-
 // (x, y): the position of the patch's centre, in 1/32 px; the window must lie inside the image.
 Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_t y) {
   constexpr std::int32_t kOne = 1 << kFractionBits;
-  const auto fx = static_cast<std::uint16_t>(x & (kOne - 1));
-  const auto fy = static_cast<std::uint16_t>(y & (kOne - 1));
-  const auto gx = static_cast<std::uint16_t>(kOne - fx);
-  const auto gy = static_cast<std::uint16_t>(kOne - fy);
-  const std::uint8_t* first =
-      image.data + ((y >> kFractionBits) - kRadius) * image.stride + (x >> kFractionBits) - kRadius;
-  // 16 bits throughout: after the horizontal blend three fractional bits are kept (≤ 2040), after the
-  // vertical one four (≤ 4080).
-  std::array<std::uint16_t, kColumns> above;
-  blend_row(first, fx, gx, above);
-  std::array<std::int16_t, kPixels> values;
-  for (std::size_t r = 0; r < kRows; ++r) {
-    std::array<std::uint16_t, kColumns> below;
-    blend_row(first + static_cast<std::ptrdiff_t>(r + 1) * image.stride, fx, gx, below);
-    for (std::size_t c = 0; c < kColumns; ++c)
-      values[r * kColumns + c] = static_cast<std::int16_t>(
-          static_cast<std::uint16_t>(static_cast<std::uint16_t>(above[c] * gy) +
-                                     static_cast<std::uint16_t>(below[c] * fy) + 8) >>
-          4);
-    above = below;
+  const Weights& across = kWeights[static_cast<std::size_t>(x & (kOne - 1))];
+  const Weights& down = kWeights[static_cast<std::size_t>(y & (kOne - 1))];
+  const std::uint8_t* first = image.data + ((y >> kFractionBits) - kWindowReach - 1) * image.stride +
+                              (x >> kFractionBits) - kWindowReach - 1;
+  // In 1/16 of a grey level.
+  constexpr int kBlendedRows = kRows + kTaps - 1;
+  std::array<std::int16_t, kColumns * kBlendedRows> blended;
+  for (int r = 0; r < kBlendedRows; ++r) {
+    const std::uint8_t* p = first + r * image.stride;
+    for (int c = 0; c < kColumns; ++c, ++p)
+      blended[static_cast<std::size_t>(r * kColumns + c)] = static_cast<std::int16_t>(
+          (p[0] * across[0] + p[1] * across[1] + p[2] * across[2] + p[3] * across[3] + 4) >> 3);
   }
-  // 72 products of at most 4080 · 510: below 2^31. Squares too, 72 · 4080².
+  std::array<std::int16_t, kPixels> values;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    const std::int16_t* b = &blended[k];
+    values[k] = static_cast<std::int16_t>((b[0] * down[0] + b[kColumns] * down[1] +
+                                           b[2 * kColumns] * down[2] + b[3 * kColumns] * down[3] + 64) >>
+                                          7);
+  }
+  // 72 products of at most 4080 · 2040: below 2^30. Squares too, 72 · 4080².
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
   std::int32_t with_value = 0;
@@ -106,22 +149,25 @@ Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_
     with_gx += values[k] * t.gx[k];
     with_gy += values[k] * t.gy[k];
     with_value += values[k] * t.value[k];
-    sum += values[k];
-    squared += values[k] * values[k];
+    const std::int32_t own = values[k] * t.one[k];
+    sum += own;
+    squared += own * own;
   }
   constexpr double kUnit = 1.0 / 16;
   Moments moments;
-  moments.with_template << kUnit * with_gx, kUnit * with_gy, kUnit * with_value, kUnit * sum;
+  moments.with_template << kTemplateUnit * kUnit * with_gx, kTemplateUnit * kUnit * with_gy,
+      kTemplateUnit * kUnit * with_value, kUnit * sum;
   moments.squared = kUnit * kUnit * static_cast<double>(squared);
   return moments;
 }
 
 }  // namespace
 
-Alignment align_patch(const Patch& patch, GrayView image, double start_x, double start_y,
-                      const AlignmentOptions& options) {
+Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
+                      double start_y, const AlignmentOptions& options) {
   Alignment result;
-  const Template t = make_template(patch);
+  const Template t = make_template(patch, mask);
+  if (t.pixels < kLeastPixels) return result;
   Cholesky<4> factor;
   if (!factor.factor(t.normal)) return result;
 
@@ -130,9 +176,10 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
   const double max_shift_squared = options.max_shift_px * options.max_shift_px;
   bool converged = false;
   while (!converged && result.iterations < options.max_iterations) {
-    // Floor, then the read touches one more pixel to the right and below.
-    if (!(result.x >= kRadius + 1 && result.y >= kRadius + 1 && result.x < image.width - kRadius - 2 &&
-          result.y < image.height - kRadius - 2))
+    // Floor, then the read touches one pixel before the window and two behind it.
+    constexpr int kFirst = kWindowReach + 2;
+    if (!(result.x >= kFirst && result.y >= kFirst && result.x < image.width - kFirst - 1 &&
+          result.y < image.height - kFirst - 1))
       return result;
     constexpr double kOne = 1 << kFractionBits;
     const auto x = static_cast<std::int32_t>(result.x * kOne + 0.5);
@@ -157,9 +204,9 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
     if (!converged) continue;
 
     const double residual = moments.squared - solution.dot(moments.with_template);
-    const double mean = t.normal(2, 3) / kPixels;
-    const double variance = t.normal(2, 2) / kPixels - mean * mean;
-    const double residual_variance = (residual > 0 ? residual : 0) / (kPixels - 4) / (gain * gain);
+    const double mean = t.normal(2, 3) / t.pixels;
+    const double variance = t.normal(2, 2) / t.pixels - mean * mean;
+    const double residual_variance = (residual > 0 ? residual : 0) / (t.pixels - 4) / (gain * gain);
     if (!(residual_variance <= options.max_residual * options.max_residual * variance)) return result;
     // Covariance of (c_x, c_y): the noise of one pixel through the inverse of the normal equations, so that
     // what gain and offset take of the gradients' information is not counted. Regressors are twice the
@@ -170,7 +217,9 @@ Alignment align_patch(const Patch& patch, GrayView image, double start_x, double
     const double half_difference = 2 * (column_x[0] - column_y[1]);
     const double cross = 4 * column_x[1];
     const double largest = half_sum + sqrt(half_difference * half_difference + cross * cross);
-    result.sigma_px = sqrt(residual_variance * largest);
+    // The spline leaves a quarter of white noise's variance but all of its strength where the gradients are, at low
+    // frequencies: neighbouring residuals are alike, and one in four counts.
+    result.sigma_px = sqrt(4 * residual_variance * largest);
     result.ok = true;
   }
   return result;

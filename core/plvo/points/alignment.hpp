@@ -5,6 +5,12 @@
 // times better. Inverse composition (Baker & Matthews, "Lucas-Kanade 20 years on", IJCV 2004) with the gain
 // and the offset of the light as unknowns, as one linear regression a step: I(x + d) ≈ a T(x) + b + ∇T · c, d
 // ← d − c / a.
+//
+// Both images are compared as the cubic B-spline sees them: T smoothed by [1 4 1]/6 either way, I by the
+// spline's four weights at the fraction of a pixel it is read at. Bilinear reading moves fine structure by up
+// to 0.02 px, as a sine of that fraction: when the camera turns the fraction is much the same all over the
+// image, so all points err together, which looks like a motion (Unser, Aldroubi & Eden, "B-spline signal
+// processing", 1993: the spline's transform falls with the fourth power, and with it what aliases).
 #pragma once
 
 #include "plvo/image/image_view.hpp"
@@ -27,9 +33,10 @@ struct Alignment {
   int iterations = 0;
 };
 
-// patch: cut around whole pixel (px, py) of the reference's level. (start_x, start_y): where that pixel is
-// expected on the same level of the current image. Registers an inner window of 8×9 pixels.
-Alignment align_patch(const Patch& patch, GrayView image, double start_x, double start_y,
-                      const AlignmentOptions& options);
+// patch: cut around whole pixel (px, py) of the reference's level; of its window the pixels in `mask` are
+// compared, of which there must be a third at least. (start_x, start_y): where that pixel is expected on the
+// same level of the current image.
+Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
+                      double start_y, const AlignmentOptions& options);
 
 }  // namespace plvo

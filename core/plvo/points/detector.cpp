@@ -105,7 +105,7 @@ class BestOfCell {
 struct Search {
   const Pyramid& pyramid;
   const DepthSampler& depth;
-  const DetectorOptions& options;
+  const DetectorConfig& options;
   FixedVector<Candidate>& candidates;
   int found = 0;
 };
@@ -213,8 +213,7 @@ double corner_strength(GrayView image, int x, int y) {
 }
 
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorOptions& options, Arena& scratch,
-                                  FixedVector<Keypoint>& out) {
+                                  const DetectorConfig& options, Arena& scratch, FixedVector<Keypoint>& out) {
   const ScratchScope scope(scratch);
   std::size_t cells = 0;
   for (int level = 0; level < options.levels; ++level)

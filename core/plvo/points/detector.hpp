@@ -18,14 +18,14 @@
 
 namespace plvo {
 
-struct DetectorOptions {
-  int levels = 3;           // of the pyramid that are searched, 1 … Pyramid::kMaxLevels
-  int cell_px = 40;         // on each level; kMinCell … kMaxCell
-  int noise_floor = 5;      // grey levels: the least threshold of the segment test
+struct DetectorConfig {
+  int levels = 3;       // of the pyramid that are searched, 1 … Pyramid::kMaxLevels
+  int cell_px = 40;     // keypoints are spread over cells of this side on each level; kMinCell … kMaxCell
+  int noise_floor = 5;  // grey levels: contrast below this is the sensor's noise, 1 … 64
   double min_strength = 8;  // of Keypoint::strength
 };
 
-inline constexpr int kMinCell = 24;  // px, bounds of DetectorOptions::cell_px
+inline constexpr int kMinCell = 24;  // px, bounds of DetectorConfig::cell_px
 inline constexpr int kMaxCell = 64;
 
 // Pixels from the border of a level that stay free: descriptor and patch must fit.
@@ -78,6 +78,6 @@ double corner_strength(GrayView image, int x, int y);
 // rank does not fit whole, its strongest. Pixels without depth are passed over, since only 3D points serve.
 // What was a local maximum but did not fit is counted by out.dropped(). Scratch: see reserve_detection.
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorOptions& options, Arena& scratch, FixedVector<Keypoint>& out);
+                                  const DetectorConfig& options, Arena& scratch, FixedVector<Keypoint>& out);
 
 }  // namespace plvo

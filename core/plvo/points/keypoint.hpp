@@ -22,16 +22,26 @@ struct Keypoint {
 // 256 comparisons, see descriptor.hpp.
 using Descriptor = std::array<std::uint64_t, 4>;
 
-// Raw pixels around (x, y) on the keypoint's level: what alignment.hpp compares with.
-inline constexpr int kPatchRadius = 5;
+// Raw pixels around (x, y) on the keypoint's level: what alignment.hpp compares with, and a rim for its
+// smoothing and its gradients.
+inline constexpr int kPatchRadius = 6;
 inline constexpr int kPatchSide = 2 * kPatchRadius + 1;
 using Patch = std::array<std::uint8_t, kPatchSide * kPatchSide>;
+
+// The part of a patch that is registered, columns −4 … 3 and rows −4 … 4 about its centre, and which of its
+// pixels show the keypoint's own surface: a byte a row, a bit a column (own_surface.hpp).
+inline constexpr int kWindowReach = 4;
+inline constexpr int kWindowColumns = 2 * kWindowReach;
+inline constexpr int kWindowRows = 2 * kWindowReach + 1;
+using WindowMask = std::array<std::uint8_t, kWindowRows>;
+inline constexpr WindowMask kWholeWindow = {255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 // The point features of one frame: parallel arrays, index = keypoint.
 struct PointFeatures {
   FixedVector<Keypoint> keypoints;
   std::span<Descriptor> descriptors;
   std::span<Patch> patches;
+  std::span<WindowMask> masks;
   std::span<Point3d> points;  // camera frame
 
   template <typename Memory>
@@ -40,6 +50,7 @@ struct PointFeatures {
     keypoints = FixedVector<Keypoint>(memory.template take<Keypoint>("point features", n));
     descriptors = memory.template take<Descriptor>("point features", n);
     patches = memory.template take<Patch>("point features", n);
+    masks = memory.template take<WindowMask>("point features", n);
     points = memory.template take<Point3d>("point features", n);
   }
 };

@@ -58,13 +58,13 @@ class Buckets {
 
 // Best match of reference keypoint i, or kNone when none is near enough in both senses or a rival is as good.
 BestMatch find_best(const PointFeatures& reference, std::size_t i, const Prediction& prediction,
-                    const PointFeatures& current, const Buckets& buckets, const PointMatchOptions& options) {
+                    const PointFeatures& current, const Buckets& buckets, const PointMatchConfig& config) {
   const Descriptor& descriptor = reference.descriptors[i];
   const std::uint8_t level = reference.keypoints[i].level;
-  const double radius_squared = options.radius_px * options.radius_px;
+  const double radius_squared = config.radius_px * config.radius_px;
   BestMatch best{kNone, 257};
   int second = 257;
-  buckets.for_each_near(prediction.u, prediction.v, options.radius_px, [&](std::uint16_t j) {
+  buckets.for_each_near(prediction.u, prediction.v, config.radius_px, [&](std::uint16_t j) {
     const Keypoint& candidate = current.keypoints[j];
     if (candidate.level != level) return;
     const double du = candidate.u - prediction.u;
@@ -80,8 +80,8 @@ BestMatch find_best(const PointFeatures& reference, std::size_t i, const Predict
     }
   });
   // A rival that is just as good refuses the match even at distance 0, where every ratio holds.
-  if (best.distance > options.max_distance || best.distance >= second ||
-      best.distance > options.max_ratio * second)
+  if (best.distance > config.max_distance || best.distance >= second ||
+      best.distance > config.max_ratio * second)
     best.index = kNone;
   return best;
 }
@@ -89,7 +89,7 @@ BestMatch find_best(const PointFeatures& reference, std::size_t i, const Predict
 }  // namespace
 
 void match_points(const PointFeatures& reference, std::span<const Prediction> predictions,
-                  const PointFeatures& current, int width, int height, const PointMatchOptions& options,
+                  const PointFeatures& current, int width, int height, const PointMatchConfig& config,
                   Arena& scratch, FixedVector<Match>& out) {
   const ScratchScope scope(scratch);
   out.clear();
@@ -104,7 +104,7 @@ void match_points(const PointFeatures& reference, std::span<const Prediction> pr
   for (std::size_t i = 0; i < forward.size(); ++i) {
     forward[i] = {kNone, 257};
     if (!predictions[i].visible) continue;
-    forward[i] = find_best(reference, i, predictions[i], current, buckets, options);
+    forward[i] = find_best(reference, i, predictions[i], current, buckets, config);
     if (forward[i].index == kNone) continue;
     BestMatch& rival = backward[forward[i].index];
     if (forward[i].distance < rival.distance) rival = {static_cast<std::uint16_t>(i), forward[i].distance};

@@ -13,9 +13,9 @@
 
 namespace plvo {
 
-struct PointMatchOptions {
-  double radius_px = 30;    // level-0 pixels around the prediction
-  int max_distance = 64;    // bits
+struct PointMatchConfig {
+  double radius_px = 30;    // level-0 pixels around the prediction; a second search, when it fails, is wider
+  int max_distance = 64;    // Hamming, of 256 bits
   double max_ratio = 0.85;  // best distance / distance of the best one elsewhere
 };
 
@@ -51,7 +51,7 @@ constexpr void reserve_point_match(Memory& memory, int keypoints, int width, int
 // predictions: one for each keypoint of the reference. Only keypoints of the same pyramid level are compared.
 // `out` is filled in the order of the reference's keypoints.
 void match_points(const PointFeatures& reference, std::span<const Prediction> predictions,
-                  const PointFeatures& current, int width, int height, const PointMatchOptions& options,
+                  const PointFeatures& current, int width, int height, const PointMatchConfig& config,
                   Arena& scratch, FixedVector<Match>& out);
 
 }  // namespace plvo

@@ -11,7 +11,8 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   const std::map<std::string, Features> features = {
       {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}};
   const std::map<std::string, ReferencePolicy> references = {{"previous", ReferencePolicy::kPreviousFrame},
-                                                             {"keyframe", ReferencePolicy::kKeyframe}};
+                                                             {"keyframe", ReferencePolicy::kKeyframe},
+                                                             {"both", ReferencePolicy::kKeyframeAndPrevious}};
   const std::string group = "Odometry";
   command.add_option("--preset", options.preset, "default, or paper: the settings of Lu & Song (2015)")
       ->transform(CLI::CheckedTransformer(presets).description(""))
@@ -23,9 +24,9 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
       ->group(group);
   CLI::Option* reference = command
                                .add_option("--reference", options.reference,
-                                           "Match against the previous frame, or the last keyframe")
+                                           "Match against the previous frame, the last keyframe, or both")
                                ->transform(CLI::CheckedTransformer(references).description(""))
-                               ->type_name("previous|keyframe")
+                               ->type_name("previous|keyframe|both")
                                ->group(group);
   command
       .add_flag_callback(
@@ -41,7 +42,7 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
 Config make_config(const OdometryOptions& options) {
   Config config = options.preset == Preset::kPaper ? Config::paper() : Config();
   config.features = options.features.value_or(config.features);
-  config.reference = options.reference.value_or(config.reference);
+  config.references.policy = options.reference.value_or(config.references.policy);
   config.seed = options.seed.value_or(config.seed);
   return config;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Against a slow statement of the same: the point is moved in a thousand small steps from its row's exposure
 // to that of the middle row.
-#include "plvo/camera/rolling_shutter.hpp"
+#include "plvo/camera/exposure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Vector3 integrate(Vector3 p, const Vector6& velocity, double seconds) {
   return p;
 }
 
-TEST(RollingShutter, MovesAPointToTheMiddleRowsMoment) {
+TEST(Exposure, MovesAPointToTheMiddleRowsMoment) {
   const CameraModel camera = rolling_camera(0.03);
   Random random(7);
   for (int trial = 0; trial < 200; ++trial) {
@@ -52,17 +52,17 @@ TEST(RollingShutter, MovesAPointToTheMiddleRowsMoment) {
     const double v = uniform(random, 0, 479);
     const Vector3 seen = back_project(camera.pinhole, u, v, uniform(random, 0.5, 5));
     const Vector3 expected = integrate(seen, velocity, -camera.readout_s * (v / 479 - 0.5));
-    const Vector3 moved = RollingShutter(camera, velocity).at_mid_exposure(seen);
+    const Vector3 moved = Exposure(camera, velocity, 0).at_mid_exposure(seen);
     // Third order in the angle, of at most 0.04 rad.
     EXPECT_LT((moved - expected).norm(), 0.0005 * (seen - expected).norm() + 1e-6) << trial;
   }
 }
 
-TEST(RollingShutter, AsSeenIsTheWayBack) {
+TEST(Exposure, AsSeenIsTheWayBack) {
   const CameraModel camera = rolling_camera(0.0261);
   Random random(8);
   for (int trial = 0; trial < 200; ++trial) {
-    const RollingShutter shutter(camera, velocity_of(random));
+    const Exposure shutter(camera, velocity_of(random), 0);
     const Vector3 seen = back_project(camera.pinhole, uniform(random, 40, 600), uniform(random, 40, 440),
                                       uniform(random, 0.5, 5));
     const Vector3 again = shutter.as_seen(shutter.at_mid_exposure(seen));
@@ -71,26 +71,66 @@ TEST(RollingShutter, AsSeenIsTheWayBack) {
   }
 }
 
-TEST(RollingShutter, TheMiddleRowStays) {
+TEST(Exposure, TheMiddleRowStays) {
   const CameraModel camera = rolling_camera(0.03);
   Vector6 velocity;
   velocity << 1, -1, 0.5, 1, 2, -1;
   const Vector3 p = back_project(camera.pinhole, 100, 239.5, 2);
-  EXPECT_LT((RollingShutter(camera, velocity).at_mid_exposure(p) - p).norm(), 1e-12);
+  EXPECT_LT((Exposure(camera, velocity, 0).at_mid_exposure(p) - p).norm(), 1e-12);
 }
 
-TEST(RollingShutter, NothingMovesWithoutOne) {
+TEST(Exposure, NothingMovesWithoutOne) {
   Vector6 velocity = Vector6::Ones();
   const Vector3 p(0.3, 0.4, 1);
-  EXPECT_EQ(RollingShutter().at_mid_exposure(p), p);
-  EXPECT_EQ(RollingShutter(rolling_camera(0), velocity).at_mid_exposure(p), p);
-  EXPECT_FALSE(RollingShutter(rolling_camera(0), velocity).active());
+  EXPECT_EQ(Exposure().at_mid_exposure(p), p);
+  EXPECT_EQ(Exposure(rolling_camera(0), velocity, 0).at_mid_exposure(p), p);
   const Vector3 behind(0.3, 0.4, -1);
-  EXPECT_EQ(RollingShutter(rolling_camera(0.03), velocity).at_mid_exposure(behind), behind);
-  EXPECT_EQ(RollingShutter(rolling_camera(0.03), velocity).as_seen(behind), behind);
+  EXPECT_EQ(Exposure(rolling_camera(0.03), velocity, 0).at_mid_exposure(behind), behind);
+  EXPECT_EQ(Exposure(rolling_camera(0.03), velocity, 0).as_seen(behind), behind);
 }
 
-TEST(RollingShutter, AReadoutOutOfRangeIsRefused) {
+TEST(Exposure, DepthIsSeenWhereTheSurfaceWasAtItsTime) {
+  CameraModel camera = rolling_camera(0.03);
+  camera.depth_timing = {true, 0, 0.02};
+  Random random(9);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vector6 velocity = velocity_of(random);
+    const double after = uniform(random, -0.02, 0.02);
+    const double v = uniform(random, 0, 479);
+    const double depth_v = uniform(random, 0, 479);
+    const Vector3 p = back_project(camera.pinhole, uniform(random, 0, 639), v, uniform(random, 0.5, 5));
+    const Exposure exposure(camera, velocity, after);
+    EXPECT_TRUE(exposure.depth_apart());
+    const double lag = after + 0.02 * (depth_v / 479 - 0.5) - 0.03 * (v / 479 - 0.5);
+    const Vector3 then = exposure.at_depth_time(p, v, depth_v);
+    // Third order in the angle, of at most 0.1 rad.
+    EXPECT_LT((then - integrate(p, velocity, lag)).norm(), 0.002 * (then - p).norm() + 1e-6) << trial;
+    // Forth and back: to second order in the angle.
+    EXPECT_LT((exposure.from_depth_time(then, v, depth_v) - p).norm(), 0.001 * (then - p).norm() + 1e-6)
+        << trial;
+  }
+}
+
+TEST(Exposure, DepthOfUnknownTimingComesWithItsColour) {
+  const Vector6 velocity = Vector6::Ones();
+  EXPECT_FALSE(Exposure(rolling_camera(0.03), velocity, 0.01).depth_apart());
+  CameraModel together = rolling_camera(0.03);
+  together.depth_timing = {true, 0, 0.03};
+  EXPECT_FALSE(Exposure(together, velocity, 0).depth_apart());
+  EXPECT_TRUE(Exposure(together, velocity, 1e-3).depth_apart());
+}
+
+TEST(Exposure, ATimingOutOfRangeIsRefused) {
+  for (const double seconds : {-0.11, 0.11, std::numeric_limits<double>::quiet_NaN()}) {
+    CameraModel camera;
+    camera.depth_timing.delay_s = seconds;
+    EXPECT_EQ(camera.validate().code(), StatusCode::kInvalidArgument);
+    camera.depth_timing = {true, 0, seconds};
+    EXPECT_EQ(camera.validate().code(), StatusCode::kInvalidArgument);
+  }
+}
+
+TEST(Exposure, AReadoutOutOfRangeIsRefused) {
   EXPECT_TRUE(rolling_camera(0.1).validate().ok());
   for (double readout_s : {-0.001, 0.11, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(rolling_camera(readout_s).validate().code(), StatusCode::kInvalidArgument);

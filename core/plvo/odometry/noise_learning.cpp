@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/noise_learning.hpp"
+
+#include <algorithm>
+
+#include "plvo/base/fixed_vector.hpp"
+
+namespace plvo {
+namespace {
+
+// Medians of χ²(1), χ²(2), χ²(4).
+constexpr double kMedian1 = 0.4549;
+constexpr double kMedian2 = 1.3863;
+constexpr double kMedian4 = 3.3567;
+// What lies farther out (squared, in its own model's units) is a wrong match rather than noise. Twice the
+// SD's gate of inliers: noise twice as large as modelled must be able to show.
+constexpr double kFarthestPoint = 45;
+constexpr double kFarthestLine = 53;
+constexpr std::size_t kLeast = 12;
+// One frame may not say more than this, and the scales stay within these bounds.
+constexpr double kMostOfAFrame = 4;
+constexpr double kLeastScale = 0.04;
+constexpr double kMostScale = 25;
+
+double median_over(FixedVector<double>& values, double expected) {
+  if (values.size() < kLeast) return 1;
+  double* const middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle / expected;
+}
+
+// Of one point match: e across the image against its covariance, and along the ray.
+struct PointResidual {
+  double image = 0, depth = 0;
+};
+
+PointResidual residual_of(const Pinhole& pinhole, const Point3d& reference, const Point3d& current,
+                          const Se3& T) {
+  const Vector3 p = T * reference.p;
+  const Matrix3 Sigma = T.R * reference.Sigma * T.R.transpose() + current.Sigma;
+  const double fx = pinhole.fx / p.z();
+  const double fy = pinhole.fy / p.z();
+  Matrix<2, 3> J;
+  J << fx, 0, -fx * p.x() / p.z(), 0, fy, -fy * p.y() / p.z();
+  const Matrix2 S = J * Sigma * J.transpose();
+  const Vector2 e = project(pinhole, p) - project(pinhole, current.p);
+  const double d = p.z() - current.p.z();
+  const double determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(0, 1);
+  return {(e.x() * e.x() * S(1, 1) - 2 * e.x() * e.y() * S(0, 1) + e.y() * e.y() * S(0, 0)) / determinant,
+          d * d / Sigma(2, 2)};
+}
+
+double step(double scale, double shown, double rate) {
+  const double bounded = std::clamp(shown, 1 / kMostOfAFrame, kMostOfAFrame);
+  return std::clamp(scale * (1 + rate * (bounded - 1)), kLeastScale, kMostScale);
+}
+
+}  // namespace
+
+NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
+                            const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch) {
+  const ScratchScope scope(scratch);
+  FixedVector<double> image(scratch.take<double>("residuals", points.size()));
+  FixedVector<double> depth(scratch.take<double>("residuals", points.size()));
+  FixedVector<double> line(scratch.take<double>("residuals", lines.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.usable(i) ||
+        !(points.mahalanobis_squared(i, T_current_reference, kFarthestPoint) < kFarthestPoint))
+      continue;
+    const PointResidual residual =
+        residual_of(pinhole, points.reference_point(i), points.current_point(i), T_current_reference);
+    image.push_back(residual.image);
+    depth.push_back(residual.depth);
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!lines.usable(i)) continue;
+    const double s = lines.mahalanobis_squared(i, T_current_reference, kFarthestLine);
+    if (s < kFarthestLine) line.push_back(s);
+  }
+  return {median_over(image, kMedian2), median_over(depth, kMedian1), median_over(line, kMedian4)};
+}
+
+void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales) {
+  scales.image = step(scales.image, shown.image, config.learning_rate);
+  scales.depth = step(scales.depth, shown.depth, config.learning_rate);
+  scales.lines = step(scales.lines, shown.lines, config.learning_rate);
+}
+
+}  // namespace plvo

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far the models of the noise are right, from the residuals that the estimate leaves: variance
+// components, one for points across the image, one for their depth, one for lines. Medians, so that neither
+// outliers nor the scale itself decide who has a say; over the last reference, whose motion is small: what
+// shows is the measurement's noise and not that of a long way.
+#pragma once
+
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/camera/depth_noise.hpp"
+#include "plvo/motion/line_constraints.hpp"
+#include "plvo/motion/point_constraints.hpp"
+#include "plvo/odometry/config.hpp"
+
+namespace plvo {
+
+// Median of the squared normalised residuals over that of χ²(dof), for each kind; 1 where there are too few
+// to tell. Scratch: see reserve_noise_learning.
+NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
+                            const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch);
+
+// One step of `scales` towards what a frame showed, shown times the scales themselves.
+void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales);
+
+template <typename Memory>
+constexpr void reserve_noise_learning(Memory& memory, const Limits& limits) {
+  const ScratchScope scope(memory);
+  const auto points = static_cast<std::size_t>(limits.keypoints);
+  memory.template take<double>("residuals", points);
+  memory.template take<double>("residuals", points);
+  memory.template take<double>("residuals", static_cast<std::size_t>(limits.segments));
+}
+
+}  // namespace plvo

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/reference_tracking.hpp"
+
+#include <algorithm>
+
+#include "plvo/odometry/stage_timer.hpp"
+
+namespace plvo {
+namespace {
+
+// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
+// The second stops far below what the sensor can tell.
+constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
+constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
+
+void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
+  result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
+  for (std::size_t r = 0; r < tracks.size(); ++r) {
+    const int points = estimate.inliers[2 * r];
+    const int lines = estimate.inliers[2 * r + 1];
+    tracks[r].inliers = points + lines;
+    result.points.matched += static_cast<int>(tracks[r].points.matches.size());
+    result.lines.matched += static_cast<int>(tracks[r].lines.size());
+    result.points.inliers += points;
+    result.lines.inliers += lines;
+  }
+  result.ransac_iterations += estimate.ransac.iterations;
+  result.lm_iterations += estimate.lm.iterations;
+}
+
+}  // namespace
+
+void ReferenceTracking::init(const CameraModel& camera, const Config& config) {
+  camera_ = camera;
+  config_ = config;
+}
+
+TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
+                                       const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
+                                       TrackResult& result) {
+  const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
+  const ScratchScope scope(scratch);
+  const std::size_t last = features.size() - 1;
+  const auto points_of = [&](std::size_t r) {
+    const PointTracks& tracks = tracks_[r].points;
+    PointConstraints set(features[r].reference_points, tracks.points, tracks.matches.span(),
+                         PointConstraints::Workspace::take(scratch, tracks.matches.size()));
+    set.set_reference(r, config_.noise.point_correlation);
+    return set;
+  };
+  const auto lines_of = [&](std::size_t r) {
+    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks_[r].lines.span(),
+                        LineConstraints::Workspace::take(scratch, tracks_[r].lines.size()));
+    set.set_reference(r, config_.noise.line_correlation);
+    return set;
+  };
+  std::array<PointConstraints, kMaxReferences> points{points_of(0), points_of(last)};
+  std::array<LineConstraints, kMaxReferences> lines{lines_of(0), lines_of(last)};
+  const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
+
+  TrackedMotion tracked;
+  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm,
+                                   config_.seed, &T_predicted, scratch);
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
+    std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
+  }
+  count(tracked.motion, std::span(tracks_).first(features.size()), result);
+  if (tracked.motion.status == StatusCode::kOk && config_.noise.learning_rate > 0)
+    tracked.shown =
+        residual_scales(camera_.pinhole, points[last], lines[last],
+                        motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
+  return tracked;
+}
+
+TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentFrame& current,
+                                      double radius_px, Arena& scratch, TrackResult& result) {
+  const ScratchScope scope(scratch);
+  const Se3& T_predicted = reference.prior.T_current_reference;
+  const MidExposure features =
+      at_mid_exposure(camera_, reference.prior, T_predicted, *reference.features, current.features, scratch);
+  {
+    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    const DepthSampler depth = current.depth.with(features.current);
+    track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
+                        features.reference_points, current.features.points, T_predicted, radius_px, scratch,
+                        tracks_[0].points);
+    LineMatchConfig gates = config_.lines.match;
+    gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
+    match_predicted_lines(camera_.pinhole, features.current, reference.features->lines,
+                          features.reference_lines, current.features.lines, T_predicted, gates, scratch,
+                          tracks_[0].lines);
+  }
+  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, T_predicted,
+                                config_.points.registered ? kRoughSolve : kFineSolve, scratch, result);
+  if (tracked.motion.status == StatusCode::kOk)
+    tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
+  return tracked;
+}
+
+TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
+                                        const Se3& T_current_base, Arena& scratch, TrackResult& result) {
+  const ScratchScope scope(scratch);
+  MotionReferences poses;
+  for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
+  const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
+  const std::size_t last = references.size() - 1;
+  const Exposure exposure = current_exposure(camera_, references[last].prior, motions[last]);
+  const DepthSampler depth = current.depth.with(exposure);
+  if (exposure.depth_apart())
+    current.extraction.lift_lines_again(depth, current.noise, current.features.lines);
+  std::array<MidExposure, kMaxReferences> features;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const Reference& reference = references[r];
+    features[r] =
+        at_mid_exposure(camera_, reference.prior, motions[r], *reference.features, current.features, scratch);
+    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    track_by_motion(view_of(current, depth, exposure), reference.features->points,
+                    features[r].reference_points, motions[r], tracks_[r].points);
+    LineMatchConfig gates = config_.lines.match;
+    gates.max_offset_px = config_.lines.guided_offset_px;
+    gates.max_angle_rad = config_.lines.guided_angle_rad;
+    match_predicted_lines(camera_.pinhole, exposure, reference.features->lines, features[r].reference_lines,
+                          current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
+  }
+  TrackedMotion tracked =
+      solve(std::span(features).first(references.size()), poses, T_current_base, kFineSolve, scratch, result);
+  if (tracked.motion.status == StatusCode::kOk)
+    tracked.exposure = current_exposure(camera_, references[last].prior,
+                                        motions_to_current(tracked.motion.T_current_reference, poses)[last]);
+  return tracked;
+}
+
+}  // namespace plvo

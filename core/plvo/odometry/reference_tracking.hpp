@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. find() makes a first
+// motion from one reference, by descriptors; refine() registers the features of all references with it and
+// solves for one motion over all of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/motion/motion_estimator.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_extraction.hpp"
+#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/line_tracking.hpp"
+#include "plvo/odometry/mid_exposure.hpp"
+#include "plvo/odometry/noise_learning.hpp"
+#include "plvo/odometry/point_tracking.hpp"
+#include "plvo/odometry/track_result.hpp"
+
+namespace plvo {
+
+// A frame to match against, and what is known beforehand. pose: relative to the base, the first of the
+// references.
+struct Reference {
+  const FrameFeatures* features = nullptr;
+  PairPrior prior;
+  MotionReference pose;
+};
+
+// What was found of one reference in the current frame.
+struct ReferenceTracks {
+  PointTracks points;
+  std::span<std::uint8_t> point_inliers;  // a flag for each of points.matches
+  FixedVector<Match> lines;               // indices of both frames' 3D lines
+  std::span<std::uint8_t> line_inliers;
+  int inliers = 0;  // points and lines
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    points.carve(memory, limits.keypoints);
+    point_inliers =
+        memory.template take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    lines = FixedVector<Match>(memory.template take<Match>("line tracks", segments));
+    line_inliers = memory.template take<std::uint8_t>("line tracks", segments);
+  }
+};
+
+// The frame that is being tracked.
+struct CurrentFrame {
+  FrameFeatures& features;  // lines are lifted again when the motion is known better
+  const FeatureExtraction& extraction;
+  const DepthSampler& depth;
+  const NoiseScales& noise;
+};
+
+struct TrackedMotion {
+  MotionEstimate motion;  // from the base
+  Exposure exposure;      // how the camera moved while the current frame was exposed
+  NoiseScales shown;      // what the residuals say of the noise
+};
+
+class ReferenceTracking {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    for (ReferenceTracks& tracks : tracks_) tracks.carve(memory, limits);
+  }
+  // Scratch: the larger of the stages, which come one after the other.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    const ScratchScope scope(memory);
+    for (std::size_t r = 0; r < kMaxReferences; ++r) take_mid_exposure(memory, limits);
+    reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
+    reserve_line_tracking(memory, limits.segments);
+    reserve_noise_learning(memory, limits);
+    size_motion(memory, kMaxReferences, static_cast<std::size_t>(limits.keypoints),
+                static_cast<std::size_t>(limits.segments));
+  }
+
+  void init(const CameraModel& camera, const Config& config);
+
+  // T_current_reference of one reference: features are looked for within radius_px of where its prior has
+  // them. Where points are not registered this is the whole estimate.
+  TrackedMotion find(const Reference& reference, const CurrentFrame& current, double radius_px,
+                     Arena& scratch, TrackResult& result);
+  // The motion from the base, from all references at once (1 … kMaxReferences), registered from
+  // T_current_base.
+  TrackedMotion refine(std::span<const Reference> references, const CurrentFrame& current,
+                       const Se3& T_current_base, Arena& scratch, TrackResult& result);
+
+  // Of the last call, in the order of its references.
+  const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
+
+ private:
+  TrackedMotion solve(std::span<const MidExposure> features, const MotionReferences& poses,
+                      const Se3& T_predicted, const LmOptions& lm, Arena& scratch, TrackResult& result);
+  TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
+                       const Exposure& exposure) const {
+    return {camera_.pinhole, config_.points, current.extraction.pyramid(), depth, exposure, current.noise};
+  }
+
+  CameraModel camera_;
+  Config config_;
+  std::array<ReferenceTracks, kMaxReferences> tracks_;
+};
+
+}  // namespace plvo

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/points/own_surface.hpp"
+
+#include <array>
+
+namespace plvo {
+namespace {
+
+// Pixels of the keypoint's level by which the own surface is shrunk: one for the gradient's reach, one for
+// what colour and depth are apart.
+constexpr int kRim = 2;
+// A surface as steep as this changes so much of its depth over a window; what differs by more is another one.
+constexpr double kSameSurface = 0.06;
+
+constexpr int kColumns = kWindowColumns + 2 * kRim;
+constexpr int kRows = kWindowRows + 2 * kRim;
+using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
+
+}  // namespace
+
+WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, double depth_m) {
+  const Vector2 pixel(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
+  Vector2 centre = pixel;
+  WindowMask mask{};
+  if (!depth.locate(centre)) return mask;
+  const double step = 1 << keypoint.level;
+  std::array<Row, kRows> own{};
+  for (int r = 0; r < kRows; ++r) {
+    const int y = static_cast<int>(centre.y() + (r - kRim - kWindowReach) * step + 0.5);
+    for (int c = 0; c < kColumns; ++c) {
+      const int x = static_cast<int>(centre.x() + (c - kRim - kWindowReach) * step + 0.5);
+      const double difference = depth.at(x, y) - depth_m;
+      const double most = kSameSurface * depth_m;
+      if (difference < most && difference > -most)
+        own[static_cast<std::size_t>(r)] |= static_cast<Row>(1 << c);
+    }
+  }
+  // Erosion by kRim in either direction: along the rows by shifts, then over neighbouring rows.
+  for (Row& row : own) {
+    Row shrunk = row;
+    for (int i = 1; i <= 2 * kRim; ++i) shrunk &= static_cast<Row>(row >> i);
+    row = shrunk;
+  }
+  for (std::size_t r = 0; r < mask.size(); ++r) {
+    Row bits = own[r];
+    for (std::size_t i = 1; i <= 2 * kRim; ++i) bits &= own[r + i];
+    mask[r] = static_cast<std::uint8_t>(bits);
+  }
+  return mask;
+}
+
+}  // namespace plvo
