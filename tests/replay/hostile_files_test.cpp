@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <functional>
@@ -119,30 +120,61 @@ TEST(HostileFiles, SizesAreJudgedByTheHeaderAlone) {
   EXPECT_LT(peak_kib() - before, 64 * 1024);
 }
 
-// Text of a PNG that unpacks to a thousand times its size: 64 of them hold 4 MiB of zeros each.
+// A zlib stream of `matches` times 258 zeros after a first one: deflate's fixed codes, 13 bits for 258 bytes.
+std::string zeros_in_zlib(std::uint32_t matches) {
+  std::string bits = "110";  // last block, fixed codes (the lower bit of a number first)
+  bits += "00110000";        // a zero
+  for (std::uint32_t i = 0; i < matches; ++i) bits += "1100010100000";  // 258 bytes from one byte back
+  bits += "0000000";
+  bits.append((8 - bits.size() % 8) % 8, '0');
+  std::string stream("\x78\x9c", 2);
+  for (std::size_t i = 0; i < bits.size(); i += 8) {
+    int byte = 0;
+    for (std::size_t k = 0; k < 8; ++k) byte |= (bits[i + k] - '0') << k;
+    stream += static_cast<char>(byte);
+  }
+  return stream + big_endian((((258 * matches + 1) % 65521) << 16) | 1);  // Adler-32 of zeros
+}
+
+// Texts of a PNG of 100 kB that unpack to 256 MB.
 TEST(HostileFiles, UnpackedTextsOfAPngAreBounded) {
-  // "x", two zeros (end of key, method), then a zlib stream of stored blocks.
-  std::string stream("\x78\x01", 2);
-  const std::string zeros(65535, '\0');
-  std::uint32_t b = 0;
-  constexpr int kBlocks = 64;
-  for (int i = 0; i < kBlocks; ++i)
-    stream += std::string(i + 1 == kBlocks ? "\x01" : "\x00", 1) + std::string("\xff\xff\x00\x00", 4) + zeros;
-  b = (static_cast<std::uint32_t>(kBlocks) * 65535u) % 65521u;
-  stream += big_endian((b << 16) | 1u);
   std::string file = png(64, 64, 8, 2);
-  const std::string text = chunk("zTXt", std::string("x\0\0", 3) + stream);
-  std::string many;
-  for (int i = 0; i < 10; ++i) many += text;
-  file.insert(file.size() - 12, many);  // before IEND
+  const std::string text = chunk("zTXt", std::string("x\0\0", 3) + zeros_in_zlib(62'500));
+  for (int i = 0; i < 16; ++i) file.insert(33, text);  // after IHDR
   const TemporaryFolder folder;
   write_file(folder / "image", file);
   ImageDecoder decoder;
   std::vector<std::uint8_t> rgb(std::size_t{3} * 64 * 64);
-  decoder.reserve(file.size() + 1);
   const long before = peak_kib();
-  EXPECT_EQ(decoder.decode_rgb(folder / "image", 64, 64, rgb).code(), StatusCode::kDamaged);
+  const Status status = decoder.decode_rgb(folder / "image", 64, 64, rgb);
+  EXPECT_EQ(status.code(), StatusCode::kDamaged);
+  EXPECT_TRUE(says(status, "limits")) << status.message();
   EXPECT_LT(peak_kib() - before, 32 * 1024);
+}
+
+// The bound on what unpacks is none on the pixels, in however few pieces they come.
+TEST(HostileFiles, TheLargestImageIsReadWhole) {
+  constexpr int kSide = kMaxImageSide;
+  const std::size_t row = 1 + 3 * std::size_t{kSide};
+  // Stored blocks of zlib, in one piece of 12.6 MB.
+  std::string pixels("\x78\x01", 2);
+  for (std::size_t left = row * kSide; left > 0;) {
+    const std::size_t size = std::min<std::size_t>(left, 65535);
+    left -= size;
+    const std::string length = {static_cast<char>(size & 255), static_cast<char>(size >> 8)};
+    pixels += std::string(1, left == 0 ? '\1' : '\0') + length + static_cast<char>(~length[0]) +
+              static_cast<char>(~length[1]) + std::string(size, '\0');
+  }
+  pixels += big_endian((static_cast<std::uint32_t>(row * kSide % 65521) << 16) | 1);
+  std::string file = png(kSide, kSide, 8, 2);
+  file.replace(33, 20, chunk("IDAT", pixels));
+  const TemporaryFolder folder;
+  write_file(folder / "image", file);
+  ImageDecoder decoder;
+  std::vector<std::uint8_t> rgb(std::size_t{3} * kSide * kSide, 1);
+  const Status status = decoder.decode_rgb(folder / "image", kSide, kSide, rgb);
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(rgb.back(), 0);
 }
 
 struct Reader {

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 using PngContext = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 
 // Texts and colour profiles of a PNG unpack to as much as they like; nothing of them is wanted.
-constexpr std::size_t kMaxChunkCache = 4u << 20;
+constexpr std::size_t kMaxChunk = 1u << 20;
+constexpr std::size_t kMaxChunks = 4u << 20;  // together
 
 Status image_error(StatusCode code, const fs::path& path, std::string_view what) {
   return {code, fmt::format("{}: {}", (path.parent_path().filename() / path.filename()).string(), what)};
@@ -43,7 +44,7 @@ PngContext open_png(std::span<const unsigned char> file) {
   PngContext png(spng_ctx_new(0), spng_ctx_free);
   if (png != nullptr) {
     // The size is judged by check_size, in words.
-    spng_set_chunk_limits(png.get(), kMaxImageBytes, kMaxChunkCache);
+    spng_set_chunk_limits(png.get(), kMaxChunk, kMaxChunks);
     spng_set_png_buffer(png.get(), file.data(), file.size());
   }
   return png;
