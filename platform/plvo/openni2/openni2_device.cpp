@@ -38,7 +38,8 @@ Status open_error(const std::string& uri) {
   if (contains(text, "LIBUSB_ERROR_ACCESS") || contains(text, "ermission")) {
     status = Status(
         StatusCode::kPermission,
-        "no permission to use the sensor: install the udev rule (60-plvo-rgbd.rules) and plug it in again. ");
+        "no permission to use the sensor: install the udev rule (60-plvo-rgbd.rules) and plug it in again; "
+        "over ssh, be in the group video. ");
   } else if (contains(text, "LIBUSB_ERROR_BUSY") || contains(text, "busy")) {
     status = Status(StatusCode::kBusy,
                     "another program holds the sensor: close it, or unplug and plug in again. ");
