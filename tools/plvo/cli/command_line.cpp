@@ -5,10 +5,16 @@
 
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#ifdef PLVO_HAVE_OPENNI2
+#include "plvo/openni2/openni2_camera.hpp"
+#endif
 
 namespace plvo::cli {
 
 int run_command_line(int argc, const char* const* argv) {
+#ifdef PLVO_HAVE_OPENNI2
+  if (const std::optional<int> played = play_oni_if_asked(argc, argv)) return *played;
+#endif
   CLI::App app("RGB-D odometry from points and lines: frames in, a trajectory with covariances out.", "plvo");
   app.set_version_flag("--version", "plvo " PLVO_VERSION);
   app.footer(kExitCodeHelp);
