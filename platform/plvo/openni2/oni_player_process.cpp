@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <memory>
@@ -20,6 +21,7 @@ namespace plvo {
 namespace {
 
 constexpr int kSocket = STDIN_FILENO;
+constexpr int kSlice_ms = 20;
 constexpr int kSilence_ms = 10000;  // OpenNI2 reads a file: where nothing comes for so long, nothing will
 constexpr rlim_t kMaxMemory = rlim_t{2} << 30;
 
@@ -80,23 +82,25 @@ void play(const char* path) {
     ::_exit(0);  // nothing is cleaned up in what a damaged file may have damaged
   }
   send(oni_hello({device.colour_format(), device.depth_format(), device.info(), device.recorded_frames()}));
-  for (;;) {
+  for (int silent_ms = 0; silent_ms < kSilence_ms;) {
     DeviceImage image;
-    switch (device.wait(kSilence_ms, image)) {
+    switch (device.wait(kSlice_ms, image)) {
       case ImageDevice::Wait::kImage:
+        silent_ms = 0;
         send(image, image.stream == FramePairer::kColour ? device.colour_format() : device.depth_format());
-        continue;
+        break;
       case ImageDevice::Wait::kTimeout:
         if (device.at_end()) {
           send(oni_end());
-        } else {
-          send(oni_failure(
-              Status(StatusCode::kIo, "the recording breaks off, it is damaged or was cut: ").append(path)));
+          ::_exit(0);
         }
-        ::_exit(0);
-      default: std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        silent_ms += kSlice_ms;
+        break;
+      default: std::this_thread::sleep_for(std::chrono::milliseconds(1)); silent_ms += 1;
     }
   }
+  send(oni_failure(
+      Status(StatusCode::kIo, "the recording breaks off, it is damaged or was cut: ").append(path)));
 }
 
 }  // namespace
