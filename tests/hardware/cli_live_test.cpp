@@ -55,6 +55,10 @@ TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
   ASSERT_EQ(live.exit_code, 0) << live.err;
   const long poses = lines_in(read_file(path("oni.txt"))) - 1;
   EXPECT_GT(poses, 10);
+  ASSERT_EQ(plvo("run " + path("a.oni") + files("run")).exit_code, 0);
+  expect_same("oni", "run", poses);
+  ASSERT_EQ(plvo("run " + path("a.oni") + " --frames 2:7" + files("part")).exit_code, 0);
+  EXPECT_EQ(lines_in(read_file(path("part.txt"))) - 1, 5);
   ASSERT_EQ(plvo("record " + path("folder") + " --quiet --device " + path("a.oni")).exit_code, 0);
   ASSERT_EQ(plvo("run " + path("folder") + files("folder")).exit_code, 0);
   expect_same("oni", "folder", poses);
