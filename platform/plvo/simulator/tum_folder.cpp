@@ -169,7 +169,8 @@ Status open_folder(const std::string& name, Folder& folder) {
 Status write_frame(const SimulatedCamera& camera, const RgbdFrame& frame, Folder& folder) {
   const std::string stamp = seconds(frame.stamp_ns);
   const std::string rgb_name = "rgb/" + stamp + ".png";
-  const std::string depth_name = "depth/" + stamp + ".png";
+  const std::string depth_stamp = seconds(frame.depth_stamp_ns);
+  const std::string depth_name = "depth/" + depth_stamp + ".png";
   const auto pixels =
       static_cast<std::size_t>(frame.colour.width) * static_cast<std::size_t>(frame.colour.height);
   Status status = write_png(folder.path / rgb_name, frame.colour.data, 3 * pixels, frame.colour.width,
@@ -178,7 +179,7 @@ Status write_frame(const SimulatedCamera& camera, const RgbdFrame& frame, Folder
     status = write_png(folder.path / depth_name, frame.depth.data, 2 * pixels, frame.depth.width,
                        frame.depth.height, 16, SPNG_COLOR_TYPE_GRAYSCALE);
   if (status.ok()) status = folder.ground_truth.append(pose_line(stamp, camera.ground_truth(frame.stamp_ns)));
-  if (status.ok()) status = folder.depth.append(stamp + " " + depth_name + "\n");
+  if (status.ok()) status = folder.depth.append(depth_stamp + " " + depth_name + "\n");
   if (status.ok()) status = folder.rgb.append(stamp + " " + rgb_name + "\n");
   return status;
 }

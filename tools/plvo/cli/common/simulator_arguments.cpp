@@ -37,6 +37,19 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
       ->check(CLI::Validator(check_size, ""));
   add("--rolling-shutter", arguments.readout_s,
       "Seconds from the first row to the last (default 0: all rows at once; a Kinect's: 0.0261)", "SECONDS");
+  add("--depth-delay", arguments.depth_timing.delay_s,
+      "Depth is exposed this long after its stamp (default 0; negative: before)", "SECONDS");
+  add("--depth-readout", arguments.depth_timing.readout_s,
+      "Seconds from the first row of depth to the last (default: --rolling-shutter)", "SECONDS");
+  add("--depth-stamp-offset", arguments.depth_timing.stamp_offset_s,
+      "Depth is stamped, and taken, this long after colour: at most half a frame (default 0)", "SECONDS");
+  add("--depth-fps", arguments.depth_timing.fps,
+      "Depth images per second on a clock of their own, at least --fps (default: the colour's clock)",
+      "NUMBER");
+  add("--depth-stamp-jitter", arguments.depth_timing.stamp_jitter_s,
+      "Standard deviation of depth's stamps; the exposures keep their time (default 0)", "SECONDS");
+  add("--depth-scale-error", arguments.depth_scale_error, "Reported depth over true depth (default 1)",
+      "FACTOR");
   add("--trajectory", arguments.trajectory,
       "TUM ground truth that moves the camera instead of the seeded hand", "FILE");
   add("--threads", arguments.threads, "Of the rendering; the images do not depend on it (default 2)",
@@ -55,6 +68,8 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   options.trajectory_file = arguments.trajectory;
   options.threads = arguments.threads;
   options.camera.readout_s = arguments.readout_s;
+  options.depth_timing = arguments.depth_timing;
+  options.depth.scale_error = arguments.depth_scale_error;
   int width = 0, height = 0;
   if (!arguments.size.empty() && parse_size(arguments.size, width, height)) {
     CameraModel& camera = options.camera;

@@ -15,6 +15,8 @@ struct SimulatorArguments {
   std::uint64_t seed = 1;
   double fps = 30;
   double readout_s = 0;
+  DepthTiming depth_timing;
+  double depth_scale_error = 1;
   std::string size;  // WIDTHxHEIGHT
   std::string trajectory;
   bool clean = false;
