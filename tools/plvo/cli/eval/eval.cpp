@@ -44,6 +44,11 @@ int eval_command(EvalOptions options) {
   eval::Evaluation evaluation;
   Status status = read_trajectory(options.ground_truth, ground_truth);
   if (status.ok()) status = read_trajectory(options.estimate, estimate);
+  const auto kitti = [](const eval::Trajectory& t) { return t.format == eval::TrajectoryFormat::kKitti; };
+  if (status.ok() && !options.kitti_times.empty() && !kitti(ground_truth) && !kitti(estimate)) {
+    fail("--kitti-times is for KITTI's rows of 12 numbers, and neither file has them; leave it out");
+    return kExitUsage;
+  }
   if (status.ok() && !options.covariance.empty())
     status = eval::read_covariances(options.covariance, covariances);
   if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, motions);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/eval/table_reader.hpp"
+#include "plvo/host/table_reader.hpp"
 
 #include <fmt/core.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <utility>
 
-namespace plvo::eval {
+namespace plvo {
 
 namespace fs = std::filesystem;
 
@@ -52,4 +52,4 @@ Status parse_numbers(const fs::path& path, const TableRow& row, std::size_t firs
   return {};
 }
 
-}  // namespace plvo::eval
+}  // namespace plvo

@@ -8,7 +8,7 @@
 
 #include "plvo/base/status.hpp"
 
-namespace plvo::eval {
+namespace plvo {
 
 struct TableRow {
   int line = 0;                    // in the file, from 1
@@ -26,4 +26,4 @@ Status parse_numbers(const std::filesystem::path& path, const TableRow& row, std
 
 Status row_error(const std::filesystem::path& path, const TableRow& row, const std::string& what);
 
-}  // namespace plvo::eval
+}  // namespace plvo
