@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "plvo/bench/ideal_images.hpp"
+#include "plvo/bench/systems/ideal_images.hpp"
 #include "plvo/bench/table.hpp"
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/eval/statistics.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "plvo/base/status.hpp"
-#include "plvo/bench/job.hpp"
+#include "plvo/bench/jobs/job.hpp"
 #include "plvo/replay/calibration.hpp"
 
 namespace plvo::bench {

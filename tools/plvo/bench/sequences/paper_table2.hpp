@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plvo/bench/result.hpp"
+#include "plvo/bench/jobs/result.hpp"
 
 namespace plvo::bench {
 

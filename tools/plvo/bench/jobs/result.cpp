@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/result.hpp"
+#include "plvo/bench/jobs/result.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plvo/bench/campaign.hpp"
+#include "plvo/bench/jobs/campaign.hpp"
 
 namespace plvo::bench {
 

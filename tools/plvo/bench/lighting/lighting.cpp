@@ -10,11 +10,11 @@
 #include <memory>
 #include <sstream>
 
-#include "plvo/bench/campaign.hpp"
 #include "plvo/bench/commands.hpp"
-#include "plvo/bench/lighting_table.hpp"
-#include "plvo/bench/process_pool.hpp"
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/jobs/campaign.hpp"
+#include "plvo/bench/jobs/process_pool.hpp"
+#include "plvo/bench/lighting/lighting_table.hpp"
+#include "plvo/bench/systems/system.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"
 

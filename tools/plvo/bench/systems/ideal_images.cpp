@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/ideal_images.hpp"
+#include "plvo/bench/systems/ideal_images.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/host.hpp"
+#include "plvo/bench/jobs/host.hpp"
 
 #include <fmt/core.h>
 #include <sys/utsname.h>
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 #include <fmt/ranges.h>
 

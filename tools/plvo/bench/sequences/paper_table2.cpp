@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/paper_table2.hpp"
+#include "plvo/bench/sequences/paper_table2.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/measure.hpp"
+#include "plvo/bench/jobs/measure.hpp"
 
 #include <fmt/core.h>
 
@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "plvo/bench/result.hpp"
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/jobs/result.hpp"
+#include "plvo/bench/systems/system.hpp"
 #include "plvo/eval/statistics.hpp"
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/replay/tum_camera.hpp"

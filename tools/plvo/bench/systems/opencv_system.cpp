@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/rgbd/depth.hpp>
 
-#include "plvo/bench/ideal_images.hpp"
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/systems/ideal_images.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
 namespace {

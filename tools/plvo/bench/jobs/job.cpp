@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/job.hpp"
+#include "plvo/bench/jobs/job.hpp"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where OpenCV's contrib modules are not installed.
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "plvo/base/status.hpp"
-#include "plvo/bench/host.hpp"
-#include "plvo/bench/job.hpp"
-#include "plvo/bench/result.hpp"
+#include "plvo/bench/jobs/host.hpp"
+#include "plvo/bench/jobs/job.hpp"
+#include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/table.hpp"
 
 namespace plvo::bench {

@@ -8,12 +8,12 @@
 #include <memory>
 #include <set>
 
-#include "plvo/bench/campaign.hpp"
 #include "plvo/bench/commands.hpp"
-#include "plvo/bench/measure.hpp"
-#include "plvo/bench/paper_table2.hpp"
-#include "plvo/bench/process_pool.hpp"
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/jobs/campaign.hpp"
+#include "plvo/bench/jobs/measure.hpp"
+#include "plvo/bench/jobs/process_pool.hpp"
+#include "plvo/bench/sequences/paper_table2.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/campaign.hpp"
+#include "plvo/bench/jobs/campaign.hpp"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "plvo/bench/process_pool.hpp"
+#include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/eval/statistics.hpp"
 
 namespace plvo::bench {

@@ -4,22 +4,23 @@
 // depth and the ground truth (both ends' neighbourhood has depth, the ends fall inside), and as repeated when
 // a segment is found there within 3 px of it, 5° and half of its length.
 //   lsd_compare DIR [--frames N] [--min-length PX] [--draw DIR] [--only-ours]
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/eval/trajectory.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
+#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/tum_camera.hpp"
 
 namespace {
 
@@ -34,11 +35,6 @@ struct Options {
   bool only_ours = false;
 };
 
-struct Entry {
-  double stamp = 0;
-  std::string file;
-};
-
 struct Line2 {
   double x1 = 0, y1 = 0, x2 = 0, y2 = 0;
   double length() const { return std::hypot(x2 - x1, y2 - y1); }
@@ -46,63 +42,47 @@ struct Line2 {
 
 struct Frame {
   cv::Mat gray, depth;
-  Eigen::Matrix4d T_world_camera;
+  plvo::Se3 T_world_camera;
 };
 
-struct Calibration {
-  double fx = 0, fy = 0, cx = 0, cy = 0, depth_scale = 5000;
+struct Sequence {
+  plvo::Pinhole pinhole;
+  double metres_per_unit = 0;
+  std::vector<Frame> frames;  // those with ground truth
 };
 
-std::vector<Entry> read_list(const std::string& path) {
-  std::vector<Entry> entries;
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line);) {
-    Entry entry;
-    std::istringstream words(line);
-    if (!line.empty() && line[0] != '#' && words >> entry.stamp >> entry.file) entries.push_back(entry);
-  }
-  return entries;
-}
-
-const Entry& nearest(const std::vector<Entry>& entries, double stamp) {
-  const Entry* best = &entries.front();
-  for (const Entry& entry : entries) {
-    if (std::abs(entry.stamp - stamp) < std::abs(best->stamp - stamp)) best = &entry;
-  }
-  return *best;
-}
-
-Eigen::Matrix4d pose_at(const std::string& path, double stamp) {
-  std::ifstream in(path);
-  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
-  double best = 1e9;
-  for (std::string line; std::getline(in, line);) {
-    double t = 0, x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1;
-    std::istringstream words(line);
-    if (line.empty() || line[0] == '#' || !(words >> t >> x >> y >> z >> qx >> qy >> qz >> qw)) continue;
-    if (std::abs(t - stamp) >= best) continue;
-    best = std::abs(t - stamp);
-    T.topLeftCorner<3, 3>() = Eigen::Quaterniond(qw, qx, qy, qz).normalized().toRotationMatrix();
-    T.topRightCorner<3, 1>() = Eigen::Vector3d(x, y, z);
-  }
-  return T;
-}
-
-std::vector<Frame> load(const Options& options, Calibration& calibration) {
-  std::ifstream in(options.folder + "/calibration.txt");
-  in >> calibration.fx >> calibration.fy >> calibration.cx >> calibration.cy >> calibration.depth_scale;
-  const std::vector<Entry> colours = read_list(options.folder + "/rgb.txt");
-  const std::vector<Entry> depths = read_list(options.folder + "/depth.txt");
-  std::vector<Frame> frames;
-  for (const Entry& entry : colours) {
-    if (static_cast<int>(frames.size()) == options.frames || depths.empty()) break;
+plvo::Status load(const Options& options, Sequence& sequence) {
+  const std::filesystem::path folder = options.folder;
+  plvo::Calibration calibration;
+  plvo::TumCamera camera;
+  plvo::Trajectory truth;
+  if (plvo::Status status = plvo::read_calibration(folder / "calibration.txt", calibration); !status.ok())
+    return status;
+  if (plvo::Status status = camera.open(folder, calibration); !status.ok()) return status;
+  if (plvo::Status status = plvo::read_trajectory({folder / "groundtruth.txt", {}, {}}, truth); !status.ok())
+    return status;
+  sequence.pinhole = camera.model().pinhole;
+  plvo::RgbdFrame image;
+  for (int number = 0; number < options.frames; ++number) {
+    const plvo::Status status = camera.next(image);
+    if (status.code() == plvo::StatusCode::kEndOfStream) break;
+    if (!status.ok()) return status;
+    const plvo::eval::SampledPoses pose = plvo::eval::sample(
+        truth, {image.stamp_ns}, plvo::eval::GroundTruthSampling::kInterpolated, 20'000'000);
+    if (!pose.valid[0]) continue;
     Frame frame;
-    frame.gray = cv::imread(options.folder + "/" + entry.file, cv::IMREAD_GRAYSCALE);
-    frame.depth = cv::imread(options.folder + "/" + nearest(depths, entry.stamp).file, cv::IMREAD_UNCHANGED);
-    frame.T_world_camera = pose_at(options.folder + "/groundtruth.txt", entry.stamp);
-    if (!frame.gray.empty() && !frame.depth.empty()) frames.push_back(frame);
+    frame.T_world_camera = pose.poses[0];
+    // OpenCV's headers take what they only read through pointers that could write.
+    const cv::Mat colour(image.colour.height, image.colour.width, CV_8UC3,
+                         const_cast<std::uint8_t*>(image.colour.data));
+    cv::cvtColor(colour, frame.gray, cv::COLOR_RGB2GRAY);
+    frame.depth =
+        cv::Mat(image.depth.height, image.depth.width, CV_16UC1, const_cast<std::uint16_t*>(image.depth.data))
+            .clone();
+    sequence.metres_per_unit = image.depth.metres_per_unit;
+    sequence.frames.push_back(frame);
   }
-  return frames;
+  return {};
 }
 
 // Our detector with the memory and the pyramid that it needs.
@@ -160,7 +140,7 @@ class Ours {
   plvo::SegmentCounts counts_;
 };
 
-double depth_near(const Frame& frame, const Calibration& calibration, double x, double y) {
+double depth_near(const Frame& frame, double metres_per_unit, double x, double y) {
   // The nearest surface around: a segment on a silhouette belongs to what is in front.
   std::uint16_t best = 0;
   for (int j = -2; j <= 2; ++j) {
@@ -172,18 +152,19 @@ double depth_near(const Frame& frame, const Calibration& calibration, double x, 
       if (d != 0 && (best == 0 || d < best)) best = d;
     }
   }
-  return best / calibration.depth_scale;
+  return best * metres_per_unit;
 }
 
-bool carry(const Frame& from, const Frame& to, const Calibration& c, double x, double y, double& u,
+bool carry(const Sequence& sequence, const Frame& from, const Frame& to, double x, double y, double& u,
            double& v) {
-  const double d = depth_near(from, c, x, y);
+  const double d = depth_near(from, sequence.metres_per_unit, x, y);
   if (d <= 0) return false;
-  const Eigen::Vector4d p((x - c.cx) / c.fx * d, (y - c.cy) / c.fy * d, d, 1);
-  const Eigen::Vector4d q = to.T_world_camera.inverse() * (from.T_world_camera * p);
-  if (q.z() <= 0.1) return false;
-  u = c.fx * q.x() / q.z() + c.cx;
-  v = c.fy * q.y() / q.z() + c.cy;
+  const plvo::Vector3 p =
+      to.T_world_camera.inverse() * (from.T_world_camera * plvo::back_project(sequence.pinhole, x, y, d));
+  if (p.z() <= 0.1) return false;
+  const plvo::Vector2 pixel = plvo::project(sequence.pinhole, p);
+  u = pixel.x();
+  v = pixel.y();
   return u >= 0 && v >= 0 && u <= to.gray.cols - 1 && v <= to.gray.rows - 1;
 }
 
@@ -221,13 +202,13 @@ struct Score {
   std::vector<double> degrees;
   std::vector<double> distances_px;
 
-  void compare(const Options& options, const Calibration& c, const Frame& from, const Frame& to,
+  void compare(const Options& options, const Sequence& sequence, const Frame& from, const Frame& to,
                const std::vector<Line2>& before, const std::vector<Line2>& now) {
     for (const Line2& line : before) {
       Line2 carried;
       if (line.length() < options.min_length_px) continue;
-      if (!carry(from, to, c, line.x1, line.y1, carried.x1, carried.y1) ||
-          !carry(from, to, c, line.x2, line.y2, carried.x2, carried.y2) || carried.length() < 5) {
+      if (!carry(sequence, from, to, line.x1, line.y1, carried.x1, carried.y1) ||
+          !carry(sequence, from, to, line.x2, line.y2, carried.x2, carried.y2) || carried.length() < 5) {
         continue;
       }
       ++repeatable;
@@ -311,11 +292,15 @@ Options parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Options options = parse(argc, argv);
-  Calibration calibration;
-  const std::vector<Frame> frames = load(options, calibration);
+  Sequence sequence;
+  if (const plvo::Status status = load(options, sequence); !status.ok()) {
+    std::fprintf(stderr, "lsd_compare: %s\n", status.message());
+    return 1;
+  }
+  const std::vector<Frame>& frames = sequence.frames;
   if (frames.empty()) {
-    std::fprintf(stderr, "lsd_compare: no frames in '%s'; give a TUM folder\n", options.folder.c_str());
-    return 2;
+    std::fprintf(stderr, "lsd_compare: no frame of '%s' has ground truth\n", options.folder.c_str());
+    return 1;
   }
   cv::setNumThreads(1);
   Ours ours(frames[0].gray.cols, frames[0].gray.rows);
@@ -346,7 +331,7 @@ int main(int argc, char** argv) {
     for (int k = 0; k < (options.only_ours ? 1 : 3); ++k) {
       scores[k].ms.push_back(ms[k]);
       scores[k].segments += count_long(options, now[k]);
-      if (i > 0) scores[k].compare(options, calibration, frames[i - 1], frames[i], before[k], now[k]);
+      if (i > 0) scores[k].compare(options, sequence, frames[i - 1], frames[i], before[k], now[k]);
       before[k] = now[k];
     }
     if (!options.draw.empty() && i % 10 == 0) {

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <exception>
 
-#include "plvo/bench/ideal_images.hpp"
-#include "plvo/bench/system.hpp"
+#include "plvo/bench/systems/ideal_images.hpp"
+#include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/process_pool.hpp"
+#include "plvo/bench/jobs/process_pool.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>

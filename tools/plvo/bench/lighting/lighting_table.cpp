@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/lighting_table.hpp"
+#include "plvo/bench/lighting/lighting_table.hpp"
 
 #include <algorithm>
 #include <limits>
