@@ -6,6 +6,7 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_session.hpp"
+#include "plvo/view/host_names.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -40,6 +41,22 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
       .add_option("--view", options.outputs.view,
                   "The live view in a browser; on this machine only, unless an address is given")
       ->type_name("[ADDR:]PORT")
+      ->group(group);
+  command
+      .add_option(
+          "--view-host", options.outputs.view_names,
+          "A further name under which the live view answers, as it stands in the browser: for a proxy, a "
+          "tunnel or robot.local; may be given several times")
+      ->type_name("NAME[:PORT]")
+      ->allow_extra_args(false)
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return HostNames::is_valid(name)
+                       ? ""
+                       : "expected a NAME or NAME:PORT as in http://NAME:PORT/: " + name;
+          },
+          ""))
+      ->needs("--view")
       ->group(group);
   command
       .add_option(
