@@ -66,7 +66,7 @@ std::string LiveSummary::to_text() const {
     fmt::format_to(std::back_inserter(text), "{:<22} {}\n", name, value);
   };
   const OpenNi2Counters& c = capture.camera;
-  row("time", fmt::format("{:.1f} s{}", seconds, interrupted ? " (ended by Ctrl-C)" : ""));
+  row("time", fmt::format("{:.1f} s{}", seconds, interrupted ? " (ended by a signal)" : ""));
   row("camera", fmt::format("{} frames, {:.1f} Hz", capture.frames, capture.average_hz));
   row("missing on the way", fmt::format("{} frames by their stamps", c.missing));
   row("odometry", fmt::format("{} frames; {} older ones dropped for newer ones", frames_, dropped));
