@@ -19,6 +19,7 @@ std::string with_brackets(const std::string& host) {
 
 Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
   lens_is_straight_ = lens_is_straight;
+  next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
   if (!options.view.empty())
     if (Status status = open_view(options.view, options.view_names); !status.ok()) return status;
   for (const std::string& address : options.streams)
