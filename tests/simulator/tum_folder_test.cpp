@@ -101,6 +101,21 @@ TEST_F(TumFolder, HoldsWhatTheCameraSaw) {
   }
 }
 
+TEST_F(TumFolder, DepthHasItsOwnStamps) {
+  options_.depth_timing.stamp_offset_s = -0.007;
+  ASSERT_TRUE(SimulatedCamera::create(options_, camera_).ok());
+  ASSERT_TRUE(write_tum_folder(*camera_, (root_ / "x").string()).ok());
+  const std::vector<std::string> rgb = lines(root_ / "x/rgb.txt");
+  const std::vector<std::string> depth = lines(root_ / "x/depth.txt");
+  ASSERT_EQ(depth.size(), rgb.size());
+  for (std::size_t k = 0; k < rgb.size(); ++k) {
+    EXPECT_NEAR(std::stod(depth[k]) - std::stod(rgb[k]), -0.007, 1e-6);
+    const std::size_t space = depth[k].find(' ');
+    EXPECT_EQ(depth[k].substr(space + 1), "depth/" + depth[k].substr(0, space) + ".png");
+    EXPECT_TRUE(fs::exists(root_ / "x" / depth[k].substr(space + 1)));
+  }
+}
+
 TEST_F(TumFolder, StopsWhenAsked) {
   const Status status = write_tum_folder(*camera_, (root_ / "x").string(), [](int, int) { return false; });
   EXPECT_TRUE(status.ok());

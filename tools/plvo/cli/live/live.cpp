@@ -8,7 +8,8 @@
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_session.hpp"
-#include "plvo/host/pose_stream.hpp"
+#include "plvo/host/tcp_listener.hpp"
+#include "plvo/view/host_names.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -54,6 +55,15 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
               options.outputs.view = text;
               return check_address(text);
             });
+  repeatable(group.add("--view-host", "NAME[:PORT]",
+                       "A further name under which the live view answers, as it stands in the browser: for a "
+                       "proxy, a tunnel or robot.local; may be given several times",
+                       [&options](const std::string& text) {
+                         options.outputs.view_names.push_back(text);
+                         return HostNames::is_valid(text)
+                                    ? ""
+                                    : expected("a NAME or NAME:PORT as in http://NAME:PORT/", text);
+                       }));
   repeatable(
       group.add("--stream", "[ADDR:]PORT|unix:PATH|-",
                 "Poses as JSON lines, over TCP, a Unix socket or standard output; may be given several times",
@@ -68,6 +78,8 @@ void check(const CLI::App& command, const LiveOptions& options) {
   check_live_camera_options(command, options.camera);
   if (is_oni_file(options.camera.device))
     refuse_options(command, {"--every-frame"}, "is what an .oni file does anyway; leave it away");
+  if (options.outputs.view.empty())
+    refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   FileRoles files;
   for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
   files.writes("--json", options.summary);

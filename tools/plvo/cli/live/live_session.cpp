@@ -73,11 +73,14 @@ void LiveSession::loop() {
   RgbdFrame frame;
   std::int64_t arrival_ns = 0;
   while (!over()) {
-    if (!wait_for_turn()) continue;
+    if (!wait_for_turn()) {
+      tell_status();
+      continue;
+    }
     const FrameRing::Take take = ring_->take(frame, arrival_ns, kPatience_ms);
     if (take == FrameRing::Take::kClosed) return;
     if (take == FrameRing::Take::kFrame) handle(frame, arrival_ns);
-    if (take == FrameRing::Take::kTimeout) outputs_.write_status(view_status());
+    if (take == FrameRing::Take::kTimeout) tell_status();
     if (console_.wants_line()) show_line(view_status(), record_.result);
   }
 }
@@ -108,6 +111,12 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   outputs_.write(record_, frame, block_.odometry(), view_status());
   ++record_.number;
   if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
+}
+
+// What is said while there is no pose to tell.
+void LiveSession::tell_status() {
+  const LiveCapture::State capture = capture_->state();
+  outputs_.write_status(view_status(), {capture.word(), capture.seconds_since_frame, capture.words});
 }
 
 ViewStatus LiveSession::view_status() const {

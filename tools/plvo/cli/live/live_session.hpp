@@ -41,6 +41,7 @@ class LiveSession {
   bool over() const;
   bool wait_for_turn();
   void handle(const RgbdFrame& frame, std::int64_t arrival_ns);
+  void tell_status();
   ViewStatus view_status() const;
   void show_line(const ViewStatus& status, const TrackResult& result);
   void finish();

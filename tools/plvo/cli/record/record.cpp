@@ -91,7 +91,7 @@ int record_command(const RecordOptions& options) {
   const LiveCapture::State state = capture.state();
   if (!options.quiet) {
     std::string text = fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), options.path,
-                                   seconds(), interrupted() ? ", ended by Ctrl-C" : "");
+                                   seconds(), interrupted() ? ", ended by a signal" : "");
     if (recording.dropped() > 0)
       text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
