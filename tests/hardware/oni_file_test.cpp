@@ -266,6 +266,29 @@ TEST_F(OniFileTest, AProgramThatCannotPlaySaysSo) {
   EXPECT_NE(std::strstr(status.message(), "play_oni_if_asked"), nullptr) << status.message();
 }
 
+// What a player whom a damaged file has taken over may do: nothing, say nonsense, hang up and stay.
+TEST_F(OniFileTest, APlayerIsNotBelieved) {
+  record(2);
+  OpenNi2Options options;
+  options.uri = path_;
+  options.oni_player = folder_ / "player.sh";
+  options.oni_patience_ms = 200;
+  const auto plays = [&](const std::string& script, const char* words) {
+    std::ofstream(options.oni_player) << "#!/bin/sh\n" << script << "\n";
+    std::filesystem::permissions(options.oni_player, std::filesystem::perms::owner_all);
+    const Status status = camera_.open(options);
+    EXPECT_FALSE(status.ok());
+    EXPECT_NE(std::strstr(status.message(), words), nullptr) << script << ": " << status.message();
+    EXPECT_EQ(only_child(), 0);
+  };
+  plays("exec sleep 1000", "does not come to an end");
+  options.oni_patience_ms = 60000;
+  plays("exec head -c 1000 /dev/zero >&0", "something that is no message");
+  plays("exit 7", "ended (exit code 7)");
+  plays("kill -BUS $$", "crashed (Bus error)");
+  plays("exec sleep 1000 <&-", "crashed (Killed)");
+}
+
 TEST_F(OniFileTest, WhatIsPlayedIsNotRecordedAsOni) {
   record(2);
   OpenNi2Options options;

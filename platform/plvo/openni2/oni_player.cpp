@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 #include <vector>
 
 extern char** environ;
@@ -23,8 +24,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long the child may be silent before it counts as hanging: it reads a file that lies on this machine.
-constexpr std::chrono::seconds kPatience(60);
+// A process whose socket is closed is about to end, or up to something.
+constexpr std::chrono::milliseconds kLastMoments(5000);
 
 Status check_file(const std::string& path) {
   std::error_code error;
@@ -39,17 +40,19 @@ Status check_file(const std::string& path) {
 
 }  // namespace
 
-Status OniPlayer::open(const std::string& path, const std::string& program) {
+Status OniPlayer::open(const std::string& path, const std::string& program,
+                       std::chrono::milliseconds patience) {
   close();
   path_ = path;
+  patience_ = patience;
   if (Status status = check_file(path); !status.ok()) return status;
   if (Status status = spawn(path, program); !status.ok()) return status;
   last_heard_ = Clock::now();
   for (;;) {
-    switch (receive(last_heard_ + kPatience)) {
+    switch (receive(last_heard_ + patience_)) {
       case OniMessageReader::Message::kHello: return {};
       case OniMessageReader::Message::kPartial:
-        if (!closed_by_child_ && Clock::now() < last_heard_ + kPatience) continue;
+        if (!closed_by_child_ && Clock::now() < last_heard_ + patience_) continue;
         // Nothing was read yet: it is the file that is wrong.
         failure_ = closed_by_child_
                        ? obituary()
@@ -143,7 +146,7 @@ ImageDevice::Wait OniPlayer::wait(int timeout_ms, DeviceImage& image) {
     case OniMessageReader::Message::kPartial:
       if (closed_by_child_) {
         break_off(obituary());
-      } else if (Clock::now() - last_heard_ > kPatience) {
+      } else if (Clock::now() - last_heard_ > patience_) {
         break_off(Status(StatusCode::kIo, "OpenNI2 does not get on with the recording, which is damaged: ")
                       .append(path_));
       } else {
@@ -167,7 +170,10 @@ void OniPlayer::break_off(const Status& failure) {
 Status OniPlayer::obituary() {
   int how = 0;
   pid_t ended = 0;
-  while ((ended = ::waitpid(child_, &how, 0)) < 0 && errno == EINTR) {
+  const Clock::time_point deadline = Clock::now() + kLastMoments;
+  while ((ended = ::waitpid(child_, &how, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
+    if (Clock::now() > deadline) ::kill(child_, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   child_ = -1;
   Status status(StatusCode::kIo, "OpenNI2's reader ");

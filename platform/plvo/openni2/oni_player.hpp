@@ -26,9 +26,10 @@ class OniPlayer final : public ImageDevice {
   OniPlayer(const OniPlayer&) = delete;
   OniPlayer& operator=(const OniPlayer&) = delete;
 
-  // program: empty for this one. kNotFound, kInvalidArgument (not a regular file), kDamaged (also where the
-  // reader crashes on it), or what opening the recording came to in the child.
-  Status open(const std::string& path, const std::string& program);
+  // program: empty for this one. patience: how long it may be silent before it counts as hanging. kNotFound,
+  // kInvalidArgument (not a regular file), kDamaged (also where the reader crashes on it), or what opening
+  // the recording came to in the child.
+  Status open(const std::string& path, const std::string& program, std::chrono::milliseconds patience);
   void close();
 
   Status start() override { return {}; }
@@ -50,6 +51,7 @@ class OniPlayer final : public ImageDevice {
   const OniRecording& recording() const { return *reader_.recording(); }
 
   std::string path_;
+  std::chrono::milliseconds patience_{0};
   pid_t child_ = -1;
   int socket_ = -1;
   OniMessageReader reader_;

@@ -124,7 +124,8 @@ Status OpenNi2Camera::Impl::open() {
 Status OpenNi2Camera::Impl::open_device() {
   if (options.uri.ends_with(".oni")) {
     auto player = std::make_unique<OniPlayer>();
-    Status status = player->open(options.uri, options.oni_player);
+    Status status =
+        player->open(options.uri, options.oni_player, std::chrono::milliseconds(options.oni_patience_ms));
     device = std::move(player);
     return status;
   }

@@ -53,7 +53,8 @@ struct OpenNi2Options {
   // The program that plays an .oni file in a process of its own; empty: this one, whose main() must then
   // begin with play_oni_if_asked().
   std::string oni_player;
-  Log* log = nullptr;  // borrowed; must outlive the camera
+  int oni_patience_ms = 60000;  // how long it may be silent; it reads a file that lies on this machine
+  Log* log = nullptr;           // borrowed; must outlive the camera
 };
 
 // OpenNI2's reader of .oni files trusts what is in them, and a damaged one makes it crash. So a recording is
