@@ -120,8 +120,8 @@ TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
   expect(plvo("live --calibration " + path("none.txt")), 1, "none.txt");
   expect(plvo("live --out " + path("no/such/folder.txt")), 1, "choose a path that can be written");
   expect(plvo("live --record " + path("no/such/folder")), 1, "cannot make the folder");
-  expect(plvo("live --stream nonsense"), 1, "a pose stream is");
-  expect(plvo("live --view nonsense"), 1, "a live view is at");
+  expect(plvo("live --stream nonsense"), 2, "--stream: expected [ADDRESS:]PORT");
+  expect(plvo("live --view nonsense"), 2, "--view: expected [ADDRESS:]PORT");
   expect(plvo("live --seconds 1.5", device("stall")), 4, "no frame came from Virtual RGB-D");
   expect(plvo("live --frames 10 --quiet", device("dark 1;zero_depth 1")), 3, "no frame could be tracked: ");
   EXPECT_EQ(plvo("live --mode big").exit_code, 2);
