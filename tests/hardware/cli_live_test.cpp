@@ -55,6 +55,10 @@ TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
   ASSERT_EQ(live.exit_code, 0) << live.err;
   const long poses = lines_in(read_file(path("oni.txt"))) - 1;
   EXPECT_GT(poses, 10);
+  ASSERT_EQ(plvo("run " + path("a.oni") + files("run")).exit_code, 0);
+  expect_same("oni", "run", poses);
+  ASSERT_EQ(plvo("run " + path("a.oni") + " --frames 2:7" + files("part")).exit_code, 0);
+  EXPECT_EQ(lines_in(read_file(path("part.txt"))) - 1, 5);
   ASSERT_EQ(plvo("record " + path("folder") + " --quiet --device " + path("a.oni")).exit_code, 0);
   ASSERT_EQ(plvo("run " + path("folder") + files("folder")).exit_code, 0);
   expect_same("oni", "folder", poses);
@@ -112,8 +116,8 @@ TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
   expect(plvo("live --calibration " + path("none.txt")), 1, "none.txt");
   expect(plvo("live --out " + path("no/such/folder.txt")), 1, "choose a path that can be written");
   expect(plvo("live --record " + path("no/such/folder")), 1, "cannot make the folder");
-  expect(plvo("live --stream nonsense"), 1, "a pose stream is");
-  expect(plvo("live --view nonsense"), 1, "a live view is at");
+  expect(plvo("live --stream nonsense"), 2, "--stream: expected [ADDRESS:]PORT");
+  expect(plvo("live --view nonsense"), 2, "--view: expected [ADDRESS:]PORT");
   expect(plvo("live --seconds 1.5", device("stall")), 4, "no frame came from Virtual RGB-D");
   expect(plvo("live --frames 10 --quiet", device("dark 1;zero_depth 1")), 3, "no frame could be tracked: ");
   EXPECT_EQ(plvo("live --mode big").exit_code, 2);

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <ctime>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -12,28 +10,16 @@
 #include "plvo/bench/result.hpp"
 #include "plvo/bench/system.hpp"
 #include "plvo/eval/statistics.hpp"
+#include "plvo/host/posix_clock.hpp"
+#include "plvo/host/resident_memory.hpp"
 #include "plvo/host/trajectory_file.hpp"
+#include "plvo/replay/sequence_calibration.hpp"
 #include "plvo/replay/tum_camera.hpp"
 
 namespace plvo::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::int64_t cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
-}
-
-// A line of /proc/self/status in megabytes (10^6 bytes). getrusage would count what this process was before
-// it became the worker.
-double memory_mb(const std::string& name) {
-  std::ifstream stream("/proc/self/status");
-  for (std::string line; std::getline(stream, line);)
-    if (line.rfind(name + ":", 0) == 0) return std::stod(line.substr(name.size() + 1)) * 1024 / 1e6;
-  return 0;
-}
 
 struct Tracks {
   eval::Trajectory trajectory;
@@ -48,9 +34,9 @@ Status track_all(TumCamera& camera, System& system, Tracks& tracks) {
     if (status.code() == StatusCode::kDamaged) continue;  // for every system alike
     if (!status.ok()) return status;
     system.prepare(frame);
-    const std::int64_t start = cpu_ns();
+    const std::int64_t start = posix_process_cpu_ns();
     const bool tracked = system.track();
-    const std::int64_t end = cpu_ns();
+    const std::int64_t end = posix_process_cpu_ns();
     if (!tracked) ++tracks.lost;
     if (!tracks.trajectory.poses.empty()) tracks.times_ms.push_back(static_cast<double>(end - start) * 1e-6);
     tracks.trajectory.poses.push_back({frame.stamp_ns, system.pose()});
@@ -72,42 +58,30 @@ Status evaluate_tracks(const Job& job, const Tracks& tracks, Result& result) {
 
 }  // namespace
 
-Status find_calibration(const fs::path& folder, const std::string& camera_model, Calibration& calibration) {
-  if (!camera_model.empty()) return builtin_calibration(camera_model, calibration);
-  std::error_code error;
-  if (fs::exists(folder / "calibration.txt", error))
-    return read_calibration(folder / "calibration.txt", calibration);
-  const std::string name = folder.filename().string();
-  for (const char* number : {"1", "2", "3"}) {
-    if (name.find(std::string("freiburg") + number) != std::string::npos ||
-        name.rfind(std::string("fr") + number, 0) == 0)
-      return builtin_calibration(std::string("tum-fr") + number, calibration);
-  }
-  return {StatusCode::kNotFound,
-          fmt::format("{}: no calibration.txt, and the name says no TUM camera: give --camera-model",
-                      folder.string())};
-}
-
 Status measure(const Job& job, const fs::path& out) {
   Calibration calibration;
-  if (Status status = find_calibration(job.folder, job.options.camera_model, calibration); !status.ok())
-    return status;
+  std::string guess;  // the table names the sequence: nobody needs to be told
+  Status found = job.options.camera_model.empty()
+                     ? sequence_calibration(job.folder, calibration, guess)
+                     : builtin_calibration(job.options.camera_model, calibration);
+  if (!found.ok()) return found;
   TumOptions tum;
   if (job.options.frames > 0) tum.end_frame = job.options.frames;
   TumCamera camera;
   if (Status status = camera.open(job.folder, calibration, tum); !status.ok()) return status;
 
   // The peak is counted anew from here, so that what the loading of the program took does not hide it.
-  std::ofstream("/proc/self/clear_refs") << "5";
-  const double before_mb = memory_mb("VmRSS");
+  forget_peak_resident();
+  const std::int64_t before = resident_memory().total;
   std::unique_ptr<System> system;
   if (Status status = make_system(job.system, camera.model(), system); !status.ok()) return status;
   Tracks tracks;
   if (Status status = track_all(camera, *system, tracks); !status.ok()) return status;
 
   Result result;
-  result.peak_mb = memory_mb("VmHWM");
-  result.growth_mb = result.peak_mb - before_mb;
+  const std::int64_t peak = peak_resident_bytes();
+  result.peak_mb = static_cast<double>(peak) / 1e6;
+  result.growth_mb = static_cast<double>(peak - before) / 1e6;
   result.frames = static_cast<int>(tracks.trajectory.poses.size());
   result.lost = tracks.lost;
   const eval::Statistics times = eval::statistics(tracks.times_ms);

@@ -4,18 +4,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "plvo/base/status.hpp"
 #include "plvo/bench/job.hpp"
-#include "plvo/replay/calibration.hpp"
 
 namespace plvo::bench {
-
-// The folder's calibration.txt; without one the camera of that name; without a name the TUM camera that the
-// folder's name speaks of (freiburg1, fr2_…). kNotFound when none of this helps.
-Status find_calibration(const std::filesystem::path& folder, const std::string& camera_model,
-                        Calibration& calibration);
 
 // Writes the trajectory (every frame: a lost one stays where the last good one was) and then the result to
 // out/jobs.

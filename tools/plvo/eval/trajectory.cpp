@@ -59,9 +59,9 @@ Status read_kitti_times(const std::filesystem::path& path, std::size_t needed,
     if (!parse_stamp_ns(row.words[0], stamp)) return row_error(path, row, "expected a stamp in seconds");
     stamps.push_back(stamp);
   }
-  if (stamps.size() >= needed) return {};
-  return {StatusCode::kInvalidArgument,
-          fmt::format("{} has {} stamps for {} poses", path.string(), stamps.size(), needed)};
+  if (stamps.size() == needed) return {};
+  return {StatusCode::kInvalidArgument, fmt::format("{} has {} stamps for {} poses; it needs one for each",
+                                                    path.string(), stamps.size(), needed)};
 }
 
 void sort_by_stamp(Trajectory& trajectory) {
@@ -106,6 +106,7 @@ Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory) {
     return {StatusCode::kInvalidArgument, fmt::format("{} holds no pose", source.path.string())};
   const TrajectoryFormat format = source.format == TrajectoryFormat::kAuto ? detect(rows[0]) : source.format;
   const bool kitti = format == TrajectoryFormat::kKitti;
+  trajectory.format = format;
   std::vector<std::int64_t> times;
   if (kitti && !source.kitti_times.empty()) {
     if (Status status = read_kitti_times(source.kitti_times, rows.size(), times); !status.ok()) return status;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trajectories from files:
 //   TUM    stamp tx ty tz qx qy qz qw           seconds; spaces or commas
-//   EuRoC  stamp,tx,ty,tz,qw,qx,qy,qz[,…]       nanoseconds, commas, w first; columns beyond the eighth are
-//   ignored KITTI  r00 r01 r02 tx r10 … tz              12 numbers, the upper 3×4 of T_world_camera; stamps
-//   from elsewhere
+//   EuRoC  stamp,tx,ty,tz,qw,qx,qy,qz[,…]       nanoseconds, commas, w first; further columns are ignored
+//   KITTI  r00 r01 r02 tx r10 … tz              12 numbers, the upper 3×4 of T_world_camera; stamps from
+//   elsewhere
 #pragma once
 
 #include <cstdint>
@@ -21,17 +21,19 @@ struct StampedPose {
   Se3 T_world_camera;
 };
 
-struct Trajectory {
-  std::vector<StampedPose> poses;  // stamps strictly increasing
-  std::size_t ignored_rows = 0;    // with a NaN, or a stamp that was there already
-};
-
 enum class TrajectoryFormat : std::uint8_t { kAuto, kTum, kEuroc, kKitti };
+
+struct Trajectory {
+  std::vector<StampedPose> poses;                     // stamps strictly increasing
+  std::size_t ignored_rows = 0;                       // with a NaN, or a stamp that was there already
+  TrajectoryFormat format = TrajectoryFormat::kAuto;  // of the file it was read from
+};
 
 struct TrajectorySource {
   std::filesystem::path path;
   TrajectoryFormat format = TrajectoryFormat::kAuto;
-  std::filesystem::path kitti_times;  // one stamp in seconds a line; without it, rows are 0.1 s apart from 0
+  std::filesystem::path
+      kitti_times;  // a stamp in seconds for each row; without it, rows are 0.1 s apart from 0
 };
 
 // Rows are sorted by stamp. kNotFound; kDamaged with file and line; kInvalidArgument for a file without a

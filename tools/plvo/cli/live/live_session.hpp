@@ -60,7 +60,7 @@ class LiveSession {
   double latency_ms_ = 0;
   std::int64_t start_ns_ = 0;
   std::int64_t next_turn_ns_ = 0;
-  Status recorder_failure_;
+  Status recorder_failure_, summary_failure_;
 };
 
 }  // namespace plvo::cli

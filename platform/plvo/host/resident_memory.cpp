@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/cli/common/resident_memory.hpp"
+#include "plvo/host/resident_memory.hpp"
 
 #include <link.h>
 #include <malloc.h>
@@ -10,12 +10,13 @@
 #include <cstddef>
 #include <fstream>
 #include <memory>
+#include <string>
 
 #ifndef MADV_POPULATE_READ
 #define MADV_POPULATE_READ 22  // Linux 5.14; older C libraries do not name it
 #endif
 
-namespace plvo::cli {
+namespace plvo {
 namespace {
 
 constexpr std::size_t kStackBytes = 256 * 1024;
@@ -39,8 +40,8 @@ int populate_segments(dl_phdr_info* object, std::size_t, void*) {
   return stack[0];
 }
 
-// Half a mebibyte at the end of the heap, there to stay: what the image libraries take and give back for
-// every image lies now here, now there, and would pass for growth.
+// Half a mebibyte at the end of the heap that is never given back to the system: the image libraries take and
+// return blocks there for every image, which would otherwise look like growth.
 void touch_heap() {
   constexpr std::size_t kBlockBytes = 64 * 1024;
   mallopt(M_TRIM_THRESHOLD, 4 * 1024 * 1024);
@@ -58,6 +59,18 @@ ResidentMemory resident_memory() {
   return {resident * page, (resident - shared) * page};
 }
 
+// VmHWM of /proc/self/status, in kB there. getrusage would count what this process was before it
+// became this program.
+std::int64_t peak_resident_bytes() {
+  const std::string key = "VmHWM:";
+  std::ifstream stream("/proc/self/status");
+  for (std::string line; std::getline(stream, line);)
+    if (line.rfind(key, 0) == 0) return std::stoll(line.substr(key.size())) * 1024;
+  return 0;
+}
+
+void forget_peak_resident() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
 void prefault_program() {
   dl_iterate_phdr(populate_segments, nullptr);
   touch_stack();
@@ -65,4 +78,4 @@ void prefault_program() {
   (void)resident_memory();
 }
 
-}  // namespace plvo::cli
+}  // namespace plvo

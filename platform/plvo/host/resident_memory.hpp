@@ -4,15 +4,20 @@
 
 #include <cstdint>
 
-namespace plvo::cli {
+namespace plvo {
 
-// Bytes; zero where the system does not tell. Anonymous is the part that no file backs: what the program
-// itself took.
+// Bytes; zero where the system does not tell. Anonymous is the part that no file backs: what the
+// program itself took.
 struct ResidentMemory {
   std::int64_t total = 0;
   std::int64_t anonymous = 0;
 };
 ResidentMemory resident_memory();
+
+// The most that was resident at once since the start, or since it was last forgotten (Linux
+// alone can forget).
+std::int64_t peak_resident_bytes();
+void forget_peak_resident();
 
 constexpr double mebibytes(auto bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
@@ -22,4 +27,4 @@ constexpr double mebibytes(auto bytes) { return static_cast<double>(bytes) / (10
 // And reads resident_memory() once: the first reading takes what reading needs.
 void prefault_program();
 
-}  // namespace plvo::cli
+}  // namespace plvo
