@@ -35,7 +35,7 @@ void LiveSummary::add(const FrameRecord& record, double latency_ms) {
 std::string LiveSummary::to_text() const {
   const OpenNi2Counters& c = capture.camera;
   SummaryRows rows = {
-      {"time", fmt::format("{:.1f} s{}", seconds, interrupted ? " (interrupted)" : "")},
+      {"time", fmt::format("{:.1f} s{}", seconds, interrupted ? " (ended by Ctrl-C)" : "")},
       {"camera", fmt::format("{} frames, {:.1f} Hz", capture.frames, capture.average_hz)},
       {"missing on the way", fmt::format("{} frames by their stamps", c.missing)},
       {"odometry", fmt::format("{} frames; {} older ones dropped for newer ones", frames(), dropped)}};
