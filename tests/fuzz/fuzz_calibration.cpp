@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a calibration, in each of its forms: read or refused with words, and what is accepted is
 // usable.
+#include <string>
 #include <string_view>
 
 #include "plvo/replay/calibration.hpp"
@@ -13,6 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Status status = read_calibration(fuzz::write_scratch(name, data, size), calibration);
     fuzz::require(status.ok() || !std::string_view(status.message()).empty());
     if (!status.ok() || !calibration.validate(640, 480).ok()) continue;
+    // What was read is written so that it is read again, to the last bit.
+    const std::string text = calibration_text(calibration);
+    Calibration again;
+    const auto written =
+        fuzz::write_scratch("again.txt", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    fuzz::require(read_calibration(written, again).ok() && calibration_text(again) == text);
     CameraModel camera = calibration.camera;
     camera.width = 640;
     camera.height = 480;

@@ -2,15 +2,47 @@
 // What goes wrong while `plvo live` runs: it says so, waits, and goes on when frames do; files stay whole.
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "live_command.hpp"
 
 namespace plvo_test {
 namespace {
+
+long count_of(const std::string& text, const std::string& words) {
+  long count = 0;
+  for (std::size_t at = 0; (at = text.find(words, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+// Lines from a Unix socket, each as soon as it is whole.
+class LineReader {
+ public:
+  explicit LineReader(const std::string& path) : fd_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un to{};
+    to.sun_family = AF_UNIX;
+    path.copy(to.sun_path, sizeof to.sun_path - 1);
+    EXPECT_EQ(::connect(fd_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+  }
+  ~LineReader() { ::close(fd_); }
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+  std::string next() {
+    std::string line;
+    char c = 0;
+    while (::read(fd_, &c, 1) == 1 && c != '\n') line += c;
+    if (c != '\n') throw std::runtime_error("the stream has ended");
+    return line;
+  }
+
+ private:
+  int fd_;
+};
 
 class CliLiveFaults : public LiveCommand {
  protected:
@@ -20,10 +52,13 @@ class CliLiveFaults : public LiveCommand {
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
     wait_for_rows(10);
   }
-  // Until the statistics have this many frames.
-  void wait_for_rows(long rows) const {
-    for (int i = 0; i < 1000 && lines_in(read_file(path("s.csv"))) <= rows; ++i) pause(0.01);
-    EXPECT_GT(lines_in(read_file(path("s.csv"))), rows) << err();
+  // Until the statistics have so many frames.
+  void wait_for_rows(long least) const {
+    EXPECT_TRUE(comes_true([&] { return rows() >= least; })) << err();
+  }
+  // Whether the newest frame gets this state at some time.
+  bool reaches(const std::string& state) const {
+    return comes_true([&] { return !states().empty() && states().back() == state; });
   }
   long rows() const { return lines_in(read_file(path("s.csv"))) - 1; }
   nlohmann::json summary() const { return nlohmann::json::parse(read_file(path("j.json"))); }
@@ -52,12 +87,12 @@ TEST_F(CliLiveFaults, UnplugAndReplug) {
   start_live();
   for (int round = 1; round <= 2; ++round) {
     tell_device("unplug");
-    for (int i = 0; i < 500 && !contains(err(), "was unplugged; plug it in again"); ++i) pause(0.01);
-    pause(0.3);
+    EXPECT_TRUE(comes_true([&] { return count_of(err(), "was unplugged; plug it in again") == round; }))
+        << err();
     const long before = rows();
     tell_device("plug");
     wait_for_rows(before + 10);
-    for (int i = 0; i < 1000 && states().back() != "tracking"; ++i) pause(0.01);
+    EXPECT_TRUE(reaches("tracking"));
   }
   EXPECT_EQ(interrupt(), 0) << err();
   EXPECT_TRUE(contains(err(), "plvo: warning: Virtual RGB-D was unplugged; plug it in again to go on"))
@@ -67,9 +102,8 @@ TEST_F(CliLiveFaults, UnplugAndReplug) {
   EXPECT_EQ(summary()["camera_counters"]["unplugged"], 2);
   EXPECT_EQ(summary()["camera_counters"]["replugged"], 2);
   EXPECT_EQ(summary()["interrupted"], true);
-  EXPECT_EQ(states().back(), "tracking");
   expect_whole_files();
-  EXPECT_TRUE(contains(out(), "ended by Ctrl-C")) << out();
+  EXPECT_TRUE(contains(out(), "ended by a signal")) << out();
 }
 
 TEST_F(CliLiveFaults, SilenceOfOneStreamOrBoth) {
@@ -84,8 +118,7 @@ TEST_F(CliLiveFaults, SilenceOfOneStreamOrBoth) {
     wait_for_rows(before + 5);
   }
   // The pattern has moved on meanwhile: it may be lost and start anew first.
-  for (int i = 0; i < 1000 && states().back() != "tracking"; ++i) pause(0.01);
-  EXPECT_EQ(states().back(), "tracking");
+  EXPECT_TRUE(reaches("tracking"));
   EXPECT_EQ(interrupt(), 0) << err();
   expect_whole_files();
 }
@@ -94,14 +127,11 @@ TEST_F(CliLiveFaults, CoveredCameraIsLostAndComesBack) {
   start_live();
   for (const char* cover : {"dark", "zero_depth"}) {
     tell_device(std::string(cover) + " 1");
-    long seen = rows();
-    for (int i = 0; i < 1000 && (states().empty() || states().back() != "lost"); ++i) pause(0.01);
-    EXPECT_EQ(states().back(), "lost") << cover;
-    seen = rows();
+    EXPECT_TRUE(reaches("lost")) << cover;
+    const long seen = rows();
     wait_for_rows(seen + 5);
     tell_device(std::string(cover) + " 0");
-    for (int i = 0; i < 1000 && states().back() != "tracking"; ++i) pause(0.01);
-    EXPECT_EQ(states().back(), "tracking") << cover;
+    EXPECT_TRUE(reaches("tracking")) << cover;
   }
   EXPECT_EQ(interrupt(), 0) << err();
   EXPECT_GE(summary()["lost"].get<int>(), 10);
@@ -109,18 +139,51 @@ TEST_F(CliLiveFaults, CoveredCameraIsLostAndComesBack) {
   expect_whole_files();
 }
 
+// A robot that reads the poses tells a camera that stalls from a program that hangs.
+TEST_F(CliLiveFaults, ThePoseStreamHasAHeartbeatThatNamesTheCamerasState) {
+  start_live("--stream unix:" + path("poses"));
+  LineReader robot(path("poses"));
+  const auto next = [&robot] { return nlohmann::json::parse(robot.next()); };
+  const auto next_heartbeat = [&next](const std::string& state) {
+    nlohmann::json json;
+    do json = next();
+    while (!json.contains("heartbeat") || json["state"] != state);
+    return json;
+  };
+  tell_device("stall");
+  double silent_s = 0;
+  for (int i = 0; i < 4; ++i) {
+    const nlohmann::json beat = i == 0 ? next_heartbeat("stalled") : next();
+    ASSERT_EQ(beat["heartbeat"], true) << beat;
+    EXPECT_EQ(beat["state"], "stalled");
+    EXPECT_TRUE(contains(beat["message"], "no frames from Virtual RGB-D")) << beat;
+    // At most two a second, however busy the machine.
+    EXPECT_GE(beat["seconds_since_frame"].get<double>(), silent_s + (i == 0 ? 0.5 : 0.49)) << beat;
+    silent_s = beat["seconds_since_frame"];
+  }
+  tell_device("run");
+  while (next().contains("heartbeat")) {
+  }
+  tell_device("unplug");
+  EXPECT_TRUE(contains(next_heartbeat("unplugged")["message"], "plug it in again"));
+  tell_device("plug");
+  while (next().contains("heartbeat")) {
+  }
+  EXPECT_EQ(interrupt(), 0) << err();
+  expect_whole_files();
+}
+
 TEST_F(CliLiveFaults, DiskFullWhileRecordingEndsTheRecordingAlone) {
   // No file may grow beyond 8 KiB: black images fit, a test pattern does not.
   start("live --stats " + path("s.csv") + " --record " + path("walk") + " --json " + path("j.json"),
         device("dark 1;zero_depth 1"), "ulimit -f 16; ");
-  for (int i = 0; i < 1000 && lines_in(read_file(path("walk/rgb.txt"))) < 8; ++i) pause(0.01);
+  EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("walk/rgb.txt"))) >= 8; })) << err();
   tell_device("dark 0");
   tell_device("zero_depth 0");
   EXPECT_TRUE(says("plvo: error: the recording ends here, what was written is whole: cannot write")) << err();
-  const auto wait_for_frames = rows();
-  wait_for_rows(wait_for_frames + 5);
+  wait_for_rows(rows() + 5);
+  EXPECT_TRUE(reaches("tracking")) << "the odometry went on";
   EXPECT_EQ(interrupt(), 1) << err();
-  EXPECT_EQ(states().back(), "tracking") << "the odometry went on";
   const long listed = lines_in(read_file(path("walk/rgb.txt"))) - 1;
   EXPECT_GE(listed, 7);
   EXPECT_EQ(summary()["recording"]["frames"], listed);
@@ -132,8 +195,7 @@ TEST_F(CliLiveFaults, DiskFullWhileRecordingEndsTheRecordingAlone) {
 }
 
 TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
-  start("live --seconds 4 --view 0 --stream 0 --json " + path("j.json"));
-  ASSERT_TRUE(says("Ctrl-C ends")) << err();
+  start_live("--every-frame --view 0 --stream 0");
   std::vector<int> sockets;
   for (const char* word : {"live view: http://127.0.0.1:", "poses: 127.0.0.1:"}) {
     const std::size_t at = err().find(word);
@@ -148,20 +210,18 @@ TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
       to.sin_port = htons(static_cast<std::uint16_t>(port));
       to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       ASSERT_EQ(::connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
-      const std::string ask = "GET /update?after=0&image=0 HTTP/1.1\r\nHost: localhost\r\n\r\n";
+      const std::string ask =
+          "GET /update?after=0&image=0 HTTP/1.1\r\nHost: localhost:" + std::to_string(port) + "\r\n\r\n";
       for (int n = 0; n < 20; ++n) ::send(fd, ask.data(), ask.size(), MSG_NOSIGNAL);
       sockets.push_back(fd);  // and nobody ever reads from it
     }
   }
-  EXPECT_EQ(wait(), 0) << err();
+  // A frame that waited for one of them would wait for ever.
+  wait_for_rows(rows() + 60);
+  EXPECT_EQ(interrupt(), 0) << err();
   for (const int fd : sockets) ::close(fd);
-  const nlohmann::json json = summary();
-  EXPECT_GT(json["stream_dropped_lines"].get<int>() + json["frames"].get<int>(), 20);
-  EXPECT_EQ(json["lost"], 0);
-  // Nobody was waited for: a blocked send would show as latency of its whole time-out, two seconds.
-  EXPECT_LT(json["latency_ms"]["max"].get<double>(), 1500) << json;
-  EXPECT_LT(json["latency_ms"]["median"].get<double>(), 60 + 3 * json["cpu_ms"]["median"].get<double>())
-      << json;
+  EXPECT_EQ(summary()["lost"], 0);
+  expect_whole_files();
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Looks at `plvo live --view` in headless Chromium while the virtual device plays a simulated walk: three pages at once,
-at ten updates a second each, that draw, turn, fit a phone, and show an unplugged sensor. Python's own library only: the
-browser is spoken to through the pipe of its debugging protocol.
-usage: live_browser_test.py PLVO VIRTUAL_FRAMES OPENNI2_FOLDER [FOLDER FOR SCREENSHOTS]   (exit code 77: no browser, skipped)
+"""Looks at `plvo live --view` in headless Chromium while the virtual device plays a simulated walk: three pages at once
+that go on getting updates in order, draw, turn, fit a phone, and show an unplugged sensor. Python's own library only: the
+browser is spoken to through the pipe of its debugging protocol. With --rate, and on an idle machine, the pages must get ten
+updates a second each while the odometry keeps its pace; without it nothing is judged by time.
+usage: live_browser_test.py [--rate] PLVO VIRTUAL_FRAMES OPENNI2_FOLDER [FOLDER FOR SCREENSHOTS]
+exit code 77: no browser, skipped
 """
 import base64
 import json
@@ -16,8 +18,10 @@ import tempfile
 import time
 
 VIEWERS = 3
-SECONDS = 4.0
+UPDATES = 20  # of each page, before it is looked at
+RATE_SECONDS = 4.0
 FRAMES = 40
+PATIENCE_S = 180  # so that what hangs fails by name; nothing is judged by it
 
 
 class Browser:
@@ -113,8 +117,8 @@ def check(condition, message):
         sys.exit("FAILED: " + message)
 
 
-def wait_for(what, message, limit_s=20):
-    end = time.monotonic() + limit_s
+def wait_for(what, message):
+    end = time.monotonic() + PATIENCE_S
     while not what():
         check(time.monotonic() < end, message)
         time.sleep(0.05)
@@ -124,19 +128,24 @@ def look(browser, address, control, screenshots):
     pages = [browser.open(address) for _ in range(VIEWERS)]
     for page in pages:
         wait_for(lambda: browser.value(page, "window.plvo && window.plvo.images > 2"), "a page shows no image")
-    before = [browser.value(page, "[performance.now(), window.plvo.updates, window.plvo.images]") for page in pages]
-    time.sleep(SECONDS)
-    after = [browser.value(page, "[performance.now(), window.plvo.updates, window.plvo.images]") for page in pages]
-    rates = [1000 * (b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(before, after)]
-    print("updates per second:", " ".join(f"{rate:.1f}" for rate in rates))
+    # In order: what a page has never gets older.
+    newest = [(0, 0, 0)] * VIEWERS
+    while min(seen[0] for seen in newest) < UPDATES:
+        for i, page in enumerate(pages):
+            now = tuple(browser.value(page, "[plvo.updates, plvo.last.sequence, plvo.last.image]"))
+            check(all(a >= b for a, b in zip(now, newest[i])), f"page {i} went back from {newest[i]} to {now}")
+            newest[i] = now
+        time.sleep(0.05)
+    errors = [browser.value(page, "window.plvo.errors") for page in pages]
+    check(errors == [0] * VIEWERS, f"the pages lost their connection {errors} times")
     page = pages[0]
     for name, least in (("image", 200), ("depth", 50), ("space", 4), ("covariance", 5)):
         colours = browser.value(page, f"{COLOURS}('{name}')")
         check(colours >= least, f"{name} has only {colours} colours")
     last = browser.value(page, "window.plvo.last")
-    check(last["state"] == "tracking", f"the state is {last['state']}")
-    check(last["viewers"] == VIEWERS, f"{last['viewers']} viewers are counted")
-    check(len(last["path"]) >= 0 and browser.value(page, "path.points.length") >= 9, "no trajectory is drawn")
+    wait_for(lambda: browser.value(page, "window.plvo.last.state") == "tracking", "the page never says that it tracks")
+    wait_for(lambda: browser.value(page, "window.plvo.last.viewers") == VIEWERS, "not every viewer is counted")
+    check(browser.value(page, "path.points.length") >= 9, "no trajectory is drawn")
     check(last["points"] and last["segments"], "no features are drawn")
     turned = browser.value(page, """(() => { const before = space.toDataURL();
         eye.held = true; eye.yaw += 1; drawSpace(); return space.toDataURL() !== before; })()""")
@@ -145,7 +154,7 @@ def look(browser, address, control, screenshots):
         browser.screenshot(page, os.path.join(screenshots, "live.png"))
     # A phone: nothing wider than the screen.
     browser.ask("Emulation.setDeviceMetricsOverride", page, width=390, height=844, deviceScaleFactor=2, mobile=True)
-    time.sleep(0.5)
+    wait_for(lambda: browser.value(page, "window.innerWidth") == 390, "the page does not notice the phone")
     width = browser.value(page, "document.documentElement.scrollWidth")
     check(width <= 390, f"the page is {width} px wide on a phone of 390")
     if screenshots:
@@ -156,19 +165,30 @@ def look(browser, address, control, screenshots):
     wait_for(lambda: "unplugged" in browser.value(page, "document.getElementById('camera').textContent"),
              "the page does not say that the sensor is unplugged")
     state = "document.getElementById('state').textContent"
-    check(browser.value(page, state) == "waiting", "without a sensor the page says " + browser.value(page, state))
+    wait_for(lambda: browser.value(page, state) == "waiting", "without a sensor the page does not say that it waits")
     if screenshots:
         browser.screenshot(page, os.path.join(screenshots, "live_unplugged.png"))
     with open(control, "w", encoding="utf-8") as f:
         f.write("plug\n")
     wait_for(lambda: browser.value(page, state) == "tracking", "the page does not go on after the replug")
     check(not browser.problems(), "errors on the page: " + "; ".join(browser.problems()))
+    return pages
+
+
+def updates_per_second(browser, pages):
+    ask = "[performance.now(), window.plvo.updates]"
+    before = [browser.value(page, ask) for page in pages]
+    time.sleep(RATE_SECONDS)
+    after = [browser.value(page, ask) for page in pages]
+    rates = [1000 * (b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(before, after)]
+    print("updates per second:", " ".join(f"{rate:.1f}" for rate in rates))
     return rates
 
 
 def main():
-    plvo, frames_maker, openni2 = sys.argv[1:4]
-    screenshots = sys.argv[4] if len(sys.argv) > 4 else None
+    rate = "--rate" in sys.argv
+    plvo, frames_maker, openni2, *rest = [argument for argument in sys.argv[1:] if argument != "--rate"]
+    screenshots = rest[0] if rest else None
     program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if program is None:
         print("SKIPPED: no Chromium here (apt install chromium)")
@@ -184,28 +204,22 @@ def main():
                                      "--view", "0", "--json", summary], env=environment, stdout=subprocess.DEVNULL, stderr=errors)
         browser = Browser(program, folder)
         try:
-            address = None
-            end = time.monotonic() + 20
-            while address is None and time.monotonic() < end:
-                address = re.search(r"http://[\d.]+:\d+/", open(log, encoding="utf-8").read())
-                time.sleep(0.05)
-            check(address, "plvo live names no address: " + open(log, encoding="utf-8").read())
-            rates = look(browser, address.group(0), control, screenshots)
+            found = lambda: re.search(r"http://[\d.]+:\d+/", open(log, encoding="utf-8").read())
+            wait_for(found, "plvo live names no address")
+            pages = look(browser, found().group(0), control, screenshots)
+            rates = updates_per_second(browser, pages) if rate else []
         finally:
             browser.close()
             live.send_signal(2)
-            code = live.wait(20)
+            code = live.wait(PATIENCE_S)
         check(code == 0, f"plvo live ended with {code}: " + open(log, encoding="utf-8").read())
         told = json.load(open(summary, encoding="utf-8"))
         print(f"odometry: {told['frames']} of {told['camera_frames']} frames, latency {told['latency_ms']['median']:.1f} ms median,"
-              f" {told['latency_ms']['p95']:.1f} p95, CPU {told['cpu_ms']['median']:.1f} ms a frame")
-        # The browser draws three pages on the same processors; whether the odometry waited for them shows here.
-        check(told["latency_ms"]["median"] < 100, "the viewers slow the odometry down")
-        # Three pages drawn without a graphics card need a processor; where others hold them all, less will do.
-        crowded = os.getloadavg()[0] > 3 * os.cpu_count()
-        if crowded and min(rates) < 10:
-            print(f"JUDGED MILDLY: the load of this machine is {os.getloadavg()[0]:.1f}")
-        check(min(rates) >= (4 if crowded else 10), f"only {min(rates):.1f} updates per second")
+              f" {told['latency_ms']['p95']:.1f} p95, CPU {told['cpu_ms']['total']['median']:.1f} ms a frame")
+        if rate:
+            # The browser draws three pages on the same processors; whether the odometry waited for them shows here.
+            check(told["latency_ms"]["median"] < 100, "the viewers slow the odometry down")
+            check(min(rates) >= 10, f"only {min(rates):.1f} updates per second")
     print("the live view loads, draws, turns, fits a phone and tells an unplug")
 
 

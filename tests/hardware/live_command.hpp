@@ -27,6 +27,9 @@ using plvo::test::run_command;
 
 inline const std::string kPlvo = PLVO_BINARY;
 
+// So that what hangs fails by name; nothing is judged by it.
+inline constexpr double kPatience_s = 120;
+
 inline bool contains(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
@@ -67,7 +70,7 @@ class LiveCommand : public testing::Test {
   }
   std::string err() const { return read_file(folder_ / "err"); }
   std::string out() const { return read_file(folder_ / "out"); }
-  bool says(const std::string& words, double limit_s = 15) const {
+  bool says(const std::string& words, double limit_s = kPatience_s) const {
     const auto start = std::chrono::steady_clock::now();
     while (!contains(err(), words)) {
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(limit_s)) return false;
@@ -83,13 +86,25 @@ class LiveCommand : public testing::Test {
     EXPECT_EQ(::write(fd, line.data(), line.size()), static_cast<ssize_t>(line.size()));
     ::close(fd);
   }
-  // Ctrl-C, and how it ended; -1 if it did not within the time.
-  int interrupt(double limit_s = 15) {
-    if (pid_ <= 0) return -1;  // kill(-1) would reach everybody
-    ::kill(pid_, SIGINT);
-    return wait(limit_s);
+  // As another program would, or a terminal.
+  void send(int signal) const {
+    if (pid_ > 0) ::kill(pid_, signal);  // kill(-1) would reach everybody
   }
-  int wait(double limit_s = 15) {
+  // Ctrl-C, and how it ended; -1 if it did not within the time.
+  int interrupt() {
+    send(SIGINT);
+    return wait();
+  }
+  // Whether it came true in the end.
+  template <typename Condition>
+  static bool comes_true(Condition condition) {
+    for (double waited_s = 0; waited_s < kPatience_s; waited_s += 0.01) {
+      if (condition()) return true;
+      pause(0.01);
+    }
+    return false;
+  }
+  int wait(double limit_s = kPatience_s) {
     if (pid_ <= 0) return -1;
     const auto start = std::chrono::steady_clock::now();
     int status = 0;

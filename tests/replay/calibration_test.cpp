@@ -47,10 +47,87 @@ TEST(Calibration, ReadsKeys) {
   EXPECT_TRUE(says(c.validate(320, 240), "is for 640x480 images, these are 320x240"));
 }
 
+TEST(Calibration, NumbersMayEndEarly) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 526 319.5 239.5\n", c).ok());
+  EXPECT_EQ(c.camera.pinhole.cy, 239.5);
+  EXPECT_EQ(c.depth_units_per_metre, 5000);
+  EXPECT_FALSE(c.depth_scale_given);
+  EXPECT_FALSE(c.readout_given);
+  ASSERT_TRUE(read_text("525 526 319.5 239.5 1000\n", c).ok());
+  EXPECT_TRUE(c.depth_scale_given);
+  EXPECT_FALSE(c.readout_given);
+  ASSERT_TRUE(read_text("525 526 319.5 239.5 1000 0 0 0 0 0 0\n", c).ok());
+  EXPECT_TRUE(c.readout_given) << "a global shutter that was said";
+  EXPECT_TRUE(says(read_text("525 526 319.5 239.5 5000 0.1 0.2 0.3 0.4\n", c), "has 9 numbers; expected"));
+}
+
+TEST(Calibration, KeysMayFollowNumbers) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 526 319.5 239.5 # no scale\nreadout_s: 0.0261\ndepth_scale 1000\n", c).ok());
+  EXPECT_EQ(c.camera.readout_s, 0.0261);
+  EXPECT_EQ(c.depth_units_per_metre, 1000);
+  EXPECT_TRUE(c.assumptions().empty());
+  EXPECT_TRUE(
+      says(read_text("525 526 319.5 239.5 1000\ndepth_scale 5000\n", c), "'depth_scale' is said twice"));
+  EXPECT_TRUE(says(read_text("fx 525\nfx 526\n", c), "'fx' is said twice"));
+}
+
+TEST(Calibration, ByteOrderMarks) {
+  Calibration c;
+  ASSERT_TRUE(read_text("\xEF\xBB\xBF"
+                        "525 526 319.5 239.5 1000",
+                        c)
+                  .ok());
+  EXPECT_EQ(c.camera.pinhole.fx, 525);
+  ASSERT_TRUE(read_text("\xEF\xBB\xBF"
+                        "fx: 525\nfy: 525\ncx: 1\ncy: 1\n",
+                        c, "c.yaml")
+                  .ok());
+  EXPECT_TRUE(says(read_text(std::string("\xFF\xFE"
+                                         "5\0",
+                                         4),
+                             c),
+                   "UTF-16"));
+}
+
+// What nobody said is assumed aloud, with what to do about it.
+TEST(Calibration, TellsWhatItAssumes) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 526 319.5 239.5\n", c).ok());
+  const std::vector<std::string> assumed = c.assumptions();
+  ASSERT_EQ(assumed.size(), 2u);
+  EXPECT_NE(assumed[0].find("5000 units per metre are assumed"), std::string::npos) << assumed[0];
+  EXPECT_NE(assumed[1].find("a global shutter is assumed"), std::string::npos) << assumed[1];
+  EXPECT_NE(assumed[1].find("--readout 0.0261"), std::string::npos) << assumed[1];
+  for (std::string_view name : builtin_calibration_names()) {
+    ASSERT_TRUE(builtin_calibration(name, c).ok());
+    EXPECT_TRUE(c.readout_given) << name;
+    EXPECT_EQ(c.depth_scale_given, name.starts_with("tum-")) << name;
+  }
+}
+
+TEST(Calibration, WhatIsWrittenIsReadToTheLastBit) {
+  Calibration written;
+  written.camera.pinhole = {517.3064081, 1 / 3.0 + 500, 318.6, 255.1};
+  written.camera.distortion = {0.1 + 0.2, -1e-17, 1e-300, 2.0 / 3, -0.0};
+  written.camera.readout_s = 0.0261;
+  written.depth_units_per_metre = 1000.0000000000001;
+  written.readout_given = true;
+  Calibration read;
+  ASSERT_TRUE(read_text(calibration_text(written), read).ok());
+  EXPECT_EQ(read.camera.pinhole.fy, written.camera.pinhole.fy);
+  EXPECT_EQ(read.camera.distortion.k1, written.camera.distortion.k1);
+  EXPECT_EQ(read.camera.distortion.p1, written.camera.distortion.p1);
+  EXPECT_EQ(read.camera.readout_s, written.camera.readout_s);
+  EXPECT_EQ(read.depth_units_per_metre, written.depth_units_per_metre);
+  EXPECT_EQ(calibration_text(read), calibration_text(written));
+}
+
 TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
   Calibration c;
   EXPECT_EQ(read_text("", c).code(), StatusCode::kDamaged);
-  EXPECT_TRUE(says(read_text("525 525 319.5", c), "3 numbers; expected 'fx fy cx cy depth_scale'"));
+  EXPECT_TRUE(says(read_text("525 525 319.5", c), "3 numbers; expected 'fx fy cx cy [depth_scale"));
   EXPECT_TRUE(says(read_text("525 525 319.5 abc 5000", c), "'abc' is not a number"));
   EXPECT_TRUE(says(read_text("fx 525\nfz 3\n", c), "'fz' is not known"));
   EXPECT_TRUE(says(read_text("fx 525\nfy\n", c), "'fy' needs a number"));
@@ -63,7 +140,19 @@ TEST(Calibration, RefusesNaN) {
   ASSERT_TRUE(read_text("nan 525 319.5 239.5 5000", c).ok());  // a number to the reader, not to the camera
   EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be positive numbers"));
   ASSERT_TRUE(read_text("525 525 319.5 239.5 nan", c).ok());
-  EXPECT_TRUE(says(c.validate(640, 480), "depth_scale must be a positive number"));
+  EXPECT_TRUE(says(c.validate(640, 480), "depth_scale must lie between 1 and 100000"));
+  for (const char* scale : {"0", "-5000", "0.001", "1e300", "inf"}) {
+    ASSERT_TRUE(read_text(std::string("525 525 319.5 239.5 ") + scale, c).ok());
+    EXPECT_TRUE(says(c.validate(640, 480), "not metres per unit")) << scale;
+  }
+}
+
+TEST(Calibration, RefusesSizesThatAreNone) {
+  Calibration c;
+  const std::string lens = "fx 525\nfy 525\ncx 319.5\ncy 239.5\n";
+  for (const char* width : {"nan", "1e300", "-640", "0", "640.5", "inf"})
+    EXPECT_TRUE(says(read_text(lens + "height 480\nwidth " + width, c), "whole numbers of pixels")) << width;
+  EXPECT_TRUE(says(read_text(lens + "width 640\n", c), "both, or neither"));
 }
 
 constexpr const char* kCameraInfo =
@@ -90,6 +179,48 @@ TEST(Calibration, ReadsRosCameraInfo) {
                   .ok());
   EXPECT_EQ(echoed.camera.pinhole.fy, 501);
   EXPECT_EQ(echoed.camera.distortion.k1, 0.1);
+}
+
+// It knows neither the unit of depth nor the shutter; both may stand beside what it knows.
+TEST(Calibration, CameraInfoWithTheSensorsKeys) {
+  Calibration c;
+  ASSERT_TRUE(read_text(kCameraInfo, c, "rgb.yaml").ok());
+  EXPECT_FALSE(c.depth_scale_given);
+  EXPECT_FALSE(c.readout_given);
+  EXPECT_EQ(c.assumptions().size(), 2u);
+  ASSERT_TRUE(
+      read_text(std::string(kCameraInfo) + "depth_scale: 1000\nreadout_s: 0.02\n", c, "rgb.yml").ok());
+  EXPECT_EQ(c.depth_units_per_metre, 1000);
+  EXPECT_EQ(c.camera.readout_s, 0.02);
+  EXPECT_TRUE(c.assumptions().empty());
+  EXPECT_TRUE(says(read_text(std::string(kCameraInfo) + "depth_scale: [1]\n", c, "a.yaml"),
+                   "'depth_scale' needs a number"));
+}
+
+TEST(Calibration, ReadsKeysInYaml) {
+  Calibration c;
+  const Status status = read_text(
+      "# ours\nfx: 525\nfy: 526\ncx: 319.5\ncy: 239.5\ndepth_scale: 1000\n"
+      "readout_s: 0.0261\nwidth: 640\nheight: 480\n",
+      c, "calibration.yaml");
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(c.camera.pinhole.fy, 526);
+  EXPECT_EQ(c.camera.readout_s, 0.0261);
+  EXPECT_TRUE(c.has_size && c.depth_scale_given && c.readout_given);
+  EXPECT_TRUE(
+      says(read_text("fx: 525\nshutter: rolling\n", c, "a.yaml"), "'shutter' is not known; the keys are fx"));
+  EXPECT_TRUE(says(read_text("fx: {a: 1}\n", c, "a.yaml"), "'fx' needs a number"));
+  EXPECT_FALSE(read_text(std::string(100'000, '['), c, "a.yaml").ok());
+  EXPECT_FALSE(read_text("a: &a [*a, *a]\nK: *a\n", c, "a.yaml").ok());
+}
+
+TEST(Calibration, TheFolderSaysWhichFile) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(calibration_file_in(folder.path()).has_value());
+  for (const char* name : {"camera.yaml", "calibration.yaml", "calibration.txt"}) {
+    write_file(folder / name, "");
+    EXPECT_EQ(calibration_file_in(folder.path()), folder / name);
+  }
 }
 
 TEST(Calibration, RefusesOtherDistortionModels) {

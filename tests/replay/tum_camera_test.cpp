@@ -113,6 +113,37 @@ TEST(TumCamera, DifferentSizesAreRefusedAtOpen) {
   EXPECT_TRUE(says(open(camera, folder.path()), "colour is 96x64 but depth is 48x32"));
 }
 
+// The names do not say it, the images do.
+TEST(TumCamera, DepthFirstAssociationsAreNamed) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
+  fs::rename(folder / "rgb", folder / "a");
+  fs::rename(folder / "depth", folder / "b");
+  test::write_file(folder / "pairs.txt", "100.0 b/100.005000.png 100.0 a/100.000000.png\n");
+  TumOptions options;
+  options.associations = folder / "pairs.txt";
+  TumCamera camera;
+  const Status status = open(camera, folder.path(), options);
+  EXPECT_TRUE(says(status, "the associations name depth first")) << status.message();
+}
+
+TEST(TumCamera, CarriesEveryPropertyOfTheSensor) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
+  fs::remove(folder / "calibration.txt");
+  test::write_file(folder / "camera.yaml",
+                   "fx: 80\nfy: 81\ncx: 47\ncy: 31\ndepth_scale: 1000\nreadout_s: 0.02\n");
+  Calibration calibration;
+  ASSERT_EQ(calibration_file_in(folder.path()), folder / "camera.yaml");
+  ASSERT_TRUE(read_calibration(*calibration_file_in(folder.path()), calibration).ok());
+  TumCamera camera;
+  ASSERT_TRUE(camera.open(folder.path(), calibration).ok());
+  EXPECT_EQ(camera.model().pinhole.fy, 81);
+  EXPECT_EQ(camera.model().readout_s, 0.02);
+  EXPECT_EQ(camera.model().width, 96);
+  EXPECT_EQ(camera.depth_units_per_metre(), 1000);
+}
+
 TEST(TumCamera, CalibrationMustFit) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
@@ -177,14 +208,6 @@ TEST(PacedCamera, StepAsksBeforeEachFrame) {
   EXPECT_TRUE(paced.next(frame).ok());
   EXPECT_EQ(paced.next(frame).code(), StatusCode::kEndOfStream);
   EXPECT_EQ(clock.now_ns, 5'000);
-}
-
-TEST(TumWriter, SaysWhyItCannotWrite) {
-  const TemporaryFolder folder;
-  test::write_file(folder / "file", "x");
-  TumWriter writer;
-  EXPECT_EQ(writer.open(folder / "file", test::tiny_camera(), 5000).code(), StatusCode::kIo);
-  EXPECT_EQ(writer.open(folder.path() / "file" / "below", test::tiny_camera(), 5000).code(), StatusCode::kIo);
 }
 
 }  // namespace

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
-#include "plvo/base/random.hpp"
 #include "plvo/host/stamp_text.hpp"
 #include "temporary_folder.hpp"
 
@@ -38,43 +35,6 @@ TEST(StampText, RoundTripsEveryNanosecond) {
     EXPECT_FALSE(parse_stamp_ns(wrong, stamp)) << wrong;
 }
 
-TEST(Associate, TakesTheBestPairsFirstAndEachImageOnce) {
-  // 10 and 12 both lie near 11: the nearer one (12 → 11.9) wins, 10 takes what is left.
-  const auto pairs = associate({10, 12, 30}, {9, 11, 50}, 3);
-  ASSERT_EQ(pairs.size(), 2u);
-  EXPECT_EQ(pairs[0], (std::pair<std::size_t, std::size_t>(0, 0)));
-  EXPECT_EQ(pairs[1], (std::pair<std::size_t, std::size_t>(1, 1)));
-  EXPECT_TRUE(associate({10}, {14}, 3).empty());
-  EXPECT_EQ(associate({10}, {13}, 3).size(), 1u);  // the tolerance itself still pairs
-}
-
-// The slow obvious version: repeatedly take the closest pair of all that are left.
-TEST(Associate, EqualsExhaustiveSearch) {
-  Random random(7);
-  for (int round = 0; round < 50; ++round) {
-    std::vector<std::int64_t> a, b;
-    for (std::int64_t t = 0; t < 60;) a.push_back(t += 1 + static_cast<std::int64_t>(random.below(6)));
-    for (std::int64_t t = 0; t < 60;) b.push_back(t += 1 + static_cast<std::int64_t>(random.below(6)));
-    std::vector<std::pair<std::size_t, std::size_t>> expected;
-    std::vector<bool> used_a(a.size()), used_b(b.size());
-    while (true) {
-      std::int64_t best = std::numeric_limits<std::int64_t>::max();
-      std::pair<std::size_t, std::size_t> choice;
-      for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t j = 0; j < b.size(); ++j)
-          if (const std::int64_t d = std::abs(a[i] - b[j]); !used_a[i] && !used_b[j] && d <= 4 && d < best) {
-            best = d;
-            choice = {i, j};
-          }
-      if (best == std::numeric_limits<std::int64_t>::max()) break;
-      used_a[choice.first] = used_b[choice.second] = true;
-      expected.push_back(choice);
-    }
-    std::sort(expected.begin(), expected.end());
-    EXPECT_EQ(associate(a, b, 4), expected);
-  }
-}
-
 TEST(TumIndex, PairsTwoLists) {
   const TemporaryFolder folder;
   write_file(folder / "rgb.txt", "# header\n1.000000 rgb/a.png\n\n1.033000 rgb/b.png\r\n1.066 rgb/c.png\n");
@@ -100,6 +60,74 @@ TEST(TumIndex, ReadsAssociations) {
   write_file(folder / "mine.txt", "1.0 rgb/a.png 1.1\n");
   EXPECT_TRUE(says(read_tum_index(folder.path(), folder / "mine.txt", kTolerance, index),
                    "mine.txt line 1: expected 'stamp rgb stamp depth'"));
+}
+
+TumIndex read_associations(const std::string& lines, Status& status) {
+  const TemporaryFolder folder;
+  write_file(folder / "associations.txt", lines);
+  TumIndex index;
+  status = read_tum_index(folder.path(), {}, kTolerance, index);
+  return index;
+}
+
+// The benchmark's own script lists whatever it was given first.
+TEST(TumIndex, AssociationsMayNameDepthFirst) {
+  Status status;
+  const TumIndex index =
+      read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 ./depth/b.png 2.1 ./rgb/b.png\n", status);
+  ASSERT_TRUE(status.ok()) << status.message();
+  ASSERT_EQ(index.pairs.size(), 2u);
+  EXPECT_EQ(index.pairs[0].colour.file, "rgb/a.png");
+  EXPECT_EQ(index.pairs[0].colour.stamp_ns, 1'100'000'000);
+  EXPECT_EQ(index.pairs[1].depth.file, "./depth/b.png");
+  // One line that says otherwise, and the names say nothing any more.
+  const TumIndex mixed = read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 rgb/b 2.1 depth/b\n", status);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(mixed.pairs[0].colour.file, "depth/a.png");
+}
+
+TEST(TumIndex, NamesMayHoldSpaces) {
+  Status status;
+  const TumIndex index =
+      read_associations("1.0 my rgb/a 1.png 1.1  my depth/a  1.PNG\n2.0 rgb/b 2.1 depth/b\r\n", status);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(index.pairs[0].colour.file, "my rgb/a 1.png");
+  EXPECT_EQ(index.pairs[0].depth.file, "my depth/a  1.PNG");
+  EXPECT_EQ(index.pairs[1].depth.file, "depth/b");
+
+  const TemporaryFolder folder;
+  write_file(folder / "rgb.txt", "1.0 rgb/the first.jpeg\n2.0\trgb/second.jpg extra\n");
+  write_file(folder / "depth.txt", "1.0 depth/the first.png\n2.0 depth/2\n");
+  TumIndex lists;
+  ASSERT_TRUE(read_tum_index(folder.path(), {}, kTolerance, lists).ok());
+  EXPECT_EQ(lists.pairs[0].colour.file, "rgb/the first.jpeg");
+  EXPECT_EQ(lists.pairs[0].depth.file, "depth/the first.png");
+  EXPECT_EQ(lists.pairs[1].colour.file, "rgb/second.jpg");
+}
+
+TEST(TumIndex, ByteOrderMarks) {
+  Status status;
+  EXPECT_EQ(read_associations("\xEF\xBB\xBF"
+                              "1.0 a.png 1.0 b.png\n",
+                              status)
+                .pairs.size(),
+            1u);
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(read_associations("\xEF\xBB\xBF# comment\n1.0 a.png 1.0 b.png\n", status).pairs.size(), 1u);
+  (void)read_associations(std::string("\xFF\xFE"
+                                      "1\0",
+                                      4),
+                          status);
+  EXPECT_TRUE(says(status, "UTF-16; save it again as UTF-8")) << status.message();
+}
+
+TEST(TumIndex, AnOniFileSaysHowItIsPlayed) {
+  const TemporaryFolder folder;
+  write_file(folder / "walk.oni", "NI10");
+  TumIndex index;
+  const Status status = read_tum_index(folder / "walk.oni", {}, kTolerance, index);
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_TRUE(says(status, "plvo live --device ")) << status.message();
 }
 
 TEST(TumIndex, BadFolders) {

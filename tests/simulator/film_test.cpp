@@ -23,7 +23,7 @@ struct Darkroom {
     Se3 T_world_camera;
     T_world_camera.R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     T_world_camera.t = Vector3(2, 2.5, 1.4);
-    renderer->render(T_world_camera, {});
+    renderer->render(std::vector<Se3>(static_cast<std::size_t>(camera.height), T_world_camera), {});
   }
   void fill(float radiance) {
     const auto view = renderer->radiance();

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "plvo/simulator/motion/trajectory.hpp"
-#include "plvo/simulator/render/renderer.hpp"
+#include "plvo/simulator/render/ray_caster.hpp"
 #include "simulator_support.hpp"
 
 namespace plvo {
@@ -27,7 +27,7 @@ TEST(SimulatedRollingShutter, EachRowIsSeenFromItsOwnPose) {
   const std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed);
   CameraModel global = options.camera;
   global.readout_s = 0;
-  sim::Renderer renderer(*scene, global, 1);
+  sim::RayCaster caster(*scene, global, 1);
   const int height = options.camera.height;
   const int width = options.camera.width;
   std::size_t moved = 0;
@@ -35,9 +35,9 @@ TEST(SimulatedRollingShutter, EachRowIsSeenFromItsOwnPose) {
     const double delay_s = options.camera.readout_s * (row / (height - 1.0) - 0.5);
     const Se3 T = camera->ground_truth(rolled[1].stamp_ns + static_cast<std::int64_t>(delay_s * 1e9));
     const auto exact_of = [&](const Se3& pose) {
-      renderer.render(pose, {});
+      caster.cast(std::vector<Se3>(static_cast<std::size_t>(height), pose));
       std::vector<float> depths;
-      for (int x = 0; x < width; ++x) depths.push_back(renderer.hits().data[row * width + x].depth_m);
+      for (int x = 0; x < width; ++x) depths.push_back(caster.hits().data[row * width + x].depth_m);
       return depths;
     };
     const std::vector<float> expected = exact_of(T);

@@ -107,14 +107,14 @@ TEST_F(RecordedTrajectory, RefusesWhatIsNone) {
   Trajectory trajectory;
   EXPECT_EQ(load(trajectory).code(), StatusCode::kNotFound);
   write("# nothing\n");
-  EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);
+  EXPECT_EQ(load(trajectory).code(), StatusCode::kInvalidArgument);
   write("1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n");
   const Status status = load(trajectory);
   EXPECT_EQ(status.code(), StatusCode::kDamaged);
   EXPECT_NE(std::strstr(status.message(), "line 2"), nullptr) << status.message();
   write("1 0 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n");
   EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);
-  write("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
+  write("2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n");
   EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);
   write("1 0 0 0 0 0 0 0\n2 0 0 0 0 0 0 1\n");
   EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);

@@ -83,7 +83,7 @@ TEST_F(TumFolder, HoldsWhatTheCameraSaw) {
   ASSERT_EQ(rgb.size(), 3U);
   ASSERT_EQ(depth.size(), 3U);
   ASSERT_EQ(truth.size(), 3U);
-  EXPECT_EQ(lines(folder / "calibration.txt").at(0), "131.25 131.25 79.5 59.5 5000");
+  EXPECT_EQ(lines(folder / "calibration.txt").at(0), "131.25 131.25 79.5 59.5 5000 0 0 0 0 0 0");
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string rgb_name = rgb[k].substr(rgb[k].find(' ') + 1);
     const std::string depth_name = depth[k].substr(depth[k].find(' ') + 1);
@@ -98,6 +98,21 @@ TEST_F(TumFolder, HoldsWhatTheCameraSaw) {
     EXPECT_EQ(static_cast<std::int64_t>(v[0] * 1e6 + 0.5), shots[k].stamp_ns / 1000);
     EXPECT_LT((Vector3(v[1], v[2], v[3]) - shots[k].T_world_camera.t).norm(), 2e-9);
     EXPECT_LT((to_rotation({v[4], v[5], v[6], v[7]}) - shots[k].T_world_camera.R).norm(), 1e-8);
+  }
+}
+
+TEST_F(TumFolder, DepthHasItsOwnStamps) {
+  options_.depth_timing.stamp_offset_s = -0.007;
+  ASSERT_TRUE(SimulatedCamera::create(options_, camera_).ok());
+  ASSERT_TRUE(write_tum_folder(*camera_, (root_ / "x").string()).ok());
+  const std::vector<std::string> rgb = lines(root_ / "x/rgb.txt");
+  const std::vector<std::string> depth = lines(root_ / "x/depth.txt");
+  ASSERT_EQ(depth.size(), rgb.size());
+  for (std::size_t k = 0; k < rgb.size(); ++k) {
+    EXPECT_NEAR(std::stod(depth[k]) - std::stod(rgb[k]), -0.007, 1e-6);
+    const std::size_t space = depth[k].find(' ');
+    EXPECT_EQ(depth[k].substr(space + 1), "depth/" + depth[k].substr(0, space) + ".png");
+    EXPECT_TRUE(fs::exists(root_ / "x" / depth[k].substr(space + 1)));
   }
 }
 
@@ -119,7 +134,7 @@ TEST_F(TumFolder, SaysWhyItCannotWrite) {
   std::ofstream(root_ / "file") << "not a folder";
   const Status status = write_tum_folder(*camera_, (root_ / "file/inside").string());
   EXPECT_EQ(status.code(), StatusCode::kIo);
-  EXPECT_NE(std::strstr(status.message(), "cannot write"), nullptr) << status.message();
+  EXPECT_NE(std::strstr(status.message(), "cannot make the folder"), nullptr) << status.message();
   EXPECT_EQ(write_tum_folder(*camera_, "/proc/plvo").code() == StatusCode::kOk, false);
 }
 

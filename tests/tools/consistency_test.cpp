@@ -38,17 +38,23 @@ Consistency monte_carlo(double sigma, double claimed) {
 TEST(Consistency, TrueCovarianceLiesInTheBand) {
   const Consistency c = monte_carlo(1e-3, 1e-3);
   EXPECT_EQ(c.count, 599u);
-  EXPECT_GT(c.mean, c.mean_low);
-  EXPECT_LT(c.mean, c.mean_high);
-  EXPECT_NEAR(c.mean_position, 3, 0.3);
-  EXPECT_NEAR(c.mean_orientation, 3, 0.3);
-  EXPECT_NEAR(c.inside_95, 0.95, 0.03);
+  EXPECT_EQ(c.independent, 599u);
+  for (const Nees& nees : {c.all, c.translation, c.rotation}) {
+    EXPECT_GT(nees.mean, nees.mean_band.low);
+    EXPECT_LT(nees.mean, nees.mean_band.high);
+    EXPECT_NEAR(nees.mean, nees.dof, 0.1 * nees.dof);
+    EXPECT_GT(nees.median, nees.median_band.low);
+    EXPECT_LT(nees.median, nees.median_band.high);
+    EXPECT_NEAR(nees.inside_95, 0.95, 0.03);
+  }
 }
 
 TEST(Consistency, OverconfidenceShows) {
   const Consistency c = monte_carlo(2e-3, 1e-3);
-  EXPECT_NEAR(c.mean, 24, 2);
-  EXPECT_LT(c.inside_95, 0.6);
+  EXPECT_NEAR(c.all.mean, 24, 2);
+  EXPECT_GT(c.all.mean, c.all.mean_band.high);
+  EXPECT_GT(c.all.median, c.all.median_band.high);
+  EXPECT_LT(c.all.inside_95, 0.6);
 }
 
 TEST(Consistency, SingularCovariancesAreCountedNotUsed) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the bench's peers get: a lens without distortion changes nothing; with one, a picture that is linear
 // in the raw pixel coordinates comes back as those of distort_pixel.
-#include "plvo/bench/ideal_images.hpp"
+#include "plvo/bench/systems/ideal_images.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper's figures, checked by its own sum: the means weighted by frames follow from the rows.
-#include "plvo/bench/paper_table2.hpp"
+#include "plvo/bench/sequences/paper_table2.hpp"
 
 #include <gtest/gtest.h>
 

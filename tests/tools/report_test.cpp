@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/report/report.hpp"
+#include "plvo/view/view_state.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,6 +60,18 @@ TEST(Drawing, DepthIsBlackWhereThereIsNone) {
             (std::vector<std::uint8_t>{255, 0, 0, 0, 0, 255}));
   EXPECT_EQ((std::vector<std::uint8_t>(picture.rgb.begin() + 6, picture.rgb.end())),
             std::vector<std::uint8_t>(6, 0));
+}
+
+TEST(Drawing, TheLiveViewPaintsDepthInTheSameColours) {
+  ViewSnapshot snapshot;
+  snapshot.depth_width = 256;
+  snapshot.depth_height = 2;
+  snapshot.metres_per_unit = 1.0 / 5000;
+  for (int i = 0; i < 512; ++i) snapshot.depth.push_back(static_cast<std::uint16_t>(120 * i));  // to 12 m
+  std::vector<std::uint8_t> live;
+  int width = 0, height = 0;
+  paint_depth(snapshot, live, width, height);
+  EXPECT_EQ(live, draw_depth({snapshot.depth.data(), 256, 2, 256, snapshot.metres_per_unit}).rgb);
 }
 
 TEST(Drawing, SegmentsKnowTheirFate) {

@@ -66,6 +66,11 @@ TEST(Trajectory, KittiTakesItsStampsFromElsewhere) {
   write_file(folder / "times.txt", "0.0\n");
   EXPECT_TRUE(says(read_trajectory({folder / "k.txt", TrajectoryFormat::kAuto, folder / "times.txt"}, t),
                    "has 1 stamps for 2 poses"));
+  write_file(folder / "times.txt", "0.0\n0.1\n0.2\n");
+  const Status surplus =
+      read_trajectory({folder / "k.txt", TrajectoryFormat::kAuto, folder / "times.txt"}, t);
+  EXPECT_EQ(surplus.code(), StatusCode::kInvalidArgument);
+  EXPECT_TRUE(says(surplus, "has 3 stamps for 2 poses")) << surplus.message();
 }
 
 TEST(Trajectory, SaysWhatIsWrong) {
@@ -77,6 +82,19 @@ TEST(Trajectory, SaysWhatIsWrong) {
       says(read_text("1.0 0 0 0 0 0 0 1\n1.1 0 0 0\n", t), "line 2: has 4 columns where 8 are needed"));
   EXPECT_TRUE(says(read_text("1.0 0 0 x 0 0 0 1\n", t), "line 1: 'x' is not a number"));
   EXPECT_TRUE(says(read_text("abc 0 0 0 0 0 0 1\n", t), "'abc' is not a stamp"));
+}
+
+TEST(Trajectory, ARowWithoutARotationIsRefusedByItsLine) {
+  Trajectory t;
+  const Status zero = read_text("# c\n1.0 0 0 0 0 0 0 1\n1.1 1 2 3 0 0 0 0\n", t);
+  EXPECT_EQ(zero.code(), StatusCode::kDamaged);
+  EXPECT_TRUE(says(zero, "line 3: the quaternion (x y z w = 0 0 0 0) must have length 1")) << zero.message();
+  EXPECT_TRUE(says(read_text("1403636579763555584,1,2,3,0,0,0,0\n", t), "line 1: the quaternion"));
+  EXPECT_TRUE(
+      says(read_text("0 0 0 0 0 0 0 0 0 0 0 0\n", t), "line 1: the 3x3 part of the matrix is no rotation"));
+  EXPECT_TRUE(says(read_text("1 0 0 0 0 1 0 0 0 0 -1 0\n", t), "is no rotation"));  // a mirror
+  // Four decimals, as motion capture writes them, are near enough.
+  EXPECT_TRUE(read_text("1.0 0 0 0 0.5774 0.5774 0.5774 0.0\n", t).ok());
 }
 
 Trajectory turning() {
@@ -126,6 +144,15 @@ TEST(UncertaintyFile, ReadsBackWhatTheWriterWrote) {
   ASSERT_EQ(motions.size(), 1u);
   EXPECT_EQ(motions[0].reference_stamp_ns, 1'000'000'000);
   EXPECT_LT(boxminus(motions[0].T_camera_reference, result.T_camera_reference).norm(), 1e-8);
+}
+
+TEST(UncertaintyFile, AMotionWithoutARotationIsRefused) {
+  const TemporaryFolder folder;
+  std::string row = "1.1 1.0 0 0 0 0 0 0 0";
+  for (int i = 0; i < 36; ++i) row += i % 7 == 0 ? " 1e-6" : " 0";
+  write_file(folder / "m.txt", row + '\n');
+  std::vector<UncertainMotion> motions;
+  EXPECT_TRUE(says(read_motions(folder / "m.txt", motions), "line 1: the quaternion"));
 }
 
 TEST(UncertaintyFile, ReadsTheUpperTriangle) {

@@ -95,7 +95,9 @@ TEST(Diagnosis, PermissionNamesTheRule) {
   expect_only(facts, FindingCode::kPermission, "/dev/bus/usb/001/005", "60-plvo-rgbd.rules");
   EXPECT_EQ(find(diagnose(facts), FindingCode::kReady), nullptr);
   facts.udev_rule = "/etc/udev/rules.d/60-plvo-rgbd.rules";
-  expect_only(facts, FindingCode::kPermission, "No permission", "udevadm trigger");
+  expect_only(facts, FindingCode::kPermission, "No permission", "does not let you in: sudo udevadm");
+  // Installed and in force, it lets in who sits at the machine, and the group.
+  expect_only(facts, FindingCode::kPermission, "No permission", "usermod -aG video $USER");
 }
 
 TEST(Diagnosis, BusyGoneAndFailedAccess) {
@@ -197,6 +199,18 @@ TEST(Diagnosis, OnlyOneKindOfFileNameIsADriver) {
        {"libPS1080.so", "libPS1080.so.0.1", "PS1080.so.0", "lib.so.0", "OniFile.ini", ""}) {
     EXPECT_FALSE(is_driver_name(name)) << name;
   }
+}
+
+// Sensors see into rooms: not everybody on the machine may look through them.
+TEST(UdevRule, LetsInWhoSitsThereAndTheGroupAlone) {
+  std::ifstream file(PLVO_UDEV_RULE);
+  int rules = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#' || line.find("ATTR{idVendor}") == std::string::npos) continue;
+    ++rules;
+    EXPECT_NE(line.find("MODE=\"0660\", GROUP=\"video\", TAG+=\"uaccess\""), std::string::npos) << line;
+  }
+  EXPECT_EQ(rules, 3);
 }
 
 TEST(KnownSensors, EveryIdIsUniqueAndInTheUdevRule) {

@@ -24,7 +24,8 @@ BoundedWriter::BoundedWriter(BoundedWriter&& other) noexcept
       capacity_(other.capacity_),
       buffer_(std::move(other.buffer_)),
       gone_(other.gone_),
-      dropped_(other.dropped_) {}
+      dropped_(other.dropped_),
+      sent_bytes_(other.sent_bytes_) {}
 
 BoundedWriter& BoundedWriter::operator=(BoundedWriter&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
@@ -34,6 +35,7 @@ BoundedWriter& BoundedWriter::operator=(BoundedWriter&& other) noexcept {
   buffer_.swap(other.buffer_);
   gone_ = other.gone_;
   dropped_ = other.dropped_;
+  sent_bytes_ = other.sent_bytes_;
   return *this;
 }
 
@@ -63,6 +65,7 @@ void BoundedWriter::send_some() {
       gone_ = true;
     }
   }
+  sent_bytes_ += done;
   buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 

@@ -27,6 +27,8 @@ class BoundedWriter {
 
   bool gone() const { return gone_; }
   std::uint64_t dropped() const { return dropped_; }
+  std::uint64_t sent_bytes() const { return sent_bytes_; }  // that the operating system took
+  bool all_sent() const { return buffer_.empty(); }
   int descriptor() const { return descriptor_; }
 
  private:
@@ -39,6 +41,7 @@ class BoundedWriter {
   std::vector<char> buffer_;
   bool gone_ = false;
   std::uint64_t dropped_ = 0;
+  std::uint64_t sent_bytes_ = 0;
 };
 
 }  // namespace plvo

@@ -9,25 +9,45 @@
 #include <cstring>
 
 namespace plvo {
+namespace {
 
-Status LineFile::failed(const char* what) const {
+Status failed(const char* what, const std::filesystem::path& path) {
   const char* advice =
       errno == ENOSPC ? "free some space or choose another disk" : "choose a path that can be written";
-  return {StatusCode::kIo,
-          fmt::format("cannot {} {}: {}; {}", what, path_.string(), std::strerror(errno), advice)};
+  const std::string name = is_standard_output(path) ? "standard output" : path.string();
+  return {StatusCode::kIo, fmt::format("cannot {} {}: {}; {}", what, name, std::strerror(errno), advice)};
+}
+
+}  // namespace
+
+bool is_standard_output(const std::filesystem::path& path) {
+  return path == "-" || path == "/dev/stdout" || path == "/dev/fd/1" || path == "/proc/self/fd/1";
 }
 
 Status LineFile::open(const std::filesystem::path& path) {
   close();
   path_ = path;
   length_ = 0;
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  return descriptor_ >= 0 ? Status() : failed("create");
+  ours_ = !is_standard_output(path);
+  descriptor_ = ours_ ? ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)
+                      : ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  return descriptor_ >= 0 ? Status() : failed("create", path_);
 }
 
 Status LineFile::open(const std::filesystem::path& path, std::string_view first_line) {
   const Status status = open(path);
   return status.ok() ? write(first_line) : status;
+}
+
+Status LineFile::check(const std::filesystem::path& path) {
+  if (is_standard_output(path)) return {};
+  const bool is_new = ::access(path.c_str(), F_OK) != 0;
+  // O_NONBLOCK: a pipe that nobody reads yet is no error, and must not be waited for.
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0644);
+  if (descriptor < 0) return errno == ENXIO ? Status() : failed("create", path);
+  ::close(descriptor);
+  if (is_new) ::unlink(path.c_str());
+  return {};
 }
 
 Status LineFile::write(std::string_view line) {
@@ -39,15 +59,19 @@ Status LineFile::write(std::string_view line) {
     const ssize_t written = ::write(descriptor_, line_.data() + done, line_.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
-      const Status status = failed("write");
-      // Take the cut line back. A pipe or device cannot do that, but has nothing to keep valid either.
-      if (::ftruncate(descriptor_, length_) == 0) ::lseek(descriptor_, length_, SEEK_SET);
+      const Status status = failed("write", path_);
+      if (ours_) take_back_to(length_);
       return status;
     }
     done += static_cast<std::size_t>(written);
   }
   length_ += static_cast<std::int64_t>(line_.size());
   return {};
+}
+
+// A pipe or device cannot do that, but has nothing to keep valid either.
+void LineFile::take_back_to(std::int64_t length) const {
+  if (::ftruncate(descriptor_, length) == 0) ::lseek(descriptor_, length, SEEK_SET);
 }
 
 void LineFile::close() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A text file that is valid at every moment: each line reaches the operating system whole before write()
-// returns, and a line that a full disk cuts short is taken back.
+// returns, and a line that a full disk cuts short is taken back. The name "-" is standard output.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,9 @@
 
 namespace plvo {
 
+// "-", /dev/stdout and its other names.
+bool is_standard_output(const std::filesystem::path& path);
+
 class LineFile {
  public:
   LineFile() = default;
@@ -19,7 +22,8 @@ class LineFile {
   LineFile& operator=(const LineFile&) = delete;
   ~LineFile() { close(); }
 
-  // Makes the file or empties it. kIo, with the operating system's reason and the path.
+  // Makes the file or empties it; standard output goes on where it is. kIo, with the operating system's
+  // reason and the path.
   Status open(const std::filesystem::path& path);
   // The same, and writes the first line.
   Status open(const std::filesystem::path& path, std::string_view first_line);
@@ -29,12 +33,17 @@ class LineFile {
   void close();
   bool is_open() const { return descriptor_ >= 0; }
 
+  // What open() would say, without touching what the file holds; for a file that is written at the end of
+  // a long run.
+  static Status check(const std::filesystem::path& path);
+
  private:
-  Status failed(const char* what) const;
+  void take_back_to(std::int64_t length) const;
 
   std::filesystem::path path_;
   std::string line_;
   int descriptor_ = -1;
+  bool ours_ = false;        // from its first byte on: only then may a cut line be taken back
   std::int64_t length_ = 0;  // bytes of whole lines
 };
 

@@ -68,4 +68,12 @@ std::string pose_json(const TrackResult& result) {
   return out;
 }
 
+std::string heartbeat_json(const Heartbeat& heartbeat) {
+  const bool came = heartbeat.seconds_since_frame >= 0;
+  return fmt::format("{{\"heartbeat\":true,\"state\":{},\"seconds_since_frame\":{},\"message\":{}}}",
+                     json_string(heartbeat.state),
+                     came ? fmt::format("{:.3f}", heartbeat.seconds_since_frame) : "null",
+                     json_string(heartbeat.message));
+}
+
 }  // namespace plvo

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pose as one line of JSON, for programs that are not ours. Keys: stamp_ns, state, status, message,
 // position (m), orientation_xyzw, covariance (36 numbers, row-major: position, then orientation; axes of the
-// world), points, lines.
+// world), points, lines. And what is said while there is no pose, so that whoever reads can tell a camera
+// that stalls from a program that hangs.
 #pragma once
 
 #include <string>
@@ -12,6 +13,14 @@
 namespace plvo {
 
 std::string pose_json(const TrackResult& result);
+
+// {"heartbeat":true,"state":"stalled","seconds_since_frame":1.2,"message":"…"}
+struct Heartbeat {
+  std::string_view state;          // "waiting", "running", "stalled", "unplugged" or "damaged"
+  double seconds_since_frame = 0;  // negative while no frame has come yet: null in JSON
+  std::string_view message;        // the camera's state in words
+};
+std::string heartbeat_json(const Heartbeat& heartbeat);
 
 // The text within quotes, with what JSON forbids escaped; bytes that are not ASCII become "?".
 std::string json_string(std::string_view text);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/host/pose_stream.hpp"
 
-#include <arpa/inet.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -10,54 +8,24 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
-#include "plvo/host/pose_json.hpp"
+#include "plvo/host/tcp_listener.hpp"
 
 namespace plvo {
 namespace {
 
-Status socket_error(const char* what, const std::string& address, int error) {
-  const StatusCode code = error == EADDRINUSE                 ? StatusCode::kBusy
-                          : error == EACCES || error == EPERM ? StatusCode::kPermission
-                                                              : StatusCode::kIo;
-  Status status(code, what);
-  status.append(" ").append(address).append(": ").append(std::strerror(error));
-  if (code == StatusCode::kBusy) status.append("; choose another one, or end the program that listens there");
-  return status;
-}
+constexpr int kBacklog = 64;
+// Less than the kernel's own choice: what it holds for a reader that does not read hides that it does not.
+constexpr int kKernelBufferBytes = 32 * 1024;
 
 }  // namespace
-
-bool split_address(const std::string& text, std::string& host, int& port) {
-  const std::size_t colon = text.rfind(':');
-  std::string address = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
-  const std::string digits = colon == std::string::npos ? text : text.substr(colon + 1);
-  if (address.size() >= 2 && address.front() == '[' && address.back() == ']') {
-    address = address.substr(1, address.size() - 2);
-  } else if (address.find(':') != std::string::npos) {
-    return false;  // an IPv6 address needs its brackets
-  }
-  int value = -1;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (address.empty() || error != std::errc() || end != digits.data() + digits.size() || value < 0 ||
-      value > 65535) {
-    return false;
-  }
-  host = address;
-  port = value;
-  return true;
-}
 
 PoseStream::~PoseStream() { close(); }
 
 void PoseStream::close() {
-  for (BoundedWriter& reader : readers_) reader.drain(100);
-  dropped_by_gone_ = dropped_lines();
-  readers_.clear();
+  readers_.close();
   if (listener_ >= 0) ::close(listener_);
   listener_ = -1;
   if (!unix_path_.empty()) ::unlink(unix_path_.c_str());
@@ -66,16 +34,15 @@ void PoseStream::close() {
 
 Status PoseStream::open(const std::string& address) {
   close();
-  readers_.reserve(kMaxReaders);
   if (address == "-") {
-    readers_.emplace_back(STDOUT_FILENO, false, false, kBufferBytes);
+    readers_.add_borrowed(STDOUT_FILENO);
     return {};
   }
-  if (address.rfind("unix:", 0) == 0) return listen_unix(address.substr(5));
-  return listen_tcp(address);
+  if (address.rfind("unix:", 0) == 0) return open_unix(address.substr(5));
+  return open_tcp(address);
 }
 
-Status PoseStream::listen_tcp(const std::string& address) {
+Status PoseStream::open_tcp(const std::string& address) {
   std::string host;
   int port = 0;
   if (!split_address(address, host, port)) {
@@ -83,37 +50,14 @@ Status PoseStream::listen_tcp(const std::string& address) {
         .append(address)
         .append("'");
   }
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  hints.ai_flags = AI_NUMERICSERV | AI_PASSIVE;
-  addrinfo* found = nullptr;
-  if (const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
-      error != 0) {
-    return Status(StatusCode::kInvalidArgument, "no such address: ")
-        .append(host)
-        .append(": ")
-        .append(gai_strerror(error));
-  }
-  listener_ = ::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const int on = 1;
-  if (listener_ >= 0) ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const bool ok = listener_ >= 0 && ::bind(listener_, found->ai_addr, found->ai_addrlen) == 0 &&
-                  ::listen(listener_, static_cast<int>(kMaxReaders)) == 0;
-  const int error = errno;
-  ::freeaddrinfo(found);
-  if (!ok) {
-    close();
-    return socket_error("cannot listen on", address, error);
-  }
-  sockaddr_storage bound{};
-  socklen_t size = sizeof bound;
-  ::getsockname(listener_, reinterpret_cast<sockaddr*>(&bound), &size);
-  port_ = ntohs(bound.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(bound).sin6_port
-                                            : reinterpret_cast<sockaddr_in&>(bound).sin_port);
+  TcpListener listener;
+  if (Status status = listen_tcp(host, port, kBacklog, listener); !status.ok()) return status;
+  listener_ = listener.descriptor;
+  port_ = listener.port;
   return {};
 }
 
-Status PoseStream::listen_unix(const std::string& path) {
+Status PoseStream::open_unix(const std::string& path) {
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof name.sun_path) {
@@ -135,49 +79,46 @@ Status PoseStream::listen_unix(const std::string& path) {
   }
   if (result == 0) {
     unix_path_ = path;
-    result = ::listen(listener_, static_cast<int>(kMaxReaders));
+    result = ::listen(listener_, kBacklog);
   }
   if (result != 0) {
     const int error = errno;
     close();
-    return socket_error("cannot listen on", path, error);
+    return listen_error(path, error);
   }
   return {};
 }
 
 void PoseStream::let_in() {
   while (listener_ >= 0) {
-    const int reader = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    sockaddr_storage peer{};
+    socklen_t size = sizeof peer;
+    const int reader =
+        ::accept4(listener_, reinterpret_cast<sockaddr*>(&peer), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (reader < 0) return;
-    if (readers_.size() >= kMaxReaders) {
-      ::close(reader);
-      continue;
-    }
     const int on = 1;
     if (unix_path_.empty()) ::setsockopt(reader, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    readers_.emplace_back(reader, true, true, kBufferBytes);
+    ::setsockopt(reader, SOL_SOCKET, SO_SNDBUF, &kKernelBufferBytes, sizeof kKernelBufferBytes);
+    readers_.add_socket(reader, machine_of(reinterpret_cast<const sockaddr&>(peer)));
   }
 }
 
-Status PoseStream::write(const TrackResult& result) {
-  let_in();
-  if (readers_.empty()) return {};
-  const std::string line = pose_json(result) + '\n';
-  std::erase_if(readers_, [&](BoundedWriter& reader) {
-    if (reader.write(line)) return false;
-    dropped_by_gone_ += reader.dropped();
-    return true;
-  });
-  if (listener_ < 0 && readers_.empty()) {
+Status PoseStream::write_line(std::string line) {
+  readers_.write(line += '\n');
+  if (listener_ < 0 && readers_.count() == 0) {
     return {StatusCode::kIo, "standard output was closed: the pose stream ends"};
   }
   return {};
 }
 
-std::uint64_t PoseStream::dropped_lines() const {
-  std::uint64_t sum = dropped_by_gone_;
-  for (const BoundedWriter& reader : readers_) sum += reader.dropped();
-  return sum;
+Status PoseStream::write(const TrackResult& result) {
+  let_in();
+  return readers_.count() == 0 ? Status() : write_line(pose_json(result));
+}
+
+Status PoseStream::write_heartbeat(const Heartbeat& heartbeat) {
+  let_in();
+  return readers_.count() == 0 ? Status() : write_line(heartbeat_json(heartbeat));
 }
 
 }  // namespace plvo

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses as newline JSON (pose_json.hpp) for any number of readers: over TCP, over a Unix socket, or on a
 // descriptor such as standard output. Nobody is waited for: each reader has a bounded buffer, loses whole
-// lines when it does not keep up, and is forgotten when it goes. No thread: readers are let in when a pose is
-// written.
+// lines when it does not keep up, and is forgotten when it goes. No thread: readers are let in when a line is
+// written. Who has a place, and who yields it: pose_readers.hpp.
 #pragma once
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "plvo/base/status.hpp"
 #include "plvo/hal/pose_sink.hpp"
-#include "plvo/host/bounded_writer.hpp"
+#include "plvo/host/pose_json.hpp"
+#include "plvo/host/pose_readers.hpp"
 
 namespace plvo {
 
 class PoseStream final : public PoseSink {
  public:
-  static constexpr std::size_t kMaxReaders = 16;
-  static constexpr std::size_t kBufferBytes = 64 * 1024;  // of one reader: about two seconds of poses
-
   PoseStream() = default;
   ~PoseStream() override;
   PoseStream(const PoseStream&) = delete;
@@ -31,26 +28,25 @@ class PoseStream final : public PoseSink {
   Status open(const std::string& address);
 
   Status write(const TrackResult& result) override;
+  // When there is no pose to tell: pose_json.hpp, heartbeat_json(). kIo as above.
+  Status write_heartbeat(const Heartbeat& heartbeat);
   // Gives the readers a moment for their last lines, and closes.
   void close();
 
-  std::size_t readers() const { return readers_.size(); }
-  std::uint64_t dropped_lines() const;
+  std::size_t readers() const { return readers_.count(); }
+  std::uint64_t dropped_lines() const { return readers_.dropped_lines(); }
   int port() const { return port_; }  // of TCP; tells which one the system chose for port 0
 
  private:
-  Status listen_tcp(const std::string& address);
-  Status listen_unix(const std::string& path);
+  Status open_tcp(const std::string& address);
+  Status open_unix(const std::string& path);
   void let_in();
+  Status write_line(std::string line);
 
   int listener_ = -1;
   int port_ = 0;
   std::string unix_path_;
-  std::vector<BoundedWriter> readers_;
-  std::uint64_t dropped_by_gone_ = 0;
+  PoseReaders readers_;
 };
-
-// "[ADDR:]PORT" into its parts; false for nonsense. Without an address: "127.0.0.1".
-bool split_address(const std::string& text, std::string& host, int& port);
 
 }  // namespace plvo

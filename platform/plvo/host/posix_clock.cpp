@@ -17,6 +17,7 @@ std::int64_t read_ns(clockid_t clock) {
 
 std::int64_t posix_monotonic_ns() { return read_ns(CLOCK_MONOTONIC); }
 std::int64_t posix_thread_cpu_ns() { return read_ns(CLOCK_THREAD_CPUTIME_ID); }
+std::int64_t posix_process_cpu_ns() { return read_ns(CLOCK_PROCESS_CPUTIME_ID); }
 
 std::int64_t PosixClock::monotonic_ns() const { return posix_monotonic_ns(); }
 

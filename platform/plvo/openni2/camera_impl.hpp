@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "plvo/openni2/frame_pairer.hpp"
+#include "plvo/openni2/image_device.hpp"
 #include "plvo/openni2/openni2_camera.hpp"
 #include "plvo/openni2/openni2_device.hpp"
 #include "plvo/openni2/software_registration.hpp"
@@ -21,9 +22,10 @@ class OpenNi2Recorder;
 
 struct OpenNi2Camera::Impl {
   Status open();
-  Status choose_model(const OpenNi2Device::StreamFormat& colour);
+  Status open_device();
+  Status choose_model(const StreamFormat& colour);
   Status next(RgbdFrame& frame);
-  Status read(FramePairer::Stream stream);
+  Status take(const DeviceImage& image);
   void count_dropped(FramePairer::Stream stream, int index);
   void deliver(const FramePairer::Pair& pair, RgbdFrame& frame);
   Status timeout();
@@ -33,8 +35,9 @@ struct OpenNi2Camera::Impl {
   void log(LogLevel level, const Status& status) const;
 
   OpenNi2Options options;
-  std::shared_ptr<OpenNi2Runtime> runtime;
-  std::unique_ptr<OpenNi2Device> device;  // null while unplugged
+  std::shared_ptr<OpenNi2Runtime> runtime;  // null for a recording, which another process plays
+  std::unique_ptr<ImageDevice> device;      // null while unplugged
+  OpenNi2Device* sensor = nullptr;          // the device, where it is one in this process
   OpenNi2DeviceInfo info;
   CameraModel model;
   FramePairer pairer;

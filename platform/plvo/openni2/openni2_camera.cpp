@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "plvo/openni2/camera_impl.hpp"
+#include "plvo/openni2/oni_player.hpp"
 #include "plvo/openni2/openni2_recorder.hpp"
 
 namespace plvo {
@@ -23,20 +24,20 @@ std::int64_t now_us() {
 }
 
 // Copies rows, turned round where the driver would not switch mirroring off.
-template <std::size_t bytes_per_pixel>
-void copy_rows(const openni::VideoFrameRef& from, std::uint8_t* to, bool mirrored) {
-  const auto* source = static_cast<const std::uint8_t*>(from.getData());
-  const auto width = static_cast<std::size_t>(from.getWidth());
-  for (int y = 0; y < from.getHeight(); ++y) {
+template <std::size_t pixel_bytes>
+void copy_rows(const DeviceImage& from, std::uint8_t* to, bool mirrored) {
+  const std::uint8_t* source = from.data;
+  const auto width = static_cast<std::size_t>(from.width);
+  for (int y = 0; y < from.height; ++y) {
     if (!mirrored) {
-      std::memcpy(to, source, width * bytes_per_pixel);
+      std::memcpy(to, source, width * pixel_bytes);
     } else {
       for (std::size_t x = 0; x < width; ++x) {
-        std::memcpy(to + x * bytes_per_pixel, source + (width - 1 - x) * bytes_per_pixel, bytes_per_pixel);
+        std::memcpy(to + x * pixel_bytes, source + (width - 1 - x) * pixel_bytes, pixel_bytes);
       }
     }
-    source += from.getStrideInBytes();
-    to += width * bytes_per_pixel;
+    source += from.stride_bytes;
+    to += width * pixel_bytes;
   }
 }
 
@@ -71,6 +72,7 @@ Status OpenNi2Camera::open(const OpenNi2Options& options) {
 void OpenNi2Camera::close() {
   if (impl_->recorder != nullptr) impl_->recorder->stop();
   impl_->device.reset();
+  impl_->sensor = nullptr;
   impl_->runtime.reset();
 }
 
@@ -93,23 +95,19 @@ void OpenNi2Camera::Impl::log(LogLevel level, const Status& status) const {
 
 Status OpenNi2Camera::Impl::open() {
   if (options.timeout_ms <= 0) return {StatusCode::kInvalidArgument, "timeout_ms must be positive"};
-  if (Status status = OpenNi2Runtime::acquire(runtime); !status.ok()) return status;
-  device = std::make_unique<OpenNi2Device>(runtime);
-  if (Status status = device->open(options.uri, options); !status.ok()) return status;
+  if (Status status = open_device(); !status.ok()) return status;
   info = device->info();
 
-  const OpenNi2Device::StreamFormat& colour = device->colour_format();
-  const OpenNi2Device::StreamFormat& depth = device->depth_format();
+  const StreamFormat& colour = device->colour_format();
+  const StreamFormat& depth = device->depth_format();
   if (Status status = choose_model(colour); !status.ok()) return status;
   const auto pixels = static_cast<std::size_t>(colour.width) * static_cast<std::size_t>(colour.height);
-  const std::size_t colour_bytes = colour.format == openni::PIXEL_FORMAT_RGB888 ? 3 : 1;
   period_us = 1000000 / std::max(1, colour.fps);
   const std::int64_t half_us = period_us / 2;
   const bool given = options.pair_tolerance_us > 0 && options.pair_tolerance_us < half_us;
-  pairer.reset(pixels * colour_bytes, pixels * sizeof(std::uint16_t),
-               given ? options.pair_tolerance_us : half_us);
+  pairer.reset(colour.image_bytes(), depth.image_bytes(), given ? options.pair_tolerance_us : half_us);
   tracker.reset(period_us, !device->is_file());
-  metres_per_unit = depth.format == openni::PIXEL_FORMAT_DEPTH_100_UM ? 0.0001 : 0.001;
+  metres_per_unit = depth.format == ImageFormat::kDepth100Um ? 0.0001 : 0.001;
 
   warp = !device->registered() && options.registration != OpenNi2Registration::kNone;
   if (warp) {
@@ -123,7 +121,23 @@ Status OpenNi2Camera::Impl::open() {
   return device->start();
 }
 
-Status OpenNi2Camera::Impl::choose_model(const OpenNi2Device::StreamFormat& colour) {
+Status OpenNi2Camera::Impl::open_device() {
+  if (options.uri.ends_with(".oni")) {
+    auto player = std::make_unique<OniPlayer>();
+    Status status =
+        player->open(options.uri, options.oni_player, std::chrono::milliseconds(options.oni_patience_ms));
+    device = std::move(player);
+    return status;
+  }
+  if (Status status = OpenNi2Runtime::acquire(runtime); !status.ok()) return status;
+  auto opened = std::make_unique<OpenNi2Device>(runtime);
+  Status status = opened->open(options.uri, options);
+  sensor = opened.get();
+  device = std::move(opened);
+  return status;
+}
+
+Status OpenNi2Camera::Impl::choose_model(const StreamFormat& colour) {
   if (options.model.has_value()) {
     model = *options.model;
     if (model.width != colour.width || model.height != colour.height) {
@@ -160,7 +174,7 @@ Status OpenNi2Camera::Impl::choose_model(const OpenNi2Device::StreamFormat& colo
 }
 
 Status OpenNi2Camera::Impl::next(RgbdFrame& frame) {
-  if (runtime == nullptr) return {StatusCode::kInvalidArgument, "the camera is not open"};
+  if (device == nullptr && !unplugged) return {StatusCode::kInvalidArgument, "the camera is not open"};
   pairer.release();
   const auto start = Clock::now();
   const auto deadline = start + std::chrono::milliseconds(options.timeout_ms);
@@ -178,55 +192,46 @@ Status OpenNi2Camera::Impl::next(RgbdFrame& frame) {
     const auto now = Clock::now();
     if (now >= deadline) return timeout();
     const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now).count();
-    switch (device->wait(static_cast<int>(std::clamp<std::int64_t>(left_ms, 1, kSlice_ms)))) {
-      case OpenNi2Device::Wait::kColour:
-        if (Status status = read(FramePairer::kColour); !status.ok()) return status;
+    DeviceImage image;
+    switch (device->wait(static_cast<int>(std::clamp<std::int64_t>(left_ms, 1, kSlice_ms)), image)) {
+      case ImageDevice::Wait::kImage:
+        if (Status status = take(image); !status.ok()) return status;
         break;
-      case OpenNi2Device::Wait::kDepth:
-        if (Status status = read(FramePairer::kDepth); !status.ok()) return status;
-        break;
-      case OpenNi2Device::Wait::kTimeout:
+      case ImageDevice::Wait::kTimeout:
         if (device->at_end()) return {StatusCode::kEndOfStream, "the recording is over"};
         break;
-      case OpenNi2Device::Wait::kError:
+      case ImageDevice::Wait::kError:
         // OpenNI2 refuses for a moment while a device goes away: its event follows.
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         break;
+      case ImageDevice::Wait::kBroken: return device->failure();
     }
   }
 }
 
-Status OpenNi2Camera::Impl::read(FramePairer::Stream stream) {
+Status OpenNi2Camera::Impl::take(const DeviceImage& image) {
+  const FramePairer::Stream stream = image.stream;
   const bool is_colour = stream == FramePairer::kColour;
-  openni::VideoFrameRef image;
-  openni::VideoStream& source = is_colour ? device->colour() : device->depth();
-  if (source.readFrame(&image) != openni::STATUS_OK || !image.isValid())
-    return {};  // it went away: the loop will see
-  const OpenNi2Device::StreamFormat& format = is_colour ? device->colour_format() : device->depth_format();
-  const std::size_t pixel = !is_colour ? 2 : format.format == openni::PIXEL_FORMAT_RGB888 ? 3 : 1;
-  const auto row = static_cast<std::size_t>(format.width) * pixel;
+  const StreamFormat& format = is_colour ? device->colour_format() : device->depth_format();
   seen_in_call[stream] = true;
   (is_colour ? counters.colour_images : counters.depth_images)++;
-  count_dropped(stream, image.getFrameIndex());
-
-  const int stride = image.getStrideInBytes();
-  if (image.getWidth() != format.width || image.getHeight() != format.height || image.getCroppingEnabled() ||
-      image.getVideoMode().getPixelFormat() != format.format || stride < static_cast<int>(row) ||
-      image.getDataSize() < stride * (format.height - 1) + static_cast<int>(row)) {
+  count_dropped(stream, image.index);
+  if (image.data == nullptr) {
     ++counters.damaged;
     return Status(StatusCode::kDamaged, is_colour ? "a colour" : "a depth")
         .append(" image came in another size or format than the stream's: ")
-        .append(image.getWidth())
+        .append(image.width)
         .append("x")
-        .append(image.getHeight());
+        .append(image.height);
   }
   std::uint8_t* to = pairer.next_buffer(stream).data();
-  if (pixel == 3) copy_rows<3>(image, to, format.mirrored);
-  if (pixel == 2) copy_rows<2>(image, to, format.mirrored);
-  if (pixel == 1) copy_rows<1>(image, to, format.mirrored);
+  switch (bytes_per_pixel(format.format)) {
+    case 3: copy_rows<3>(image, to, format.mirrored); break;
+    case 2: copy_rows<2>(image, to, format.mirrored); break;
+    default: copy_rows<1>(image, to, format.mirrored); break;
+  }
 
-  const StampTracker::Result stamp =
-      tracker.map(stream, static_cast<std::int64_t>(image.getTimestamp()), now_us());
+  const StampTracker::Result stamp = tracker.map(stream, image.stamp_us, now_us());
   // One event of the device's clock is seen on both streams: count it on one.
   if (is_colour && stamp.step == StampTracker::Step::kWrap) ++counters.clock_wraps;
   if (is_colour && stamp.step == StampTracker::Step::kJump) {
@@ -252,7 +257,7 @@ void OpenNi2Camera::Impl::count_dropped(FramePairer::Stream stream, int index) {
 void OpenNi2Camera::Impl::deliver(const FramePairer::Pair& pair, RgbdFrame& frame) {
   const int width = model.width;
   const int height = model.height;
-  const bool rgb = device->colour_format().format == openni::PIXEL_FORMAT_RGB888;
+  const bool rgb = device->colour_format().format == ImageFormat::kRgb888;
   frame.stamp_ns = pair.colour.stamp_us * 1000;
   frame.depth_stamp_ns = pair.depth.stamp_us * 1000;
   frame.colour = {pair.colour.bytes.data(), width, height, static_cast<std::ptrdiff_t>(width) * (rgb ? 3 : 1),
@@ -295,6 +300,7 @@ Status OpenNi2Camera::Impl::timeout() {
 Status OpenNi2Camera::Impl::lose() {
   if (recorder != nullptr) recorder->stop();
   device.reset();
+  sensor = nullptr;
   pairer.clear();
   unplugged = true;
   after_gap = true;
@@ -336,6 +342,7 @@ Status OpenNi2Camera::Impl::replug(Clock::time_point deadline) {
       Status opened = candidate->open(uri, options);
       if (opened.ok()) opened = candidate->start();
       if (opened.ok()) {
+        sensor = candidate.get();
         device = std::move(candidate);
         info = device->info();
         tracker.restart();

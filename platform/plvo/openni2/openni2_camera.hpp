@@ -50,8 +50,18 @@ struct OpenNi2Options {
   // Of the colour camera's rolling shutter, where there is no model: without it, a Kinect's for a Kinect,
   // else 0.
   std::optional<double> readout_s;
-  Log* log = nullptr;  // borrowed; must outlive the camera
+  // The program that plays an .oni file in a process of its own; empty: this one, whose main() must then
+  // begin with play_oni_if_asked().
+  std::string oni_player;
+  int oni_patience_ms = 60000;  // how long it may be silent; it reads a file that lies on this machine
+  Log* log = nullptr;           // borrowed; must outlive the camera
 };
+
+// OpenNI2's reader of .oni files trusts what is in them, and a damaged one makes it crash. So a recording is
+// played by a child process, this program once more, which hands the images over; its crash is a Status here.
+// The first thing in main(): the exit code, when this process is that child (argc and argv as main() got
+// them), else nothing.
+std::optional<int> play_oni_if_asked(int argc, const char* const* argv);
 
 // What happened since open(). Images are counted per stream, frames are pairs.
 struct OpenNi2Counters {

@@ -38,7 +38,8 @@ Status open_error(const std::string& uri) {
   if (contains(text, "LIBUSB_ERROR_ACCESS") || contains(text, "ermission")) {
     status = Status(
         StatusCode::kPermission,
-        "no permission to use the sensor: install the udev rule (60-plvo-rgbd.rules) and plug it in again. ");
+        "no permission to use the sensor: install the udev rule (60-plvo-rgbd.rules) and plug it in again; "
+        "over ssh, be in the group video. ");
   } else if (contains(text, "LIBUSB_ERROR_BUSY") || contains(text, "busy")) {
     status = Status(StatusCode::kBusy,
                     "another program holds the sensor: close it, or unplug and plug in again. ");
@@ -81,11 +82,21 @@ bool find_mode(const openni::Array<openni::VideoMode>& modes, const OpenNi2Optio
   return false;
 }
 
-bool readable(openni::SensorType sensor, openni::PixelFormat format) {
-  if (sensor == openni::SENSOR_COLOR) {
-    return format == openni::PIXEL_FORMAT_RGB888 || format == openni::PIXEL_FORMAT_GRAY8;
+// False for a format that plvo does not read from such a stream.
+bool to_format(openni::SensorType sensor, openni::PixelFormat from, ImageFormat& format) {
+  const bool colour = sensor == openni::SENSOR_COLOR;
+  if (colour && from == openni::PIXEL_FORMAT_RGB888) {
+    format = ImageFormat::kRgb888;
+  } else if (colour && from == openni::PIXEL_FORMAT_GRAY8) {
+    format = ImageFormat::kGray8;
+  } else if (!colour && from == openni::PIXEL_FORMAT_DEPTH_1_MM) {
+    format = ImageFormat::kDepth1Mm;
+  } else if (!colour && from == openni::PIXEL_FORMAT_DEPTH_100_UM) {
+    format = ImageFormat::kDepth100Um;
+  } else {
+    return false;
   }
-  return format == openni::PIXEL_FORMAT_DEPTH_1_MM || format == openni::PIXEL_FORMAT_DEPTH_100_UM;
+  return true;
 }
 
 }  // namespace
@@ -186,14 +197,13 @@ Status OpenNi2Device::create_stream(openni::VideoStream& stream, openni::SensorT
   format.width = mode.getResolutionX();
   format.height = mode.getResolutionY();
   format.fps = mode.getFps();
-  format.format = mode.getPixelFormat();
   format.fov_x_rad = static_cast<double>(stream.getHorizontalFieldOfView());
   format.fov_y_rad = static_cast<double>(stream.getVerticalFieldOfView());
   format.mirrored = stream.getMirroringEnabled();
-  if (!readable(sensor, format.format)) {
+  if (!to_format(sensor, mode.getPixelFormat(), format.format)) {
     return Status(StatusCode::kUnsupported, name)
         .append(" comes in a pixel format that plvo does not read: ")
-        .append(static_cast<std::int64_t>(format.format));
+        .append(static_cast<std::int64_t>(mode.getPixelFormat()));
   }
   return {};
 }
@@ -221,13 +231,33 @@ Status OpenNi2Device::start() {
   return {};
 }
 
-OpenNi2Device::Wait OpenNi2Device::wait(int timeout_ms) {
+OpenNi2Device::Wait OpenNi2Device::wait(int timeout_ms, DeviceImage& image) {
   openni::VideoStream* streams[] = {&colour_, &depth_};
-  int index = -1;
-  const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &index, timeout_ms);
+  int ready = -1;
+  const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &ready, timeout_ms);
   if (status == openni::STATUS_TIME_OUT) return Wait::kTimeout;
   if (status != openni::STATUS_OK) return Wait::kError;
-  return index == 0 ? Wait::kColour : Wait::kDepth;
+  const bool is_colour = ready == 0;
+  // Where it cannot be read it has just gone away: an event follows.
+  if (streams[ready]->readFrame(&lent_) != openni::STATUS_OK || !lent_.isValid()) return Wait::kError;
+  const StreamFormat& format = is_colour ? colour_format_ : depth_format_;
+  image = {};
+  image.stream = is_colour ? FramePairer::kColour : FramePairer::kDepth;
+  image.index = lent_.getFrameIndex();
+  image.width = lent_.getWidth();
+  image.height = lent_.getHeight();
+  image.stamp_us = static_cast<std::int64_t>(lent_.getTimestamp());
+  const auto row = static_cast<int>(format.row_bytes());
+  const int stride = lent_.getStrideInBytes();
+  ImageFormat came{};
+  const openni::SensorType sensor = is_colour ? openni::SENSOR_COLOR : openni::SENSOR_DEPTH;
+  const bool whole =
+      image.width == format.width && image.height == format.height && !lent_.getCroppingEnabled() &&
+      to_format(sensor, lent_.getVideoMode().getPixelFormat(), came) && came == format.format &&
+      stride >= row && lent_.getDataSize() >= stride * (format.height - 1) + row;
+  if (whole) image.data = static_cast<const std::uint8_t*>(lent_.getData());
+  image.stride_bytes = stride;
+  return Wait::kImage;
 }
 
 int OpenNi2Device::recorded_frames() {
@@ -241,6 +271,7 @@ void OpenNi2Device::close() {
     openni::OpenNI::removeDeviceStateChangedListener(this);
     listening_ = false;
   }
+  lent_.release();
   const bool streams = colour_.isValid() || depth_.isValid();
   if (colour_.isValid()) colour_.stop();
   if (depth_.isValid()) depth_.stop();

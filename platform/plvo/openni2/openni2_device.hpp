@@ -13,7 +13,7 @@
 #include <string>
 
 #include "plvo/base/status.hpp"
-#include "plvo/openni2/openni2_camera.hpp"
+#include "plvo/openni2/image_device.hpp"
 
 namespace plvo {
 
@@ -29,35 +29,29 @@ class OpenNi2Runtime {
   OpenNi2Runtime() = default;
 };
 
-class OpenNi2Device : private openni::OpenNI::DeviceDisconnectedListener,
-                      private openni::OpenNI::DeviceStateChangedListener {
+class OpenNi2Device final : public ImageDevice,
+                            private openni::OpenNI::DeviceDisconnectedListener,
+                            private openni::OpenNI::DeviceStateChangedListener {
  public:
-  enum class Wait : std::uint8_t { kColour, kDepth, kTimeout, kError };
-  struct StreamFormat {
-    int width = 0, height = 0, fps = 0;
-    openni::PixelFormat format = openni::PIXEL_FORMAT_RGB888;
-    double fov_x_rad = 0, fov_y_rad = 0;
-    bool mirrored = false;  // the driver would not turn it off: rows are turned round when copied
-  };
-
   explicit OpenNi2Device(std::shared_ptr<OpenNi2Runtime> runtime);
   ~OpenNi2Device() override;
 
   Status open(const std::string& uri, const OpenNi2Options& options);
-  Status start();
+  Status start() override;
   void close();
 
-  Wait wait(int timeout_ms);
+  Wait wait(int timeout_ms, DeviceImage& image) override;
+  // For the recorder.
   openni::VideoStream& colour() { return colour_; }
   openni::VideoStream& depth() { return depth_; }
-  const StreamFormat& colour_format() const { return colour_format_; }
-  const StreamFormat& depth_format() const { return depth_format_; }
-  const OpenNi2DeviceInfo& info() const { return info_; }
-  bool is_file() const { return is_file_; }
-  bool registered() const { return registered_; }
-  bool gone() const { return gone_; }
-  bool at_end() const { return at_end_; }
-  int recorded_frames();
+  const StreamFormat& colour_format() const override { return colour_format_; }
+  const StreamFormat& depth_format() const override { return depth_format_; }
+  const OpenNi2DeviceInfo& info() const override { return info_; }
+  bool is_file() const override { return is_file_; }
+  bool registered() const override { return registered_; }
+  bool gone() const override { return gone_; }
+  bool at_end() const override { return at_end_; }
+  int recorded_frames() override;
 
  private:
   void onDeviceDisconnected(const openni::DeviceInfo* info) override;
@@ -70,6 +64,7 @@ class OpenNi2Device : private openni::OpenNI::DeviceDisconnectedListener,
   openni::Device device_;
   openni::VideoStream colour_;
   openni::VideoStream depth_;
+  openni::VideoFrameRef lent_;
   StreamFormat colour_format_;
   StreamFormat depth_format_;
   OpenNi2DeviceInfo info_;  // written in open() under mutex_, for the listeners read it from other threads

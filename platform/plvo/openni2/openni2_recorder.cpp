@@ -32,6 +32,10 @@ Status OpenNi2Recorder::start(OpenNi2Camera& camera, const std::string& path) {
   stop();
   OpenNi2Camera::Impl& source = *camera.impl_;
   if (source.device == nullptr) return {StatusCode::kInvalidArgument, "open the camera before recording it"};
+  if (source.sensor == nullptr) {
+    return {StatusCode::kUnsupported,
+            "what is played is an .oni file already: copy it, or record a folder of images from it"};
+  }
   if (source.recorder != nullptr) return {StatusCode::kBusy, "this camera is being recorded already"};
   if (source.warp) {
     return {StatusCode::kUnsupported,
@@ -45,8 +49,8 @@ Status OpenNi2Recorder::start(OpenNi2Camera& camera, const std::string& path) {
   impl->path = path;
   // Lossless: lossy compression would change what the odometry sees.
   if (impl->recorder.create(path.c_str()) != openni::STATUS_OK ||
-      impl->recorder.attach(source.device->depth(), false) != openni::STATUS_OK ||
-      impl->recorder.attach(source.device->colour(), false) != openni::STATUS_OK ||
+      impl->recorder.attach(source.sensor->depth(), false) != openni::STATUS_OK ||
+      impl->recorder.attach(source.sensor->colour(), false) != openni::STATUS_OK ||
       impl->recorder.start() != openni::STATUS_OK) {
     return Status(StatusCode::kIo, "OpenNI2 cannot record to ")
         .append(path)

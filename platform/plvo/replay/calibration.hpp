@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera calibrations from files and by name. Three forms are understood:
-//   fx fy cx cy depth_scale [k1 k2 p1 p2 k3]        numbers in this order (calibration.txt)
-//   fx: 525  (or fx = 525, or fx 525), one a line   the same names as keys, in any order; also width, height
-//   ROS camera_info YAML                            image_width, camera_matrix, plumb_bob distortion
-// depth_scale is the depth image's units per metre: 5000 in TUM folders, 1000 for millimetres.
+// Camera calibrations from files and by name. Forms that are understood, told apart by their content (YAML by
+// the extension .yaml or .yml):
+//   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; lines with keys may
+//   follow fx: 525  (or fx = 525, or fx 525), one a line             keys in any order: calibration_keys.hpp
+//   has the table YAML with the same keys ROS camera_info YAML image_width, camera_matrix, plumb_bob
+//   distortion, and
+//                                                             beside them the keys of the sensor
+//                                                             (depth_scale, …)
+// What a source does not say is assumed, and known to be: see assumptions().
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
@@ -21,22 +28,34 @@ struct Calibration {
   CameraModel camera;     // width and height hold for has_size only; else the images decide
   bool has_size = false;  // the source says which image size it is for
   double depth_units_per_metre = kTumDepthUnitsPerMetre;
+  bool depth_scale_given = false;  // by the source or a flag; else the default above is a guess
+  bool readout_given = false;      // of the rolling shutter, 0 included; else a global shutter is a guess
 
-  // As CameraModel::validate for images of this size, and a depth scale that is a positive number.
+  // As CameraModel::validate for images of this size, and a depth scale between 1 and 100000 units per metre.
   Status validate(int width, int height) const;
+
+  // What was not said and is therefore assumed: a sentence each, with what to do if it is wrong. To be shown
+  // to whoever runs a recorded sequence; empty when all was said.
+  std::vector<std::string> assumptions() const;
 };
 
-// The form is told by the content (YAML by the extension .yaml or .yml). kNotFound, kDamaged (what is
-// expected and where), kUnsupported for a distortion model other than plumb_bob. On failure `calibration` is
+// kNotFound, kDamaged (what is expected and where), kInvalidArgument (not a regular file, or larger than a
+// calibration can be), kUnsupported for a distortion model other than plumb_bob. On failure `calibration` is
 // unchanged.
 Status read_calibration(const std::filesystem::path& path, Calibration& calibration);
+
+// The calibration that lies beside a recorded sequence: the first that is there of calibration.txt,
+// calibration.yaml, camera.yaml.
+std::optional<std::filesystem::path> calibration_file_in(const std::filesystem::path& folder);
 
 // tum-fr1, tum-fr2, tum-fr3 (the values the benchmark publishes), kinect-v1-default. kNotFound lists the
 // names.
 Status builtin_calibration(std::string_view name, Calibration& calibration);
 std::span<const std::string_view> builtin_calibration_names();
 
-// read_calibration for a YAML file.
-Status read_camera_info(const std::filesystem::path& path, Calibration& calibration);
+// As read_calibration takes it back, to the last bit: one line of numbers (as many as say something), and a
+// line `key value` for each property of the sensor that has no place among them and is not at its default.
+// The size is not written: the images beside it have it.
+std::string calibration_text(const Calibration& calibration);
 
 }  // namespace plvo

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS camera_info as the calibration tools write it (image_width, camera_matrix: {data: …}, distortion_model,
-// distortion_coefficients: {data: …}) and as a printed message shows it (width, K or k, D or d).
+// Calibrations in YAML: our keys, or ROS's camera_info as the calibration tools write it (image_width,
+// camera_matrix: {data: …}, distortion_model, distortion_coefficients: {data: …}) and as a printed message
+// shows it (width, K or k, D or d), with our keys of the sensor beside it.
 #include <fmt/core.h>
 #include <yaml-cpp/yaml.h>
 
 #include <string>
 #include <vector>
 
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration_keys.hpp"
 
-namespace plvo {
+namespace plvo::calibration_form {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,14 +27,15 @@ std::vector<double> numbers(const YAML::Node& node) {
   return data ? data.as<std::vector<double>>() : std::vector<double>();
 }
 
-Status from_yaml(const fs::path& path, const YAML::Node& root, Calibration& calibration) {
-  const auto damaged = [&path](std::string_view what) {
-    return Status(StatusCode::kDamaged, fmt::format("{}: {}", path.string(), what));
-  };
-  if (!root.IsMap())
-    return damaged("is not a camera_info: expected keys such as image_width and camera_matrix");
-  const std::vector<double> K = numbers(first_of(root, {"camera_matrix", "K", "k"}));
-  if (K.size() != 9) return damaged("camera_matrix must have 9 numbers (fx 0 cx 0 fy cy 0 0 1)");
+YAML::Node camera_matrix(const YAML::Node& root) { return first_of(root, {"camera_matrix", "K", "k"}); }
+
+Status set(Collector& collector, const std::string& key, const YAML::Node& value) {
+  return collector.set(key, value.IsScalar() ? value.Scalar() : std::string());
+}
+
+Status from_camera_info(const fs::path& path, const YAML::Node& root, Collector& collector) {
+  const std::vector<double> K = numbers(camera_matrix(root));
+  if (K.size() != 9) return damaged(path, "camera_matrix must have 9 numbers (fx 0 cx 0 fy cy 0 0 1)");
   const std::vector<double> D = numbers(first_of(root, {"distortion_coefficients", "D", "d"}));
   const YAML::Node model_node = first_of(root, {"distortion_model"});
   const std::string model = model_node ? model_node.as<std::string>() : "plumb_bob";
@@ -43,38 +45,49 @@ Status from_yaml(const fs::path& path, const YAML::Node& root, Calibration& cali
         fmt::format(
             "{}: distortion model '{}' is not supported, only plumb_bob (k1 k2 p1 p2 k3); calibrate again "
             "with it, or undistort the images first",
-            path.string(), model)};
+            path.string(), model.substr(0, 40))};
   }
   if (!D.empty() && D.size() != 4 && D.size() != 5)
-    return damaged(fmt::format("plumb_bob has 4 or 5 distortion coefficients, not {}", D.size()));
-
-  calibration.camera.pinhole = {K[0], K[4], K[2], K[5]};
-  if (!D.empty()) calibration.camera.distortion = {D[0], D[1], D[2], D[3], D.size() > 4 ? D[4] : 0.0};
+    return damaged(path, fmt::format("plumb_bob has 4 or 5 distortion coefficients, not {}", D.size()));
+  Distortion lens;
+  if (!D.empty()) lens = {D[0], D[1], D[2], D[3], D.size() > 4 ? D[4] : 0.0};
+  collector.set_lens({K[0], K[4], K[2], K[5]}, lens);
   const YAML::Node width = first_of(root, {"image_width", "width"});
   const YAML::Node height = first_of(root, {"image_height", "height"});
   if (width && height) {
-    calibration.has_size = true;
-    calibration.camera.width = width.as<int>();
-    calibration.camera.height = height.as<int>();
+    if (Status status = set(collector, "width", width); !status.ok()) return status;
+    if (Status status = set(collector, "height", height); !status.ok()) return status;
   }
-  if (const YAML::Node scale = root["depth_scale"]; scale)
-    calibration.depth_units_per_metre = scale.as<double>();
+  for (const Key& key : keys()) {
+    if (key.kind != KeyKind::kSensor) continue;
+    const std::string name(key.name);
+    if (const YAML::Node value = root[name]; value)
+      if (Status status = set(collector, name, value); !status.ok()) return status;
+  }
+  return {};
+}
+
+Status from_keys(const YAML::Node& root, Collector& collector) {
+  for (const auto& entry : root)
+    if (Status status = set(collector, entry.first.as<std::string>(), entry.second); !status.ok())
+      return status;
   return {};
 }
 
 }  // namespace
 
-Status read_camera_info(const fs::path& path, Calibration& calibration) {
+Status parse_yaml(const fs::path& path, const std::string& content, Calibration& calibration) {
   try {
-    Calibration result;
-    const Status status = from_yaml(path, YAML::LoadFile(path.string()), result);
-    if (status.ok()) calibration = result;
-    return status;
-  } catch (const YAML::BadFile&) {
-    return {StatusCode::kNotFound, fmt::format("cannot read the calibration {}", path.string())};
+    const YAML::Node root = YAML::Load(content);
+    if (!root.IsMap())
+      return damaged(path, "has no keys; expected fx, fy, cx, cy …, or a camera_info with camera_matrix");
+    Collector collector(path);
+    const Status status =
+        camera_matrix(root) ? from_camera_info(path, root, collector) : from_keys(root, collector);
+    return status.ok() ? collector.finish(calibration) : status;
   } catch (const YAML::Exception& error) {
-    return {StatusCode::kDamaged, fmt::format("{}: {}", path.string(), error.what())};
+    return damaged(path, error.what());
   }
 }
 
-}  // namespace plvo
+}  // namespace plvo::calibration_form

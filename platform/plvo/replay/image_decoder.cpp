@@ -5,8 +5,9 @@
 #include <spng.h>
 #include <turbojpeg.h>
 
-#include <cstdio>
 #include <memory>
+
+#include "plvo/host/input_file.hpp"
 
 namespace plvo {
 namespace {
@@ -14,7 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using PngContext = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 
-constexpr std::uint32_t kMaxSide = 16384;  // a header that claims more is damaged, not large
+// Texts and colour profiles of a PNG unpack to as much as they like; nothing of them is wanted.
+constexpr std::size_t kMaxChunk = 1u << 20;
+constexpr std::size_t kMaxChunks = 4u << 20;  // together
 
 Status image_error(StatusCode code, const fs::path& path, std::string_view what) {
   return {code, fmt::format("{}: {}", (path.parent_path().filename() / path.filename()).string(), what)};
@@ -27,10 +30,21 @@ Status wrong_size(const fs::path& path, int has_width, int has_height, int width
                   has_width, has_height, width, height));
 }
 
+Status check_size(const fs::path& path, const ImageInfo& info) {
+  if (info.width >= 1 && info.height >= 1 && info.width <= kMaxImageSide && info.height <= kMaxImageSide)
+    return {};
+  return image_error(
+      StatusCode::kInvalidArgument, path,
+      fmt::format("says that it is {}x{}; images of at most {}x{} are read (make the images smaller, "
+                  "and the calibration with them)",
+                  info.width, info.height, kMaxImageSide, kMaxImageSide));
+}
+
 PngContext open_png(std::span<const unsigned char> file) {
   PngContext png(spng_ctx_new(0), spng_ctx_free);
   if (png != nullptr) {
-    spng_set_image_limits(png.get(), kMaxSide, kMaxSide);
+    // The size is judged by check_size, in words.
+    spng_set_chunk_limits(png.get(), kMaxChunk, kMaxChunks);
     spng_set_png_buffer(png.get(), file.data(), file.size());
   }
   return png;
@@ -44,7 +58,7 @@ Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
   }
   info = {static_cast<int>(header.width), static_cast<int>(header.height), header.bit_depth,
           header.color_type == SPNG_COLOR_TYPE_GRAYSCALE};
-  return {};
+  return check_size(path, info);
 }
 
 Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t bytes, int format) {
@@ -64,14 +78,9 @@ ImageDecoder::~ImageDecoder() {
 }
 
 Status ImageDecoder::load(const fs::path& path) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (stream == nullptr || error) return image_error(StatusCode::kNotFound, path, "cannot be read");
-  file_.resize(bytes);
-  if (std::fread(file_.data(), 1, bytes, stream.get()) != bytes)
-    return image_error(StatusCode::kIo, path, "could not be read to its end");
-  return {};
+  const Status status = read_input_file(path, kMaxImageBytes, file_);
+  if (status.code() == StatusCode::kNotFound) return image_error(StatusCode::kNotFound, path, "is not there");
+  return status;
 }
 
 bool ImageDecoder::is_jpeg() const { return file_.size() > 2 && file_[0] == 0xff && file_[1] == 0xd8; }
@@ -85,7 +94,7 @@ Status ImageDecoder::jpeg_header(const fs::path& path, ImageInfo& info) {
     return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
   info.bits = 8;
   info.grey = colour_space == TJCS_GRAY;
-  return {};
+  return check_size(path, info);
 }
 
 Status ImageDecoder::read_header(const fs::path& path, ImageInfo& info) {
@@ -105,7 +114,9 @@ Status ImageDecoder::decode_rgb(const fs::path& path, int width, int height, std
     return wrong_size(path, info.width, info.height, width, height);
   if (!jpeg) return png_pixels(png.get(), path, rgb.data(), rgb.size(), SPNG_FMT_RGB8);
   // A JPEG that ends early decodes to grey bars with a mere warning: it counts as damaged here.
-  if (tjDecompress2(jpeg_, file_.data(), file_.size(), rgb.data(), width, 0, height, TJPF_RGB, 0) != 0)
+  // A progressive one may go over its pixels as often as it likes: not more than 500 times here.
+  if (tjDecompress2(jpeg_, file_.data(), file_.size(), rgb.data(), width, 0, height, TJPF_RGB,
+                    TJFLAG_LIMITSCANS) != 0)
     return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
   return {};
 }

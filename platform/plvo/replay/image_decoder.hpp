@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Image files into the caller's pixels: PNG of any colour type (libspng) and JPEG (TurboJPEG) as RGB, 16-bit
-// grey PNG as depth. One file buffer is reused; after reserve() it does not grow.
+// grey PNG as depth. One file buffer is reused; after reserve() it does not grow. What a header claims is
+// compared with the limits below before anything of that size is allocated.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,12 @@
 #include <vector>
 
 #include "plvo/base/status.hpp"
+#include "plvo/image/undistortion.hpp"
 
 namespace plvo {
+
+inline constexpr int kMaxImageSide = UndistortionTable::kMaxSide;  // px: what the core can take
+inline constexpr std::uintmax_t kMaxImageBytes = 64u << 20;  // of a file; no image of that size has as many
 
 struct ImageInfo {
   int width = 0;
@@ -31,7 +36,8 @@ class ImageDecoder {
   // promised.
   void reserve(std::size_t file_bytes) { file_.resize(file_bytes); }
 
-  // Messages name the file as `name` below. kNotFound: no such file; kDamaged: not an image, or cut off.
+  // Messages name the file. kNotFound: no such file; kDamaged: not an image, or cut off; kInvalidArgument:
+  // larger than the limits, or no regular file.
   Status read_header(const std::filesystem::path& path, ImageInfo& info);
   // rgb: width·height·3 bytes. kInvalidArgument when the image has another size.
   Status decode_rgb(const std::filesystem::path& path, int width, int height, std::span<std::uint8_t> rgb);

@@ -18,9 +18,11 @@ Status TumCamera::open(const fs::path& folder, const Calibration& calibration, c
   if (Status status = choose_range(options); !status.ok()) return status;
   if (Status status = find_image_size(); !status.ok()) return status;
   if (Status status = calibration.validate(model_.width, model_.height); !status.ok()) return status;
-  model_.pinhole = calibration.camera.pinhole;
-  model_.distortion = calibration.camera.distortion;
-  model_.readout_s = calibration.camera.readout_s;
+  const int width = model_.width;
+  const int height = model_.height;
+  model_ = calibration.camera;
+  model_.width = width;
+  model_.height = height;
   depth_units_per_metre_ = calibration.depth_units_per_metre;
   allocate();
   return {};
@@ -47,6 +49,13 @@ Status TumCamera::find_image_size() {
     Status status = decoder_.read_header(folder_ / pair.colour.file, colour);
     if (status.ok()) status = decoder_.read_header(folder_ / pair.depth.file, depth);
     if (status.ok()) {
+      if (colour.bits == 16 && colour.grey && depth.bits == 8) {
+        return {
+            StatusCode::kInvalidArgument,
+            fmt::format("{} is depth and {} is colour: the associations name depth first; write each line as "
+                        "'stamp rgb stamp depth'",
+                        pair.colour.file, pair.depth.file)};
+      }
       if (depth.bits != 16 || !depth.grey) {
         return {StatusCode::kInvalidArgument,
                 fmt::format(
@@ -68,7 +77,9 @@ Status TumCamera::find_image_size() {
     }
     if (first_failure.ok()) first_failure = status;
   }
-  return Status(StatusCode::kDamaged, "no image of the sequence can be read; ")
+  const bool too_large = first_failure.code() == StatusCode::kInvalidArgument;
+  return Status(too_large ? StatusCode::kInvalidArgument : StatusCode::kDamaged,
+                "no image of the sequence can be read; ")
       .append(first_failure.message());
 }
 
@@ -78,7 +89,7 @@ void TumCamera::allocate() {
     for (const std::string& file : {pair.colour.file, pair.depth.file}) {
       std::error_code error;
       const std::uintmax_t bytes = fs::file_size(folder_ / file, error);
-      if (!error) largest = std::max(largest, bytes);
+      if (!error && bytes <= kMaxImageBytes) largest = std::max(largest, bytes);
     }
   }
   decoder_.reserve(largest);

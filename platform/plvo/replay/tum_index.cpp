@@ -4,11 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <tuple>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
 
+#include "plvo/host/input_file.hpp"
 #include "plvo/host/stamp_text.hpp"
+#include "plvo/replay/stamp_pairs.hpp"
 
 namespace plvo {
 namespace {
@@ -30,26 +32,83 @@ Status check_order(const fs::path& list, int line, const StampedFile& next,
                              format_stamp(next.stamp_ns), doubled ? "appears twice" : "runs backwards"));
 }
 
+constexpr std::string_view kBlank = " \t\r";
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
+  text.remove_prefix(begin);
+  return text.substr(0, text.find_last_not_of(kBlank) + 1);
+}
+
+// Takes the next word off the front of the line.
+std::string_view take_word(std::string_view& line) {
+  line = trim(line);
+  const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+bool ends_as_image(std::string_view name) {
+  const auto ends = [name](std::string_view extension) {
+    return name.size() > extension.size() &&
+           std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
+                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+  };
+  return ends(".png") || ends(".jpg") || ends(".jpeg");
+}
+
+// Takes a file's name off the front: the words up to the first one that ends as an image's name does, with
+// what is between them; without such an end, one word.
+std::string take_name(std::string_view& line) {
+  line = trim(line);
+  const std::string_view whole = line;
+  std::string_view rest = line;
+  while (!trim(rest).empty()) {
+    if (!ends_as_image(take_word(rest))) continue;
+    line = rest;
+    return std::string(whole.substr(0, whole.size() - rest.size()));
+  }
+  return std::string(take_word(line));
+}
+
+// Whether a part of the path is one of the names that folders of depth, or of colour, have.
+bool names(std::string_view path, std::initializer_list<std::string_view> folders) {
+  for (const fs::path& part : fs::path(path))
+    if (std::find(folders.begin(), folders.end(), part.string()) != folders.end()) return true;
+  return false;
+}
+
+bool depth_first(const std::vector<StampedFile>& left, const std::vector<StampedFile>& right) {
+  const auto all = [](const std::vector<StampedFile>& files,
+                      std::initializer_list<std::string_view> folders) {
+    return std::all_of(files.begin(), files.end(),
+                       [&](const StampedFile& file) { return names(file.file, folders); });
+  };
+  return all(left, {"depth"}) && all(right, {"rgb", "color", "colour"});
+}
+
 // `columns` pairs of stamp and file name a line, into one list per pair.
 Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* lists) {
-  std::ifstream stream(list);
-  if (!stream) {
+  std::string content;
+  if (Status status = read_text_file(list, kMaxTextBytes, content); !status.ok()) {
+    if (status.code() != StatusCode::kNotFound) return status;
     return {
         StatusCode::kNotFound,
         fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), or an "
                     "associations.txt",
                     list.string())};
   }
-  std::string text;
-  for (int line = 1; std::getline(stream, text); ++line) {
-    if (const std::size_t last = text.find_last_not_of(" \t\r"); last == std::string::npos || text[0] == '#')
-      continue;
-    std::istringstream words(text);
+  std::string_view rest = content;
+  for (int line = 1; !rest.empty(); ++line) {
+    std::string_view text = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), text.size() + 1));
+    text = trim(text);
+    if (text.empty() || text.front() == '#') continue;
     for (int column = 0; column < columns; ++column) {
-      std::string stamp;
       StampedFile next;
-      words >> stamp >> next.file;
-      if (next.file.empty() || !parse_stamp_ns(stamp, next.stamp_ns))
+      const bool is_stamp = parse_stamp_ns(take_word(text), next.stamp_ns);
+      next.file = take_name(text);
+      if (next.file.empty() || !is_stamp)
         return damaged(list, line,
                        columns == 1 ? "expected 'stamp file'" : "expected 'stamp rgb stamp depth'");
       if (Status status = check_order(list, line, next, lists[column]); !status.ok()) return status;
@@ -84,32 +143,17 @@ Status pair_up(const std::vector<StampedFile>& colour, const std::vector<Stamped
 
 }  // namespace
 
-std::vector<std::pair<std::size_t, std::size_t>> associate(const std::vector<std::int64_t>& first,
-                                                           const std::vector<std::int64_t>& second,
-                                                           std::int64_t tolerance_ns) {
-  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    while (begin < second.size() && second[begin] < first[i] - tolerance_ns) ++begin;
-    for (std::size_t j = begin; j < second.size() && second[j] <= first[i] + tolerance_ns; ++j)
-      candidates.emplace_back(std::abs(first[i] - second[j]), i, j);
-  }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<char> first_used(first.size()), second_used(second.size());
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const auto& [difference, i, j] : candidates) {
-    if (first_used[i] != 0 || second_used[j] != 0) continue;
-    first_used[i] = second_used[j] = 1;
-    pairs.emplace_back(i, j);
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
 Status read_tum_index(const fs::path& folder, const fs::path& associations, std::int64_t tolerance_ns,
                       TumIndex& index) {
   index = {};
   std::error_code error;
+  if (fs::is_regular_file(folder, error) && folder.extension() == ".oni") {
+    return {StatusCode::kUnsupported,
+            fmt::format(
+                "{0} is a recording of OpenNI2, not a folder of images: plvo live --device {0} plays it, and "
+                "plvo record FOLDER --device {0} makes a folder of it",
+                folder.string())};
+  }
   if (!fs::is_directory(folder, error)) {
     return {
         StatusCode::kNotFound,
@@ -122,6 +166,7 @@ Status read_tum_index(const fs::path& folder, const fs::path& associations, std:
     joint = folder / "associations.txt";
   if (!joint.empty()) {
     if (Status status = read_lists(joint, 2, lists); !status.ok()) return status;
+    if (depth_first(lists[0], lists[1])) std::swap(lists[0], lists[1]);
     for (std::size_t i = 0; i < lists[0].size(); ++i) index.pairs.push_back({lists[0][i], lists[1][i]});
     return {};
   }

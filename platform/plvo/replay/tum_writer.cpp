@@ -11,30 +11,36 @@ namespace plvo {
 
 namespace fs = std::filesystem;
 
-Status TumWriter::open(const fs::path& folder, const CameraModel& camera, double depth_units_per_metre) {
+Status TumWriter::open(const fs::path& folder, const Calibration& calibration) {
   folder_ = folder;
+  std::error_code error;
+  for (const char* list : {"rgb.txt", "depth.txt"}) {
+    if (fs::exists(folder / list, error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} already holds a recording; choose another folder or remove it first",
+                          folder.string())};
+  }
   for (const fs::path& path : {folder, folder / "rgb", folder / "depth"}) {
-    std::error_code error;
-    fs::create_directory(path, error);
+    fs::create_directories(path, error);
     if (error || !fs::is_directory(path, error)) {
       return {StatusCode::kIo, fmt::format("cannot make the folder {}: {}; choose a path that can be written",
                                            path.string(), error ? error.message() : "it is a file")};
     }
   }
-  LineFile calibration;
-  const Pinhole& k = camera.pinhole;
-  const Distortion& d = camera.distortion;
-  std::string line = fmt::format("{} {} {} {} {}", k.fx, k.fy, k.cx, k.cy, depth_units_per_metre);
-  if (!d.is_zero() || camera.readout_s > 0)
-    line += fmt::format(" {} {} {} {} {}", d.k1, d.k2, d.p1, d.p2, d.k3);
-  if (camera.readout_s > 0) line += fmt::format(" {}", camera.readout_s);
-  Status status = calibration.open(folder / "calibration.txt");
-  if (status.ok()) status = calibration.write(line);
-  if (status.ok()) status = colour_list_.open(folder / "rgb.txt");
-  if (status.ok()) status = depth_list_.open(folder / "depth.txt");
-  if (status.ok()) status = colour_list_.write("# timestamp filename");
-  if (status.ok()) status = depth_list_.write("# timestamp filename");
+  LineFile text;
+  Status status = text.open(folder / "calibration.txt", calibration_text(calibration));
+  if (status.ok()) status = colour_list_.open(folder / "rgb.txt", "# timestamp filename");
+  if (status.ok()) status = depth_list_.open(folder / "depth.txt", "# timestamp filename");
   return status;
+}
+
+Status TumWriter::open(const fs::path& folder, const CameraModel& camera, double depth_units_per_metre) {
+  Calibration calibration;
+  calibration.camera = camera;
+  calibration.depth_units_per_metre = depth_units_per_metre;
+  calibration.depth_scale_given = true;
+  calibration.readout_given = camera.readout_s != 0;
+  return open(folder, calibration);
 }
 
 Status TumWriter::write(const RgbdFrame& frame, const Se3* T_world_camera) {

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes frames as a TUM folder that TumCamera reads back: rgb/, depth/, rgb.txt, depth.txt, calibration.txt,
-// and groundtruth.txt when poses are known. A frame is listed only after its two images are on the disk.
+// and groundtruth.txt when poses are known. A frame is listed only after its two images are on the disk, so
+// that a full disk or an interruption leaves a folder that can be read up to there.
 #pragma once
 
 #include <filesystem>
 
 #include "plvo/base/status.hpp"
-#include "plvo/camera/camera_model.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/math/se3.hpp"
+#include "plvo/replay/calibration.hpp"
 
 namespace plvo {
 
 class TumWriter {
  public:
-  // Makes the folder (its parent must exist). depth_units_per_metre: what the frames' depth is in. kIo with
-  // the operating system's reason.
+  // Makes the folder and those above it. The calibration's depth scale is the unit of the frames' depth; its
+  // readout_given says whether the readout is known. kInvalidArgument when the folder holds a recording
+  // already; kIo with the operating system's reason.
+  Status open(const std::filesystem::path& folder, const Calibration& calibration);
+  // The same for a camera whose readout is known when it is not 0.
   Status open(const std::filesystem::path& folder, const CameraModel& camera, double depth_units_per_metre);
   // T_world_camera may be null: then groundtruth.txt gets no line.
   Status write(const RgbdFrame& frame, const Se3* T_world_camera = nullptr);

@@ -11,6 +11,8 @@
 
 namespace plvo::sim {
 
+constexpr int kThreadRows = 16;  // rows a thread takes at a time
+
 // Calls work(begin, end) for bands of at most `band` rows that cover 0 … rows−1 once.
 template <typename Work>
 void for_rows(int threads, int rows, int band, const Work& work) {

@@ -2,12 +2,14 @@
 #include "plvo/simulator/simulated_camera.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "plvo/simulator/motion/trajectory.hpp"
 #include "plvo/simulator/render/renderer.hpp"
 #include "plvo/simulator/scene/lighting.hpp"
 #include "plvo/simulator/scene/scene.hpp"
+#include "plvo/simulator/sensor/depth_clock.hpp"
 #include "plvo/simulator/sensor/film.hpp"
 #include "plvo/simulator/sensor/kinect_depth.hpp"
 
@@ -15,6 +17,18 @@ namespace plvo {
 namespace {
 
 constexpr std::int64_t kFirstStamp_us = 1'600'000'000'000'000;
+
+std::int64_t since_start_us(int frame, double fps) {
+  return static_cast<std::int64_t>(frame * 1e6 / fps + 0.5);
+}
+
+// Is each pixel's depth taken at the moment of its colour?
+bool with_colour(const SimulatorOptions& options) {
+  const DepthTiming& timing = options.depth_timing;
+  return timing.delay_s == 0 && timing.stamp_offset_s == 0 &&
+         timing.fps.value_or(options.fps) == options.fps &&
+         timing.readout_s.value_or(options.camera.readout_s) == options.camera.readout_s;
+}
 
 }  // namespace
 
@@ -26,17 +40,31 @@ struct SimulatedCamera::Parts {
         lighting(chosen.light, chosen.seed),
         renderer(*scene, chosen.camera, chosen.threads),
         film(chosen.camera, chosen.seed, chosen.noise, chosen.threads),
+        clock(chosen.depth_timing, chosen.fps, chosen.seed),
         sensor(*scene, chosen.camera, chosen.depth, chosen.seed, chosen.threads),
         exact(static_cast<std::size_t>(chosen.camera.width) *
-              static_cast<std::size_t>(chosen.camera.height)) {}
+              static_cast<std::size_t>(chosen.camera.height)) {
+    if (!with_colour(chosen)) depth_caster.emplace(*scene, chosen.camera, chosen.threads);
+  }
 
-  // Of a rolling shutter: the frame's stamp is the moment of its middle row.
-  std::vector<Se3> row_poses(double t_s) const {
+  // T_world_camera of each row, where `middle` is that at middle_s, the moment of the middle row.
+  std::vector<Se3> row_poses(double middle_s, const Se3& middle, double readout_s) const {
     const int height = options.camera.height;
-    std::vector<Se3> poses;
-    for (int y = 0; y < height; ++y)
-      poses.push_back(trajectory.at(t_s + options.camera.readout_s * (y / (height - 1.0) - 0.5)));
+    std::vector<Se3> poses(static_cast<std::size_t>(height), middle);
+    for (int y = 0; y < height && readout_s > 0; ++y)
+      poses[static_cast<std::size_t>(y)] = trajectory.at(middle_s + readout_s * (y / (height - 1.0) - 0.5));
     return poses;
+  }
+
+  // What the depth camera meets in its own time.
+  ImageView<const sim::PixelHit> depth_hits(int frame) {
+    if (!depth_caster) return renderer.hits();
+    const DepthTiming& timing = options.depth_timing;
+    const std::int64_t stamp_us = clock.nearest(frame, since_start_us(frame, options.fps)).true_stamp_us;
+    const double middle_s = static_cast<double>(stamp_us) * 1e-6 + timing.delay_s;
+    depth_caster->cast(
+        row_poses(middle_s, trajectory.at(middle_s), timing.readout_s.value_or(options.camera.readout_s)));
+    return depth_caster->hits();
   }
 
   SimulatorOptions options;
@@ -45,6 +73,8 @@ struct SimulatedCamera::Parts {
   sim::Lighting lighting;
   sim::Renderer renderer;
   sim::Film film;
+  sim::DepthClock clock;
+  std::optional<sim::RayCaster> depth_caster;  // none: depth is taken with the colour
   sim::KinectDepth sensor;
   std::vector<float> exact;
   int frames = 0;
@@ -83,7 +113,12 @@ const SimulatorOptions& SimulatedCamera::options() const { return parts_->option
 int SimulatedCamera::frames() const { return parts_->frames; }
 
 std::int64_t SimulatedCamera::stamp_ns(int frame) const {
-  return (kFirstStamp_us + static_cast<std::int64_t>(frame * 1e6 / parts_->options.fps + 0.5)) * 1000;
+  return (kFirstStamp_us + since_start_us(frame, parts_->options.fps)) * 1000;
+}
+
+std::int64_t SimulatedCamera::depth_stamp_ns(int frame) const {
+  const std::int64_t colour_us = since_start_us(frame, parts_->options.fps);
+  return (kFirstStamp_us + parts_->clock.nearest(frame, colour_us).stamp_us) * 1000;
 }
 
 Se3 SimulatedCamera::ground_truth(std::int64_t stamp_ns) const {
@@ -111,26 +146,24 @@ Status SimulatedCamera::next(RgbdFrame& frame) {
   const Se3 T_world_camera = pose(k);
   const double t_s = static_cast<double>(stamp - kFirstStamp_us * 1000) * 1e-9;
   const sim::LightState light = parts.lighting.at(t_s, T_world_camera);
-  if (camera.readout_s > 0)
-    parts.renderer.render(parts.row_poses(t_s), light);
-  else
-    parts.renderer.render(T_world_camera, light);
+  parts.renderer.render(parts.row_poses(t_s, T_world_camera, camera.readout_s), light);
 
   const double half_s = 0.5 * parts.film.exposure_s();
   const Se3 T_camera_world = T_world_camera.inverse();
   parts.film.develop(parts.renderer, T_camera_world * parts.trajectory.at(t_s - half_s),
                      T_camera_world * parts.trajectory.at(t_s + half_s), static_cast<std::uint32_t>(k),
                      1 / parts.options.fps);
-  const ImageView<const sim::PixelHit> hits = parts.renderer.hits();
+  const ImageView<const sim::PixelHit> measured = parts.depth_hits(k);
   if (parts.options.noise) {
-    parts.sensor.sense(hits, static_cast<std::uint32_t>(k));
+    parts.sensor.sense(measured, static_cast<std::uint32_t>(k));
   } else {
-    parts.sensor.copy_exact(hits);
+    parts.sensor.copy_exact(measured);
   }
-  for (std::size_t i = 0; i < parts.exact.size(); ++i) parts.exact[i] = hits.data[i].depth_m;
+  const ImageView<const sim::PixelHit> seen = parts.renderer.hits();
+  for (std::size_t i = 0; i < parts.exact.size(); ++i) parts.exact[i] = seen.data[i].depth_m;
 
   frame.stamp_ns = stamp;
-  frame.depth_stamp_ns = stamp;
+  frame.depth_stamp_ns = depth_stamp_ns(k);
   frame.colour = {parts.film.pixels(), camera.width, camera.height,
                   static_cast<std::ptrdiff_t>(camera.width) * 3, PixelFormat::kRgb8};
   frame.depth = parts.sensor.view();

@@ -30,12 +30,14 @@ class SimulatedCamera final : public RgbdCamera {
   // Stamp of frame k: 1 600 000 000 s + k / fps, in whole microseconds, so that a TUM folder keeps it
   // exactly.
   std::int64_t stamp_ns(int frame) const;
+  // Stamp that frame k's depth image bears (options().depth_timing), in whole microseconds too.
+  std::int64_t depth_stamp_ns(int frame) const;
   // T_world_camera, exact: of frame k, and at any stamp (of the walk itself, not interpolated between
   // frames).
   Se3 pose(int frame) const;
   Se3 ground_truth(std::int64_t stamp_ns) const;
-  // Exact depth (metres along the optical axis, 0: nothing) of the last frame's pixels, whatever the sensor
-  // made of it.
+  // Exact depth (metres along the optical axis, 0: nothing) of the last frame's pixels at the moment of their
+  // colour, whatever the depth sensor made of it, and when.
   ImageView<const float> exact_depth() const;
 
  private:

@@ -2,6 +2,7 @@
 #include "plvo/simulator/simulator_options.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace plvo {
 namespace {
@@ -22,6 +23,22 @@ Status parse(std::string_view what, std::string_view text, const std::array<Name
   status.append(what).append(" \"").append(text.substr(0, 40)).append("\"; choose one of:");
   for (const Name candidate : names) status.append(" ").append(to_string(candidate));
   return status;
+}
+
+Status invalid(const char* what) { return Status(StatusCode::kInvalidArgument, "simulator: ").append(what); }
+
+Status validate_timing(const DepthTiming& timing, double colour_fps) {
+  if (!(std::abs(timing.delay_s) <= 0.1)) return invalid("the depth delay must lie in -0.1 ... 0.1 seconds");
+  if (timing.readout_s && !(*timing.readout_s >= 0 && *timing.readout_s <= 0.1))
+    return invalid("the depth readout must lie in 0 ... 0.1 seconds");
+  if (!(std::abs(timing.stamp_offset_s) <= 0.5 / colour_fps))
+    return invalid("the depth stamp offset must be at most half a frame: another frame would be nearer");
+  if (timing.fps && !(*timing.fps >= colour_fps && *timing.fps <= 1000))
+    return invalid("the depth camera must take at least as many images per second as the colour camera");
+  // The noise is at most 4.9 standard deviations: stamps keep their order.
+  if (!(timing.stamp_jitter_s >= 0 && timing.stamp_jitter_s <= 0.1 / timing.fps.value_or(colour_fps)))
+    return invalid("the jitter of the depth stamps must be at most a tenth of a frame");
+  return {};
 }
 
 }  // namespace
@@ -49,9 +66,6 @@ Status parse_scene(std::string_view text, SceneName& name) { return parse("scene
 Status parse_light(std::string_view text, LightName& name) { return parse("light", text, kLights, name); }
 
 Status SimulatorOptions::validate() const {
-  const auto invalid = [](const char* what) {
-    return Status(StatusCode::kInvalidArgument, "simulator: ").append(what);
-  };
   const Status calibration = camera.validate();
   if (!calibration.ok()) return calibration;
   if (camera.width > 4096 || camera.height > 4096)
@@ -69,7 +83,9 @@ Status SimulatorOptions::validate() const {
     return invalid("the infrared focal length must be positive");
   if (!(depth.steps_per_px >= 0 && depth.steps_per_px < 1e4))
     return invalid("steps per pixel must lie in 0 ... 10000");
-  return {};
+  if (!(depth.scale_error >= 0.5 && depth.scale_error <= 2))
+    return invalid("the depth scale error is a factor: it must lie in 0.5 ... 2");
+  return validate_timing(depth_timing, fps);
 }
 
 }  // namespace plvo

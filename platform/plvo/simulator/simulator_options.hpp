@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -34,6 +35,18 @@ struct DepthSensorOptions {
   double baseline_m = 0.075;  // from the infrared camera to the projector, along +x
   double focal_px = 580;      // of the infrared camera
   double steps_per_px = 8;    // disparity steps per pixel; 0: no quantisation
+  double scale_error = 1;     // reported depth over true depth
+};
+
+// When the depth images are exposed and what stamps they bear. By default depth is taken when colour is.
+struct DepthTiming {
+  double delay_s = 0;  // the middle row is exposed this long after the stamp; negative: before it
+  std::optional<double> readout_s;  // from the first row to the last; none: that of the colour image
+  double stamp_offset_s = 0;        // of the depth stamp from the colour stamp, at most half a frame
+  // Of depth images a second, at least those of colour: the depth camera runs on its own clock, from
+  // stamp_offset_s on, and each colour image goes with the nearest depth image. None: one clock.
+  std::optional<double> fps;
+  double stamp_jitter_s = 0;  // standard deviation of the stamp; the exposure keeps its moment
 };
 
 struct SimulatorOptions {
@@ -47,6 +60,7 @@ struct SimulatorOptions {
   // depth of every surface within the range of the 16-bit format (13.1 m).
   bool noise = true;
   DepthSensorOptions depth;
+  DepthTiming depth_timing;
   // A TUM ground-truth file that moves the camera instead of the seeded hand; empty: none.
   std::string trajectory_file;
   int threads = 2;  // the pictures do not depend on it

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what a camera sees as a folder in the layout of the TUM RGB-D benchmark: rgb/ depth/ rgb.txt
-// depth.txt calibration.txt groundtruth.txt. Lists are brought up to date after every frame, so that a full
-// disk or an interruption leaves a folder that can be read up to there.
+// Writes what a simulated camera sees as a folder in the layout of the TUM RGB-D benchmark, by replay's
+// TumWriter, with the exact poses in groundtruth.txt.
 #pragma once
 
 #include <functional>
@@ -16,8 +15,8 @@ namespace plvo {
 // status.
 using WriteProgress = std::function<bool(int written, int total)>;
 
-// Creates `folder` if it is missing. kInvalidArgument when it holds another recording, kPermission when it
-// may not be written, kIo (disk full and the like) with the operating system's reason.
+// Creates `folder` if it is missing. kInvalidArgument when it holds another recording, kIo (no permission,
+// disk full and the like) with the operating system's reason; what was written so far is valid.
 Status write_tum_folder(SimulatedCamera& camera, const std::string& folder,
                         const WriteProgress& progress = {});
 

@@ -14,9 +14,14 @@ constexpr const char* kRule = "60-plvo-rgbd.rules";
 constexpr const char* kReplug =
     "sudo udevadm control --reload && sudo udevadm trigger, then plug the sensor in again";
 
+// The rule lets in whoever sits at the machine; who comes over the network, or starts with the system, needs
+// the group.
+constexpr const char* kGroup = "Over ssh and for services: sudo usermod -aG video $USER, then log in again.";
+
 std::string install_rule() {
   return std::string("sudo cmake --install build installs the udev rule ") + kRule +
-         " (or: sudo cp platform/plvo/usb/" + kRule + " /etc/udev/rules.d/); after that " + kReplug + ".";
+         " (or: sudo cp platform/plvo/usb/" + kRule + " /etc/udev/rules.d/); after that " + kReplug + ". " +
+         kGroup;
 }
 
 std::string where(const UsbDeviceFacts& device) {
@@ -72,7 +77,7 @@ bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& o
       out.push_back({Severity::kProblem, FindingCode::kPermission,
                      "No permission to use the " + where(device) + ", " + device.node + ".",
                      rule_installed ? std::string("The udev rule ") + kRule +
-                                          " is installed but not in force yet: " + kReplug + "."
+                                          " is installed but does not let you in: " + kReplug + ". " + kGroup
                                     : install_rule()});
       return false;
     case UsbAccess::kBusy:

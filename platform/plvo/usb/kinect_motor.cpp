@@ -29,7 +29,8 @@ Status usb_error(int error, const char* what) {
                                                             : StatusCode::kIo;
   Status status(code, what);
   status.append(": ").append(libusb_strerror(error));
-  if (code == StatusCode::kPermission) status.append("; install the udev rule 60-plvo-rgbd.rules and replug");
+  if (code == StatusCode::kPermission)
+    status.append("; install the udev rule 60-plvo-rgbd.rules and replug (over ssh: be in the group video)");
   if (code == StatusCode::kBusy) status.append("; another program holds it");
   return status;
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "plvo/base/status.hpp"
-#include "plvo/bench/job.hpp"
+#include "plvo/bench/jobs/job.hpp"
 
 namespace plvo::bench {
 

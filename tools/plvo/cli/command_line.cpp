@@ -1,16 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <exception>
+#include <sstream>
 
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/common/usage_error.hpp"
+#include "plvo/cli/documentation/help_format.hpp"
+#ifdef PLVO_HAVE_OPENNI2
+#include "plvo/openni2/openni2_camera.hpp"
+#endif
 
 namespace plvo::cli {
 
 int run_command_line(int argc, const char* const* argv) {
+#ifdef PLVO_HAVE_OPENNI2
+  if (const std::optional<int> played = play_oni_if_asked(argc, argv)) return *played;
+#endif
   CLI::App app("RGB-D odometry from points and lines: frames in, a trajectory with covariances out.", "plvo");
-  app.set_version_flag("--version", "plvo " PLVO_VERSION);
+  app.formatter(make_help_format());
+  app.set_help_flag("-h,--help", "Print this help");
+  app.set_version_flag("--version", "plvo " PLVO_VERSION, "Print the version");
   app.footer(kExitCodeHelp);
   app.require_subcommand(1);
 
@@ -22,12 +35,21 @@ int run_command_line(int argc, const char* const* argv) {
   add_simulate(app, exit_code);
   add_doctor(app, exit_code);
   add_tilt(app, exit_code);
+  add_documentation(app, exit_code);
 
+  hold_standard_streams();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitSuccess : kExitUsage;  // help and version are "errors" that end well
-  } catch (const std::exception& error) {                     // out of memory, a library's exception
+    if (error.get_exit_code() != 0) {
+      fail(usage_message(app, error, argc > 1 ? argv[1] : ""));
+      return kExitUsage;
+    }
+    std::ostringstream help;  // help and version are "errors" that end well
+    app.exit(error, help, help);
+    const Status status = print(help.str());
+    return status.ok() ? kExitSuccess : fail(status);
+  } catch (const std::exception& error) {  // out of memory, a library's exception
     return fail(error.what());
   }
   return exit_code;

@@ -5,10 +5,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plvo/eval/chi_square.hpp"
+#include "plvo/eval/motion_chain.hpp"
+
 namespace plvo::eval {
 namespace {
 
-constexpr double kChiSquare6At95 = 12.591587243743977;
+// Samples of one kind of error.
+class Samples {
+ public:
+  explicit Samples(int dof) : dof_(dof) {}
+  void add(double nees) { values_.push_back(nees); }
+
+  Nees finish(std::size_t independent) const {
+    const Statistics summary = statistics(values_);
+    Nees nees{dof_, summary.mean, summary.median, 0, {}, {}};
+    const double bound = chi_square_quantile(0.95, dof_);
+    for (const double value : values_) nees.inside_95 += value <= bound ? 1 : 0;
+    nees.inside_95 /= static_cast<double>(values_.size());
+    // The sum of n independent ones is chi-square with n times the degrees of freedom.
+    const auto n = static_cast<double>(independent);
+    const int dof = dof_ * static_cast<int>(independent);
+    nees.mean_band = {chi_square_quantile(0.025, dof) / n, chi_square_quantile(0.975, dof) / n};
+    // How many of n lie below the true median is binomial: its share is ½ ± ½/√n.
+    const double share = std::min(0.49, 1.959963984540054 * 0.5 / std::sqrt(n));
+    nees.median_band = {chi_square_quantile(0.5 - share, dof_), chi_square_quantile(0.5 + share, dof_)};
+    return nees;
+  }
+
+ private:
+  int dof_;
+  std::vector<double> values_;
+};
 
 class Accumulator {
  public:
@@ -20,30 +48,28 @@ class Accumulator {
       return;
     }
     const Eigen::Matrix<double, 6, 1> e = error;
-    const double nees = e.dot(llt.solve(e));
     const Eigen::Matrix3d C_t = C.topLeftCorner<3, 3>();
     const Eigen::Matrix3d C_r = C.bottomRightCorner<3, 3>();
-    result_.mean += nees;
-    result_.mean_position += e.head<3>().dot(C_t.llt().solve(e.head<3>()));
-    result_.mean_orientation += e.tail<3>().dot(C_r.llt().solve(e.tail<3>()));
-    result_.inside_95 += nees <= kChiSquare6At95 ? 1 : 0;
+    all_.add(e.dot(llt.solve(e)));
+    translation_.add(e.head<3>().dot(C_t.llt().solve(e.head<3>())));
+    rotation_.add(e.tail<3>().dot(C_r.llt().solve(e.tail<3>())));
     ++result_.count;
   }
+  void add_broken() { ++result_.broken; }
 
-  Consistency finish() {
+  Consistency finish(std::size_t independent) {
+    result_.independent = independent;
     if (result_.count == 0) return result_;
-    const auto n = static_cast<double>(result_.count);
-    for (double* sum : {&result_.mean, &result_.mean_position, &result_.mean_orientation, &result_.inside_95})
-      *sum /= n;
-    // The sum of n independent ones is chi-square with 6n degrees of freedom: variance 12n.
-    const double half = 1.959963984540054 * std::sqrt(12 / n);
-    result_.mean_low = 6 - half;
-    result_.mean_high = 6 + half;
+    result_.all = all_.finish(independent);
+    result_.translation = translation_.finish(independent);
+    result_.rotation = rotation_.finish(independent);
     return result_;
   }
+  std::size_t count() const { return result_.count; }
 
  private:
   Consistency result_;
+  Samples all_{6}, translation_{3}, rotation_{3};
 };
 
 const StampedCovariance* find(const std::vector<StampedCovariance>& covariances, std::int64_t stamp_ns) {
@@ -76,7 +102,7 @@ Consistency pose_consistency(const PairedPoses& poses, const std::vector<Stamped
     if (const StampedCovariance* c = find(covariances, errors[i].stamp_ns); c != nullptr)
       accumulator.add(errors[i].error, c->covariance);
   }
-  return accumulator.finish();
+  return accumulator.finish(accumulator.count());
 }
 
 Consistency motion_consistency(const std::vector<UncertainMotion>& motions, const Trajectory& ground_truth,
@@ -94,7 +120,32 @@ Consistency motion_consistency(const std::vector<UncertainMotion>& motions, cons
     const Se3 truth = now.poses[i].inverse() * before.poses[i];
     accumulator.add(boxminus(motions[i].T_camera_reference, truth), motions[i].covariance);
   }
-  return accumulator.finish();
+  return accumulator.finish(accumulator.count());
+}
+
+Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::int64_t span_ns,
+                             const Trajectory& ground_truth, GroundTruthSampling sampling,
+                             std::int64_t max_difference_ns) {
+  const MotionChain chain(motions);
+  const SampledPoses truth = sample(ground_truth, chain.stamps_ns(), sampling, max_difference_ns);
+  Accumulator accumulator;
+  std::size_t independent = 0;
+  std::size_t counted_to = 0;  // the frame at which the last of the independent ones ends
+  for (const auto& [from, to] : pairs_by_seconds(chain.stamps_ns(), span_ns)) {
+    if (!truth.valid[from] || !truth.valid[to]) continue;
+    Se3 T_to_from;
+    Matrix6 covariance;
+    if (!chain.between(from, to, T_to_from, covariance)) {
+      accumulator.add_broken();
+      continue;
+    }
+    const std::size_t before = accumulator.count();
+    accumulator.add(boxminus(T_to_from, truth.poses[to].inverse() * truth.poses[from]), covariance);
+    if (accumulator.count() == before || from < counted_to) continue;
+    ++independent;
+    counted_to = to;
+  }
+  return accumulator.finish(independent);
 }
 
 }  // namespace plvo::eval

@@ -9,6 +9,7 @@ namespace plvo::eval {
 namespace {
 
 constexpr double kLostSteps = 2.5;  // a step this many times the median has frames missing in it
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 std::vector<Interval> find_lost(const std::vector<StampedPose>& poses) {
   std::vector<double> steps;
@@ -84,6 +85,8 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
     }
     result.motion_nees =
         motion_consistency(shifted, ground_truth, options.sampling, options.max_difference_ns);
+    result.second_nees =
+        span_consistency(shifted, kSecondNs, ground_truth, options.sampling, options.max_difference_ns);
   }
   return {};
 }

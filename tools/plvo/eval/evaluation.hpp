@@ -50,6 +50,7 @@ struct Evaluation {
   std::vector<PoseError> errors;
   std::optional<Consistency> pose_nees;
   std::optional<Consistency> motion_nees;
+  std::optional<Consistency> second_nees;  // of the motions over a second
 };
 
 // kInvalidArgument when fewer than two poses of the estimate have a true pose.

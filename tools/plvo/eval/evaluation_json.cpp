@@ -22,15 +22,23 @@ Json to_json(const EndDrift& drift) {
   return {{"translation_m", drift.translation_m}, {"rotation_deg", drift.rotation_deg}};
 }
 
+Json to_json(const Nees& n) {
+  return {{"expected", n.dof},
+          {"mean", n.mean},
+          {"mean_band_95", {n.mean_band.low, n.mean_band.high}},
+          {"median", n.median},
+          {"median_band_95", {n.median_band.low, n.median_band.high}},
+          {"inside_95_percent_bound", n.inside_95}};
+}
+
 Json to_json(const Consistency& c) {
-  return {{"samples", c.count},
-          {"singular", c.singular},
-          {"mean", c.mean},
-          {"expected", 6},
-          {"mean_position", c.mean_position},
-          {"mean_orientation", c.mean_orientation},
-          {"inside_95_percent_bound", c.inside_95},
-          {"independent_mean_band_95", {c.mean_low, c.mean_high}}};
+  Json json = {
+      {"samples", c.count}, {"independent", c.independent}, {"singular", c.singular}, {"broken", c.broken}};
+  if (c.count == 0) return json;
+  json.update(to_json(c.all));
+  json["translation"] = to_json(c.translation);
+  json["rotation"] = to_json(c.rotation);
+  return json;
 }
 
 Json to_json(const std::vector<Interval>& intervals) {
@@ -73,6 +81,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
   }
   if (e.pose_nees) json["nees_pose"] = to_json(*e.pose_nees);
   if (e.motion_nees) json["nees_motion"] = to_json(*e.motion_nees);
+  if (e.second_nees) json["nees_second"] = to_json(*e.second_nees);
   json["lost"] = to_json(e.lost);
   json["without_ground_truth"] = to_json(e.without_truth);
   return json;

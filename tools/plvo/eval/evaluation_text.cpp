@@ -60,11 +60,26 @@ void add_nees(Text& text, const char* name, const Consistency& c) {
     text.line("{:<18} no sample has both a covariance that can be inverted and ground truth", name);
     return;
   }
-  text.line(
-      "{:<18} mean {:.2f} of 6 (position {:.2f} of 3, orientation {:.2f} of 3), {:.1f} % inside the 95 % "
-      "bound, "
-      "{} samples",
-      name, c.mean, c.mean_position, c.mean_orientation, 100 * c.inside_95, c.count);
+  const auto row = [&text](const char* title, const char* kind, const Nees& n) {
+    text.line("{:<18} {:<14} {:9.2f} ({:.2f} to {:.2f}) {:9.2f} ({:.2f} to {:.2f})  {:5.1f} %", title, kind,
+              n.mean, n.mean_band.low, n.mean_band.high, n.median, n.median_band.low, n.median_band.high,
+              100 * n.inside_95);
+  };
+  row(name, "all, 6", c.all);
+  row("", "translation, 3", c.translation);
+  row("", "rotation, 3", c.rotation);
+  text.line("{:<18} {} samples, {} of them apart{}{}", "", c.count, c.independent,
+            c.singular > 0 ? fmt::format("; {} covariances cannot be inverted", c.singular) : "",
+            c.broken > 0 ? fmt::format("; {} left out, frames are lost in between", c.broken) : "");
+}
+
+void add_all_nees(Text& text, const Evaluation& e) {
+  if (!e.pose_nees && !e.motion_nees) return;
+  text.line("\n{:<18} {:<14} {:>9} {:<16} {:>9} {:<16} {}", "NEES", "error, expected", "mean",
+            "(95 % if true)", "median", "(95 % if true)", "inside 95 %");
+  if (e.pose_nees) add_nees(text, "of the poses", *e.pose_nees);
+  if (e.motion_nees) add_nees(text, "of the motions", *e.motion_nees);
+  if (e.second_nees) add_nees(text, "over a second", *e.second_nees);
 }
 
 void add_intervals(Text& text, const char* name, const std::vector<Interval>& intervals) {
@@ -97,9 +112,7 @@ std::string to_text(const Evaluation& e) {
                 d.rotation_deg_per_m.p95, d.translation_percent.count);
     }
   }
-  if (e.pose_nees || e.motion_nees) text.line("");
-  if (e.pose_nees) add_nees(text, "NEES of the poses", *e.pose_nees);
-  if (e.motion_nees) add_nees(text, "NEES of the motions", *e.motion_nees);
+  add_all_nees(text, e);
   add_intervals(text, "\nintervals without a pose (lost)", e.lost);
   add_intervals(text, "\nposes without ground truth", e.without_truth);
   return text.out;

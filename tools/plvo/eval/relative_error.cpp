@@ -23,21 +23,6 @@ std::vector<Pair> pairs_by_frames(std::size_t count, std::size_t step) {
   return pairs;
 }
 
-// For each i the j whose stamp is nearest to one delta later; as the benchmark's script, j may never be 0.
-std::vector<Pair> pairs_by_seconds(const std::vector<std::int64_t>& stamps, std::int64_t delta_ns) {
-  std::vector<Pair> pairs;
-  if (stamps.size() < 2) return pairs;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    const std::int64_t target = stamps[i] + delta_ns;
-    const auto after =
-        static_cast<std::size_t>(std::lower_bound(stamps.begin(), stamps.end(), target) - stamps.begin());
-    std::size_t j = std::clamp<std::size_t>(after, 1, stamps.size() - 1);
-    if (std::abs(stamps[j - 1] - target) <= std::abs(stamps[j] - target)) --j;
-    if (std::abs(stamps[j] - target) <= kSecondsToleranceNs) pairs.emplace_back(i, j);
-  }
-  return pairs;
-}
-
 std::vector<Pair> pairs_by_metres(const std::vector<Se3>& truth, double length_m) {
   const std::vector<double> lengths = path_lengths(truth);
   std::vector<Pair> pairs;
@@ -59,6 +44,21 @@ std::vector<Pair> choose_pairs(const PairedPoses& poses, const RpeDelta& delta) 
 }
 
 }  // namespace
+
+std::vector<Pair> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns, std::int64_t delta_ns) {
+  std::vector<Pair> pairs;
+  if (stamps_ns.size() < 2) return pairs;
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    const std::int64_t target = stamps_ns[i] + delta_ns;
+    const auto after = static_cast<std::size_t>(std::lower_bound(stamps_ns.begin(), stamps_ns.end(), target) -
+                                                stamps_ns.begin());
+    // As in the benchmark's script, j may never be 0.
+    std::size_t j = std::clamp<std::size_t>(after, 1, stamps_ns.size() - 1);
+    if (std::abs(stamps_ns[j - 1] - target) <= std::abs(stamps_ns[j] - target)) --j;
+    if (std::abs(stamps_ns[j] - target) <= kSecondsToleranceNs) pairs.emplace_back(i, j);
+  }
+  return pairs;
+}
 
 bool parse_rpe_delta(std::string_view text, RpeDelta& delta) {
   if (text.size() < 2) return false;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "plvo/eval/statistics.hpp"
@@ -30,6 +31,10 @@ struct PairedPoses {
   std::vector<Se3> estimate;
   std::vector<Se3> truth;
 };
+
+// Indices of stamps one delta apart: for each stamp the one nearest to a delta later, at most 50 ms off.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns,
+                                                                  std::int64_t delta_ns);
 
 struct RpeErrors {
   Statistics translation_m;

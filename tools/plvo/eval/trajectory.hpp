@@ -1,42 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectories from files:
-//   TUM    stamp tx ty tz qx qy qz qw           seconds; spaces or commas
-//   EuRoC  stamp,tx,ty,tz,qw,qx,qy,qz[,…]       nanoseconds, commas, w first; columns beyond the eighth are
-//   ignored KITTI  r00 r01 r02 tx r10 … tz              12 numbers, the upper 3×4 of T_world_camera; stamps
-//   from elsewhere
+// The true pose at the stamps of an estimate.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <string>
 #include <vector>
 
-#include "plvo/base/status.hpp"
+#include "plvo/host/trajectory_reader.hpp"
 #include "plvo/math/se3.hpp"
 
 namespace plvo::eval {
 
-struct StampedPose {
-  std::int64_t stamp_ns = 0;
-  Se3 T_world_camera;
-};
-
-struct Trajectory {
-  std::vector<StampedPose> poses;  // stamps strictly increasing
-  std::size_t ignored_rows = 0;    // with a NaN, or a stamp that was there already
-};
-
-enum class TrajectoryFormat : std::uint8_t { kAuto, kTum, kEuroc, kKitti };
-
-struct TrajectorySource {
-  std::filesystem::path path;
-  TrajectoryFormat format = TrajectoryFormat::kAuto;
-  std::filesystem::path kitti_times;  // one stamp in seconds a line; without it, rows are 0.1 s apart from 0
-};
-
-// Rows are sorted by stamp. kNotFound; kDamaged with file and line; kInvalidArgument for a file without a
-// pose.
-Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory);
+using plvo::read_trajectory;
+using plvo::StampedPose;
+using plvo::Trajectory;
+using plvo::TrajectoryFormat;
+using plvo::TrajectorySource;
 
 enum class GroundTruthSampling : std::uint8_t {
   kNearest,       // the pose of the nearest stamp, as TUM's scripts do

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
-#include "plvo/eval/table_reader.hpp"
 #include "plvo/host/stamp_text.hpp"
+#include "plvo/host/table_reader.hpp"
+#include "plvo/host/trajectory_reader.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -63,13 +64,10 @@ Status read_motions(const std::filesystem::path& path, std::vector<UncertainMoti
   if (Status status = read_table(path, rows); !status.ok()) return status;
   for (const TableRow& row : rows) {
     UncertainMotion next;
-    std::vector<double> pose(7);
     if (row.words.size() < 2 || !parse_stamp_ns(row.words[0], next.stamp_ns) ||
         !parse_stamp_ns(row.words[1], next.reference_stamp_ns))
       return row_error(path, row, "expected two stamps in seconds first");
-    if (Status status = parse_numbers(path, row, 2, pose); !status.ok()) return status;
-    next.T_camera_reference = {to_rotation({pose[3], pose[4], pose[5], pose[6]}),
-                               Vector3(pose[0], pose[1], pose[2])};
+    if (Status status = parse_pose(path, row, 2, next.T_camera_reference); !status.ok()) return status;
     if (Status status = parse_covariance(path, row, 9, next.covariance); !status.ok()) return status;
     motions.push_back(next);
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plvo/report/depth_palette.hpp"
+
 namespace plvo::report {
 namespace {
 
@@ -77,13 +79,6 @@ void draw_stroke(Picture& picture, double x0, double y0, double x1, double y1, P
   }
 }
 
-// Red over yellow, green and cyan to blue, as `value` goes from 0 to 1.
-Colour rainbow(double value) {
-  const double h = 4 * std::clamp(value, 0.0, 1.0);
-  const auto level = [](double v) { return static_cast<std::uint8_t>(255 * std::clamp(v, 0.0, 1.0)); };
-  return {level(2 - h), level(h < 2 ? h : 4 - h), level(h - 2)};
-}
-
 }  // namespace
 
 std::vector<SegmentFate> segment_fates(const FeatureView& f) {
@@ -125,7 +120,9 @@ Picture draw_depth(const DepthView& depth) {
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const double d = depth.data[2 * y * depth.stride + 2 * x] * depth.metres_per_unit;
-      if (d > 0) blend(picture, x, y, rainbow((d - kDepthNear_m) / (kDepthFar_m - kDepthNear_m)), 1);
+      if (d <= 0) continue;
+      const auto [r, g, b] = depth_colour(d);
+      blend(picture, x, y, {r, g, b}, 1);
     }
   }
   return picture;

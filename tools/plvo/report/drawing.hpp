@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of what the odometry saw: keypoints, segments and matches over the undistorted image, and depth in
-// colours.
+// Pictures of what the odometry saw: keypoints, segments and matches over the undistorted image, and
+// depth in colours.
 #pragma once
 
 #include <cstdint>
@@ -41,9 +41,7 @@ std::vector<SegmentFate> segment_fates(const FeatureView& features);
 // where the match was rejected.
 Picture draw_overlay(const FeatureView& features);
 
-// Near is red, far is blue, none is black; at half the size in each direction.
-constexpr double kDepthNear_m = 0.4;
-constexpr double kDepthFar_m = 5.0;
+// In the colours of depth_palette.hpp, black where there is none; at half the size in each direction.
 Picture draw_depth(const DepthView& depth);
 
 }  // namespace plvo::report

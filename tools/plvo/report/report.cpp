@@ -8,6 +8,7 @@
 
 #include "plvo/host/line_file.hpp"
 #include "plvo/report/base64.hpp"
+#include "plvo/report/depth_palette.hpp"
 #include "plvo/report/drawing.hpp"
 #include "plvo/report/page.hpp"
 

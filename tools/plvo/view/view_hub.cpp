@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <iterator>
 
@@ -92,7 +91,7 @@ void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const
       ++sequence_;
     }
   }
-  if (with_image) news_.notify_all();
+  if (with_image) on_news_();
 }
 
 void ViewHub::publish_status(const ViewStatus& status) {
@@ -101,15 +100,7 @@ void ViewHub::publish_status(const ViewStatus& status) {
     status_ = status;
     ++sequence_;
   }
-  news_.notify_all();
-}
-
-void ViewHub::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  news_.notify_all();
+  on_news_();
 }
 
 int ViewHub::viewers() const {
@@ -120,12 +111,24 @@ int ViewHub::viewers() const {
   return count;
 }
 
-// Under mutex_.
-void ViewHub::note_viewer(const std::string& viewer) {
+std::uint64_t ViewHub::images() const {
+  const std::lock_guard lock(mutex_);
+  return image_sequence_;
+}
+
+void ViewHub::count_viewer(const Ask& ask) {
+  const std::lock_guard lock(mutex_);
   const std::int64_t now = posix_monotonic_ns();
   last_ask_ns_ = now;
   std::erase_if(seen_, [now](const auto& entry) { return now - entry.second >= kIdle_ns; });
-  if (seen_.size() < kMaxKnownViewers || seen_.count(viewer) != 0) seen_[viewer.substr(0, 32)] = now;
+  const std::string viewer = ask.viewer.substr(0, 32);
+  if (seen_.size() < kMaxKnownViewers || seen_.count(viewer) != 0) seen_[viewer] = now;
+}
+
+// A number that is greater than ours is of a program that ran here before: whatever we have is news.
+bool ViewHub::has_news(const Ask& ask) const {
+  const std::lock_guard lock(mutex_);
+  return sequence_ != ask.after;
 }
 
 std::shared_ptr<const ViewHub::Encoded> ViewHub::encoded() {
@@ -152,7 +155,7 @@ std::shared_ptr<const ViewHub::Encoded> ViewHub::encoded() {
   return encoded_;
 }
 
-std::string ViewHub::state_json(const Ask& ask, const Encoded& image) {
+std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const Encoded& image) {
   std::string out;
   const int watching = viewers();
   const std::lock_guard lock(mutex_);
@@ -165,7 +168,7 @@ std::string ViewHub::state_json(const Ask& ask, const Encoded& image) {
       "\"camera\":{},\"silent\":{},\"camera_hz\":{:.2f},\"odometry_hz\":{:.2f},\"latency_ms\":{:.2f},"
       "\"frames\":{},"
       "\"lost\":{},\"dropped\":{},\"viewers\":{},\"brightness\":{:.1f}",
-      sequence_, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
+      sequence, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
       json_string(r.status.message()), json_string(status_.camera), status_.silent, status_.camera_hz,
       status_.odometry_hz, status_.latency_ms, status_.frames, status_.lost, status_.dropped, watching,
       r.mean_brightness);
@@ -186,17 +189,17 @@ std::string ViewHub::state_json(const Ask& ask, const Encoded& image) {
   return out + "]," + image.features + "}";
 }
 
-std::string ViewHub::reply(const Ask& ask, int timeout_ms) {
+std::string ViewHub::reply(const Ask& ask) {
+  std::uint64_t sequence = 0;
   {
-    std::unique_lock lock(mutex_);
-    note_viewer(ask.viewer);
-    news_.wait_for(lock, std::chrono::milliseconds(timeout_ms),
-                   [&] { return closed_ || sequence_ > ask.after || (sequence_ < ask.after); });
-    if (closed_ || sequence_ == ask.after) return {};
+    // Before the image is taken: what comes meanwhile must be news to this viewer, if only once more.
+    const std::lock_guard lock(mutex_);
+    sequence = sequence_;
   }
+  if (sequence == ask.after) return {};
   const std::shared_ptr<const Encoded> image = encoded();
   std::string out;
-  put_part(out, state_json(ask, *image));
+  put_part(out, state_json(ask, sequence, *image));
   const bool has_it = image->image == ask.image;
   put_part(out, has_it ? std::string_view() : image->colour);
   put_part(out, has_it ? std::string_view() : image->depth);

@@ -6,12 +6,13 @@
 
 #include <array>
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "plvo/view/view_state.hpp"
 
@@ -33,14 +34,19 @@ class ViewHub {
                const ViewStatus& status, bool lens_is_straight);
   void publish_status(const ViewStatus& status);
 
-  // The server's threads: waits until there is news or timeout_ms is over. Three parts, each behind its
-  // length (32 bits, little-endian): JSON, the camera's JPEG, the depth's JPEG (empty where the viewer has
-  // that image already). An empty string means no news.
-  std::string reply(const Ask& ask, int timeout_ms);
-  // Wakes all who wait, for good.
-  void close();
+  // Called after each publication with news in it, on the publisher's thread: must not wait. Set before the
+  // first publication.
+  void on_news(std::function<void()> call) { on_news_ = std::move(call); }
+  // Somebody looks: from now on, for some seconds, images are taken.
+  void count_viewer(const Ask& ask);
+  // Whether there is something that this viewer does not have.
+  bool has_news(const Ask& ask) const;
+  // Three parts, each behind its length (32 bits, little-endian): JSON, the camera's JPEG, the depth's JPEG
+  // (empty where the viewer has that image already). An empty string means no news.
+  std::string reply(const Ask& ask);
 
   int viewers() const;
+  std::uint64_t images() const;  // taken for the viewers
   std::uint64_t replies() const { return replies_; }
   std::uint64_t encodings() const { return encodings_; }
 
@@ -52,11 +58,9 @@ class ViewHub {
     std::string features = "\"points\":[],\"segments\":[]";  // JSON members
   };
   std::shared_ptr<const Encoded> encoded();
-  void note_viewer(const std::string& viewer);
-  std::string state_json(const Ask& ask, const Encoded& image);
+  std::string state_json(const Ask& ask, std::uint64_t sequence, const Encoded& image);
 
   mutable std::mutex mutex_;  // all of the following; never held while copying images or encoding
-  std::condition_variable news_;
   std::array<ViewSnapshot, 3> snapshots_;
   int back_ = 0, middle_ = 1, front_ = 2;  // written by the odometry; newest whole one; read by the encoder
   bool middle_is_new_ = false;
@@ -66,8 +70,8 @@ class ViewHub {
   ViewStatus status_;
   ViewPath path_;
   std::map<std::string, std::int64_t> seen_;  // viewer → when it asked last
-  bool closed_ = false;
 
+  std::function<void()> on_news_ = [] {};
   std::atomic<std::int64_t> last_ask_ns_{-1'000'000'000'000};
   std::int64_t last_image_ns_ = 0;
   std::atomic<std::uint64_t> replies_{0};

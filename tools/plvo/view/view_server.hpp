@@ -2,11 +2,13 @@
 // The live view: one page over HTTP, for several viewers at once. A viewer asks for what is newer than what
 // it has (long polling), so a slow one gets fewer updates and a vanished one none; the odometry never notices
 // either. Images are encoded once for all viewers, on the server's threads, and only while somebody looks.
+// The network is not trusted: names, sizes, times and numbers of connections are limited (SECURITY.md).
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plvo/base/status.hpp"
 #include "plvo/image/frame.hpp"
@@ -25,10 +27,10 @@ class ViewServer {
   // False where plvo was built without the HTTP library; then start() says which package to install.
   static bool available();
 
-  // Serves on host:port (0: a free one) from threads of its own. On a loopback address, only requests that
-  // name the loopback as their host are answered, so that a page from elsewhere cannot look through the
-  // user's browser. kBusy, kPermission or kInvalidArgument for an address that cannot be had.
-  Status start(const std::string& host, int port);
+  // Serves on host:port (0: a free one) from threads of its own, under the names of host_names.hpp;
+  // names: more of them, each HostNames::is_valid. kBusy, kPermission or kInvalidArgument for an address that
+  // cannot be had. Once only.
+  Status start(const std::string& host, int port, const std::vector<std::string>& names = {});
   void stop();
   int port() const;
 
@@ -41,6 +43,8 @@ class ViewServer {
   void publish_status(const ViewStatus& status);
 
   int viewers() const;              // that asked within the last seconds
+  int connections() const;          // now, those of strangers too
+  std::uint64_t images() const;     // of those published, taken for the viewers
   std::uint64_t replies() const;    // with news in them
   std::uint64_t encodings() const;  // images encoded, however many viewers got them
 
@@ -48,8 +52,5 @@ class ViewServer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-// True for a host that only this machine can reach.
-bool is_loopback(const std::string& host);
 
 }  // namespace plvo

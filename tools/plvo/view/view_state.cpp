@@ -2,9 +2,9 @@
 #include "plvo/view/view_state.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
+
+#include "plvo/report/depth_palette.hpp"
 
 namespace plvo {
 namespace {
@@ -15,14 +15,6 @@ void copy_rows(const std::uint8_t* from, std::ptrdiff_t stride, std::size_t row_
   for (int y = 0; y < rows; ++y) {
     std::memcpy(to.data() + static_cast<std::size_t>(y) * row_bytes, from + y * stride, row_bytes);
   }
-}
-
-// From red over yellow, green and cyan to blue for t in 0 … 1.
-std::array<std::uint8_t, 3> rainbow(double t) {
-  const auto ramp = [](double x) {
-    return static_cast<std::uint8_t>(255 * std::clamp(1.5 - std::abs(4 * x), 0.0, 1.0));
-  };
-  return {ramp(t - 0.25), ramp(t - 0.5), ramp(t - 0.75)};
 }
 
 }  // namespace
@@ -85,17 +77,13 @@ void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, i
   width = snapshot.depth_width / 2;
   height = snapshot.depth_height / 2;
   rgb.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3, 0);
-  std::array<std::array<std::uint8_t, 3>, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) table[i] = rainbow(static_cast<double>(i) / 255);
-  constexpr double kNear_m = 0.5, kFar_m = 6;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::uint16_t raw =
           snapshot.depth[static_cast<std::size_t>(2 * y) * static_cast<std::size_t>(snapshot.depth_width) +
                          static_cast<std::size_t>(2 * x)];
       if (raw == 0) continue;
-      const double t = (raw * snapshot.metres_per_unit - kNear_m) / (kFar_m - kNear_m);
-      const auto& colour = table[static_cast<std::size_t>(255 * std::clamp(t, 0.0, 1.0))];
+      const auto colour = report::depth_colour(raw * snapshot.metres_per_unit);
       std::copy(colour.begin(), colour.end(), rgb.begin() + (static_cast<std::ptrdiff_t>(y) * width + x) * 3);
     }
   }

@@ -72,7 +72,7 @@ class ViewPath {
   std::uint64_t epoch_ = 0;
 };
 
-// Depth as colours, every second pixel of every second row: red is near (0.5 m), blue far (6 m), black none.
+// Depth in the colours of report/depth_palette.hpp, every second pixel of every second row; black: none.
 void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, int& width, int& height);
 
 }  // namespace plvo

@@ -5,8 +5,11 @@
 // OpenNI2 of plugging and unplugging. Written from OniDriverAPI.h and libfreenect.h.
 #include <libusb.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <memory>
+#include <thread>
 
 #include "plvo/openni2/freenect_driver/driver_stream.hpp"
 #include "plvo/openni2/freenect_driver/kinect.hpp"
@@ -64,9 +67,9 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
   oni::driver::StreamBase* createStream(OniSensorType sensor) override {
     if (sensor != ONI_SENSOR_DEPTH && sensor != ONI_SENSOR_COLOR) return nullptr;
     const std::lock_guard lock(mutex_);
-    std::unique_ptr<KinectStream>& slot = sensor == ONI_SENSOR_DEPTH ? depth_ : colour_;
+    std::shared_ptr<KinectStream>& slot = sensor == ONI_SENSOR_DEPTH ? depth_ : colour_;
     if (slot != nullptr) return nullptr;  // OpenNI2 shares one stream among its clients by itself
-    slot = std::make_unique<KinectStream>(*this, sensor);
+    slot = std::make_shared<KinectStream>(*this, sensor);
     return slot.get();
   }
   void destroyStream(oni::driver::StreamBase* stream) override {
@@ -103,32 +106,35 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
     if (isImageRegistrationModeSupported(wanted) == FALSE) return ONI_STATUS_NOT_SUPPORTED;
     if (wanted == registration_) return ONI_STATUS_OK;
     registration_ = wanted;
-    bool running = false;
-    {
-      const std::lock_guard lock(mutex_);
-      running = depth_ != nullptr && depth_->running();
-    }
-    return !running || start(ONI_SENSOR_DEPTH) ? ONI_STATUS_OK : ONI_STATUS_ERROR;
+    return kinect_.set_registered(wanted == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR) ? ONI_STATUS_OK
+                                                                                   : ONI_STATUS_ERROR;
   }
 
   bool start(OniSensorType sensor) {
-    if (sensor == ONI_SENSOR_COLOR) return kinect_.start_colour();
-    return kinect_.start_depth(registration_ == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR);
+    return sensor == ONI_SENSOR_COLOR ? kinect_.start_colour() : kinect_.start_depth();
   }
   void stop(OniSensorType sensor) {
     sensor == ONI_SENSOR_DEPTH ? kinect_.stop_depth() : kinect_.stop_colour();
   }
 
  private:
-  // The streams live as long as they run, and they are stopped on this very thread: no lock is needed.
+  // A stream may be destroyed by another thread at this moment: it is kept for as long as the image needs it,
+  // and destroyStream() waits for this thread. No lock is held meanwhile, for whoever gets the image may call
+  // back.
   void on_depth(const std::uint16_t* depth_mm, std::uint64_t stamp_us) override {
-    depth_->take(depth_mm, stamp_us);
+    if (const auto stream = keep(depth_)) stream->take(depth_mm, stamp_us);
   }
-  void on_colour(const std::uint8_t* rgb, std::uint64_t stamp_us) override { colour_->take(rgb, stamp_us); }
+  void on_colour(const std::uint8_t* rgb, std::uint64_t stamp_us) override {
+    if (const auto stream = keep(colour_)) stream->take(rgb, stamp_us);
+  }
+  std::shared_ptr<KinectStream> keep(const std::shared_ptr<KinectStream>& stream) {
+    const std::lock_guard lock(mutex_);
+    return stream;
+  }
 
   std::mutex mutex_;
-  std::unique_ptr<KinectStream> depth_;
-  std::unique_ptr<KinectStream> colour_;
+  std::shared_ptr<KinectStream> depth_;
+  std::shared_ptr<KinectStream> colour_;
   std::atomic<OniImageRegistrationMode> registration_ = ONI_IMAGE_REGISTRATION_OFF;
   OniVideoMode depth_mode_ = kDepthMode;
   OniVideoMode colour_mode_ = kColourMode;
@@ -143,8 +149,8 @@ OniStatus KinectStream::start() {
   return ONI_STATUS_ERROR;
 }
 
+// Also where it does not run: when this returns, no image of it is on its way.
 void KinectStream::stop() {
-  if (!running()) return;
   DriverStream::stop();
   device_.stop(sensor());
 }

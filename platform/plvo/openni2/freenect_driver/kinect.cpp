@@ -4,7 +4,6 @@
 #include <libusb.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace plvo {
 namespace {
@@ -68,49 +67,20 @@ std::vector<KinectPlug> list_kinects(libusb_context* usb) {
   return plugs;
 }
 
-Kinect::Kinect(KinectListener& listener) : listener_(listener) {
-  thread_ = std::thread([this] { run(); });
-}
+Kinect::Kinect(KinectListener& listener)
+    : listener_(listener), thread_([this] { return process_events(); }, [this] { close_here(); }) {}
 
-Kinect::~Kinect() {
-  quit_ = true;
-  thread_.join();
-}
-
-bool Kinect::call(std::function<bool()> work) {
-  std::packaged_task<bool()> task(std::move(work));
-  std::future<bool> done = task.get_future();
-  if (std::this_thread::get_id() == thread_.get_id()) {
-    task();  // a client that reacts to an image from within its arrival
-  } else {
-    const std::lock_guard lock(mutex_);
-    work_.push_back(std::move(task));
-  }
-  return done.get();
-}
-
-void Kinect::run() {
-  while (!quit_) {
-    std::vector<std::packaged_task<bool()>> work;
-    {
-      const std::lock_guard lock(mutex_);
-      work.swap(work_);
-    }
-    for (auto& task : work) task();
-    if (device_ != nullptr && (depth_runs_ || colour_runs_)) {
-      timeval wait{0, 10000};
-      // An error here means that the device is gone: the driver's watch says so to OpenNI2.
-      if (freenect_process_events_timeout(freenect_, &wait) >= 0) continue;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  close_here();
+bool Kinect::process_events() {
+  if (device_ == nullptr || !(depth_runs_ || colour_runs_)) return false;
+  timeval wait{0, 10000};
+  // An error here means that the device is gone: the driver's watch says so to OpenNI2.
+  return freenect_process_events_timeout(freenect_, &wait) >= 0;
 }
 
 std::string Kinect::open(const std::string& port) {
   std::string error;
-  call([&] { return (error = open_here(port)).empty(); });
-  return error;
+  const bool opened = thread_.call([&] { return (error = open_here(port)).empty(); });
+  return opened || !error.empty() ? error : "the Kinect is being closed";
 }
 
 std::string Kinect::open_here(const std::string& port) {
@@ -174,21 +144,29 @@ void Kinect::close_here() {
   depth_runs_ = colour_runs_ = false;
 }
 
-bool Kinect::start_depth(bool registered) {
-  return call([&] {
-    if (device_ == nullptr) return false;
-    if (depth_runs_) freenect_stop_depth(device_);
-    depth_runs_ =
-        freenect_set_depth_mode(device_, freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM,
-                                                                  registered ? FREENECT_DEPTH_REGISTERED
-                                                                             : FREENECT_DEPTH_MM)) >= 0 &&
-        freenect_start_depth(device_) >= 0;
-    return depth_runs_;
+bool Kinect::start_depth_here() {
+  if (device_ == nullptr) return false;
+  if (depth_runs_) freenect_stop_depth(device_);
+  const freenect_depth_format format = registered_ ? FREENECT_DEPTH_REGISTERED : FREENECT_DEPTH_MM;
+  depth_runs_ =
+      freenect_set_depth_mode(device_, freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, format)) >= 0 &&
+      freenect_start_depth(device_) >= 0;
+  return depth_runs_;
+}
+
+bool Kinect::set_registered(bool registered) {
+  return thread_.call([&] {
+    registered_ = registered;
+    return !depth_runs_ || start_depth_here();
   });
 }
 
+bool Kinect::start_depth() {
+  return thread_.call([&] { return start_depth_here(); });
+}
+
 bool Kinect::start_colour() {
-  return call([&] {
+  return thread_.call([&] {
     if (device_ == nullptr) return false;
     if (colour_runs_) return true;
     colour_runs_ = freenect_set_video_mode(device_, freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM,
@@ -199,7 +177,7 @@ bool Kinect::start_colour() {
 }
 
 void Kinect::stop_depth() {
-  call([&] {
+  thread_.call([&] {
     if (device_ != nullptr && depth_runs_) freenect_stop_depth(device_);
     depth_runs_ = false;
     return true;
@@ -207,7 +185,7 @@ void Kinect::stop_depth() {
 }
 
 void Kinect::stop_colour() {
-  call([&] {
+  thread_.call([&] {
     if (device_ != nullptr && colour_runs_) freenect_stop_video(device_);
     colour_runs_ = false;
     return true;

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // One Kinect v1 over libfreenect's public C interface. libfreenect is not made for several threads, so
-// everything that touches it runs on one thread of the Kinect's own; other threads post what they want and
-// wait for it. Images come to the listener on that thread.
+// everything that touches it runs on one thread of the Kinect's own; other threads hand over what they want
+// and wait for it. Images come to the listener on that thread.
 #pragma once
 
 #include <libfreenect.h>
 
-#include <atomic>
-#include <condition_variable>
 #include <cstdint>
-#include <functional>
-#include <future>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
+
+#include "plvo/openni2/freenect_driver/command_thread.hpp"
 
 struct libusb_context;
 
@@ -46,20 +42,21 @@ class Kinect {
   static constexpr int kHeight = 480;
 
   explicit Kinect(KinectListener& listener);
-  ~Kinect();
   Kinect(const Kinect&) = delete;
   Kinect& operator=(const Kinect&) = delete;
 
   // Empty when open, otherwise why not, with libusb's name of the error where there is one.
   std::string open(const std::string& port);
-  bool start_depth(bool registered);
+  // Depth as the colour camera sees it, from now on or, where it does not run, from its start on.
+  bool set_registered(bool registered);
+  bool start_depth();
   bool start_colour();
   void stop_depth();
   void stop_colour();
 
  private:
-  void run();
-  bool call(std::function<bool()> work);
+  bool process_events();
+  bool start_depth_here();
   std::string open_here(const std::string& port);
   void close_here();
   std::uint64_t to_us(std::uint32_t ticks);
@@ -68,14 +65,12 @@ class Kinect {
   libusb_context* usb_ = nullptr;
   freenect_context* freenect_ = nullptr;
   freenect_device* device_ = nullptr;
+  bool registered_ = false;
   bool depth_runs_ = false;
   bool colour_runs_ = false;
   std::uint64_t ticks_ = 0;  // the newest stamp of either stream, unwrapped
 
-  std::mutex mutex_;
-  std::vector<std::packaged_task<bool()>> work_;
-  std::atomic<bool> quit_ = false;
-  std::thread thread_;
+  CommandThread thread_;  // last: it uses all of the above, and closes the device when it ends
 };
 
 }  // namespace plvo

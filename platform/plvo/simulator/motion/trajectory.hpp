@@ -23,8 +23,8 @@ class Trajectory {
 
   // Lines "t tx ty tz qx qy qz qw" (camera to world, optical frame, z up). Smoothed lightly against the 0.1
   // mm steps of motion capture, turned about the vertical and shifted so that it starts where the scene's
-  // walk does, and scaled down, never up, as far as the scene's free space asks. kNotFound, kPermission,
-  // kDamaged with the line.
+  // walk does, and scaled down, never up, as far as the scene's free space asks. What read_trajectory says of
+  // a file that it cannot read; kDamaged for rows with a NaN or a repeated stamp.
   static Status from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory);
 
   // T_world_camera. Times outside 0 … duration_s() are clamped for a recording and wrap for a walk.

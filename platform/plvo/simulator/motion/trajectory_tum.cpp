@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorded TUM trajectory as the hand that moves the simulated camera.
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 #include <string>
+#include <utility>
 
+#include "plvo/host/trajectory_reader.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/simulator/motion/trajectory.hpp"
 
@@ -17,61 +15,35 @@ namespace {
 constexpr double kStep_s = 0.01;       // motion capture runs at 100 Hz
 constexpr double kSmoothing_s = 0.02;  // standard deviation of the Gaussian that takes away the 0.1 mm steps
 constexpr int kSmoothingReach = 6;     // steps to each side
-constexpr double kLongest_s = 3600;
+constexpr std::int64_t kLongest_ns = 3'600'000'000'000;
 
-struct Sample {
-  double t_s = 0;
-  Se3 T_world_camera;
-};
-
-Status damaged(const std::string& path, int line, const char* what) {
-  return Status(StatusCode::kDamaged, path.substr(0, 120))
-      .append(", line ")
-      .append(static_cast<std::int64_t>(line))
-      .append(": ")
-      .append(what);
-}
-
-Status read_samples(const std::string& path, std::vector<Sample>& samples) {
-  std::ifstream file(path);
-  if (!file) {
-    const StatusCode code = errno == EACCES ? StatusCode::kPermission : StatusCode::kNotFound;
-    return Status(code, "cannot read the trajectory file ").append(path.substr(0, 160));
-  }
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::size_t text = line.find_first_not_of(" \t\r");
-    if (text == std::string::npos || line[text] == '#') continue;
-    std::array<double, 8> v{};
-    if (std::sscanf(line.c_str(), "%lf %lf %lf %lf %lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3], &v[4], &v[5],
-                    &v[6], &v[7]) != 8)
-      return damaged(path, number, "expected \"t tx ty tz qx qy qz qw\"");
-    for (const double x : v) {
-      if (!std::isfinite(x)) return damaged(path, number, "not a finite number");
-    }
-    if (v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7] < 0.25)
-      return damaged(path, number, "the quaternion is far from unit length");
-    if (!samples.empty() && v[0] <= samples.back().t_s)
-      return damaged(path, number, "the stamps do not increase");
-    if (!samples.empty() && v[0] - samples.front().t_s > kLongest_s)
-      return damaged(path, number, "the trajectory is longer than an hour");
-    samples.push_back({v[0], {to_rotation({v[4], v[5], v[6], v[7]}), Vector3(v[1], v[2], v[3])}});
-  }
-  if (samples.size() < 2)
-    return Status(StatusCode::kDamaged, path.substr(0, 160)).append(" holds fewer than two poses");
+Status read_samples(const std::string& path, std::vector<StampedPose>& samples) {
+  plvo::Trajectory recording;
+  if (Status status = read_trajectory({path, TrajectoryFormat::kTum, {}}, recording); !status.ok())
+    return status;
+  samples = std::move(recording.poses);
+  const auto damaged = [&path](const char* what) {
+    return Status(StatusCode::kDamaged, path.substr(0, 160)).append(what);
+  };
+  if (recording.ignored_rows > 0) return damaged(" has rows with a NaN or a stamp that was there already");
+  if (samples.size() < 2) return damaged(" holds fewer than two poses");
+  if (samples.back().stamp_ns - samples.front().stamp_ns > kLongest_ns)
+    return damaged(" is longer than an hour");
   return {};
 }
 
 // Evenly spaced poses; gaps are bridged at constant velocity.
-std::vector<Se3> resample(const std::vector<Sample>& samples) {
+std::vector<Se3> resample(const std::vector<StampedPose>& samples) {
   std::vector<Se3> poses;
-  const double duration_s = samples.back().t_s - samples.front().t_s;
-  const auto count = static_cast<std::size_t>(duration_s / kStep_s + 1e-6) + 1;
+  const auto since_start_s = [&samples](std::size_t k) {
+    return static_cast<double>(samples[k].stamp_ns - samples.front().stamp_ns) * 1e-9;
+  };
+  const auto count = static_cast<std::size_t>(since_start_s(samples.size() - 1) / kStep_s + 1e-6) + 1;
   std::size_t k = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double t_s = samples.front().t_s + static_cast<double>(i) * kStep_s;
-    while (k + 2 < samples.size() && samples[k + 1].t_s <= t_s) ++k;
-    const double u = (t_s - samples[k].t_s) / (samples[k + 1].t_s - samples[k].t_s);
+    const double t_s = static_cast<double>(i) * kStep_s;
+    while (k + 2 < samples.size() && since_start_s(k + 1) <= t_s) ++k;
+    const double u = (t_s - since_start_s(k)) / (since_start_s(k + 1) - since_start_s(k));
     poses.push_back(boxplus(samples[k].T_world_camera,
                             u * boxminus(samples[k + 1].T_world_camera, samples[k].T_world_camera)));
   }
@@ -103,7 +75,7 @@ double heading(const Matrix3& R) { return plvo::atan2(R(1, 2), R(0, 2)); }
 }  // namespace
 
 Status Trajectory::from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory) {
-  std::vector<Sample> samples;
+  std::vector<StampedPose> samples;
   const Status read = read_samples(path, samples);
   if (!read.ok()) return read;
   std::vector<Se3> poses = smooth(resample(samples));

@@ -13,23 +13,18 @@ namespace {
 constexpr int kBlock = 4;          // px between the points at which the lamp's shadow is sampled first
 constexpr int kLampEdge = 3;       // 3 × 3 shadow rays to the lamp
 constexpr float kPenumbra = 0.3F;  // a block whose corners differ by less is interpolated
-constexpr float kNear = 1e-3F;     // m
-constexpr float kFar = 200;        // m
 constexpr float kLift = 1e-3F;     // m, how far above a surface its rays start
-constexpr int kBand = 16;          // rows a thread takes at a time; a multiple of kBlock
+static_assert(kThreadRows % kBlock == 0);
 constexpr float kReflectiveGloss = 0.25F;  // below it no mirror image is traced
 // Four sub-pixel samples that differ in both coordinates (a rotated grid).
 constexpr std::array<std::array<float, 2>, 4> kRimSamples = {
     {{-0.125F, -0.375F}, {0.375F, -0.125F}, {-0.375F, 0.125F}, {0.125F, 0.375F}}};
 
-Float3 to_float(const Vector3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const CameraModel& camera, int threads)
     : scene_(scene),
+      caster_(scene, camera, threads),
       lightmap_(scene),
       width_(camera.width),
       height_(camera.height),
@@ -38,60 +33,25 @@ Renderer::Renderer(const Scene& scene, const CameraModel& camera, int threads)
       grid_height_((camera.height - 1) / kBlock + 2),
       pixel_angle_(static_cast<float>(1 / camera.pinhole.fx)) {
   const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  rays_.reserve(pixels);
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const Vector2 ideal = undistort_pixel(camera, Vector2(x, y));
-      rays_.push_back(to_float(back_project(camera.pinhole, ideal.x(), ideal.y(), 1.0)));
-    }
-  }
-  hits_.resize(pixels);
   lamp_.resize(pixels);
   radiance_.resize(pixels);
   lamp_grid_.resize(static_cast<std::size_t>(grid_width_) * static_cast<std::size_t>(grid_height_));
 }
 
-void Renderer::render(const Se3& T_world_camera, const LightState& light) {
-  const std::vector<Se3> rows(static_cast<std::size_t>(height_), T_world_camera);
-  render(rows, light);
-}
-
 void Renderer::render(std::span<const Se3> T_world_row, const LightState& light) {
-  views_.clear();
-  for (const Se3& T : T_world_row)
-    views_.push_back({to_float(T.t), to_float(T.R.col(0)), to_float(T.R.col(1)), to_float(T.R.col(2))});
-  for_rows(threads_, height_, kBand, [&](int a, int b) { trace_rows(a, b); });
+  caster_.cast(T_world_row);
   if (light.lamp_on) {
     for_rows(threads_, grid_height_, 4, [&](int a, int b) { lamp_grid_rows(light, a, b); });
-    for_rows(threads_, height_, kBand, [&](int a, int b) { lamp_fill_rows(light, a, b); });
+    for_rows(threads_, height_, kThreadRows, [&](int a, int b) { lamp_fill_rows(light, a, b); });
   }
-  for_rows(threads_, height_, kBand, [&](int a, int b) { shade_rows(light, a, b); });
-}
-
-void Renderer::trace_rows(int begin, int end) {
-  for (int y = begin; y < end; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const auto i = static_cast<std::size_t>(y * width_ + x);
-      const Float3 direction = view(y).to_world(rays_[i]);
-      const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
-      PixelHit& pixel = hits_[i];
-      pixel = {};
-      if (hit.solid < 0) continue;
-      const Solid& solid = scene_.solids[static_cast<std::size_t>(hit.solid)];
-      const Float3 local = solid.to_local(view(y).origin + direction * hit.t);
-      const Float3 normal = face_normal(solid, hit.face, local);
-      pixel.depth_m = hit.t;  // rays have z = 1
-      pixel.cosine = std::abs(dot(normal, solid.rotate_to_local(direction))) / norm(direction);
-      pixel.surface = hit.surface();
-    }
-  }
+  for_rows(threads_, height_, kThreadRows, [&](int a, int b) { shade_rows(light, a, b); });
 }
 
 float Renderer::lamp_visibility(const LightState& light, int x, int y) const {
   const auto i = static_cast<std::size_t>(y * width_ + x);
-  const PixelHit& pixel = hits_[i];
+  const PixelHit& pixel = seen_by(i);
   if (pixel.surface < 0) return 0;
-  const Float3 point = view(y).origin + view(y).to_world(rays_[i]) * pixel.depth_m;
+  const Float3 point = view(y).origin + view(y).to_world(ray(i)) * pixel.depth_m;
   const Solid& solid = scene_.solids[static_cast<std::size_t>(pixel.surface / Solid::kFaces)];
   const Float3 normal =
       solid.rotate_to_world(face_normal(solid, pixel.surface % Solid::kFaces, solid.to_local(point)));
@@ -129,7 +89,7 @@ void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y * width_ + x);
-      const int surface = hits_[i].surface;
+      const int surface = seen_by(i).surface;
       const int gx = x / kBlock;
       const int gy = y / kBlock;
       std::array<float, 4> corner{};
@@ -142,7 +102,7 @@ void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
         const int px = std::min(cx * kBlock, width_ - 1);
         const int py = std::min(cy * kBlock, height_ - 1);
         corner[static_cast<std::size_t>(k)] = lamp_grid_[static_cast<std::size_t>(cy * grid_width_ + cx)];
-        if (hits_[static_cast<std::size_t>(py * width_ + px)].surface != surface) continue;
+        if (seen_by(static_cast<std::size_t>(py * width_ + px)).surface != surface) continue;
         ++same;
         lowest = std::min(lowest, corner[static_cast<std::size_t>(k)]);
         highest = std::max(highest, corner[static_cast<std::size_t>(k)]);
@@ -162,7 +122,7 @@ void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
 
 bool Renderer::on_rim(int x, int y) const {
   const auto surface = [&](int px, int py) {
-    return hits_[static_cast<std::size_t>(py * width_ + px)].surface;
+    return seen_by(static_cast<std::size_t>(py * width_ + px)).surface;
   };
   const int here = surface(x, y);
   return (x > 0 && surface(x - 1, y) != here) || (x + 1 < width_ && surface(x + 1, y) != here) ||
@@ -238,21 +198,21 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
 
 Rgb Renderer::shade_rim(const LightState& light, int x, int y) {
   const auto i = static_cast<std::size_t>(y * width_ + x);
-  const Float3 to_right = x + 1 < width_ ? rays_[i + 1] - rays_[i] : rays_[i] - rays_[i - 1];
+  const Float3 to_right = x + 1 < width_ ? ray(i + 1) - ray(i) : ray(i) - ray(i - 1);
   const auto row = static_cast<std::size_t>(width_);
-  const Float3 to_below = y + 1 < height_ ? rays_[i + row] - rays_[i] : rays_[i] - rays_[i - row];
+  const Float3 to_below = y + 1 < height_ ? ray(i + row) - ray(i) : ray(i) - ray(i - row);
   Rgb sum;
   for (const auto& offset : kRimSamples) {
-    const Float3 direction = view(y).to_world(rays_[i] + to_right * offset[0] + to_below * offset[1]);
+    const Float3 direction = view(y).to_world(ray(i) + to_right * offset[0] + to_below * offset[1]);
     const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
     if (hit.solid < 0) continue;
     // The lamp's visibility is that of a neighbouring centre on the same surface.
     float lamp_visible = lamp_[i];
-    bool found = hits_[i].surface == hit.surface();
+    bool found = seen_by(i).surface == hit.surface();
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, height_ - 1) && !found; ++ny) {
       for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, width_ - 1) && !found; ++nx) {
         const auto n = static_cast<std::size_t>(ny * width_ + nx);
-        if (hits_[n].surface != hit.surface()) continue;
+        if (seen_by(n).surface != hit.surface()) continue;
         lamp_visible = lamp_[n];
         found = true;
       }
@@ -271,14 +231,14 @@ void Renderer::shade_rows(const LightState& light, int begin, int end) {
         radiance_[i] = shade_rim(light, x, y);
         continue;
       }
-      const PixelHit& pixel = hits_[i];
+      const PixelHit& pixel = seen_by(i);
       if (pixel.surface < 0) {
         radiance_[i] = {};
         continue;
       }
       const Hit hit{pixel.depth_m, pixel.surface / Solid::kFaces, pixel.surface % Solid::kFaces};
-      radiance_[i] = radiance_at(view(y).origin, view(y).to_world(rays_[i]), hit,
-                                 pixel_angle_ * pixel.depth_m, light, lamp_[i], 0);
+      radiance_[i] = radiance_at(view(y).origin, view(y).to_world(ray(i)), hit, pixel_angle_ * pixel.depth_m,
+                                 light, lamp_[i], 0);
     }
   }
 }

@@ -22,7 +22,6 @@ constexpr float kReadNoise = 0.0014F;    // linear, at amplification 1
 constexpr float kPhotonNoise = 0.0075F;  // of the square root of the linear value
 constexpr int kCurveSize = 4096;
 constexpr int kMaxTaps = 12;
-constexpr int kBand = 16;
 
 Float3 transform(const Se3& T, Float3 p) {
   const Vector3 q = T * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
@@ -57,7 +56,7 @@ Film::Film(const CameraModel& camera, std::uint64_t seed, bool noise, int thread
 // Mean of the clipped luminance, rows first, then the rows in order.
 void Film::meter(ImageView<const Rgb> radiance) {
   const float clip = metered_ ? kMeterClip * static_cast<float>(level_) : 4.0F;
-  for_rows(threads_, radiance.height, kBand, [&](int begin, int end) {
+  for_rows(threads_, radiance.height, kThreadRows, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       double sum = 0;
       for (int x = 0; x < radiance.width; ++x)
@@ -158,12 +157,12 @@ void Film::develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_
       static_cast<float>(std::max(1.0, kExposureLevel / level * kBrightExposure_s / exposure_s_));
   const ImageView<Rgb> radiance = renderer.radiance();
   if (noise_) {
-    for_rows(threads_, radiance.height, kBand,
+    for_rows(threads_, radiance.height, kThreadRows,
              [&](int a, int b) { blur_rows(renderer, T_mid_begin, T_mid_end, a, b); });
   } else {
     std::copy(radiance.data, radiance.data + blurred_.size(), blurred_.begin());
   }
-  for_rows(threads_, radiance.height, kBand, [&](int a, int b) { expose_rows(frame, a, b); });
+  for_rows(threads_, radiance.height, kThreadRows, [&](int a, int b) { expose_rows(frame, a, b); });
 
   level_ += (measured_ - level_) * (1 - plvo::exp(-frame_s / kLag_s));
   exposure_s_ = std::clamp(kBrightExposure_s * kExposureLevel / level_, kBrightExposure_s, kDarkExposure_s);

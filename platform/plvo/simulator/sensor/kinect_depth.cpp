@@ -10,7 +10,6 @@
 namespace plvo::sim {
 namespace {
 
-constexpr int kBand = 16;
 // The correlation window makes neighbouring errors alike: half of the variance has this correlation length.
 constexpr float kPatch_px = 3;
 constexpr float kValueNoiseSigma = 0.4289F;  // standard deviation of value_noise() over the plane
@@ -50,15 +49,16 @@ KinectDepth::KinectDepth(const Scene& scene, const CameraModel& camera, const De
 DepthView KinectDepth::view() const { return {depth_.data(), width_, height_, width_, kMetresPerUnit}; }
 
 void KinectDepth::copy_exact(ImageView<const PixelHit> hits) {
+  const auto scale = static_cast<float>(options_.scale_error);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x)
-      depth_[static_cast<std::size_t>(y * width_ + x)] = to_units(hits.at(x, y).depth_m);
+      depth_[static_cast<std::size_t>(y * width_ + x)] = to_units(scale * hits.at(x, y).depth_m);
   }
 }
 
 void KinectDepth::sense(ImageView<const PixelHit> hits, std::uint32_t frame) {
   const std::uint32_t frame_seed = hash(frame, seed_);
-  for_rows(threads_, height_, kBand, [&](int begin, int end) {
+  for_rows(threads_, height_, kThreadRows, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) sense_row(hits, frame_seed, y);
   });
 }
@@ -68,6 +68,7 @@ void KinectDepth::sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_
   const auto steps = static_cast<float>(options_.steps_per_px);
   const auto min_range = static_cast<float>(options_.min_range_m);
   const auto max_range = static_cast<float>(options_.max_range_m);
+  const auto scale = static_cast<float>(options_.scale_error);
   const std::uint32_t row_seed = hash(static_cast<std::uint32_t>(y) + frame_seed);
   const auto fy = static_cast<float>(y);
   // Seen from the projector, which is on the right, near things hide what lies to their left: walking from
@@ -119,7 +120,7 @@ void KinectDepth::sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_
     if (disparity <= 0) continue;
     const float measured = focal_baseline / disparity;
     if (measured < min_range || measured > max_range) continue;
-    out = to_units(measured);
+    out = to_units(scale * measured);
   }
 }
 

@@ -3,14 +3,15 @@
 // registered to the colour image. Disparity d = f·b/z against a projector at baseline b along +x; noise is
 // added to the disparity, which is then rounded to 1/8 px. The standard deviation of the sum of both, in
 // depth, is noise_scale · σ_d(z) of equation (2) wherever (2) asks for more than the rounding alone gives.
-// Holes: out of range; hidden from the projector (bands at the left of near objects); too little light back
-// (dark, distant, grazing or polished surfaces); the projector's own mirror image.
+// A scale error stretches what is reported. Holes: out of range; hidden from the projector (bands at the left
+// of near objects); too little light back (dark, distant, grazing or polished surfaces); the projector's own
+// mirror image.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "plvo/simulator/render/renderer.hpp"
+#include "plvo/simulator/render/ray_caster.hpp"
 #include "plvo/simulator/simulator_options.hpp"
 
 namespace plvo::sim {
@@ -23,7 +24,7 @@ class KinectDepth {
               std::uint64_t seed, int threads);
 
   void sense(ImageView<const PixelHit> hits, std::uint32_t frame);
-  // The noise-free twin: exact depth, rounded to the format's unit.
+  // The noise-free twin: exact depth but for the scale error, rounded to the format's unit.
   void copy_exact(ImageView<const PixelHit> hits);
 
   DepthView view() const;

@@ -7,20 +7,12 @@
 #include <cstdio>
 
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/stderr_log.hpp"
 
 namespace plvo::cli {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 100'000'000;
-
-const char* prefix(LogLevel level) {
-  switch (level) {
-    case LogLevel::kError: return "plvo: error: ";
-    case LogLevel::kWarning: return "plvo: warning: ";
-    case LogLevel::kInfo: return "plvo: ";
-  }
-  return "plvo: ";
-}
 
 }  // namespace
 
@@ -31,7 +23,7 @@ void Console::write(LogLevel level, std::string_view message) {
   if ((quiet_ && level == LogLevel::kInfo) || message == last_) return;
   last_ = message;
   erase_line();
-  fmt::print(stderr, "{}{}\n", prefix(level), message);
+  StderrLog().write(level, message);
 }
 
 bool Console::wants_line() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Standard error for commands with several threads: messages in whole lines, and below them, on a terminal
-// only, a line that moves. A message that repeats the one before it is shown once.
+// Standard error while a command works, from any thread: messages in whole lines, and below them, on
+// a terminal only, a line of progress that is written over. A message that repeats the one before it
+// is shown once.
 #pragma once
 
 #include <cstdint>

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/common/exit_code.hpp"
 
-#include <fmt/core.h>
-
-#include <cstdio>
+#include "plvo/host/stderr_log.hpp"
 
 namespace plvo::cli {
 
 int fail(const Status& status) { return fail(std::string_view(status.message())); }
 
 int fail(std::string_view message) {
-  fmt::print(stderr, "plvo: error: {}\n", message);
+  StderrLog().write(LogLevel::kError, message);
   return kExitFailure;
 }
 
-void warn(std::string_view message) { fmt::print(stderr, "plvo: warning: {}\n", message); }
+void warn(std::string_view message) { StderrLog().write(LogLevel::kWarning, message); }
 
 }  // namespace plvo::cli

@@ -12,8 +12,8 @@ namespace plvo::cli {
 
 struct FrameRecord {
   std::size_t number = 0;  // from 0, counting damaged frames too
-  Status camera_status;  // not ok: the camera could not give this frame out, and nothing below holds but the
-                         // stamp
+  // Not ok: the camera could not give this frame out, and of what follows only the stamp holds.
+  Status camera_status;
   TrackResult result;
   std::int64_t cpu_ns = 0;  // CPU time of track() alone
 

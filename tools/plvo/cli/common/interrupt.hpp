@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C ends a command's loop, not the program: what exists is written. A second one ends the program as
-// usual.
+// Ctrl-C, SIGTERM and a terminal that closes (SIGHUP) end a command's loop, not the program: what exists is
+// written. A second Ctrl-C ends the program as usual.
 #pragma once
 
 namespace plvo::cli {

@@ -1,42 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/common/odometry_options.hpp"
 
-#include <map>
-#include <string>
+#include "plvo/cli/common/arguments.hpp"
 
 namespace plvo::cli {
 
 void add_odometry_options(CLI::App& command, OdometryOptions& options) {
-  const std::map<std::string, Preset> presets = {{"default", Preset::kDefault}, {"paper", Preset::kPaper}};
-  const std::map<std::string, Features> features = {
-      {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}};
-  const std::map<std::string, ReferencePolicy> references = {{"previous", ReferencePolicy::kPreviousFrame},
-                                                             {"keyframe", ReferencePolicy::kKeyframe},
-                                                             {"both", ReferencePolicy::kKeyframeAndPrevious}};
-  const std::string group = "Odometry";
-  command.add_option("--preset", options.preset, "default, or paper: the settings of Lu & Song (2015)")
-      ->transform(CLI::CheckedTransformer(presets).description(""))
-      ->type_name("NAME")
-      ->group(group);
-  command.add_option("--features", options.features, "points, lines or both")
-      ->transform(CLI::CheckedTransformer(features).description(""))
-      ->type_name("KIND")
-      ->group(group);
-  CLI::Option* reference = command
-                               .add_option("--reference", options.reference,
-                                           "Match against the previous frame, the last keyframe, or both")
-                               ->transform(CLI::CheckedTransformer(references).description(""))
-                               ->type_name("previous|keyframe|both")
-                               ->group(group);
-  command
-      .add_flag_callback(
-          "--keyframes", [&options] { options.reference = ReferencePolicy::kKeyframe; },
-          "Short for --reference keyframe")
-      ->excludes(reference)
-      ->group(group);
-  command.add_option("--ransac-seed", options.seed, "Seed of RANSAC's random generator")
-      ->type_name("NUMBER")
-      ->group(group);
+  OptionGroup group(command, "Odometry");
+  group.choice("--preset", options.preset,
+               Choices<Preset>{{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
+               "paper: the settings of Lu & Song (2015); docs/maths.md has the differences");
+  group.choice("--features", options.features,
+               Choices<Features>{
+                   {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}},
+               "What the motion is estimated from (default both)");
+  group.choice("--reference", options.reference,
+               Choices<ReferencePolicy>{{"previous", ReferencePolicy::kPreviousFrame},
+                                        {"keyframe", ReferencePolicy::kKeyframe}},
+               "What a frame is matched against: the frame before it, or the last keyframe");
+  group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
 }
 
 Config make_config(const OdometryOptions& options) {

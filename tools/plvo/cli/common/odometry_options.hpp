@@ -2,12 +2,12 @@
 // How the odometry is set, and the memory it lives in.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo::cli {
@@ -25,8 +25,8 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options);
 // The preset, then what was asked for beside it.
 Config make_config(const OdometryOptions& options);
 
-// An odometry with the block it needs. Every page of the block is touched, so that memory does not seem to
-// grow later.
+// An odometry with the block it needs. Every page of the block is touched, so that memory does not seem
+// to grow later.
 class OdometryBlock {
  public:
   Status init(const CameraModel& camera, const Config& config);

@@ -2,20 +2,26 @@
 // The simulated camera's options on the command line, shared by `plvo simulate` and `plvo run --camera sim`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/simulator/simulator_options.hpp"
 
 namespace plvo::cli {
 
+inline constexpr const char* kSimulatorGroup = "Simulated camera";
+inline constexpr int kMostSimulatedFrames = 1'000'000;
+
 struct SimulatorArguments {
-  std::string scene = "corridor", light = "constant";
+  SceneName scene = SceneName::kCorridor;
+  LightName light = LightName::kConstant;
   std::uint64_t seed = 1;
   double fps = 30;
   double readout_s = 0;
-  std::string size;  // WIDTHxHEIGHT
+  int width = 0, height = 0;  // 0: the simulator's own size
+  DepthTiming depth_timing;
+  double depth_scale_error = 1;
   std::string trajectory;
   bool clean = false;
   int threads = 2;

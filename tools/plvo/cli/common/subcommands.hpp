@@ -5,7 +5,7 @@
 // command_line.cpp calls them all; adding one is a file, a declaration here and a line there.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "plvo/cli/common/arguments.hpp"
 
 namespace plvo::cli {
 
@@ -16,5 +16,7 @@ void add_record(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_tilt(CLI::App& app, int& exit_code);
+// After the others, which it describes.
+void add_documentation(CLI::App& app, int& exit_code);
 
 }  // namespace plvo::cli

@@ -7,27 +7,29 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/doctor/doctor_page.hpp"
+#include "plvo/host/line_file.hpp"
 #include "plvo/usb/usb_bus.hpp"
 
 namespace plvo::cli {
 namespace {
 
 constexpr const char* kHelp =
-    "Looks at the USB, permissions, OpenNI2 and its drivers, then captures for three seconds, and says what "
-    "is\n"
-    "wrong and what to type. Exit code 0: pictures come. 4: they do not; the last part of the page says "
-    "why.\n"
-    "\n";
+    "Looks at the USB, permissions, OpenNI2 and its drivers, then captures for three seconds, and says\n"
+    "what is wrong and what to type. Exit code 0: pictures come. 4: they do not, and the end of the page\n"
+    "says why.\n";
 
 struct DoctorOptions {
   LiveCameraOptions camera;
   double seconds = 3;
   bool no_capture = false;
-  bool json = false;
+  std::string json;
 };
 
 #ifdef PLVO_HAVE_USB
@@ -61,14 +63,14 @@ int doctor_command(const DoctorOptions& options) {
   // Without any camera the findings above say why; a capture would only fail once more.
   const bool something = !report.openni_devices.empty() || !options.camera.device.empty();
   if (!options.no_capture && something && listed.ok()) {
-    if (!options.json && isatty(STDERR_FILENO) == 1)
+    if (!is_standard_output(options.json) && isatty(STDERR_FILENO) == 1)
       fmt::print(stderr, "plvo: capturing for {:g} s\n", options.seconds);
     report.capture = capture(options.camera, options.seconds);
     report.capture_findings = judge(report.capture);
   }
-  const std::string text = options.json ? to_json(report).dump(2) + '\n' : to_text(report);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
-    return fail("cannot write to standard output");
+  if (Status status = write_result(options.json, to_json(report), [&] { return to_text(report); });
+      !status.ok())
+    return fail(status);
   return report.healthy() ? kExitSuccess : kExitNoSensor;
 }
 
@@ -82,20 +84,33 @@ int doctor_command(const DoctorOptions&) {
 
 #endif
 
+void check(const CLI::App& command, const DoctorOptions& options) {
+  check_live_camera_options(command, options.camera);
+  if (options.no_capture) {
+    const char* why = "is for the capture, which --no-capture leaves out";
+    refuse_options(command, {"--seconds", "--mode", "--device"}, why);
+    refuse_group(command, kCalibrationGroup, why);
+  }
+  FileRoles files;
+  files.writes("--json", options.json);
+  add_inputs(options.camera, files);
+  files.check();
+}
+
 }  // namespace
 
 void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = app.add_subcommand("doctor", "Say what is wrong with the sensor, and what to do");
-  add_live_camera_options(*command, options->camera);
-  command->add_option("--seconds", options->seconds, "How long the test capture lasts")
-      ->check(CLI::PositiveNumber.description(""))
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  command->add_flag("--no-capture", options->no_capture, "Look, but do not open the camera");
-  command->add_flag("--json", options->json, "For machines");
-  command->footer(std::string(kHelp) + kExitCodeHelp);
-  command->callback([options, &exit_code] { exit_code = doctor_command(*options); });
+  CLI::App& command = add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kHelp);
+  add_live_camera_options(command, options->camera);
+  OptionGroup group(command);
+  group.number("--seconds", options->seconds, kSeconds, "SECONDS", "Capture only so long (default 3)");
+  group.flag("--no-capture", options->no_capture, "Look, but do not open the camera");
+  add_json_option(command, options->json);
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return doctor_command(*options);
+  });
 }
 
 }  // namespace plvo::cli

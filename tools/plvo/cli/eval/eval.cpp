@@ -2,19 +2,29 @@
 // plvo eval: an estimate against the ground truth.
 #include <fmt/core.h>
 
-#include <map>
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/file_roles.hpp"
+#include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/eval/evaluation.hpp"
+#include "plvo/host/line_file.hpp"
 #include "plvo/report/report.hpp"
 
 namespace plvo::cli {
 namespace {
+
+constexpr const char* kHelp =
+    "Examples:\n"
+    "  plvo eval --gt walk/groundtruth.txt --est trajectory.txt\n"
+    "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n";
 
 struct EvalOptions {
   eval::TrajectorySource ground_truth, estimate;
@@ -22,31 +32,50 @@ struct EvalOptions {
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
   double offset_s = 0;
-  std::vector<std::string> deltas;
-  bool json = false;
+  std::vector<eval::RpeDelta> deltas;
+  std::string json;
 };
+
+// So that stamps can be shifted without leaving the 292 years that nanoseconds can count.
+bool stamps_are_moderate(const eval::Trajectory& trajectory) {
+  return std::all_of(trajectory.poses.begin(), trajectory.poses.end(), [](const eval::StampedPose& pose) {
+    return pose.stamp_ns > INT64_MIN / 2 && pose.stamp_ns < INT64_MAX / 2;
+  });
+}
+
+Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, eval::Trajectory& estimate,
+                   std::vector<eval::StampedCovariance>& covariances,
+                   std::vector<eval::UncertainMotion>& motions) {
+  Status status = read_trajectory(options.ground_truth, ground_truth);
+  if (status.ok()) status = read_trajectory(options.estimate, estimate);
+  if (status.ok() && !stamps_are_moderate(estimate))
+    status = {StatusCode::kInvalidArgument, options.estimate.path.string() + " has stamps beyond 146 years"};
+  if (status.ok() && !options.covariance.empty())
+    status = eval::read_covariances(options.covariance, covariances);
+  if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, motions);
+  const bool kitti = ground_truth.format == eval::TrajectoryFormat::kKitti ||
+                     estimate.format == eval::TrajectoryFormat::kKitti;
+  if (status.ok() && !options.kitti_times.empty() && !kitti)
+    refuse_command(
+        "--kitti-times is for KITTI's rows of 12 numbers, and neither file has them; leave it away");
+  return status;
+}
 
 int eval_command(EvalOptions options) {
   eval::EvaluationOptions settings;
   settings.sampling = options.sampling;
   settings.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
   settings.offset_ns = static_cast<std::int64_t>(options.offset_s * 1e9);
-  for (const std::string& text : options.deltas) {
-    eval::RpeDelta delta;
-    if (!eval::parse_rpe_delta(text, delta)) return kExitUsage;  // refused by the option's own check before
-    settings.deltas.push_back(delta);
-  }
+  settings.deltas = options.deltas;
   options.ground_truth.kitti_times = options.estimate.kitti_times = options.kitti_times;
 
   eval::Trajectory ground_truth, estimate;
   std::vector<eval::StampedCovariance> covariances;
   std::vector<eval::UncertainMotion> motions;
   eval::Evaluation evaluation;
-  Status status = read_trajectory(options.ground_truth, ground_truth);
-  if (status.ok()) status = read_trajectory(options.estimate, estimate);
-  if (status.ok() && !options.covariance.empty())
-    status = eval::read_covariances(options.covariance, covariances);
-  if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, motions);
+  Status status = read_inputs(options, ground_truth, estimate, covariances, motions);
+  for (const std::string& file : {options.report, options.json})
+    if (status.ok() && !file.empty()) status = LineFile::check(file);
   if (status.ok()) status = evaluate(ground_truth, estimate, covariances, motions, settings, evaluation);
   if (!status.ok()) return fail(status);
   for (const auto& [trajectory, source] :
@@ -63,72 +92,82 @@ int eval_command(EvalOptions options) {
     if (const Status written = report::write_report(options.report, input); !written.ok())
       return fail(written);
   }
-  const std::string text = options.json ? to_json(evaluation).dump(2) + '\n' : to_text(evaluation);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
-    return fail("cannot write to standard output");
-  return kExitSuccess;
+  status = write_result(options.json, to_json(evaluation), [&] { return to_text(evaluation); });
+  return status.ok() ? kExitSuccess : fail(status);
 }
 
-std::string check_delta(const std::string& text) {
-  eval::RpeDelta delta;
-  return eval::parse_rpe_delta(text, delta)
-             ? ""
-             : "expected frames, seconds or metres, such as 1f, 0.5s or 2m: " + text;
+void check(const CLI::App& command, const EvalOptions& options) {
+  if (options.sampling != eval::GroundTruthSampling::kNearest)
+    refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
+  FileRoles files;
+  files.writes("--report", options.report);
+  files.writes("--json", options.json);
+  for (const std::filesystem::path& path :
+       {options.ground_truth.path, options.estimate.path, std::filesystem::path(options.kitti_times),
+        std::filesystem::path(options.covariance), std::filesystem::path(options.motions)})
+    files.reads(path);
+  files.check();
+}
+
+void add_inputs(CLI::App& command, EvalOptions& options) {
+  OptionGroup group(command);
+  const auto file = [&](const char* name, auto& path, const char* what) {
+    return group.add(name, "FILE", what, [&path](const std::string& text) -> std::string {
+      path = text;
+      return text.empty() ? "expected a path, not an empty word" : "";
+    });
+  };
+  require(file("--gt", options.ground_truth.path,
+               "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI"));
+  require(file("--est", options.estimate.path, "The estimate, likewise"));
+  const std::vector<std::pair<std::string, eval::TrajectoryFormat>> formats = {
+      {"auto", eval::TrajectoryFormat::kAuto},
+      {"tum", eval::TrajectoryFormat::kTum},
+      {"euroc", eval::TrajectoryFormat::kEuroc},
+      {"kitti", eval::TrajectoryFormat::kKitti}};
+  group.choice("--gt-format", options.ground_truth.format, formats, "auto: told by the content (default)");
+  group.choice("--est-format", options.estimate.format, formats, "auto: told by the content (default)");
+  file("--kitti-times", options.kitti_times,
+       "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart)");
+  file("--est-covariance", options.covariance,
+       "Covariances of the estimate's poses (plvo run --covariance): adds their NEES");
+  file("--est-motions", options.motions,
+       "Motions with their covariances (plvo run --motions): adds their NEES");
 }
 
 }  // namespace
 
 void add_eval(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvalOptions>();
-  CLI::App* command = app.add_subcommand("eval", "Compare an estimated trajectory with the ground truth");
-  command->add_option("--gt", options->ground_truth.path, "Ground truth")->required()->type_name("FILE");
-  command->add_option("--est", options->estimate.path, "Estimated trajectory")->required()->type_name("FILE");
-  const std::map<std::string, eval::TrajectoryFormat> formats = {{"auto", eval::TrajectoryFormat::kAuto},
-                                                                 {"tum", eval::TrajectoryFormat::kTum},
-                                                                 {"euroc", eval::TrajectoryFormat::kEuroc},
-                                                                 {"kitti", eval::TrajectoryFormat::kKitti}};
-  for (const auto& [name, source] :
-       {std::pair("--gt-format", &options->ground_truth), std::pair("--est-format", &options->estimate)}) {
-    command->add_option(name, source->format, "auto (told by the content), tum, euroc or kitti")
-        ->transform(CLI::CheckedTransformer(formats).description(""))
-        ->type_name("FORMAT");
-  }
-  command->add_option("--kitti-times", options->kitti_times, "Stamps of KITTI rows, one in seconds a line")
-      ->type_name("FILE");
-  const std::map<std::string, eval::GroundTruthSampling> samplings = {
-      {"nearest", eval::GroundTruthSampling::kNearest},
-      {"interpolated", eval::GroundTruthSampling::kInterpolated}};
-  command
-      ->add_option("--gt-sampling", options->sampling, "nearest (as TUM's scripts) or interpolated (default)")
-      ->transform(CLI::CheckedTransformer(samplings).description(""))
-      ->type_name("WAY");
-  command
-      ->add_option("--max-dt", options->max_difference_s,
-                   "Largest distance of a pose to its true pose, nearest sampling")
-      ->check(CLI::PositiveNumber.description(""))
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  command->add_option("--offset", options->offset_s, "Added to the stamps of the estimate")
-      ->type_name("SECONDS");
-  command
-      ->add_option("--rpe-delta", options->deltas,
-                   "Distance of RPE pairs: 1f frames, 1s seconds, 2m metres; repeatable (default 1f and 1s)")
-      ->check(CLI::Validator(check_delta, ""))
-      ->type_name("DELTA");
-  command
-      ->add_option("--covariance", options->covariance,
-                   "Covariances of the poses (plvo run --covariance): NEES")
-      ->type_name("FILE");
-  command
-      ->add_option("--motions", options->motions,
-                   "Motions with covariances (plvo run --motions): NEES per motion")
-      ->type_name("FILE");
-  command
-      ->add_option("--report", options->report, "A page that shows the comparison: one HTML file, no network")
-      ->type_name("FILE");
-  command->add_flag("--json", options->json, "Print JSON instead of text");
-  command->footer(kExitCodeHelp);
-  command->callback([options, &exit_code] { exit_code = eval_command(*options); });
+  CLI::App& command =
+      add_command(app, "eval", "Compare an estimated trajectory with the ground truth", kHelp);
+  add_inputs(command, *options);
+  OptionGroup group(command);
+  group.choice("--gt-sampling", options->sampling,
+               Choices<eval::GroundTruthSampling>{{"nearest", eval::GroundTruthSampling::kNearest},
+                                                  {"interpolated", eval::GroundTruthSampling::kInterpolated}},
+               "True pose at a stamp: interpolated (default), or the nearest, as TUM's scripts take it");
+  group.number("--max-dt", options->max_difference_s, positive(3600), "SECONDS",
+               "With --gt-sampling nearest: most that a pose is from its true pose (default 0.02)");
+  group.number("--offset", options->offset_s, {-4e9, 4e9}, "SECONDS", "Added to the stamps of the estimate");
+  repeatable(group.add(
+      "--rpe-delta", "DELTA",
+      "Distance of the pairs of the relative error: 1f frames, 0.5s seconds, 2m metres; may be given "
+      "several "
+      "times (default 1f and 1s)",
+      [options](const std::string& text) -> std::string {
+        eval::RpeDelta delta;
+        if (!eval::parse_rpe_delta(text, delta))
+          return expected("frames, seconds or metres, such as 1f, 0.5s or 2m", text);
+        options->deltas.push_back(delta);
+        return {};
+      }));
+  group.path("--report", options->report, "A page that shows the comparison: one HTML file, no network");
+  add_json_option(command, options->json);
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return eval_command(*options);
+  });
 }
 
 }  // namespace plvo::cli

@@ -3,9 +3,13 @@
 #include <memory>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_session.hpp"
+#include "plvo/host/tcp_listener.hpp"
+#include "plvo/view/host_names.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -17,62 +21,91 @@ constexpr const char* kHelp =
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
     "  plvo live --device walk.oni --out t.txt    a recording, every frame of it\n"
     "\n"
-    "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n"
-    "\n";
+    "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
+
+// An address is judged before a sensor is opened for it.
+std::string check_address(const std::string& text) {
+  std::string host;
+  int port = 0;
+  return split_address(text, host, port) ? ""
+                                         : expected("[ADDRESS:]PORT, such as 8080 or 127.0.0.1:8080", text);
+}
+
+std::string check_stream(const std::string& text) {
+  constexpr std::size_t kLongestPath = 107;  // of a Unix socket
+  if (text == "-") return {};
+  if (text.rfind("unix:", 0) == 0) {
+    const std::size_t length = text.size() - 5;
+    return length > 0 && length <= kLongestPath ? ""
+                                                : expected("unix: and a path of 1 to 107 characters", text);
+  }
+  return check_address(text).empty() ? "" : expected("[ADDRESS:]PORT, unix:PATH or -", text);
+}
 
 void add_outputs(CLI::App& command, LiveOptions& options) {
-  const std::string group = "Outputs (docs/formats.md)";
-  const auto file = [&](const char* name, std::string& path, const char* what) {
-    command.add_option(name, path, what)->type_name("FILE")->group(group);
-  };
-  file("--out", options.outputs.files.trajectory, "Trajectory, TUM format: one line per tracked frame");
-  file("--covariance", options.outputs.files.covariance, "6x6 covariance of each pose");
-  file("--motions", options.outputs.files.motions,
-       "Motion from the reference of each frame, with its 6x6 covariance");
-  file("--stats", options.outputs.files.stats, "CSV: one row per frame, lost ones with the reason");
-  file("--json", options.summary, "The summary as JSON");
-  command
-      .add_option("--record", options.record,
-                  "Keep every captured frame: a new folder that plvo run reads, or a new .oni file")
-      ->type_name("DIR|FILE.oni")
-      ->group(group);
-  command
-      .add_option("--view", options.outputs.view,
-                  "The live view in a browser; on this machine only, unless an address is given")
-      ->type_name("[ADDR:]PORT")
-      ->group(group);
-  command
-      .add_option(
-          "--stream", options.outputs.streams,
-          "Poses as JSON lines, over TCP, a Unix socket or standard output; may be given several times")
-      ->type_name("[ADDR:]PORT|unix:PATH|-")
-      ->allow_extra_args(false)
-      ->group(group);
-  command.add_flag("--quiet", options.quiet, "No progress line and no summary; warnings remain")
-      ->group(group);
+  add_output_options(command, options.outputs.files);
+  OptionGroup group(command, kOutputGroup);
+  group.path("--json", options.summary, "The summary as JSON");
+  group.path("--record", options.record,
+             "Keep every captured frame: in a new folder that plvo run reads, or in a new .oni file",
+             "DIR|FILE.oni");
+  group.add("--view", "[ADDR:]PORT",
+            "The live view in a browser; for this machine alone, unless an address is given",
+            [&options](const std::string& text) {
+              options.outputs.view = text;
+              return check_address(text);
+            });
+  repeatable(group.add("--view-host", "NAME[:PORT]",
+                       "A further name under which the live view answers, as it stands in the browser: for a "
+                       "proxy, a tunnel or robot.local; may be given several times",
+                       [&options](const std::string& text) {
+                         options.outputs.view_names.push_back(text);
+                         return HostNames::is_valid(text)
+                                    ? ""
+                                    : expected("a NAME or NAME:PORT as in http://NAME:PORT/", text);
+                       }));
+  repeatable(
+      group.add("--stream", "[ADDR:]PORT|unix:PATH|-",
+                "Poses as JSON lines, over TCP, a Unix socket or standard output; may be given several times",
+                [&options](const std::string& text) {
+                  options.outputs.streams.push_back(text);
+                  return check_stream(text);
+                }));
+  group.flag("--quiet", options.quiet, "Warnings and errors only: no progress, no summary");
+}
+
+void check(const CLI::App& command, const LiveOptions& options) {
+  check_live_camera_options(command, options.camera);
+  if (is_oni_file(options.camera.device))
+    refuse_options(command, {"--every-frame"}, "is what an .oni file does anyway; leave it away");
+  if (options.outputs.view.empty())
+    refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
+  FileRoles files;
+  for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
+  files.writes("--json", options.summary);
+  if (is_oni_file(options.record)) files.writes("--record", options.record);
+  for (const std::string& stream : options.outputs.streams)
+    if (stream == "-") files.writes("--stream", stream);
+  add_inputs(options.camera, files);
+  files.check();
 }
 
 }  // namespace
 
 void add_live(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LiveOptions>();
-  CLI::App* command = app.add_subcommand("live", "Track what a sensor sees, now");
-  add_live_camera_options(*command, options->camera);
-  command->add_option("--rate", options->rate_hz, "Frames a second that are tracked, at most")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("HZ");
-  command->add_flag("--every-frame", options->every_frame,
-                    "The camera waits for the odometry: no frame is dropped here (.oni files always do)");
-  command->add_option("--frames", options->frames, "End after so many tracked or lost frames")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("NUMBER");
-  command->add_option("--seconds", options->seconds, "End after so long")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("SECONDS");
-  add_outputs(*command, *options);
-  add_odometry_options(*command, options->odometry);
-  command->footer(std::string(kHelp) + kExitCodeHelp);
-  command->callback([options, &exit_code] { exit_code = LiveSession(*options).run(); });
+  CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kHelp);
+  add_live_camera_options(command, options->camera);
+  OptionGroup group(command);
+  group.number("--rate", options->rate_hz, positive(1000), "HZ", "Track so many frames a second at most");
+  group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
+  add_limit_options(command, options->frames, options->seconds);
+  add_outputs(command, *options);
+  add_odometry_options(command, options->odometry);
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return LiveSession(*options).run();
+  });
 }
 
 }  // namespace plvo::cli

@@ -19,30 +19,42 @@ bool parse_positive(std::string_view text, int& value) {
   return error == std::errc() && end == text.data() + text.size() && value > 0 && value <= 10000;
 }
 
-std::string check_mode(const std::string& text) {
-  VideoMode mode;
-  return parse_video_mode(text, mode) ? "" : "expected WIDTHxHEIGHT@FPS, such as 640x480@30: " + text;
-}
-
 }  // namespace
 
 void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
-  command
-      .add_option("--device", options.device,
-                  "The sensor by its OpenNI2 URI (plvo doctor lists them), or an .oni file; without it, the "
-                  "first sensor")
-      ->type_name("URI|FILE.oni");
-  command
-      .add_option(
-          "--mode", options.mode,
-          "Size and rate of colour and depth: 640x480@30, 320x240@30, 320x240@60; what the sensor has "
-          "(.oni files keep their own)")
-      ->check(CLI::Validator(check_mode, ""))
-      ->capture_default_str()
-      ->type_name("WxH@FPS");
-  add_calibration_options(command, options.calibration,
-                          "Calibration (default: the field of view that the sensor states, with a warning)",
-                          DepthScale::kFromCamera);
+  OptionGroup group(command);
+  group.path(
+      "--device", options.device,
+      "A sensor by its OpenNI2 URI (plvo doctor lists them), or an .oni file (default: the first sensor)",
+      "URI|FILE.oni");
+  group.add("--mode", "WIDTHxHEIGHT@FPS",
+            "Size and rate of colour and depth, such as 640x480@30 (default), 320x240@30 or 320x240@60",
+            [&options](const std::string& text) -> std::string {
+              VideoMode mode;
+              options.mode = text;
+              return parse_video_mode(text, mode) ? ""
+                                                  : expected("WIDTHxHEIGHT@FPS, such as 640x480@30", text);
+            });
+  add_calibration_options(command, options.calibration, DepthScale::kFromCamera,
+                          "the field of view that the sensor states, with a warning");
+}
+
+void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options) {
+  check_calibration_options(command);
+  if (is_oni_file(options.device))
+    refuse_options(command, {"--mode"},
+                   "does not apply to an .oni file, which has a size and a rate of its own");
+}
+
+void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
+  files.reads(options.calibration.file);
+  if (is_oni_file(options.device)) files.reads(options.device);
+}
+
+void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds) {
+  OptionGroup group(command);
+  group.whole("--frames", frames, 1, 1'000'000'000, "Only the first so many frames");
+  group.number("--seconds", seconds, kSeconds, "SECONDS", "Only so long");
 }
 
 bool parse_video_mode(const std::string& text, VideoMode& mode) {
@@ -76,9 +88,9 @@ int exit_code_of_camera(const Status& status, const std::string& device) {
 #ifdef PLVO_HAVE_OPENNI2
 namespace {
 
+// The readout alone goes with the field of view that the sensor states.
 bool calibration_given(const CalibrationOptions& o) {
-  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || o.readout_s ||
-         !o.distortion.empty();
+  return !o.file.empty() || !o.model_name.empty() || o.fx || o.fy || o.cx || o.cy || !o.distortion.empty();
 }
 
 class OpenNi2LiveCamera final : public LiveCamera {
@@ -127,7 +139,8 @@ class OpenNi2LiveCamera final : public LiveCamera {
 Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model) {
   if (!calibration_given(from)) return {};
   Calibration calibration;
-  Status status = find_calibration(from, {}, calibration);
+  std::string guess;  // no folder, no guess
+  Status status = find_calibration(from, {}, calibration, guess);
   if (status.ok()) status = calibration.validate(width, height);
   // A file that is not there is no missing sensor.
   if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};

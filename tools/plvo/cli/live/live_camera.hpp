@@ -3,10 +3,10 @@
 // .oni files. One thread at a time may use it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/camera_options.hpp"
 #include "plvo/hal/log.hpp"
 #include "plvo/hal/rgbd_camera.hpp"
@@ -20,6 +20,13 @@ struct LiveCameraOptions {
   CalibrationOptions calibration;
 };
 void add_live_camera_options(CLI::App& command, LiveCameraOptions& options);
+// Refuses what does not apply to the device that was named.
+void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options);
+void add_inputs(const LiveCameraOptions& options, FileRoles& files);
+
+// When a session ends by itself.
+void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds);
+inline constexpr NumberRange kSeconds = positive(1e8);  // three years
 
 struct VideoMode {
   int width = 0, height = 0, fps = 30;

@@ -17,10 +17,21 @@ void LiveCapture::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
+const char* LiveCapture::State::word() const {
+  switch (last.code()) {
+    case StatusCode::kOk: return frames == 0 ? "waiting" : "running";
+    case StatusCode::kUnplugged: return "unplugged";
+    case StatusCode::kDamaged: return "damaged";
+    default: return "stalled";
+  }
+}
+
 LiveCapture::State LiveCapture::state() const {
   const std::lock_guard lock(mutex_);
   State state = state_;
-  state.hz = meter_.hz(posix_monotonic_ns());
+  const std::int64_t now = posix_monotonic_ns();
+  state.hz = meter_.hz(now);
+  if (state.frames > 0) state.seconds_since_frame = static_cast<double>(now - last_ns_) * 1e-9;
   if (last_ns_ > first_ns_)
     state.average_hz =
         static_cast<double>(state.frames - 1) * 1e9 / static_cast<double>(last_ns_ - first_ns_);

@@ -26,9 +26,13 @@ class LiveCapture {
     Status end;       // why the camera cannot go on; ok otherwise
     Status recorder;  // why the recording ended by itself; ok otherwise
     std::uint64_t frames = 0, damaged = 0, timeouts = 0;
-    double hz = 0;          // over the last second
-    double average_hz = 0;  // from the first frame to the last
+    double hz = 0;                    // over the last second
+    double average_hz = 0;            // from the first frame to the last
+    double seconds_since_frame = -1;  // negative: none has come yet
     OpenNi2Counters camera;
+
+    // One word for programs: "waiting" for the first frame, "running", "stalled", "unplugged" or "damaged".
+    const char* word() const;
   };
 
   // All are borrowed.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/tcp_listener.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -18,8 +19,9 @@ std::string with_brackets(const std::string& host) {
 
 Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
   lens_is_straight_ = lens_is_straight;
+  next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
   if (!options.view.empty())
-    if (Status status = open_view(options.view); !status.ok()) return status;
+    if (Status status = open_view(options.view, options.view_names); !status.ok()) return status;
   for (const std::string& address : options.streams)
     if (Status status = open_stream(address); !status.ok()) return status;
   const OutputOptions& files = options.files;
@@ -28,7 +30,7 @@ Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight
   return files_.open(files);
 }
 
-Status LiveOutputs::open_view(const std::string& address) {
+Status LiveOutputs::open_view(const std::string& address, const std::vector<std::string>& names) {
   std::string host;
   int port = 0;
   if (!split_address(address, host, port))
@@ -36,7 +38,7 @@ Status LiveOutputs::open_view(const std::string& address) {
         .append(address)
         .append("'");
   view_ = std::make_unique<ViewServer>();
-  if (Status status = view_->start(host, port); !status.ok()) return status;
+  if (Status status = view_->start(host, port, names); !status.ok()) return status;
   if (!is_loopback(host))
     console_.write(
         LogLevel::kWarning,
@@ -72,19 +74,28 @@ void LiveOutputs::write(const FrameRecord& record, const RgbdFrame& frame, const
                      fmt::format("{}; the files end here, the odometry goes on", written.message()));
     }
   }
+  to_streams([&](PoseStream& stream) { return stream.write(record.result); });
+  if (view_) view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
+}
+
+// Each stream gets a line; one that cannot go on is closed.
+void LiveOutputs::to_streams(const std::function<Status(PoseStream&)>& write) {
+  next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
   std::erase_if(streams_, [&](const std::unique_ptr<PoseStream>& stream) {
-    const Status written = stream->write(record.result);
+    const Status written = write(*stream);
     if (!written.ok()) {
       failure_ = written;
       console_.write(LogLevel::kError, written.message());
     }
     return !written.ok();
   });
-  if (view_) view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
 }
 
-void LiveOutputs::write_status(const ViewStatus& status) {
+void LiveOutputs::write_status(const ViewStatus& status, const Heartbeat& heartbeat) {
   const std::int64_t now = posix_monotonic_ns();
+  if (now >= next_heartbeat_ns_) {
+    to_streams([&](PoseStream& stream) { return stream.write_heartbeat(heartbeat); });
+  }
   if (!view_ || now < next_status_ns_) return;
   next_status_ns_ = now + kStatusPeriod_ns;
   view_->publish_status(status);

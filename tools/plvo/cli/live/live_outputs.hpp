@@ -3,6 +3,7 @@
 // the odometry up or end it: a full disk ends the files alone.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,11 +20,14 @@ namespace plvo::cli {
 struct LiveOutputOptions {
   OutputOptions files;
   std::vector<std::string> streams;
-  std::string view;  // [ADDR:]PORT; empty: none
+  std::string view;                     // [ADDR:]PORT; empty: none
+  std::vector<std::string> view_names;  // NAME[:PORT] beside those of the address
 };
 
 class LiveOutputs {
  public:
+  static constexpr std::int64_t kHeartbeat_ns = 500'000'000;
+
   explicit LiveOutputs(Console& console) : console_(console) {}
 
   // Addresses first, then the files: an address in use must not cost an old trajectory. Says where to look.
@@ -32,8 +36,9 @@ class LiveOutputs {
   // After each frame.
   void write(const FrameRecord& record, const RgbdFrame& frame, const Odometry& odometry,
              const ViewStatus& status);
-  // While there is no frame: four times a second at most.
-  void write_status(const ViewStatus& status);
+  // While there is no frame, as often as one likes: the live view gets it four times a second; the pose
+  // streams get a heartbeat whenever they have got no line for kHeartbeat_ns.
+  void write_status(const ViewStatus& status, const Heartbeat& heartbeat);
   void close();
 
   // Something ended, and nothing is left that anybody could look at: `plvo live --stream - | head`.
@@ -42,8 +47,9 @@ class LiveOutputs {
   std::uint64_t dropped_lines() const;
 
  private:
-  Status open_view(const std::string& address);
+  Status open_view(const std::string& address, const std::vector<std::string>& names);
   Status open_stream(const std::string& address);
+  void to_streams(const std::function<Status(PoseStream&)>& write);
 
   Console& console_;
   RunOutputs files_;
@@ -52,6 +58,7 @@ class LiveOutputs {
   std::unique_ptr<ViewServer> view_;
   bool lens_is_straight_ = true;
   std::int64_t next_status_ns_ = 0;
+  std::int64_t next_heartbeat_ns_ = 0;
   Status failure_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 
@@ -45,6 +46,8 @@ Status LiveSession::open() {
   if (Status status = block_.init(model, config); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
+  if (!options_.summary.empty())
+    if (Status status = LineFile::check(options_.summary); !status.ok()) return status;
   if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
     return status;
   if (!options_.record.empty())
@@ -70,11 +73,14 @@ void LiveSession::loop() {
   RgbdFrame frame;
   std::int64_t arrival_ns = 0;
   while (!over()) {
-    if (!wait_for_turn()) continue;
+    if (!wait_for_turn()) {
+      tell_status();
+      continue;
+    }
     const FrameRing::Take take = ring_->take(frame, arrival_ns, kPatience_ms);
     if (take == FrameRing::Take::kClosed) return;
     if (take == FrameRing::Take::kFrame) handle(frame, arrival_ns);
-    if (take == FrameRing::Take::kTimeout) outputs_.write_status(view_status());
+    if (take == FrameRing::Take::kTimeout) tell_status();
     if (console_.wants_line()) show_line(view_status(), record_.result);
   }
 }
@@ -105,6 +111,12 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   outputs_.write(record_, frame, block_.odometry(), view_status());
   ++record_.number;
   if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
+}
+
+// What is said while there is no pose to tell.
+void LiveSession::tell_status() {
+  const LiveCapture::State capture = capture_->state();
+  outputs_.write_status(view_status(), {capture.word(), capture.seconds_since_frame, capture.words});
 }
 
 ViewStatus LiveSession::view_status() const {
@@ -149,10 +161,15 @@ void LiveSession::finish() {
   summary_.arena_bytes = block_.odometry().memory_used();
   summary_.arena_peak = block_.odometry().memory_peak();
   if (options_.quiet) return;
-  // Where standard output carries the poses, nothing else may.
-  const auto& streams = options_.outputs.streams;
-  const bool taken = std::find(streams.begin(), streams.end(), "-") != streams.end();
-  fmt::print(taken ? stderr : stdout, "{}", summary_.to_text());
+  const OutputOptions& files = options_.outputs.files;
+  std::vector<std::string> paths = options_.outputs.streams;
+  paths.insert(paths.end(),
+               {files.trajectory, files.covariance, files.motions, files.stats, options_.summary});
+  if (takes_standard_output(paths)) {
+    fmt::print(stderr, "{}", summary_.to_text());
+  } else {
+    summary_failure_ = print(summary_.to_text());
+  }
 }
 
 int LiveSession::judge() {
@@ -161,6 +178,7 @@ int LiveSession::judge() {
     if (Status status = file.open(options_.summary, summary_.to_json().dump(2)); !status.ok())
       return fail(status);
   }
+  if (!summary_failure_.ok()) return fail(summary_failure_);
   const LiveCapture::State& capture = summary_.capture;
   if (!capture.end.ok()) {
     fail(capture.end);
@@ -172,9 +190,8 @@ int LiveSession::judge() {
                      capture.words));
     return kExitNoSensor;
   }
-  if (summary_.tracked() > 0) return kExitSuccess;
-  fail(fmt::format("no frame could be tracked{}{}", summary_.main_reason().empty() ? "" : ": ",
-                   summary_.main_reason()));
+  if (!summary_.failed()) return kExitSuccess;
+  fail(summary_.why_failed());
   return kExitNothingTracked;
 }
 

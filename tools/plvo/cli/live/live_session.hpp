@@ -41,6 +41,7 @@ class LiveSession {
   bool over() const;
   bool wait_for_turn();
   void handle(const RgbdFrame& frame, std::int64_t arrival_ns);
+  void tell_status();
   ViewStatus view_status() const;
   void show_line(const ViewStatus& status, const TrackResult& result);
   void finish();
@@ -60,7 +61,7 @@ class LiveSession {
   double latency_ms_ = 0;
   std::int64_t start_ns_ = 0;
   std::int64_t next_turn_ns_ = 0;
-  Status recorder_failure_;
+  Status recorder_failure_, summary_failure_;
 };
 
 }  // namespace plvo::cli

@@ -6,9 +6,11 @@
 #include <memory>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/host/posix_clock.hpp"
@@ -19,12 +21,11 @@ namespace {
 constexpr int kPatience_ms = 100;
 constexpr const char* kHelp =
     "Examples:\n"
-    "  plvo record walk                            a new folder walk/ with PNG images; then: plvo run walk\n"
-    "  plvo record walk.oni --seconds 60           one file of OpenNI2; then: plvo live --device walk.oni\n"
-    "  plvo record walk --device walk.oni          the one from the other\n"
+    "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
+    "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
+    "  plvo record walk --device walk.oni    the one from the other\n"
     "\n"
-    "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n"
-    "\n";
+    "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
 
 struct RecordOptions {
   LiveCameraOptions camera;
@@ -89,37 +90,50 @@ int record_command(const RecordOptions& options) {
   console.clear();
   const LiveCapture::State state = capture.state();
   if (!options.quiet) {
-    fmt::print("{} frames in {} ({:.1f} s{})", recording.frames(), options.path, seconds(),
-               interrupted() ? ", ended by Ctrl-C" : "");
+    std::string text = fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), options.path,
+                                   seconds(), interrupted() ? ", ended by a signal" : "");
     if (recording.dropped() > 0)
-      fmt::print(
+      text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
-    fmt::print("; next: plvo {}{}\n", is_oni_file(options.path) ? "live --device " : "run ", options.path);
+    if (Status status = print(text + fmt::format("; next: plvo run {}\n", options.path)); !status.ok())
+      return fail(status);
   }
   return judge(options, state, stopped);
+}
+
+void check(const CLI::App& command, const RecordOptions& options) {
+  check_live_camera_options(command, options.camera);
+  FileRoles files;
+  if (is_oni_file(options.path)) {
+    refuse_group(
+        command, kCalibrationGroup,
+        "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
+    files.writes("path", options.path);
+  } else {
+    for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt"})
+      files.writes("path", std::filesystem::path(options.path) / name);
+  }
+  add_inputs(options.camera, files);
+  files.check();
 }
 
 }  // namespace
 
 void add_record(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "Keep what a sensor sees, as a folder or an .oni file");
-  command->add_option("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file")
-      ->required()
-      ->type_name("DIR|FILE.oni");
-  add_live_camera_options(*command, options->camera);
-  command
-      ->add_option("--frames", options->frames,
-                   "End after so many frames (an .oni file may get one or two more)")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("NUMBER");
-  command->add_option("--seconds", options->seconds, "End after so long")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("SECONDS");
-  command->add_flag("--quiet", options->quiet, "No progress line and no summary; warnings remain");
-  command->footer(std::string(kHelp) + kExitCodeHelp);
-  command->callback([options, &exit_code] { exit_code = record_command(*options); });
+  CLI::App& command =
+      add_command(app, "record", "Keep what a sensor sees, as a folder or an .oni file", kHelp);
+  OptionGroup group(command);
+  require(group.path("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file",
+                     "DIR|FILE.oni"));
+  add_live_camera_options(command, options->camera);
+  add_limit_options(command, options->frames, options->seconds);
+  group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return record_command(*options);
+  });
 }
 
 }  // namespace plvo::cli

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo run: frames of a recorded or simulated camera in, a trajectory with covariances out.
 #include <fmt/core.h>
-
 #include <unistd.h>
-#include <map>
+
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/camera_options.hpp"
+#include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/odometry_options.hpp"
-#include "plvo/cli/common/progress.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/run/overlay.hpp"
 #include "plvo/cli/run/run_history.hpp"
@@ -26,6 +27,12 @@ namespace {
 
 constexpr std::size_t kReportedDamages = 10;  // further ones are only counted
 constexpr std::size_t kUnknownFrameCount = 4096;
+constexpr const char* kHelp =
+    "Examples:\n"
+    "  plvo run --camera sim --frames 100                   no sensor and no recording needed\n"
+    "  plvo run DIR --camera-model tum-fr1 --out t.txt      a TUM recording of the fr1 series\n"
+    "  plvo run walk --report run.html                      what plvo record or plvo simulate made\n"
+    "  plvo run walk --quiet --out - | your_program         the trajectory into a pipe\n";
 
 struct RunOptions {
   CameraOptions camera;
@@ -47,40 +54,43 @@ bool wait_for_enter() {
 
 class Run {
  public:
-  explicit Run(const RunOptions& options) : options_(options) {}
+  explicit Run(const RunOptions& options) : options_(options), console_(options.quiet) {}
 
   int execute() {
     if (Status status = open(); !status.ok()) return fail(status);
     catch_interrupt();
     const Status failure = loop();
-    finish();
+    console_.clear();
+    Status written = finish();
     if (!failure.ok()) return fail(failure);
-    if (Status status = write_summary(); !status.ok()) return fail(status);
-    if (summary_->tracked() > 0) return kExitSuccess;
-    fail(fmt::format("no frame could be tracked{}{}", summary_->main_reason().empty() ? "" : ": ",
-                     summary_->main_reason()));
+    if (written.ok()) written = write_results();
+    if (!written.ok()) return fail(written);
+    if (!summary_->failed()) return kExitSuccess;
+    fail(summary_->why_failed());
     return kExitNothingTracked;
   }
 
  private:
   // Everything that can be wrong is found before the first file is made.
   Status open() {
-    if (Status status = open_camera(options_.camera, opened_); !status.ok()) return status;
+    if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
     Config config = make_config(options_.odometry);
     config.stage_clock = posix_thread_cpu_ns;
     if (Status status = block_.init(opened_.camera->model(), config); !status.ok()) return status;
-    summary_ = std::make_unique<RunSummary>(opened_.frame_count.value_or(kUnknownFrameCount));
+    summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
     history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
                                             opened_.frame_count.value_or(kUnknownFrameCount));
+    for (const std::string& file : {options_.report, options_.summary})
+      if (!file.empty())
+        if (Status status = LineFile::check(file); !status.ok()) return status;
     if (!options_.overlay.empty())
       if (Status status = overlay_.open(options_.overlay); !status.ok()) return status;
     return outputs_.open(options_.outputs);
   }
 
   Status loop() {
-    Progress progress(clock_, options_.quiet, opened_.frame_count);
     PacedCamera camera(*opened_.camera, options_.pace, clock_, wait_for_enter);
     prefault_program();
     summary_->resident_start = resident_memory();
@@ -93,10 +103,9 @@ class Run {
       record.result.stamp_ns = frame.stamp_ns;
       if (record.damaged()) {
         if (record.camera_status.code() != StatusCode::kDamaged) return record.camera_status;
-        if (summary_->damaged() < kReportedDamages) {
-          progress.clear();
-          warn(fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
-        }
+        if (summary_->damaged() < kReportedDamages)
+          console_.write(LogLevel::kWarning,
+                         fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
         const std::int64_t start = posix_thread_cpu_ns();
         record.result = block_.odometry().track(frame);
@@ -107,22 +116,38 @@ class Run {
       if (Status status = outputs_.write(record); !status.ok()) return status;
       if (!record.damaged())
         if (Status status = overlay_.write(record.number, block_.odometry()); !status.ok()) return status;
-      progress.show(record, summary_->lost());
+      if (console_.wants_line()) show_line(record);
     }
     return {};
   }
 
-  void finish() {
+  void show_line(const FrameRecord& record) {
+    const TrackResult& result = record.result;
+    console_.show_line(
+        fmt::format("frame {}{} {}  points {}  lines {}  {:.1f} ms  lost {}", record.number + 1,
+                    opened_.frame_count ? fmt::format("/{}", *opened_.frame_count) : "",
+                    record.damaged() ? "damaged" : to_string(result.state), result.points.inliers,
+                    result.lines.inliers, static_cast<double>(record.cpu_ns) * 1e-6, summary_->lost()));
+  }
+
+  Status finish() {
     summary_->resident_end = resident_memory();
     summary_->interrupted = interrupted();
     summary_->arena_bytes = block_.odometry().memory_used();
     summary_->arena_peak = block_.odometry().memory_peak();
-    if (const Status status = history_->evaluate(opened_); !status.ok()) warn(status.message());
+    if (const Status status = history_->evaluate(opened_); !status.ok())
+      console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
-    if (!options_.quiet) fmt::print("{}", summary_->to_text());
+    if (options_.quiet) return {};
+    const OutputOptions& o = options_.outputs;
+    if (!takes_standard_output(
+            {o.trajectory, o.covariance, o.motions, o.stats, options_.summary, options_.report}))
+      return print(summary_->to_text());
+    fmt::print(stderr, "{}", summary_->to_text());
+    return {};
   }
 
-  Status write_summary() {
+  Status write_results() {
     if (!options_.report.empty())
       if (Status status = history_->write_report(options_.report, *summary_); !status.ok()) return status;
     if (options_.summary.empty()) return {};
@@ -131,6 +156,7 @@ class Run {
   }
 
   RunOptions options_;
+  Console console_;
   OpenedCamera opened_;
   OdometryBlock block_;
   RunOutputs outputs_;
@@ -140,45 +166,42 @@ class Run {
   PosixClock clock_;
 };
 
+void check(const CLI::App& command, const RunOptions& options) {
+  check_camera_options(command, options.camera);
+  if (options.report.empty())
+    refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
+  FileRoles files;
+  for (const auto& [option, path] : options.outputs.named()) files.writes(option, path);
+  files.writes("--json", options.summary);
+  files.writes("--report", options.report);
+  files.writes_folder("--overlay", options.overlay);
+  add_inputs(options.camera, files);
+  files.check();
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Track a recorded or simulated sequence");
-  add_camera_options(*command, options->camera);
-  const std::map<std::string, Pace> paces = {
-      {"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}};
-  command
-      ->add_option("--pace", options->pace, "fast; realtime, as the stamps say; step, a frame for each Enter")
-      ->transform(CLI::CheckedTransformer(paces).description(""))
-      ->type_name("PACE");
-  const std::string outputs = "Outputs (docs/formats.md)";
-  const auto file = [&](const char* name, std::string& path, const char* what) {
-    command->add_option(name, path, what)->type_name("FILE")->group(outputs);
-  };
-  file("--out", options->outputs.trajectory, "Trajectory, TUM format: one line per tracked frame");
-  file("--covariance", options->outputs.covariance, "6x6 covariance of each pose");
-  file("--motions", options->outputs.motions,
-       "Motion from the reference of each frame, with its 6x6 covariance");
-  file("--stats", options->outputs.stats, "CSV: one row per frame, lost and damaged ones with the reason");
-  file("--json", options->summary, "The summary as JSON");
-  file("--report", options->report, "A page that shows the run: one HTML file, no network");
-  command->add_option("--report-frames", options->report_frames, "Frames with pictures in the report, about")
-      ->capture_default_str()
-      ->type_name("NUMBER")
-      ->group(outputs);
-  command
-      ->add_option("--overlay", options->overlay,
-                   "A PNG of each frame with its keypoints, segments and matches")
-      ->type_name("DIR")
-      ->group(outputs);
-  command->add_flag("--quiet", options->quiet, "No progress line and no summary")->group(outputs);
-  add_odometry_options(*command, options->odometry);
-  command->footer(kExitCodeHelp);
-  command->callback([options, &exit_code] {
-    if (options->camera.folder.empty() && options->camera.kind.empty())
-      throw CLI::RequiredError("A sequence: plvo run DIR, or plvo run --camera sim");
-    exit_code = Run(*options).execute();
+  CLI::App& command = add_command(app, "run", "Track a recorded or simulated sequence", kHelp);
+  add_camera_options(command, options->camera);
+  OptionGroup(command).choice(
+      "--pace", options->pace,
+      Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}},
+      "As fast as it goes (default), as the stamps say, or a frame for each Enter");
+  add_output_options(command, options->outputs);
+  OptionGroup outputs(command, kOutputGroup);
+  outputs.path("--json", options->summary, "The summary as JSON");
+  outputs.path("--report", options->report, "A page that shows the run: one HTML file, no network");
+  outputs.whole("--report-frames", options->report_frames, 1, 100'000,
+                "About so many frames with pictures in the report (default 60)");
+  outputs.path("--overlay", options->overlay,
+               "Folder for a PNG of each frame with its keypoints, segments and matches", "DIR");
+  outputs.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  add_odometry_options(command, options->odometry);
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return Run(*options).execute();
   });
 }
 

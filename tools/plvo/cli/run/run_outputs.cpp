@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/host/stamp_text.hpp"
 
 namespace plvo::cli {
@@ -26,6 +28,20 @@ void append_counts(std::string& row, const FeatureCounts& c) {
 }
 
 }  // namespace
+
+void add_output_options(CLI::App& command, OutputOptions& options) {
+  OptionGroup group(command, kOutputGroup);
+  group.path("--out", options.trajectory, "Trajectory, TUM format: a line for each frame that has a pose");
+  group.path("--covariance", options.covariance, "6x6 covariance of each pose");
+  group.path("--motions", options.motions,
+             "Motion from the reference of each frame, with its 6x6 covariance");
+  group.path("--stats", options.stats, "CSV: a row for each frame, lost and damaged ones with the reason");
+}
+
+bool takes_standard_output(const std::vector<std::string>& paths) {
+  return std::any_of(paths.begin(), paths.end(),
+                     [](const std::string& path) { return is_standard_output(path); });
+}
 
 Status RunOutputs::open(const OutputOptions& options) {
   Status status;

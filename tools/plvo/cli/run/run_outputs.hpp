@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a run that grow line by line. Each is valid at every moment; an output nobody asked for takes
-// no line.
+// The files of a run that grow line by line. Each is valid at every moment; an output nobody asked for
+// takes no line.
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/frame_record.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/host/trajectory_file.hpp"
@@ -13,7 +16,18 @@ namespace plvo::cli {
 
 struct OutputOptions {
   std::string trajectory, covariance, motions, stats;
+
+  // For each: how the user names it, and its path.
+  std::vector<std::pair<std::string, std::string>> named() const {
+    return {{"--out", trajectory}, {"--covariance", covariance}, {"--motions", motions}, {"--stats", stats}};
+  }
 };
+void add_output_options(CLI::App& command, OutputOptions& options);
+
+inline constexpr const char* kOutputGroup = "Outputs (a FILE may be -, standard output)";
+
+// Whether one of the paths is standard output, which then carries nothing else.
+bool takes_standard_output(const std::vector<std::string>& paths);
 
 class RunOutputs {
  public:

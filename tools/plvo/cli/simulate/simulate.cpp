@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo simulate: a recording of a walk through a room that does not exist, with exact ground truth.
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 
+#include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/simulator_arguments.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"
 
 namespace plvo::cli {
 namespace {
+
+constexpr const char* kHelp =
+    "Examples:\n"
+    "  plvo simulate --out walk                                   300 frames; then: plvo run walk\n"
+    "  plvo simulate --out dim --scene hall --light varying       a harder one\n";
 
 struct SimulateOptions {
   SimulatorArguments simulator;
@@ -31,35 +39,43 @@ int simulate_command(const SimulateOptions& options) {
   if (status.ok()) status = SimulatedCamera::create(settings, camera);
   if (!status.ok()) return fail(status);
   catch_interrupt();
-  const bool progress = !options.quiet && isatty(STDERR_FILENO) == 1;
+  Console console(options.quiet);
   int written = 0;
   status = write_tum_folder(*camera, options.folder, [&](int done, int total) {
     written = done;
-    if (progress) fmt::print(stderr, "\r\033[Kframe {}/{}", done, total);
+    if (console.wants_line()) console.show_line(fmt::format("frame {}/{}", done, total));
     return !interrupted();
   });
-  if (progress) fmt::print(stderr, "\r\033[K");
-  if (!status.ok()) return fail(status);
-  if (!options.quiet) {
-    fmt::print("{} frames in {}{}; next: plvo run {}\n", written, options.folder,
-               interrupted() ? " (interrupted)" : "", options.folder);
-  }
-  return kExitSuccess;
+  console.clear();
+  if (status.ok() && !options.quiet)
+    status = print(fmt::format("{} frames in {}{}; next: plvo run {}\n", written, options.folder,
+                               interrupted() ? " (interrupted)" : "", options.folder));
+  return status.ok() ? kExitSuccess : fail(status);
+}
+
+void check(const SimulateOptions& options) {
+  FileRoles files;
+  for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", "groundtruth.txt"})
+    files.writes("--out", std::filesystem::path(options.folder) / name);
+  files.reads(options.simulator.trajectory);
+  files.check();
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "Write a simulated sequence as a TUM folder");
-  command->add_option("--out", options->folder, "Folder to write")->required()->type_name("DIR");
-  command->add_option("--frames", options->frames, "How many (default 300)")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("NUMBER");
-  command->add_flag("--quiet", options->quiet, "No progress line");
-  add_simulator_options(*command, options->simulator);
-  command->footer(kExitCodeHelp);
-  command->callback([options, &exit_code] { exit_code = simulate_command(*options); });
+  CLI::App& command = add_command(app, "simulate", "Write a simulated sequence as a TUM folder", kHelp);
+  OptionGroup group(command);
+  require(group.path("--out", options->folder, "A new folder for the sequence", "DIR"));
+  group.whole("--frames", options->frames, 1, kMostSimulatedFrames,
+              "Only the first so many frames (default 300)");
+  group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  add_simulator_options(command, options->simulator);
+  on_command(command, exit_code, [options] {
+    check(*options);
+    return simulate_command(*options);
+  });
 }
 
 }  // namespace plvo::cli

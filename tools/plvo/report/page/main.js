@@ -45,8 +45,9 @@ function metricsSection(m) {
   rows.push(["ATE", mm(m.ate_m.rmse), mm(m.ate_m.identity.rmse), "", ""]);
   rows.push(["end-point drift", mm(m.end_drift.translation_m), mm(m.end_drift.identity.translation_m),
     degrees(m.end_drift.rotation_deg), degrees(m.end_drift.identity.rotation_deg)]);
-  const nees = ["nees_motion", "nees_pose"].filter(k => m[k] && m[k].samples).map(k =>
-    `NEES of the ${k.slice(5)}s: ${m[k].mean.toFixed(2)} (6 is consistent), ` +
+  const errors = { nees_motion: "of the motions", nees_second: "over a second", nees_pose: "of the poses" };
+  const nees = Object.keys(errors).filter(k => m[k] && m[k].samples).map(k =>
+    `NEES ${errors[k]}: ${m[k].mean.toFixed(2)} (6 is consistent), ` +
     `${(100 * m[k].inside_95_percent_bound).toFixed(0)} % inside the 95 % bound.`).join(" ");
   const section = table("errors-table", "Errors against the ground truth",
     ["RMSE", "mm", "still", "\u00b0", "still"], rows,

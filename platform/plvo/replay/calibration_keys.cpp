@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/calibration_keys.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace plvo::calibration_form {
+namespace {
+
+namespace fs = std::filesystem;
+
+using N = Numbers;
+constexpr auto kKeys = std::to_array<Key>({
+    {"fx", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.pinhole.fx; }},
+    {"fy", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.pinhole.fy; }},
+    {"cx", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.pinhole.cx; }},
+    {"cy", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.pinhole.cy; }},
+    {"depth_scale", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.depth_units_per_metre; }},
+    {"k1", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k1; }},
+    {"k2", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k2; }},
+    {"p1", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.p1; }},
+    {"p2", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.p2; }},
+    {"k3", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k3; }},
+    {"readout_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.readout_s; }},
+    // Keys alone from here on.
+    {"width", KeyKind::kSize, [](N& n) -> double& { return n.width; }},
+    {"height", KeyKind::kSize, [](N& n) -> double& { return n.height; }},
+});
+static_assert(kKeys.size() <= kMaxKeys && kPlaces <= kKeys.size());
+
+std::string all_names() {
+  std::string names;
+  for (const Key& key : kKeys) names.append(names.empty() ? "" : " ").append(key.name);
+  return names;
+}
+
+bool is_image_side(double value) { return value >= 1 && value <= 100000 && value == std::floor(value); }
+
+}  // namespace
+
+std::span<const Key> keys() { return kKeys; }
+
+bool parse_number(std::string_view text, double& value) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+Status damaged(const fs::path& path, std::string_view what) {
+  return {StatusCode::kDamaged, fmt::format("{}: {}", path.string(), what)};
+}
+
+void Collector::put(std::size_t index, double value) {
+  kKeys[index].of(numbers_) = value;
+  given_[index] = true;
+}
+
+void Collector::set_place(std::size_t place, double value) { put(place, value); }
+
+void Collector::set_lens(const Pinhole& pinhole, const Distortion& distortion) {
+  numbers_.calibration.camera.pinhole = pinhole;
+  numbers_.calibration.camera.distortion = distortion;
+  for (std::size_t i = 0; i < kKeys.size(); ++i)
+    if (kKeys[i].kind == KeyKind::kLens) given_[i] = true;
+}
+
+Status Collector::set(std::string_view key, std::string_view value) {
+  for (std::size_t i = 0; i < kKeys.size(); ++i) {
+    if (kKeys[i].name != key) continue;
+    double number = 0;
+    if (!parse_number(value, number)) return damaged(path_, fmt::format("'{}' needs a number after it", key));
+    if (given_[i]) return damaged(path_, fmt::format("'{}' is said twice", key));
+    put(i, number);
+    return {};
+  }
+  return damaged(path_, fmt::format("'{}' is not known; the keys are {}", key.substr(0, 40), all_names()));
+}
+
+bool Collector::given(std::string_view key) const {
+  for (std::size_t i = 0; i < kKeys.size(); ++i)
+    if (kKeys[i].name == key) return given_[i];
+  return false;
+}
+
+Status Collector::finish(Calibration& calibration) {
+  if (!given("fx") || !given("fy") || !given("cx") || !given("cy"))
+    return damaged(path_, "fx, fy, cx and cy must all be given");
+  if (given("width") != given("height"))
+    return damaged(path_, "width and height must be given both, or neither");
+  Calibration& result = numbers_.calibration;
+  result.has_size = given("width");
+  if (result.has_size) {
+    if (!is_image_side(numbers_.width) || !is_image_side(numbers_.height))
+      return damaged(path_, "width and height must be whole numbers of pixels");
+    result.camera.width = static_cast<int>(numbers_.width);
+    result.camera.height = static_cast<int>(numbers_.height);
+  }
+  result.depth_scale_given = given("depth_scale");
+  result.readout_given = given("readout_s");
+  calibration = result;
+  return {};
+}
+
+}  // namespace plvo::calibration_form

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// However `plvo live` and `plvo record` are told to end - Ctrl-C, a supervisor's SIGTERM, a terminal that
+// closes - their files are whole. With the real program, signals and the virtual device.
+#include <nlohmann/json.hpp>
+
+#include "live_command.hpp"
+
+namespace plvo_test {
+namespace {
+
+class CliLiveSignals : public LiveCommand {
+ protected:
+  void start_live(const std::string& before = "") {
+    start("live --every-frame --out " + path("t.txt") + " --stats " + path("s.csv") + " --covariance " +
+              path("c.txt") + " --json " + path("j.json") + " --record " + path("walk") +
+              " --stream unix:" + path("poses"),
+          "", before);
+    EXPECT_TRUE(frames_reach(10)) << err();
+  }
+  bool frames_reach(long count) const {
+    return comes_true([&] { return lines_in(read_file(path("s.csv"))) > count; });
+  }
+  // Every file says the same, to its last line.
+  void expect_whole_files() const {
+    const nlohmann::json json = nlohmann::json::parse(read_file(path("j.json")));
+    EXPECT_EQ(json["interrupted"], true);
+    const long frames = json["frames"], poses = json["tracked"].get<long>() + json["initialised"].get<long>();
+    EXPECT_EQ(lines_in(read_file(path("s.csv"))), frames + 1);
+    EXPECT_EQ(lines_in(read_file(path("t.txt"))), poses + 1);
+    EXPECT_EQ(lines_in(read_file(path("c.txt"))), poses + 1);
+    for (const char* file : {"s.csv", "t.txt", "c.txt"})
+      EXPECT_EQ(read_file(path(file)).back(), '\n') << file;
+    EXPECT_FALSE(std::filesystem::exists(path("poses"))) << "the socket is tidied away";
+    expect_whole_recording(json["recording"]["frames"]);
+  }
+  // What the recording lists is there, and can be read.
+  void expect_whole_recording(long frames) const {
+    EXPECT_EQ(lines_in(read_file(path("walk/rgb.txt"))), frames + 1);
+    EXPECT_EQ(lines_in(read_file(path("walk/depth.txt"))), frames + 1);
+    const auto replay = plvo("run " + path("walk") + " --json " + path("r.json"));
+    EXPECT_EQ(replay.exit_code, 0) << replay.err;
+    const nlohmann::json json = nlohmann::json::parse(read_file(path("r.json")));
+    EXPECT_EQ(json["frames"], frames);
+    EXPECT_EQ(json["damaged"], 0);
+  }
+};
+
+TEST_F(CliLiveSignals, CtrlC) {
+  start_live();
+  send(SIGINT);
+  EXPECT_EQ(wait(), 0) << err();
+  expect_whole_files();
+}
+
+TEST_F(CliLiveSignals, Termination) {
+  start_live();
+  send(SIGTERM);
+  EXPECT_EQ(wait(), 0) << err();
+  expect_whole_files();
+}
+
+TEST_F(CliLiveSignals, ATerminalThatClosesSaysItTwice) {
+  start_live();
+  send(SIGHUP);
+  send(SIGHUP);
+  send(SIGTERM);
+  send(SIGTERM);
+  EXPECT_EQ(wait(), 0) << err();
+  expect_whole_files();
+}
+
+TEST_F(CliLiveSignals, NohupOutlivesItsTerminal) {
+  start_live("trap '' HUP; ");
+  send(SIGHUP);
+  const long before = lines_in(read_file(path("s.csv")));
+  EXPECT_TRUE(frames_reach(before + 10)) << "it ended: " << err();
+  send(SIGTERM);
+  EXPECT_EQ(wait(), 0) << err();
+  expect_whole_files();
+}
+
+TEST_F(CliLiveSignals, RecordKeepsWholeFilesToo) {
+  for (const int signal : {SIGHUP, SIGTERM}) {
+    std::filesystem::remove_all(path("walk"));
+    start("record " + path("walk"));
+    EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("walk/depth.txt"))) > 10; })) << err();
+    send(signal);
+    EXPECT_EQ(wait(), 0) << err();
+    expect_whole_recording(lines_in(read_file(path("walk/rgb.txt"))) - 1);
+  }
+}
+
+}  // namespace
+}  // namespace plvo_test

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where results go: never over an input or another output, into pipes, and not silently into nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "plvo/replay/image_writer.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::read_file;
+using test::run_command;
+using test::TemporaryFolder;
+using test::write_file;
+
+const std::string kPlvo = PLVO_BINARY;
+constexpr int kFrames = 4;
+
+const fs::path& master_sequence() {
+  static const TemporaryFolder folder;
+  static const fs::path sequence = [] {
+    const CommandResult made =
+        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --frames " +
+                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return folder / "walk";
+  }();
+  return sequence;
+}
+
+class CliOutputs : public ::testing::Test {
+ protected:
+  CliOutputs() { fs::copy(master_sequence(), folder_ / "walk", fs::copy_options::recursive); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  CommandResult run(const std::string& more) const {
+    return run_command(kPlvo + " run " + path("walk") + ' ' + more);
+  }
+  void expect_refused(const CommandResult& r, const std::string& words) const {
+    EXPECT_EQ(r.exit_code, 2) << r.out << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+  }
+  static std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+  fs::path first_image(const char* kind) const {
+    return fs::directory_iterator(folder_ / "walk" / kind)->path();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliOutputs, NoOutputTakesThePlaceOfAnInput) {
+  const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
+  fs::create_symlink(folder_ / "walk/groundtruth.txt", folder_ / "link");
+  fs::create_hard_link(folder_ / "walk/groundtruth.txt", folder_ / "hard");
+  for (const std::string& name :
+       {path("walk/groundtruth.txt"), path("walk/../walk/./groundtruth.txt"), path("link"), path("hard"),
+        first_image("rgb").string(), path("walk/calibration.txt")}) {
+    for (const char* option : {"--out ", "--covariance ", "--motions ", "--stats ", "--json ", "--report "})
+      expect_refused(run(option + name), "is an input, which would be overwritten; choose another name");
+    EXPECT_EQ(read_file(folder_ / "walk/groundtruth.txt"), truth);
+  }
+  // Relative to where the user stands.
+  expect_refused(run_command("cd " + path("walk") + " && " + kPlvo + " run . --out rgb.txt"),
+                 "--out: rgb.txt is");
+  expect_refused(run("--overlay " + path("walk/rgb")), "holds inputs, which could be overwritten");
+  write_file(folder_ / "c.txt", "131 131 79.5 59.5 5000\n");
+  expect_refused(run("--calibration " + path("c.txt") + " --out " + path("c.txt")), "is an input");
+  // A result in the folder of the sequence is no input.
+  EXPECT_EQ(run("--quiet --out " + path("walk/estimate.txt")).exit_code, 0);
+  EXPECT_EQ(run("--quiet --out " + path("walk/estimate.txt")).exit_code, 0);
+}
+
+TEST_F(CliOutputs, TheOtherCommandsSpareTheirInputsToo) {
+  const std::string truth = path("walk/groundtruth.txt");
+  const std::string before = read_file(truth);
+  const std::string eval = kPlvo + " eval --gt " + truth + " --est " + truth;
+  expect_refused(run_command(eval + " --report " + truth), "--report: ");
+  expect_refused(run_command(eval + " --json " + truth), "--json: ");
+  fs::create_directory(folder_ / "new");
+  fs::copy(truth, folder_ / "new/groundtruth.txt");
+  expect_refused(run_command(kPlvo + " simulate --scene bare --size 96x64 --frames 1 --trajectory " +
+                             path("new/groundtruth.txt") + " --out " + path("new")),
+                 "is an input");
+  write_file(folder_ / "walk.oni", "mine");
+  expect_refused(run_command(kPlvo + " live --device " + path("walk.oni") + " --out " + path("walk.oni")),
+                 "is an input");
+  expect_refused(run_command(kPlvo + " run " + path("walk.oni") + " --stats " + path("walk.oni")),
+                 "is an input");
+  expect_refused(run_command(kPlvo + " record " + path("walk.oni") + " --device " + path("walk.oni")),
+                 "is an input");
+  fs::create_directory(folder_ / "half");
+  write_file(folder_ / "half/calibration.txt", "131 131 79.5 59.5 5000\n");
+  expect_refused(
+      run_command(kPlvo + " record " + path("half") + " --calibration " + path("half/calibration.txt")),
+      "is an input");
+  expect_refused(run_command(kPlvo + " doctor --calibration " + path("half/calibration.txt") + " --json " +
+                             path("half/calibration.txt")),
+                 "is an input");
+  EXPECT_EQ(read_file(truth), before);
+  EXPECT_EQ(read_file(folder_ / "walk.oni"), "mine");
+}
+
+TEST_F(CliOutputs, TwoOutputsHaveTwoNames) {
+  expect_refused(run("--out " + path("a") + " --stats " + path("a")), "is already written by --out");
+  expect_refused(run("--out " + path("a") + " --json " + path("walk/../a")), "is already written by --out");
+  fs::create_symlink("a", folder_ / "link");  // to what is not there yet
+  expect_refused(run("--out " + path("a") + " --report " + path("link")), "is already written by --out");
+  expect_refused(run("--out - --stats /dev/stdout"), "standard output is already written by --out");
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+  EXPECT_EQ(run("--quiet --out /dev/null --stats /dev/null").exit_code, 0);  // nothing is lost there
+}
+
+TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
+  ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
+  const std::string expected = read_file(folder_ / "t.txt");
+  for (const char* name : {"-", "/dev/stdout", "/dev/fd/1"}) {
+    const CommandResult r = run(std::string("--out ") + name);
+    EXPECT_EQ(r.exit_code, 0) << r.err;
+    EXPECT_EQ(r.out, expected) << name;
+    EXPECT_NE(r.err.find("resident memory"), std::string::npos) << "the summary: " << r.err;
+  }
+  EXPECT_EQ(lines(run("--quiet --stats -").out), 1 + kFrames);
+  EXPECT_EQ(nlohmann::json::parse(run("--json -").out)["frames"], kFrames);
+  EXPECT_EQ(run("--quiet --report -").out.rfind("<!", 0), 0u);
+  // Appending to a file that was there must not cut it.
+  write_file(folder_ / "log", "before\n");
+  EXPECT_EQ(
+      run_command("sh -c '" + kPlvo + " run " + path("walk") + " --quiet --out - >>" + path("log") + "'")
+          .exit_code,
+      0);
+  EXPECT_EQ(read_file(folder_ / "log"), "before\n" + expected);
+}
+
+TEST_F(CliOutputs, WhatCannotBeWrittenToStandardOutputIsAnError) {
+  const std::string truth = path("walk/groundtruth.txt");
+  for (const std::string& words :
+       {"run " + path("walk"), "run " + path("walk") + " --quiet --out -",
+        "run " + path("walk") + " --quiet --json -", "eval --gt " + truth + " --est " + truth,
+        "eval --json - --gt " + truth + " --est " + truth,
+        "simulate --scene bare --size 96x64 --frames 1 --out " + path("one"), std::string("--help"),
+        std::string("run --help"), std::string("--version")}) {
+    for (const char* where : {">/dev/full", ">&-"}) {
+      fs::remove_all(folder_ / "one");
+      const CommandResult r = run_command("sh -c '" + kPlvo + ' ' + words + ' ' + where + "'");
+      EXPECT_EQ(r.exit_code, 1) << words << where << r.err;
+      EXPECT_NE(r.err.find("standard output"), std::string::npos) << words << where << r.err;
+    }
+  }
+}
+
+TEST_F(CliOutputs, AClosedStandardOutputGetsIntoNoFile) {
+  ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
+  EXPECT_EQ(run_command("sh -c '" + kPlvo + " run " + path("walk") + " --out " + path("u.txt") + " >&- 2>&-'")
+                .exit_code,
+            1);
+  EXPECT_EQ(read_file(folder_ / "u.txt"), read_file(folder_ / "t.txt"));
+}
+
+TEST_F(CliOutputs, WhatCannotBeWrittenIsFoundBeforeTheFirstFrame) {
+  write_file(folder_ / "plain", "");
+  for (const char* option : {"--report ", "--json "}) {
+    const CommandResult r = run("--overlay " + path("frames") + " " + option + path("plain") + "/x");
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_NE(r.err.find("choose a path that can be written"), std::string::npos) << r.err;
+    EXPECT_FALSE(fs::exists(folder_ / "frames/000000.png")) << "no frame was tracked before";
+  }
+  EXPECT_EQ(run_command(kPlvo + " simulate --scene bare --size 96x64 --out " + path("plain/x")).exit_code, 1);
+  // A check that finds nothing wrong leaves nothing behind, and an old report whole.
+  write_file(folder_ / "old.html", "old");
+  EXPECT_EQ(
+      run("--report " + path("old.html") + " --json " + path("new.json") + " --out " + path("plain") + "/x")
+          .exit_code,
+      1);
+  EXPECT_EQ(read_file(folder_ / "old.html"), "old");
+  EXPECT_FALSE(fs::exists(folder_ / "new.json"));
+}
+
+TEST_F(CliOutputs, ASequenceThatCannotBeTrackedIsRefusedBeforeTheFirstFrame) {
+  write_file(folder_ / "walk/calibration.txt", "131 131 79.5 59.5 0.001\n");
+  CommandResult r = run("--out " + path("t.txt"));
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("depth"), std::string::npos) << r.err;
+  EXPECT_FALSE(fs::exists(folder_ / "t.txt"));
+}
+
+TEST_F(CliOutputs, AssumptionsAreSaidAtTheStart) {
+  write_file(folder_ / "walk/calibration.txt", "131 131 79.5 59.5 5000\n");
+  CommandResult r = run("--quiet");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_NE(r.err.find("a global shutter is assumed"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("--readout 0.0261"), std::string::npos) << r.err;
+  EXPECT_EQ(run("--quiet --readout 0").err, "");
+  r = run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5");
+  EXPECT_NE(r.err.find("5000 units per metre are assumed"), std::string::npos) << r.err;
+  EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5 --readout 0 --depth-scale 5000").err, "");
+  // Without a calibration, the folder's name may tell the camera; that is said, too.
+  fs::remove(folder_ / "walk/calibration.txt");
+  fs::rename(folder_ / "walk", folder_ / "fr1_walk");
+  r = run_command(kPlvo + " run " + path("fr1_walk") + " --quiet");
+  EXPECT_NE(r.err.find("640x480"), std::string::npos) << "the guess does not fit these images: " << r.err;
+}
+
+TEST_F(CliOutputs, AWalkOfOneFrameIsNoFailure) {
+  const CommandResult r = run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --frames 1");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_NE(r.out.find("started                1"), std::string::npos) << r.out;
+  EXPECT_NE(r.out.find("tracked                0"), std::string::npos) << r.out;
+  EXPECT_EQ(r.err, "");
+}
+
+TEST_F(CliOutputs, LossesAreCountedByKind) {
+  const std::vector<std::uint16_t> none(160 * 120, 0);
+  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth"))
+    ASSERT_TRUE(write_png(entry.path(), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
+  const CommandResult r = run("--json " + path("j"));
+  EXPECT_EQ(r.exit_code, 3);
+  EXPECT_NE(r.out.find("  4 times"), std::string::npos) << r.out;
+  const auto json = nlohmann::json::parse(read_file(folder_ / "j"));
+  EXPECT_EQ(json["lost_reasons"], (nlohmann::json{{"too_few_features", 4}})) << json;
+}
+
+TEST_F(CliOutputs, KittiTimesFitTheirRows) {
+  std::string rows, times;
+  for (int i = 0; i < 10; ++i) {
+    rows += "1 0 0 " + std::to_string(0.1 * i) + " 0 1 0 0 0 0 1 0\n";
+    times += std::to_string(0.1 * i) + '\n';
+  }
+  write_file(folder_ / "kitti", rows);
+  write_file(folder_ / "times", times);
+  write_file(folder_ / "more", times + "1.0\n");
+  const std::string kitti =
+      kPlvo + " eval --gt " + path("kitti") + " --est " + path("kitti") + " --kitti-times ";
+  EXPECT_EQ(run_command(kitti + path("times")).exit_code, 0);
+  const CommandResult more = run_command(kitti + path("more"));
+  EXPECT_EQ(more.exit_code, 1);
+  EXPECT_NE(more.err.find("11 stamps"), std::string::npos) << more.err;
+  const std::string truth = path("walk/groundtruth.txt");
+  const CommandResult tum =
+      run_command(kPlvo + " eval --gt " + truth + " --est " + truth + " --kitti-times " + path("times"));
+  EXPECT_EQ(tum.exit_code, 2);
+  EXPECT_NE(tum.err.find("--kitti-times is for KITTI's rows"), std::string::npos) << tum.err;
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrong command lines: each ends with exit code 2, before anything is opened or written, and with one line
+// that names what is allowed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "command.hpp"
+#include "tiny_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+using test::CommandResult;
+using test::run_command;
+using test::TemporaryFolder;
+
+CommandResult plvo(const std::string& arguments) { return run_command(PLVO_BINARY " " + arguments); }
+
+void expect_usage(const std::string& arguments, const std::string& words) {
+  SCOPED_TRACE("plvo " + arguments);
+  const CommandResult r = plvo(arguments);
+  EXPECT_EQ(r.exit_code, 2) << r.out << r.err;
+  EXPECT_TRUE(r.out.empty()) << r.out;
+  EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+  EXPECT_EQ(r.err.rfind("plvo: error: ", 0), 0u) << r.err;
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  EXPECT_LT(r.err.size(), 300u) << r.err;
+}
+
+TEST(CliUsage, AllowedValuesAreNamedInWords) {
+  expect_usage("run x --features circles", "--features: expected points, lines or both, not 'circles'");
+  expect_usage("run x --preset fast", "--preset: expected default or paper, not 'fast'");
+  expect_usage("run x --reference next", "--reference: expected previous or keyframe, not 'next'");
+  expect_usage("run x --pace slow", "--pace: expected fast, realtime or step, not 'slow'");
+  expect_usage("run --camera film", "--camera: expected sim, not 'film'");
+  expect_usage("run x --camera-model tum-fr9", "expected tum-fr1, tum-fr2, tum-fr3 or kinect-v1-default");
+  expect_usage("simulate --out x --scene moon",
+               "expected corridor, staircase, hall, desk or bare, not 'moon'");
+  expect_usage("eval --gt a --est b --gt-sampling some", "expected nearest or interpolated, not 'some'");
+  expect_usage("eval --gt a --est b --est-format csv", "expected auto, tum, euroc or kitti, not 'csv'");
+  expect_usage("eval --gt a --est b --rpe-delta 3x",
+               "expected frames, seconds or metres, such as 1f, 0.5s or 2m");
+  expect_usage("tilt --led pink", "--led: expected off, green, red, yellow, blink-green or blink-red-yellow");
+}
+
+TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
+  for (const char* number : {"nan", "inf", "-1", "0", "1e300", "", "1x", "0x1"})
+    expect_usage("run x --tolerance '" + std::string(number) + "'",
+                 "expected a number above 0 and up to 3600, not");
+  expect_usage("run x --depth-scale 0", "--depth-scale: expected a number from 1 to 100000, not '0'");
+  expect_usage("run x --fx nan", "--fx: expected a number from 1 to 100000, not 'nan'");
+  expect_usage("run x --readout 20", "--readout: expected a number from 0 to 1, not '20'");
+  expect_usage("run x --distortion 1 2 3 nan",
+               "--distortion: expected a number from -1000 to 1000, not 'nan'");
+  expect_usage("run x --frames 4:1",
+               "--frames: expected a number of frames such as 20, or a range such as 10:20");
+  expect_usage("run x --frames 0", "--frames: expected");
+  expect_usage("run x --report r --report-frames -1", "expected a whole number from 1 to 100000, not '-1'");
+  expect_usage("run x --ransac-seed 18446744073709551616",
+               "expected a whole number from 0 to 18446744073709551615");
+  expect_usage("simulate --out x --frames 1e9", "expected a whole number from 1 to 1000000, not '1e9'");
+  expect_usage("simulate --out x --fps nan", "--fps: expected a number from 1 to 1000, not 'nan'");
+  expect_usage("simulate --out x --size 8x8",
+               "expected WIDTHxHEIGHT from 64x64 to 2047x2047, such as 320x240");
+  expect_usage("simulate --out x --threads 0", "expected a whole number from 1 to 256, not '0'");
+  expect_usage("eval --gt a --est b --offset nan",
+               "--offset: expected a number from -4000000000 to 4000000000");
+  expect_usage("eval --gt a --est b --gt-sampling nearest --max-dt nan",
+               "--max-dt: expected a number above 0");
+  expect_usage("live --rate nan", "--rate: expected a number above 0 and up to 1000, not 'nan'");
+  expect_usage("live --seconds inf", "--seconds: expected a number above 0");
+  expect_usage("record x --frames -1", "--frames: expected a whole number from 1");
+  expect_usage("doctor --seconds 1e300", "--seconds: expected a number above 0");
+  expect_usage("tilt 900", "angle: expected a number from -31 to 31, not '900'");
+  expect_usage("tilt nan", "angle: expected a number from -31 to 31, not 'nan'");
+}
+
+TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
+  expect_usage("",
+               "a command is needed: run, live, record, eval, simulate, doctor or tilt (see plvo --help)");
+  expect_usage("rnu x", "there is no command 'rnu'");
+  expect_usage("recrod x", "there is no command 'recrod'; did you mean record?");
+  expect_usage("x --out y", "there is no command 'x'; choose run, live,");
+  expect_usage("--verbose", "there is no option --verbose");
+  expect_usage("run x --featurse both",
+               "run: there is no option --featurse; did you mean --features? (see plvo run");
+  expect_usage("run x --zoom=3 y", "run: there is no option --zoom");
+  expect_usage("run x y", "run: 'y' is one word too many");
+  expect_usage("record", "record: path is required");
+  expect_usage("eval --gt a", "--est is required");
+  expect_usage("run x --out", "--out");
+  expect_usage("run x --out ''", "--out: expected a path, not an empty word");
+}
+
+TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
+  expect_usage("run", "a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
+  expect_usage("run x --camera sim", "exclude each other");
+  expect_usage("run x --scene hall", "--scene: is for the simulated camera");
+  expect_usage("run x --clean", "--clean: is for the simulated camera");
+  expect_usage("run --camera sim --calibration c", "--calibration: is for recorded sequences");
+  expect_usage("run --camera sim --readout 0.02", "--readout: is for recorded sequences");
+  expect_usage("run --camera sim --tolerance 1", "--tolerance: is for recorded sequences");
+  expect_usage("run --camera sim --frames 5:9", "a simulated walk starts at frame 0");
+  expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
+  expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
+  expect_usage("run x --report-frames 3", "--report-frames: is for a report");
+  expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to an .oni file");
+  expect_usage("live --device x.oni --every-frame", "--every-frame: is what an .oni file does anyway");
+  expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
+  expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
+  expect_usage("eval --gt a --est b --max-dt 0.1", "--max-dt: is for --gt-sampling nearest");
+}
+
+// There is no sensor here: whoever opened one first would say so, with exit code 4.
+TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
+  expect_usage("live --view abc", "--view: expected [ADDRESS:]PORT");
+  expect_usage("live --view 70000", "--view: expected [ADDRESS:]PORT");
+  expect_usage("live --stream abc", "--stream: expected [ADDRESS:]PORT, unix:PATH or -, not 'abc'");
+  expect_usage("live --stream unix:" + std::string(120, 'x'), "a path of 1 to 107 characters");
+  expect_usage("live --mode 640", "--mode: expected WIDTHxHEIGHT@FPS");
+  expect_usage("live --out a --json a", "--json: a is already written by --out");
+}
+
+TEST(CliUsage, TheSameFlagMeansTheSame) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
+  const std::string walk = (folder / "walk").string();
+  // --frames N: the first N; --json FILE, and - for standard output, whatever the command.
+  const CommandResult first = plvo("run " + walk + " --frames 2 --quiet --json -");
+  const CommandResult range = plvo("run " + walk + " --frames 0:2 --quiet --json -");
+  EXPECT_NE(first.out.find("\"frames\": 2,"), std::string::npos) << first.out << first.err;
+  EXPECT_NE(range.out.find("\"frames\": 2,"), std::string::npos) << range.out << range.err;
+  for (const char* command : {"run", "live", "eval", "doctor", "tilt"})
+    EXPECT_NE(plvo(std::string(command) + " --help").out.find("--json FILE"), std::string::npos) << command;
+  for (const char* command : {"run", "live", "record", "simulate"})
+    EXPECT_NE(plvo(std::string(command) + " --help").out.find("Warnings and errors only"), std::string::npos)
+        << command;
+}
+
+}  // namespace
+}  // namespace plvo

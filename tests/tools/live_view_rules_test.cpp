@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whom the live view answers and whom it hangs up on: the names in the Host header, and the rule by which
+// connections yield their places. Both as rules alone, and the names over real sockets too.
+#include <gtest/gtest.h>
+#include <ifaddrs.h>
+
+#include <algorithm>
+
+#include "plvo/view/connection_table.hpp"
+#include "plvo/view/host_names.hpp"
+#include "view_client.hpp"
+
+namespace plvo {
+namespace {
+
+using namespace plvo::test;
+
+TEST(HostNames, OnTheLoopbackItsOwnNamesToTheLetter) {
+  const HostNames names("127.0.0.1", "127.0.0.1", 8080, {});
+  for (const char* good : {"127.0.0.1:8080", "localhost:8080", "LocalHost:8080", "[::1]:8080"})
+    EXPECT_TRUE(names.allows(good)) << good;
+  for (const char* bad : {"",
+                          "127.evil.example",
+                          "127.evil.example:8080",
+                          "127.0.0.1.evil.example:8080",
+                          "127.0.0.2:8080",
+                          "127.0.0.1",
+                          "127.0.0.1:80",
+                          "127.0.0.1:80800",
+                          "127.0.0.1:8080:8080",
+                          " 127.0.0.1:8080",
+                          "127.0.0.1:8080 ",
+                          "localhost.:8080",
+                          "localhost.evil.example:8080",
+                          "evil.example:8080",
+                          "x@127.0.0.1:8080",
+                          "::1:8080",
+                          "[::1]",
+                          "0.0.0.0:8080",
+                          "2130706433:8080",
+                          "127.1:8080",
+                          "192.168.1.5:8080"})
+    EXPECT_FALSE(names.allows(bad)) << bad;
+}
+
+TEST(HostNames, OnOneAddressThatAddressAndTheNameOfTheMachine) {
+  const HostNames names("robot.lan", "192.0.2.7", 8080, {});
+  std::array<char, 256> own{};
+  ASSERT_EQ(::gethostname(own.data(), own.size() - 1), 0);
+  EXPECT_TRUE(names.allows("192.0.2.7:8080"));
+  EXPECT_TRUE(names.allows("robot.lan:8080"));
+  EXPECT_TRUE(names.allows(std::string(own.data()) + ":8080"));
+  for (const char* bad :
+       {"localhost:8080", "192.0.2.8:8080", "192.0.2.7", "192.0.2.7:8081", "evil.example:8080"})
+    EXPECT_FALSE(names.allows(bad)) << bad;
+}
+
+TEST(HostNames, OnEveryAddressThoseOfTheMachineAndNoOthers) {
+  const HostNames names("0.0.0.0", "0.0.0.0", 8080, {});
+  ifaddrs* first = nullptr;
+  ASSERT_EQ(::getifaddrs(&first), 0);
+  int own = 0;
+  for (const ifaddrs* one = first; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    const std::uint32_t n = ntohl(reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr);
+    const std::string text = std::to_string(n >> 24) + '.' + std::to_string(n >> 16 & 255) + '.' +
+                             std::to_string(n >> 8 & 255) + '.' + std::to_string(n & 255);
+    EXPECT_TRUE(names.allows(text + ":8080")) << text;
+    ++own;
+  }
+  ::freeifaddrs(first);
+  EXPECT_GE(own, 1);
+  for (const char* bad :
+       {"127.evil.example:8080", "evil.example:8080", "203.0.113.9:8080", "0.0.0.0:8080", ""})
+    EXPECT_FALSE(names.allows(bad)) << bad;
+}
+
+TEST(HostNames, FurtherNamesWithAndWithoutAPort) {
+  const HostNames names("127.0.0.1", "127.0.0.1", 8080, {"Robot.local", "tunnel:9000", "proxy.example:443"});
+  for (const char* good : {"robot.local:8080", "tunnel:9000", "proxy.example", "proxy.example:443"})
+    EXPECT_TRUE(names.allows(good)) << good;
+  for (const char* bad : {"robot.local", "robot.local:9000", "tunnel:8080", "tunnel", "proxy.example:8080"})
+    EXPECT_FALSE(names.allows(bad)) << bad;
+  EXPECT_TRUE(HostNames("127.0.0.1", "127.0.0.1", 80, {}).allows("localhost"));
+}
+
+TEST(HostNames, WhatCannotStandInAHeaderIsRefused) {
+  for (const char* good : {"robot", "robot.local", "my_robot-2:80", "[::1]", "[fe80::1]:8080", "10.0.0.1:1"})
+    EXPECT_TRUE(HostNames::is_valid(good)) << good;
+  for (const char* bad : {"", ":80", "*", "*.local", "a b", "robot:", "robot:0", "robot:65536", "robot:8x",
+                          "http://robot", "robot/", "::1", "[robot]", "[::1", "a:1:2"})
+    EXPECT_FALSE(HostNames::is_valid(bad)) << bad;
+}
+
+struct Table {
+  std::vector<int> hung_up;
+  ConnectionTable table{[this](int descriptor) { hung_up.push_back(descriptor); }};
+};
+
+TEST(ConnectionTable, ThoseWhoNeverAskedYieldFirstThenTheSilentThenTheSlowest) {
+  Table t;
+  const int share = static_cast<int>(ConnectionTable::kMaxPerAddress);
+  for (int i = 0; i < share; ++i) t.table.opened(i, "a", i);
+  t.table.asked(0, 1000);
+  t.table.answered(0, 1001);
+  t.table.asked(0, 1002);  // a viewer at its second reply
+  t.table.asked(1, 1003);
+  t.table.answered(1, 1004);  // a viewer between two requests
+  for (int i = 2; i < share; ++i) {
+    t.table.opened(100 + i, "a", 2000 + i);
+    ASSERT_EQ(t.hung_up.back(), i) << "the oldest that never asked";
+  }
+  for (int i = 2; i < share; ++i) t.table.asked(100 + i, 3000 + i);  // and never fetch the reply
+  t.table.opened(500, "a", 4000);
+  EXPECT_EQ(t.hung_up.back(), 1) << "the silent one";
+  for (int i = 2; i < share; ++i) {
+    t.table.asked(498 + i, 4500 + i);
+    t.table.opened(499 + i, "a", 5000 + i);
+    ASSERT_EQ(t.hung_up.back(), 100 + i) << "the one that has been at its first reply for longest";
+  }
+  EXPECT_EQ(std::count(t.hung_up.begin(), t.hung_up.end(), 0), 0) << "the viewer was not touched";
+  EXPECT_EQ(t.table.count(), ConnectionTable::kMaxPerAddress);
+}
+
+TEST(ConnectionTable, WhenAllPlacesAreTakenTheGreediestAddressYields) {
+  Table t;
+  const int share = static_cast<int>(ConnectionTable::kMaxPerAddress);
+  const int all = static_cast<int>(ConnectionTable::kMaxConnections);
+  for (int i = 0; i < share; ++i) t.table.opened(i, "greedy", i);
+  for (int i = share; i < all; ++i) t.table.opened(i, "machine " + std::to_string(i), 0);
+  EXPECT_TRUE(t.hung_up.empty());
+  for (int i = 0; i < 10; ++i) t.table.opened(1000 + i, "newcomer", 100 + i);
+  EXPECT_EQ(t.hung_up, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(t.table.count(), ConnectionTable::kMaxConnections);
+}
+
+TEST(ConnectionTable, WhoTakesTooLongIsHungUpOnOnce) {
+  Table t;
+  t.table.opened(1, "a", 0);
+  t.table.opened(2, "a", 0);
+  t.table.asked(2, 0);
+  t.table.hang_up_overdue(ConnectionTable::kRequest_ns);
+  EXPECT_TRUE(t.hung_up.empty());
+  t.table.hang_up_overdue(ConnectionTable::kRequest_ns + 1);
+  t.table.hang_up_overdue(ConnectionTable::kRequest_ns + 2);
+  EXPECT_EQ(t.hung_up, std::vector<int>{1});
+  t.table.hang_up_overdue(ConnectionTable::kReply_ns + 1);
+  EXPECT_EQ(t.hung_up, (std::vector<int>{1, 2}));
+  t.table.closed(1);
+  t.table.opened(1, "b", ConnectionTable::kReply_ns);  // the number is used again
+  EXPECT_EQ(t.table.count(), 1u);
+}
+
+class ViewNames : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!ViewServer::available()) GTEST_SKIP() << "built without libmicrohttpd";
+  }
+  int asking_as(const std::string& header) const {
+    return status_of(request(server_.port(), "GET /update?after=9", header));
+  }
+  ViewServer server_;
+};
+
+TEST_F(ViewNames, APageFromElsewhereCannotLookThroughTheBrowser) {
+  ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
+  const int port = server_.port();
+  EXPECT_EQ(asking_as(host_header(port)), 200);
+  EXPECT_EQ(asking_as(host_header(port, "127.0.0.1")), 200);
+  for (const char* name :
+       {"127.evil.example", "evil.example", "localhost.evil.example", "127.0.0.1.nip.example"})
+    EXPECT_EQ(asking_as(host_header(port, name)), 403) << name;
+  EXPECT_EQ(asking_as(host_header(port + 1)), 403);
+  EXPECT_EQ(asking_as("Host: localhost\r\n"), 403);
+  EXPECT_EQ(asking_as(host_header(port) + "Host: evil.example\r\n"), 403) << "which one is meant?";
+  EXPECT_GE(asking_as(""), 400);
+  EXPECT_NE(get(port, "/").find("frame-ancestors 'none'"), std::string::npos);
+}
+
+TEST_F(ViewNames, OnEveryAddressNamesAreCheckedAsWell) {
+  ASSERT_TRUE(server_.start("0.0.0.0", 0, {"robot.local"}).ok());
+  const int port = server_.port();
+  EXPECT_EQ(asking_as(host_header(port)), 200);
+  EXPECT_EQ(asking_as(host_header(port, "robot.local")), 200);
+  for (const char* name : {"127.evil.example", "evil.example", "203.0.113.9"})
+    EXPECT_EQ(asking_as(host_header(port, name)), 403) << name;
+}
+
+}  // namespace
+}  // namespace plvo

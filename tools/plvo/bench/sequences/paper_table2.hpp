@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Lu & Song's Table 2 (ICCV 2015) reports for the nine fr1 sequences, to stand beside what is measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plvo/bench/jobs/result.hpp"
+
+namespace plvo::bench {
+
+// The nine, in the paper's order: "360", "desk", …
+const std::vector<std::string>& paper_sequences();
+
+// "rpy" for freiburg1_rpy, rgbd_dataset_freiburg1_rpy, fr1_rpy, and for parts of it such as fr1_rpy_150;
+// empty for any other name.
+struct PaperSequence {
+  std::string name;
+  bool whole = false;
+};
+PaperSequence paper_sequence(const std::string& folder);
+
+// One result for each system of the paper, NaN where it has no figure. `name`: one of the nine, or "mean".
+std::vector<Result> paper_results(const std::string& name);
+
+}  // namespace plvo::bench

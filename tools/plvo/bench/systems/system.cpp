@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/bench/systems/system.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo::bench {
+namespace {
+
+constexpr const char* kPaperSuffix = "-paper";
+
+class PlvoSystem final : public System {
+ public:
+  Status init(const CameraModel& camera, const Config& config) {
+    Limits limits;
+    limits.width = camera.width;
+    limits.height = camera.height;
+    memory_.resize(required_bytes(limits) + kArenaAlignment);
+    return odometry_.init(memory_, camera, config, limits);
+  }
+  void prepare(const RgbdFrame& frame) override { frame_ = frame; }
+  bool track() override {
+    result_ = odometry_.track(frame_);
+    return result_.state != TrackState::kLost;
+  }
+  Se3 pose() const override { return result_.T_world_camera; }
+
+ private:
+  std::vector<std::byte> memory_;
+  Odometry odometry_;
+  RgbdFrame frame_;
+  TrackResult result_;
+};
+
+bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
+bool is_paper(const std::string& name) { return name.find(kPaperSuffix) != std::string::npos; }
+
+bool is_group(const std::string& word) {
+  return word == "all" || word == "ours" || word == "paper" || word == "peers" || word == "opencv" ||
+         word == "open3d";
+}
+
+bool in_group(const std::string& group, const std::string& name) {
+  if (group == "all") return true;
+  if (group == "ours") return starts_with(name, "plvo-") && !is_paper(name);
+  if (group == "paper") return is_paper(name);
+  if (group == "peers") return !starts_with(name, "plvo-");
+  return (group == "opencv" || group == "open3d") && starts_with(name, (group + '-').c_str());
+}
+
+}  // namespace
+
+const std::vector<std::string>& system_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const char* suffix : {"", kPaperSuffix})
+      for (const char* features : {"points", "lines", "both"})
+        all.push_back(fmt::format("plvo-{}{}", features, suffix));
+    if (!opencv_version().empty()) all.insert(all.end(), {"opencv-rgbd", "opencv-icp", "opencv-rgbdicp"});
+    if (!open3d_version().empty()) all.push_back("open3d-hybrid");
+    return all;
+  }();
+  return names;
+}
+
+Status parse_systems(const std::string& text, std::vector<std::string>& names) {
+  names.clear();
+  std::stringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    bool known = is_group(word);  // also where none of its systems was built
+    for (const std::string& name : system_names()) {
+      if (name != word && !in_group(word, name)) continue;
+      known = true;
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    if (!known) {
+      return {StatusCode::kInvalidArgument,
+              fmt::format("no system '{}' in this build; there are all, ours, paper, peers, {}", word,
+                          fmt::join(system_names(), ", "))};
+    }
+  }
+  if (names.empty()) return {StatusCode::kInvalidArgument, "no system of those named is in this build"};
+  return {};
+}
+
+Status make_system(const std::string& name, const CameraModel& camera, std::unique_ptr<System>& system) {
+  const auto& names = system_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    return {StatusCode::kInvalidArgument, fmt::format("no system '{}' in this build", name)};
+  if (starts_with(name, "opencv-")) {
+    system = make_opencv_system(name, camera);
+    return {};
+  }
+  if (starts_with(name, "open3d-")) {
+    system = make_open3d_system(camera);
+    return {};
+  }
+  Config config = is_paper(name) ? Config::paper() : Config();
+  config.features = starts_with(name, "plvo-points")  ? Features::kPoints
+                    : starts_with(name, "plvo-lines") ? Features::kLines
+                                                      : Features::kBoth;
+  auto ours = std::make_unique<PlvoSystem>();
+  const Status status = ours->init(camera, config);
+  if (status.ok()) system = std::move(ours);
+  return status;
+}
+
+}  // namespace plvo::bench

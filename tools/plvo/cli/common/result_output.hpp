@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// `--json FILE` of the commands whose result is one page: the page goes to standard output, the JSON into
+// FILE; with - the JSON is printed instead of the page.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "plvo/base/status.hpp"
+#include "plvo/cli/common/arguments.hpp"
+
+namespace plvo::cli {
+
+void add_json_option(CLI::App& command, std::string& file);
+
+// page: called where it is printed.
+Status write_result(const std::string& file, const nlohmann::ordered_json& json,
+                    const std::function<std::string()>& page);
+
+}  // namespace plvo::cli

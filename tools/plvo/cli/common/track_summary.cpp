@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/common/track_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace plvo::cli {
+namespace {
+
+const char* stage_name(std::size_t index) {
+  return index < kStageCount ? to_string(static_cast<Stage>(index)) : "total";
+}
+
+}  // namespace
+
+void TrackSummary::add(const FrameRecord& record) {
+  ++frames_;
+  if (record.damaged()) {
+    ++damaged_;
+    return;
+  }
+  const TrackResult& result = record.result;
+  for (std::size_t i = 0; i < kStageCount; ++i)
+    stages_[i].add(static_cast<double>(result.stage_ns[i]) * 1e-6);
+  stages_[kStageCount].add(static_cast<double>(record.cpu_ns) * 1e-6);
+  if (!record.has_pose()) {
+    ++lost_;
+    const auto kind = static_cast<std::size_t>(result.status.code());
+    ++losses_[kind];
+    last_loss_[kind] = result.status;
+    return;
+  }
+  if (has_pose_) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
+  has_pose_ = true;
+  last_pose_ = result.T_world_camera;
+  if (result.state == TrackState::kInitialising) {
+    ++started_;
+    return;
+  }
+  ++tracked_;
+  point_inliers_.add(result.points.inliers);
+  line_inliers_.add(result.lines.inliers);
+}
+
+std::string TrackSummary::why_failed() const {
+  const auto most = std::max_element(losses_.begin(), losses_.end());
+  std::string text = "no frame could be tracked";
+  if (*most > 0)
+    text += fmt::format(": {}", last_loss_[static_cast<std::size_t>(most - losses_.begin())].message());
+  return text;
+}
+
+SummaryRows TrackSummary::frame_rows() const {
+  SummaryRows rows = {{"started", fmt::format("{} (the first frame, or after a long loss)", started_)},
+                      {"tracked", fmt::format("{}", tracked_)},
+                      {"lost", fmt::format("{}", lost_)}};
+  for (std::size_t i = 0; i < kKinds; ++i)
+    if (losses_[i] > 0) rows.emplace_back(fmt::format("  {} times", losses_[i]), last_loss_[i].message());
+  return rows;
+}
+
+SummaryRows TrackSummary::cost_rows() const {
+  const DurationHistogram& total = stages_[kStageCount];
+  return {{"path", fmt::format("{:.3f} m", path_m_)},
+          {"inliers, median",
+           fmt::format("{} points, {} lines", point_inliers_.median(), line_inliers_.median())},
+          {"CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.quantile_ms(0.5),
+                                        total.quantile_ms(0.95), total.max_ms())},
+          {"arena",
+           fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak))},
+          {"resident memory", fmt::format("{:.2f} MiB after the start, {:.2f} at the end",
+                                          mebibytes(resident_start.total), mebibytes(resident_end.total))}};
+}
+
+std::string TrackSummary::stage_table() const {
+  std::string text =
+      fmt::format("\n{:<10} {:>8} {:>8} {:>8}   CPU ms per frame, one thread, decoding excluded\n", "stage",
+                  "median", "p95", "max");
+  for (std::size_t i = 0; i <= kStageCount; ++i)
+    text += fmt::format("{:<10} {:8.2f} {:8.2f} {:8.2f}\n", stage_name(i), stages_[i].quantile_ms(0.5),
+                        stages_[i].quantile_ms(0.95), stages_[i].max_ms());
+  return text;
+}
+
+nlohmann::ordered_json TrackSummary::to_json() const {
+  nlohmann::ordered_json json = {{"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
+                                 {"initialised", started_}, {"tracked", tracked_},        {"lost", lost_},
+                                 {"damaged", damaged_},     {"path_m", path_m_}};
+  json["lost_reasons"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < kKinds; ++i)
+    if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];
+  json["inliers_median"] = {{"points", point_inliers_.median()}, {"lines", line_inliers_.median()}};
+  for (std::size_t i = 0; i <= kStageCount; ++i) json["cpu_ms"][stage_name(i)] = cli::to_json(stages_[i]);
+  json["memory_bytes"] = {{"arena", arena_bytes},
+                          {"arena_peak", arena_peak},
+                          {"resident_after_start", resident_start.total},
+                          {"resident_at_end", resident_end.total},
+                          {"anonymous_after_start", resident_start.anonymous},
+                          {"anonymous_at_end", resident_end.anonymous}};
+  return json;
+}
+
+std::string to_text(const SummaryRows& rows) {
+  std::string text;
+  for (const auto& [name, value] : rows) text += fmt::format("{:<22} {}\n", name, value);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const DurationHistogram& durations) {
+  return {{"median", durations.quantile_ms(0.5)},
+          {"mean", durations.mean_ms()},
+          {"p95", durations.quantile_ms(0.95)},
+          {"p99", durations.quantile_ms(0.99)},
+          {"max", durations.max_ms()}};
+}
+
+}  // namespace plvo::cli
