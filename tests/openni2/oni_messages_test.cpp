@@ -87,6 +87,16 @@ TEST(OniMessages, CarryFailuresAndImagesWithoutPixels) {
   EXPECT_STREQ(reader.failure().message(), "broken");
 }
 
+// Found by fuzz_oni_messages: a failure is said in words, also where the player has none.
+TEST(OniMessages, AFailureWithoutWordsGetsSome) {
+  for (const char* words : {"", "\n"}) {
+    OniMessageReader reader;
+    EXPECT_EQ(read(reader, oni_failure(Status(StatusCode::kIo, words)), 50),
+              std::vector<Message>{Message::kFailure});
+    EXPECT_FALSE(std::string_view(reader.failure().message()).empty());
+  }
+}
+
 TEST(OniMessages, NothingIsBelieved) {
   const auto refused = [](const Bytes& bytes) {
     OniMessageReader reader;

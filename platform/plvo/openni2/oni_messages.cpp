@@ -217,8 +217,9 @@ OniMessageReader::Message OniMessageReader::read_hello() {
 OniMessageReader::Message OniMessageReader::read_failure() {
   Head head{};
   std::memcpy(&head, head_.data(), sizeof head);
+  const std::string text = text_of(reinterpret_cast<const char*>(body_.data()), head.body_bytes);
   failure_ = Status(static_cast<StatusCode>(head.code),
-                    text_of(reinterpret_cast<const char*>(body_.data()), head.body_bytes));
+                    text.empty() ? "the recording cannot be played, and its player does not say why" : text);
   over_ = true;
   return Message::kFailure;
 }
