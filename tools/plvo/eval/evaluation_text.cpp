@@ -57,7 +57,7 @@ void add_ate(Text& text, const Evaluation& e) {
 
 void add_nees(Text& text, const char* name, const Consistency& c) {
   if (c.count == 0) {
-    text.line("{:<18} no sample has both a covariance that can be inverted and ground truth", name);
+    text.line("{:<18} no sample: recording too short, or no ground truth, or no usable covariance", name);
     return;
   }
   const auto row = [&text](const char* title, const char* kind, const Nees& n) {
