@@ -32,6 +32,9 @@ inline bool contains(const std::string& text, const std::string& words) {
 }
 inline long lines_in(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
+// How long a test waits for what must come: an answer to "does it hang", not to "is it quick".
+inline constexpr double kPatience_s = 120;
+
 class LiveCommand : public testing::Test {
  protected:
   LiveCommand() { EXPECT_EQ(::mkfifo(path("control").c_str(), 0600), 0); }
@@ -67,7 +70,7 @@ class LiveCommand : public testing::Test {
   }
   std::string err() const { return read_file(folder_ / "err"); }
   std::string out() const { return read_file(folder_ / "out"); }
-  bool says(const std::string& words, double limit_s = 15) const {
+  bool says(const std::string& words, double limit_s = kPatience_s) const {
     const auto start = std::chrono::steady_clock::now();
     while (!contains(err(), words)) {
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(limit_s)) return false;
@@ -84,12 +87,12 @@ class LiveCommand : public testing::Test {
     ::close(fd);
   }
   // Ctrl-C, and how it ended; -1 if it did not within the time.
-  int interrupt(double limit_s = 15) {
+  int interrupt(double limit_s = kPatience_s) {
     if (pid_ <= 0) return -1;  // kill(-1) would reach everybody
     ::kill(pid_, SIGINT);
     return wait(limit_s);
   }
-  int wait(double limit_s = 15) {
+  int wait(double limit_s = kPatience_s) {
     if (pid_ <= 0) return -1;
     const auto start = std::chrono::steady_clock::now();
     int status = 0;
@@ -99,6 +102,16 @@ class LiveCommand : public testing::Test {
     }
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  // Until it is so, or patience is at its end.
+  template <typename Condition>
+  static bool eventually(const Condition& condition) {
+    const auto start = std::chrono::steady_clock::now();
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kPatience_s)) return false;
+      pause(0.01);
+    }
+    return true;
   }
   static void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 

@@ -145,11 +145,9 @@ TEST_F(OniFileTest, TruncatedFilesEnd) {
     options.uri = path_;
     options.timeout_ms = 300;
     if (!camera_.open(options).ok()) continue;
-    const Clock::time_point start = Clock::now();
     int frames = 0;
     while (camera_.next(frame_).ok() && frames < 100) ++frames;
     EXPECT_LT(frames, 100);
-    EXPECT_LT(seconds_since(start), 10.0);
     camera_.close();
   }
 }
