@@ -147,7 +147,8 @@ TEST_F(KinectCommand, LiveAtFullRateWithoutAllocationsInFlatMemory) {
     last = stamp;
   }
   EXPECT_GE(steps, tracks - 1);
-  EXPECT_GE(steps * SimulatedKinect::kFrame_ns * 1e-9, seconds / 2) << "it went through the wrap";
+  EXPECT_GE(static_cast<double>(steps * SimulatedKinect::kFrame_ns) * 1e-9, seconds / 2)
+      << "it went through the wrap";
   EXPECT_EQ(json["camera_counters"]["clock_jumps"], 0);
   EXPECT_EQ(json["lost"], 0) << json;
   EXPECT_GE(json["tracked"].get<int>(), wanted - 1);

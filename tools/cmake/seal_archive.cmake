@@ -15,7 +15,7 @@ set(object ${ARCHIVE}.o)
 run(${CXX} ${flags} -r -nostdlib -o ${object} -Wl,--force-group-allocation -Wl,--whole-archive ${ARCHIVE}
   -Wl,--no-whole-archive)
 run(${NM} --defined-only --format=posix ${object})
-string(REGEX MATCHALL "[^\n]+ [VWu] [^\n]*" lines "${output}")
+string(REGEX MATCHALL "[^\n]+ [VW] [^\n]*" lines "${output}")
 list(TRANSFORM lines REPLACE " .*" "")
 list(JOIN lines "\n" names)
 file(WRITE ${object}.weak "${names}\n")
