@@ -10,5 +10,7 @@ foreach(step
   endif()
 endforeach()
 set(PROGRAM ${WORK}/embedding)
+set(EIGEN "the consumer's project")
+set(GOLDEN_EIGEN "the one named in tools/cmake/plvo.cmake")
 set(GOLDEN ${PLVO}/tests/golden/golden.txt)
 include(${PLVO}/tests/golden/golden_test.cmake)
