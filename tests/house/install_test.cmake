@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the build to a fresh prefix, looks at what came, and builds a stranger's project against it.
 # cmake -DBUILD=<build> -DWORK=<folder> -DCONSUMER=<folder> -DCOMPILER=<c++> -DFLAGS=<flags> -P install_test.cmake
+cmake_minimum_required(VERSION 3.22)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
