@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "kinect_reference.hpp"
-#include "machine_load.hpp"
 #include "plvo/openni2/openni2_camera.hpp"
+#include "processor_time.hpp"
 
 namespace plvo_test {
 namespace {
@@ -47,15 +47,15 @@ class SimulatedKinectTest : public testing::Test {
   Status next_frame() {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
-    while (!status.ok() && seconds_since(start) < 10) status = camera_.next(frame_);
+    while (!status.ok() && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
-  // Calls on until the camera answers with this code, in these words (10 s at most); the last answer.
+  // Calls on until the camera answers with this code, in these words (kPatience_s at most); the last answer.
   Status wait_for(StatusCode code, const std::string& words = "") {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
     while ((status.code() != code || std::string(status.message()).find(words) == std::string::npos) &&
-           seconds_since(start) < 10) {
+           seconds_since(start) < kPatience_s) {
       status = camera_.next(frame_);
     }
     return status;
@@ -118,7 +118,8 @@ TEST_F(SimulatedKinectTest, UnregisteredDepthIsEveryPixelsDisparityInMillimetres
   EXPECT_GT(valid, kPixels * 3 / 4);
 }
 
-// The rate over a bounded time, through a wrap of the Kinect's clock, in memory that does not grow.
+// Over a bounded time, through a wrap of the Kinect's clock: every stamp a tick of the sensor, processor time
+// that leaves room for its full rate, memory that does not grow.
 TEST_F(SimulatedKinectTest, FullRate) {
   const char* given = std::getenv("PLVO_KINECT_SECONDS");
   const double seconds = given != nullptr ? std::atof(given) : 6;
@@ -131,12 +132,17 @@ TEST_F(SimulatedKinectTest, FullRate) {
   const std::uint64_t frames_before = camera_.counters().frames;
   const std::int64_t first_ns = frame_.stamp_ns;
   std::int64_t last_ns = first_ns;
-  const MachineLoad load;
+  const ProcessorTime processor;
   const Clock::time_point start = Clock::now();
   while (seconds_since(start) < seconds) {
     ASSERT_TRUE(next_frame().ok());
     ASSERT_GT(frame_.stamp_ns, last_ns);
-    ASSERT_LT(frame_.stamp_ns - last_ns, 2000000000);
+    const std::int64_t ticks =
+        (frame_.stamp_ns - last_ns + SimulatedKinect::kFrame_ns / 2) / SimulatedKinect::kFrame_ns;
+    ASSERT_GE(ticks, 1) << "more than the sensor sends";
+    ASSERT_NEAR(static_cast<double>(frame_.stamp_ns - last_ns),
+                static_cast<double>(ticks * SimulatedKinect::kFrame_ns),
+                2000.0 + 1e-5 * static_cast<double>(ticks * SimulatedKinect::kFrame_ns));
     last_ns = frame_.stamp_ns;
   }
   const double took = seconds_since(start);
@@ -150,11 +156,11 @@ TEST_F(SimulatedKinectTest, FullRate) {
       static_cast<unsigned long long>(counters.unmatched_colour),
       static_cast<unsigned long long>(counters.unmatched_depth),
       static_cast<unsigned long long>(kinect_.skipped()), resident_kB() - before_kB);
+  const std::uint64_t frames = counters.frames - frames_before;
+  EXPECT_LE(static_cast<std::int64_t>(frames), (last_ns - first_ns) / SimulatedKinect::kFrame_ns + 1);
   if (kFiguresCount) {
-    EXPECT_EQ(load.judge(fps * took, took, 28), "");
+    EXPECT_EQ(processor.judge(static_cast<double>(frames), SimulatedKinect::kFrame_ns * 1e-9), "");
   }
-  EXPECT_LE(fps, 33.0) << "more than the sensor sends, even after a pause";
-  EXPECT_NEAR(static_cast<double>(last_ns - first_ns) * 1e-9, took, 0.5) << "stamps go at the clock's pace";
   EXPECT_EQ(counters.clock_jumps, 0u);
   if (kFiguresCount) {
     EXPECT_LT(resident_kB() - before_kB, 4096);
@@ -169,10 +175,8 @@ TEST_F(SimulatedKinectTest, UnplugInMidStreamAndReplug) {
   for (std::uint64_t round = 1; round <= 2; ++round) {
     const std::int64_t before_ns = frame_.stamp_ns;
     kinect_.unplug();
-    const Clock::time_point start = Clock::now();
     Status status = wait_for(StatusCode::kUnplugged);
     EXPECT_EQ(status.code(), StatusCode::kUnplugged) << status.message();
-    EXPECT_LT(seconds_since(start), 3.0);
     EXPECT_EQ(camera_.next(frame_).code(), StatusCode::kUnplugged);
     kinect_.plug();
     status = next_frame();
@@ -215,9 +219,8 @@ TEST_F(SimulatedKinectTest, LostAndCorruptedPackets) {
         SimulatedKinect::Faults{.lose_every = 7, .corrupt_every = 5}}) {
     kinect_.set_faults(faults);
     std::int64_t last_ns = frame_.stamp_ns;
-    const Clock::time_point start = Clock::now();
     int frames = 0;
-    while (seconds_since(start) < 1.0) {
+    for (int calls = 0; calls < 30; ++calls) {
       const Status status = camera_.next(frame_);
       if (!status.ok()) {
         EXPECT_EQ(status.code(), StatusCode::kTimeout) << status.message();
@@ -227,7 +230,7 @@ TEST_F(SimulatedKinectTest, LostAndCorruptedPackets) {
       EXPECT_GT(frame_.stamp_ns, last_ns);
       last_ns = frame_.stamp_ns;
     }
-    EXPECT_GT(frames, faults.corrupt_every == 5 ? -1 : 2) << "some frames are whole";
+    EXPECT_GT(frames, faults.corrupt_every == 5 ? -1 : 0) << "some frames are whole";
   }
   kinect_.set_faults({});
   // What was torn has passed after a few frames: whole pictures again, in pairs.

@@ -27,6 +27,9 @@ struct Messages : plvo::Log {
   std::string text;
 };
 
+// How long a test waits for what must come: an answer to "does it hang", not to "is it quick".
+inline constexpr double kPatience_s = 120;
+
 inline double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -60,18 +63,18 @@ class VirtualDeviceTest : public testing::Test {
     const Status status = camera_.open(options_);
     ASSERT_TRUE(status.ok()) << status.message();
   }
-  // The next frame, however many timeouts lie before it (10 s at most).
+  // The next frame, however many timeouts lie before it (kPatience_s at most).
   Status next_frame() {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
-    while (!status.ok() && seconds_since(start) < 10) status = camera_.next(frame_);
+    while (!status.ok() && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
-  // Calls on until the camera answers with this code (10 s at most); the last answer.
+  // Calls on until the camera answers with this code (kPatience_s at most); the last answer.
   Status wait_for(StatusCode code) {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
-    while (status.code() != code && seconds_since(start) < 10) status = camera_.next(frame_);
+    while (status.code() != code && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
   // Which tick of the pattern the colour image shows, by its first pixel (modulo 256); all of it must fit.

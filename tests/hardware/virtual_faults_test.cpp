@@ -14,14 +14,10 @@ TEST_F(VirtualDeviceTest, UnplugAndReplug) {
   ASSERT_TRUE(next_frame().ok());
   const std::int64_t before_ns = frame_.stamp_ns;
   ASSERT_TRUE(device_.command("unplug"));
-  const Clock::time_point start = Clock::now();
   Status status = wait_for(StatusCode::kUnplugged);
   EXPECT_EQ(status.code(), StatusCode::kUnplugged) << status.message();
-  EXPECT_LT(seconds_since(start), 3.0);
   // Still away: each call waits its time limit and says so.
-  const Clock::time_point waiting = Clock::now();
   EXPECT_EQ(camera_.next(frame_).code(), StatusCode::kUnplugged);
-  EXPECT_LT(seconds_since(waiting), 2.0);
   // The device's clock starts anew; ours goes on.
   ASSERT_TRUE(device_.command("clock 0"));
   ASSERT_TRUE(device_.command("plug"));
@@ -49,11 +45,10 @@ TEST_F(VirtualDeviceTest, OneStreamStops) {
     const Clock::time_point start = Clock::now();
     // A call that began before the stop may still have seen both streams: one after it has not.
     Status status;
-    while (!says(status, std::string(stream) + " stream stopped") && seconds_since(start) < 10) {
+    while (!says(status, std::string(stream) + " stream stopped") && seconds_since(start) < kPatience_s) {
       status = camera_.next(frame_);
     }
     ASSERT_EQ(status.code(), StatusCode::kTimeout) << status.message();
-    EXPECT_LT(seconds_since(start), 5.0);
     ASSERT_TRUE(device_.command("run"));
     ASSERT_TRUE(next_frame().ok());
     EXPECT_EQ(colour_tick(), depth_tick() % 256);
@@ -72,9 +67,7 @@ TEST_F(VirtualDeviceTest, StallIsATimeoutAndEnds) {
   Status status = wait_for(StatusCode::kTimeout);
   int timeouts = 0;
   while (seconds_since(start) < stall_s) {
-    const Clock::time_point call = Clock::now();
     status = camera_.next(frame_);
-    ASSERT_LT(seconds_since(call), 2.0);
     if (status.ok()) continue;  // one that was under way
     ASSERT_EQ(status.code(), StatusCode::kTimeout) << status.message();
     ++timeouts;
@@ -167,7 +160,10 @@ TEST_F(VirtualDeviceTest, DamagedImageIsSkipped) {
 
 TEST_F(VirtualDeviceTest, SlowReaderGetsPairsAndLossIsCounted) {
   open();
-  for (int i = 0; i < 6; ++i) {
+  // Until enough was lost: how much the device sends between two reads is the machine's affair.
+  const Clock::time_point start = Clock::now();
+  while ((camera_.counters().dropped_colour <= 5 || camera_.counters().missing <= 5) &&
+         seconds_since(start) < kPatience_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(110));
     ASSERT_TRUE(next_frame().ok());
     EXPECT_EQ(colour_tick(), depth_tick() % 256);

@@ -6,9 +6,11 @@
 
 int calls = 0;
 
+[[gnu::noinline]] inline int replaceable(int n) { return n * n; }
+
 double misbehave(int n, double x) {
   static int hidden = 0;
-  hidden += n;
+  hidden += replaceable(n);
   calls += hidden;
   std::vector<double> heap(static_cast<std::size_t>(n), std::sin(x));
   std::printf("%d\n", calls);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build to a fresh prefix and builds a stranger's project against it.
+# Installs the build to a fresh prefix, looks at what came, and builds a stranger's project against it.
 # cmake -DBUILD=<build> -DWORK=<folder> -DCONSUMER=<folder> -DCOMPILER=<c++> -DFLAGS=<flags> -P install_test.cmake
+cmake_minimum_required(VERSION 3.22)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
@@ -10,13 +11,34 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} -E env --unset=DESTDIR ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-foreach(header base/status.hpp math/se3.hpp camera/camera_model.hpp odometry/odometry.hpp hal/rgbd_camera.hpp)
-  if(NOT EXISTS ${WORK}/prefix/include/plvo/${header})
-    message(FATAL_ERROR "not installed: include/plvo/${header}")
+
+# The headers: the doors, what they include, and nothing else.
+set(include ${WORK}/prefix/include)
+set(reached plvo/odometry/odometry.hpp plvo/hal/clock.hpp plvo/hal/log.hpp plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp)
+set(open ${reached})
+while(open)
+  list(POP_FRONT open header)
+  if(NOT EXISTS ${include}/${header})
+    message(SEND_ERROR "not installed, though a public header needs it: ${header} (add it to plvo_public_headers in its room)")
+    continue()
   endif()
-endforeach()
+  file(STRINGS ${include}/${header} lines REGEX "^#include \"plvo/")
+  foreach(line ${lines})
+    string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+    if(NOT included IN_LIST reached)
+      list(APPEND reached ${included})
+      list(APPEND open ${included})
+    endif()
+  endforeach()
+endwhile()
+file(GLOB_RECURSE installed RELATIVE ${include} ${include}/*)
+list(REMOVE_ITEM installed ${reached})
+if(installed)
+  message(SEND_ERROR "installed, though no public header needs it: ${installed} (take it out of plvo_public_headers)")
+endif()
+
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER}
-  -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_CXX_STANDARD=20)
+  -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 if(TOOL)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the symbols of the core's archive: what it asks of the outside world must be on a short list, and it must
-hold no variable that changes. So no path through the core can reach a heap, a file, or a libm that differs."""
+"""Reads the symbols of the core's archive: what it asks of the outside world must be on a short list, it must
+hold no variable that changes, and no function that a linker may replace. So no path through the core can reach a heap, a
+file, a libm that differs, or a copy of an inline function that its user compiled with other switches."""
 import argparse
 import re
 import subprocess
@@ -17,9 +18,9 @@ DEBUG_ONLY = {"__assert_fail", "__assert_func"}
 
 
 def read(nm, archive):
-    """(undefined names, mutable variables) over all members together."""
+    """(undefined names, mutable variables, weak functions) over all members together."""
     out = subprocess.run([nm, archive], capture_output=True, text=True, check=True).stdout
-    defined, undefined, mutable = set(), set(), set()
+    defined, undefined, mutable, weak = set(), set(), set(), set()
     for line in out.splitlines():
         match = re.match(r"(?:[0-9a-fA-F]+)?\s+([A-Za-z])\s+(\S+)$", line)
         if not match:
@@ -29,18 +30,21 @@ def read(nm, archive):
             undefined.add(name)
             continue
         defined.add(name)
+        if kind in "VW":
+            weak.add(name)
         # Read-only data that needs relocation is listed as data too, but in a section of its own name.
         if kind in "bBdDgGsSC" and not re.match(r"(?:\$|DW\.ref\.|_ZTV|_ZTS|_ZTI)", name):
             mutable.add(name)
-    return undefined - defined, mutable
+    return undefined - defined, mutable, weak
 
 
 def check(nm, archive, debug=False):
-    undefined, mutable = read(nm, archive)
+    undefined, mutable, weak = read(nm, archive)
     allowed = ALLOWED | (DEBUG_ONLY if debug else set())
     errors = [f"asks for {name}" for name in sorted(undefined)
               if name not in allowed and not ALLOWED_PATTERN.match(name)]
-    return errors + [f"holds the variable {name}" for name in sorted(mutable)]
+    errors += [f"holds the variable {name}" for name in sorted(mutable)]
+    return errors + [f"lets others replace {name}" for name in sorted(weak)]
 
 
 def main():

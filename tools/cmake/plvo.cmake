@@ -1,17 +1,58 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every target of the house shares: the warnings, and the switches that make the
-# arithmetic the same on every processor.
+# What every target of the house shares: the warnings, and the switches that make the arithmetic the same on every
+# processor. The switches belong to this directory and those below it: whoever links plvo keeps his own.
 
 add_library(plvo_warnings INTERFACE)
 target_compile_options(plvo_warnings INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Werror)
+  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor $<$<BOOL:${PLVO_WERROR}>:-Werror>)
 
 # No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf.
-add_library(plvo_determinism INTERFACE)
-target_compile_options(plvo_determinism INTERFACE -ffp-contract=off)
-target_compile_definitions(plvo_determinism INTERFACE EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
+add_compile_options(-ffp-contract=off)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+# The order of the sums within Eigen's functions is part of the bits: tests/golden/golden.txt was written with this one.
+set(PLVO_GOLDEN_EIGEN 3.4.0)
+if(NOT Eigen3_VERSION VERSION_EQUAL PLVO_GOLDEN_EIGEN)
+  message(STATUS "plvo: Eigen ${Eigen3_VERSION} here, ${PLVO_GOLDEN_EIGEN} where the golden run was made: "
+    "golden_test says whether the bits are the same")
+endif()
+
+# How the core is compiled. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
+# processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
+# loops do not do so. golden_native_test holds this.
+set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
+
+# plvo_precompile(<target> <header>…): read these headers once for all files of the target. Where ccache launches the
+# compiler they are left out: it would keep nothing then, and files that forget an include are found.
+function(plvo_precompile target)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# plvo_public_headers(<header>…): what this room of core or hal gives to those who install plvo. The lists together must
+# hold what odometry/odometry.hpp and hal/ include, and nothing else; house_install says what is missing or too much.
+function(plvo_public_headers)
+  foreach(header ${ARGN})
+    set_property(GLOBAL APPEND PROPERTY PLVO_PUBLIC_HEADERS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+  endforeach()
+endfunction()
+
+# plvo_seal(<archive target>): the archive keeps its copies of inline functions and templates for itself. Otherwise the
+# linker would keep one copy of a function that both the core and its user have compiled, perhaps the user's, with the
+# user's switches, and the core's bits would depend on them. Builds with sanitizers or link-time optimisation stay open:
+# their objects hold more than code, and nobody installs them.
+function(plvo_seal target)
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" OR CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+    return()
+  endif()
+  add_custom_command(TARGET ${target} POST_BUILD VERBATIM COMMAND ${CMAKE_COMMAND} -DARCHIVE=$<TARGET_FILE:${target}>
+    -DCXX=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}" -DNM=${CMAKE_NM} -DOBJCOPY=${CMAKE_OBJCOPY} -DAR=${CMAKE_AR}
+    -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake)
+endfunction()
 
 # plvo_core_variant(<name> <options…>): the core once more, compiled another way, for tests that compare or watch it.
 # Options come after those of the build type, so the last optimisation level counts.
@@ -20,7 +61,8 @@ function(plvo_core_variant name)
   get_target_property(source_dir plvo_core SOURCE_DIR)
   list(TRANSFORM sources PREPEND "${source_dir}/" REGEX "^[^/]")
   add_library(${name} STATIC ${sources})
-  target_link_libraries(${name} PUBLIC Eigen3::Eigen plvo_determinism)
+  target_link_libraries(${name} PUBLIC Eigen3::Eigen)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/core)
-  target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics ${ARGN})
+  target_compile_options(${name} PRIVATE ${PLVO_CORE_OPTIONS} ${ARGN})
+  plvo_precompile(${name} ${PLVO_CORE_PRECOMPILED})
 endfunction()

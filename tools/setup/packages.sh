@@ -3,11 +3,11 @@
 # Every Debian package that plvo is built, tested and cross-built with: the one list. To be sourced.
 
 # The library, the cameras and the command line.
-PLVO_PACKAGES_BUILD="g++ make cmake pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
+PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev"
 
 # The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages.
-PLVO_PACKAGES_TEST="ninja-build googletest libgtest-dev python3 python3-numpy clang libclang-rt-dev clang-format clang-tidy
+PLVO_PACKAGES_TEST="googletest libgtest-dev python3 python3-numpy clang libclang-rt-dev clang-format clang-tidy
   umockdev libumockdev-dev chromium fonts-liberation"
 
 # The boards: cross compilers, and processors that are emulated.
