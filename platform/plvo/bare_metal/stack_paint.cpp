@@ -29,6 +29,11 @@ std::size_t deepest_stack_bytes() {
   return static_cast<std::size_t>(plvo_stack_top - word) * sizeof *word;
 }
 
+[[gnu::noinline]] std::size_t current_stack_bytes() {
+  const std::uint32_t* const here = static_cast<std::uint32_t*>(__builtin_frame_address(0));
+  return static_cast<std::size_t>(plvo_stack_top - here) * sizeof *here;
+}
+
 std::size_t stack_bytes() {
   return static_cast<std::size_t>(plvo_stack_top - plvo_stack_bottom) * sizeof *plvo_stack_top;
 }

@@ -13,6 +13,9 @@ void paint_stack();
 // Bytes from the stack's top down to the lowest one that was written since it was painted.
 std::size_t deepest_stack_bytes();
 
+// Bytes from the stack's top down to the caller.
+std::size_t current_stack_bytes();
+
 // The whole of it, as the linker script has it.
 std::size_t stack_bytes();
 

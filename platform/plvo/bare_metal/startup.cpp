@@ -38,6 +38,9 @@ int main();
   plvo::bare_metal::exit(3);
 }
 
+// The system timer's interrupt; systick_clock.cpp has one for who uses that clock.
+[[gnu::weak]] void plvo_systick() { plvo_fault(); }
+
 // A pure virtual function that is called is a mistake of the program's.
 [[noreturn]] void __cxa_pure_virtual() { plvo_fault(); }
 // Named by the tables for unwinding that the compiler's own library brings and the linker script leaves out.
@@ -55,6 +58,6 @@ struct VectorTable {
 [[gnu::section(".vectors"), gnu::used]] const VectorTable kVectors = {
     plvo_stack_top,
     {plvo_reset, plvo_fault, plvo_fault, plvo_fault, plvo_fault, plvo_fault, nullptr, nullptr, nullptr,
-     nullptr, plvo_fault, plvo_fault, nullptr, plvo_fault, plvo_fault}};
+     nullptr, plvo_fault, plvo_fault, nullptr, plvo_fault, plvo_systick}};
 
 }  // namespace

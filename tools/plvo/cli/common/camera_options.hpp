@@ -55,7 +55,7 @@ struct CameraOptions {
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
 struct OpenedCamera {
-  std::unique_ptr<RgbdCamera> camera;
+  std::shared_ptr<RgbdCamera> camera;      // not unique: it deletes the class that it was made with
   std::string name;                        // for people
   std::optional<std::size_t> frame_count;  // where it is known
   std::size_t unpaired_images = 0;         // colour images without depth
