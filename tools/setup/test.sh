@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 . tools/setup/packages.sh
 
-others=(clang debug asan aarch64 armhf)
+others=(clang debug asan aarch64 armhf cortex-m7)
 presets=("$@")
 bits=()
 if [ ${#presets[@]} -eq 0 ]; then

@@ -21,7 +21,7 @@ class PoseStream final : public PoseSink {
   static constexpr std::size_t kBufferBytes = 64 * 1024;  // of one reader: about two seconds of poses
 
   PoseStream() = default;
-  ~PoseStream() override;
+  ~PoseStream();
   PoseStream(const PoseStream&) = delete;
   PoseStream& operator=(const PoseStream&) = delete;
 
