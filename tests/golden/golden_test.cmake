@@ -32,7 +32,7 @@ foreach(got expected IN ZIP_LISTS output_lines golden_lines)
   endforeach()
   list(GET expected_words 0 run)
   list(GET expected_words 1 frame)
-  message(FATAL_ERROR "the bits differ first in ${run}, frame ${frame}: ${column}\n"
+  message(FATAL_ERROR "the bits differ\n  first in ${run}, frame ${frame}: ${column}\n"
     "  expected ${expected}\n  got      ${got}\n"
     "If the algorithm was changed on purpose: cmake --build <build> --target update_golden, and read the difference.")
 endforeach()
