@@ -27,12 +27,13 @@ foreach(got expected IN ZIP_LISTS output_lines golden_lines)
   string(REPLACE " " ";" expected_words "${expected}")
   foreach(column got_word expected_word IN ZIP_LISTS columns got_words expected_words)
     if(NOT got_word STREQUAL expected_word)
+      set(where ${column})
       break()
     endif()
   endforeach()
   list(GET expected_words 0 run)
   list(GET expected_words 1 frame)
-  message(FATAL_ERROR "the bits differ\n  first in ${run}, frame ${frame}: ${column}\n"
+  message(FATAL_ERROR "the bits differ\n  first in ${run}, frame ${frame}: ${where}\n"
     "  expected ${expected}\n  got      ${got}\n"
     "If the algorithm was changed on purpose: cmake --build <build> --target update_golden, and read the difference.")
 endforeach()
