@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the odometry over the procedural sequence and prints what came out: a line a frame, with the pose in
-// the shortest form that names its bits, and a hash over every number of the results. The output must be the
-// same bytes from every compiler, level and processor: golden.txt holds it.
-#include <cinttypes>
-#include <cstdio>
-#include <vector>
+#include "golden_run.hpp"
+
+#include <cstdint>
 
 #include "fingerprint.hpp"
-#include "plvo/odometry/odometry.hpp"
-#include "procedural_sequence.hpp"
+#include "text_line.hpp"
 
+namespace plvo {
 namespace {
 
-using namespace plvo;
+// One run of the odometry over the procedural sequence.
+struct GoldenCase {
+  const char* name;
+  Config config;
+  Limits limits = Limits::qvga();
+  int frames = 6;
+  // From this frame on there is nothing to see, for as many frames as given: being lost and going on belong
+  // to the golden run.
+  int dark_from = 3;
+  int dark_frames = 1;
+  double readout_s = 0;
+  DepthTiming depth_timing = {};
+};
 
-Fingerprint fingerprint(const TrackResult& result) {
+Fingerprint fingerprint_of(const TrackResult& result) {
   Fingerprint print;
   print.add(static_cast<int>(result.state));
   print.add(static_cast<int>(result.status.code()));
@@ -33,50 +42,103 @@ Fingerprint fingerprint(const TrackResult& result) {
   return print;
 }
 
-bool run(const char* name, const Config& config, ProceduralSequence& sequence, const CameraModel& camera,
-         int frames) {
-  constexpr Limits kLimits = Limits::qvga();
-  std::vector<std::byte> memory(required_bytes(kLimits));
-  Odometry odometry;
-  const Status status = odometry.init(memory, camera, config, kLimits);
-  if (!status.ok()) {
-    std::fprintf(stderr, "%s: %s\n", name, status.message());
+// Stage by stage what the odometry lets one see of a frame, so that a difference has a place: the prepared
+// image, keypoints, segments, tracks as found, tracks that agree.
+void print_stages(const FeatureView& view, const TrackResult& result, TextLine& line) {
+  Fingerprint image, points, lines, matching, motion;
+  for (int v = 0; v < view.image.height; ++v)
+    for (int u = 0; u < view.image.width; ++u) image.add_byte(view.image.at(u, v));
+  for (const Keypoint& k : view.keypoints) {
+    points.add(static_cast<double>(k.u));
+    points.add(static_cast<double>(k.v));
+    points.add(static_cast<int>(k.level));
+  }
+  points.add(result.points.with_depth);
+  for (const SegmentView& s : view.segments)
+    for (float value : {s.a_u, s.a_v, s.b_u, s.b_v}) lines.add(static_cast<double>(value));
+  lines.add(result.lines.with_depth);
+  for (const PointTrackView& t : view.point_tracks) {
+    for (float value : {t.u_reference, t.v_reference, t.u, t.v}) matching.add(static_cast<double>(value));
+    motion.add(t.inlier ? 1 : 0);
+  }
+  for (const LineTrackView& t : view.line_tracks) {
+    matching.add(static_cast<int>(t.reference));
+    matching.add(static_cast<int>(t.current));
+    motion.add(t.inlier ? 1 : 0);
+  }
+  motion.add(result.T_camera_reference.R);
+  motion.add(result.T_camera_reference.t);
+  motion.add(result.motion_covariance);
+  for (const Fingerprint& stage : {image, points, lines, matching, motion})
+    line.space().hex(stage.value() >> 32, 8);
+}
+
+bool run(const GoldenCase& golden, const GoldenMemory& memory, void (*print)(std::string_view)) {
+  ProceduralRenderer sequence;
+  if (!sequence.init(golden.limits.width, golden.limits.height, memory.frames)) {
+    print("too little memory for the frames");
     return false;
   }
-  for (int i = 0; i < frames; ++i) {
-    // One frame in which there is nothing to see: being lost and going on belong to the golden run.
-    const RgbdFrame frame = i == frames / 2 ? sequence.render_dark(i) : sequence.render(i);
-    const TrackResult result = odometry.track(frame);
-    const Quaternion q = to_quaternion(result.T_world_camera.R);
-    const Vector3& t = result.T_world_camera.t;
-    std::printf("%s %d %s %.17g %.17g %.17g %.17g %.17g %.17g %.17g %016" PRIx64 "\n", name, i,
-                to_string(result.state), t.x(), t.y(), t.z(), q.x, q.y, q.z, q.w,
-                fingerprint(result).value());
+  CameraModel camera = sequence.camera();
+  camera.readout_s = golden.readout_s;
+  camera.depth_timing = golden.depth_timing;
+  const Status status = memory.odometry.init(memory.arena, camera, golden.config, golden.limits);
+  if (!status.ok()) {
+    print(status.message());
+    return false;
+  }
+  for (int i = 0; i < golden.frames; ++i) {
+    const bool dark = i >= golden.dark_from && i < golden.dark_from + golden.dark_frames;
+    const TrackResult result = memory.odometry.track(dark ? sequence.render_dark(i) : sequence.render(i));
+    TextLine line;
+    line.text(golden.name).space().integer(i).space().text(to_string(result.state));
+    for (int axis = 0; axis < 3; ++axis)
+      line.space().integer(static_cast<std::int64_t>(result.T_world_camera.t(axis) * 1e6));
+    print_stages(memory.odometry.features(), result, line);
+    line.space().hex(fingerprint_of(result).value(), 16);
+    print(line.view());
   }
   return true;
 }
 
-}  // namespace
-
-int main() {
-  ProceduralSequence sequence(320, 240);
+// The bytes that the renderer makes: when they differ, everything does.
+void print_input(const GoldenMemory& memory, void (*print)(std::string_view)) {
+  ProceduralRenderer sequence;
+  if (!sequence.init(320, 240, memory.frames)) return;
   Fingerprint input;
   const RgbdFrame first = sequence.render(0);
   for (int i = 0; i < 320 * 240; ++i) {
     input.add(static_cast<int>(first.colour.data[3 * i]));
     input.add(static_cast<int>(first.depth.data[i]));
   }
-  std::printf("input %016" PRIx64 "\n", input.value());
-
-  Config keyframe;
-  keyframe.references.policy = ReferencePolicy::kKeyframe;
-  // Depth rows that are exposed before the colour rows of the same place.
-  CameraModel kinect = sequence.camera();
-  kinect.readout_s = kKinectReadout_s;
-  kinect.depth_timing = {true, -0.01, 0.03};
-  const CameraModel plain = sequence.camera();
-  const bool ok =
-      run("default", Config{}, sequence, plain, 16) && run("paper", Config::paper(), sequence, plain, 6) &&
-      run("keyframe", keyframe, sequence, plain, 6) && run("kinect", Config{}, sequence, kinect, 8);
-  return ok ? 0 : 1;
+  print(TextLine().text("input ").hex(input.value(), 16).view());
 }
+
+}  // namespace
+
+bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
+  print("run frame state x_um y_um z_um image points lines matching motion result");
+  print_input(memory, print);
+  Config points, lines, keyframe, lost;
+  points.features = Features::kPoints;
+  lines.features = Features::kLines;
+  keyframe.references.policy = ReferencePolicy::kKeyframe;
+  lost.references.max_lost_frames = 3;
+  const GoldenCase cases[] = {
+      {.name = "default", .config = {}, .frames = 20, .dark_from = 8},
+      {.name = "paper", .config = Config::paper()},
+      {.name = "points", .config = points},
+      {.name = "lines", .config = lines},
+      {.name = "keyframe", .config = keyframe},
+      // Depth rows that are exposed before the colour rows of the same place.
+      {.name = "kinect", .config = {}, .readout_s = kKinectReadout_s, .depth_timing = {true, -0.01, 0.03}},
+      // Lost for so long that the reference is given up, then found again.
+      {.name = "lost", .config = lost, .frames = 10, .dark_from = 2, .dark_frames = 5},
+      {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
+  };
+  for (const GoldenCase& golden : cases)
+    if (!run(golden, memory, print)) return false;
+  return true;
+}
+
+}  // namespace plvo

@@ -39,11 +39,11 @@ class CliRecord : public LiveCommand {
   // files the test waits for more.
   void wait_for_bytes(const std::string& recording) const {
     if (recording.ends_with(".oni")) {
-      eventually([&] {
+      comes_true([&] {
         return std::filesystem::exists(recording) && std::filesystem::file_size(recording) > 8u << 20;
       });
     } else {
-      eventually([&] { return lines_in(read_file(recording + "/depth.txt")) > 8; });
+      comes_true([&] { return lines_in(read_file(recording + "/depth.txt")) > 8; });
     }
   }
   bool mounted_ = false;
@@ -84,7 +84,7 @@ TEST_F(CliRecord, UnplugEndsAnOniFileAndAFolderGoesOn) {
       const long before = listed(path(name));
       tell_device("plug");
       EXPECT_TRUE(says("frames come again")) << err();
-      eventually([&] { return lines_in(read_file(path(name) + "/depth.txt")) - 1 > before; });
+      comes_true([&] { return lines_in(read_file(path(name) + "/depth.txt")) - 1 > before; });
       EXPECT_EQ(interrupt(), 0) << err();
       EXPECT_GT(listed(path(name)), before);
     }

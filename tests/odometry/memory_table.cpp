@@ -50,10 +50,11 @@ std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga) {
   std::string page =
       "<!-- SPDX-License-Identifier: Apache-2.0 -->\n# Memory\n\n"
       "The caller owns one block; `init` carves it once, and nothing is taken from anywhere else, then or "
-      "later. This page is\n"
-      "written by a test (`tests/odometry/memory_test.cpp`), which fails when the figures are no longer "
-      "true. To write it\n"
-      "anew: `PLVO_UPDATE_DOCS=1 build/release/tests/memory_test`.\n\n"
+      "later. This first\n"
+      "part of the page is written by a test (`tests/odometry/memory_test.cpp`), which fails when the "
+      "figures "
+      "are no longer true.\n"
+      "To write it anew: `PLVO_UPDATE_DOCS=1 build/release/tests/memory_test`.\n\n"
       "Bytes on a 64-bit machine, by what `init` takes them for:\n\n"
       "| for | VGA | QVGA |\n|---|---:|---:|\n";
   for (const MemoryUse::Row& r : vga.rows) {

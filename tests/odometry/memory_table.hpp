@@ -26,7 +26,8 @@ struct MemoryUse {
 // Tracks a few frames of the procedural sequence and reads the records.
 MemoryUse measure_memory(const Limits& limits, int frames);
 
-// The page, in Markdown.
+// The page, in Markdown, up to the heading of what is not written by a test.
+inline constexpr const char* kMemoryPageEnd = "\n## Stack\n";
 std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga);
 
 }  // namespace plvo

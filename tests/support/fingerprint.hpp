@@ -12,8 +12,9 @@ namespace plvo {
 class Fingerprint {
  public:
   void add(std::uint64_t bits) {
-    for (int i = 0; i < 8; ++i) hash_ = (hash_ ^ ((bits >> (8 * i)) & 0xff)) * 1099511628211ULL;  // FNV-1a
+    for (int i = 0; i < 8; ++i) add_byte(static_cast<std::uint8_t>(bits >> (8 * i)));
   }
+  void add_byte(std::uint8_t byte) { hash_ = (hash_ ^ byte) * 1099511628211ULL; }  // FNV-1a
   void add(double value) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);

@@ -59,31 +59,35 @@ Hit cast(const Vector3& origin, const Vector3& ray) {
 
 }  // namespace
 
-ProceduralSequence::ProceduralSequence(int width, int height) {
+bool ProceduralRenderer::init(int width, int height, std::span<std::byte> memory) {
   const double scale = width / 640.0;
   camera_.width = width;
   camera_.height = height;
   camera_.pinhole = {520 * scale, 518 * scale, 322 * scale, 236 * scale};
   camera_.distortion = {0.05, -0.12, 0.0008, -0.0005, 0.06};
   const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  rays_.reserve(count);
-  colour_.resize(3 * count);
-  depth_.resize(count);
+  Arena arena(memory);
+  rays_ = arena.take<Vector3>("rays", count);
+  colour_ = arena.take<std::uint8_t>("colour", 3 * count);
+  depth_ = arena.take<std::uint16_t>("depth", count);
+  if (arena.exhausted()) return false;
+  std::size_t k = 0;
   for (int v = 0; v < height; ++v)
     for (int u = 0; u < width; ++u) {
       const Vector2 ideal = undistort_pixel(camera_, Vector2(u, v));
-      rays_.push_back(back_project(camera_.pinhole, ideal.x(), ideal.y(), 1));
+      rays_[k++] = back_project(camera_.pinhole, ideal.x(), ideal.y(), 1);
     }
+  return true;
 }
 
-Se3 ProceduralSequence::T_world_camera(int i) {
+Se3 ProceduralRenderer::T_world_camera(int i) {
   // A slow arc that sways, so that every degree of freedom moves.
   const int phase = i % 16 < 8 ? i % 8 : 8 - i % 8;
   return {rotation_exp(Vector3(0.004 * phase, 0.012 * i, -0.003 * phase)),
           Vector3(0.011 * i, 0.004 * phase, 0.007 * i)};
 }
 
-RgbdFrame ProceduralSequence::render(int i) {
+RgbdFrame ProceduralRenderer::render(int i) {
   const Se3 T = T_world_camera(i);
   const double quarter_x = 0.25 / camera_.pinhole.fx;
   const double quarter_y = 0.25 / camera_.pinhole.fy;
@@ -111,13 +115,13 @@ RgbdFrame ProceduralSequence::render(int i) {
   return frame(i);
 }
 
-RgbdFrame ProceduralSequence::render_dark(int i) {
+RgbdFrame ProceduralRenderer::render_dark(int i) {
   std::fill(colour_.begin(), colour_.end(), std::uint8_t{2});
   std::fill(depth_.begin(), depth_.end(), std::uint16_t{0});
   return frame(i);
 }
 
-RgbdFrame ProceduralSequence::frame(int i) const {
+RgbdFrame ProceduralRenderer::frame(int i) const {
   RgbdFrame frame;
   frame.stamp_ns = stamp_ns(i);
   frame.depth_stamp_ns = frame.stamp_ns;

@@ -5,18 +5,30 @@
 // noise and holes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/math/se3.hpp"
 
 namespace plvo {
 
-class ProceduralSequence {
+// Renders into memory that the caller owns: for boards without a heap.
+class ProceduralRenderer {
  public:
-  ProceduralSequence(int width, int height);
+  // Bytes that init needs for images of this size.
+  static constexpr std::size_t required_bytes(int width, int height) {
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    return array_bytes(pixels, sizeof(Vector3)) + array_bytes(3 * pixels, 1) + array_bytes(pixels, 2) +
+           kArenaAlignment;
+  }
+
+  // False when the memory is too small.
+  bool init(int width, int height, std::span<std::byte> memory);
 
   const CameraModel& camera() const { return camera_; }
   // Exact pose of frame i: about 13 mm and 0.7° from the frame before.
@@ -32,9 +44,22 @@ class ProceduralSequence {
   RgbdFrame frame(int i) const;
 
   CameraModel camera_;
-  std::vector<Vector3> rays_;  // of the pixels' centres, camera frame, z = 1
-  std::vector<std::uint8_t> colour_;
-  std::vector<std::uint16_t> depth_;
+  std::span<Vector3> rays_;  // of the pixels' centres, camera frame, z = 1
+  std::span<std::uint8_t> colour_;
+  std::span<std::uint16_t> depth_;
+};
+
+// The same with memory of its own.
+class ProceduralSequence : public ProceduralRenderer {
+ public:
+  ProceduralSequence(int width, int height) : memory_(required_bytes(width, height)) {
+    (void)init(width, height, memory_);
+  }
+  ProceduralSequence(const ProceduralSequence&) = delete;
+  ProceduralSequence& operator=(const ProceduralSequence&) = delete;
+
+ private:
+  std::vector<std::byte> memory_;
 };
 
 }  // namespace plvo

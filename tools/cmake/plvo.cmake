@@ -21,7 +21,7 @@ endif()
 # How the core is compiled. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
 # processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
 # loops do not do so. golden_native_test holds this.
-set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics
+set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 

@@ -11,7 +11,8 @@ PLVO_PACKAGES_TEST="googletest libgtest-dev python3 python3-numpy clang libclang
   umockdev libumockdev-dev chromium fonts-liberation"
 
 # The boards: cross compilers, and processors that are emulated.
-PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user"
+PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi
+  libstdc++-arm-none-eabi-newlib qemu-system-arm"
 
 say() { printf '\033[1mplvo:\033[0m %s\n' "$*" >&2; }
 

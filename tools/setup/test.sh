@@ -10,7 +10,7 @@ cd "$(dirname "$0")/../.."
 . tools/setup/packages.sh
 
 presets=("$@")
-if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf release); fi
+if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf cortex-m7 release); fi
 
 # shellcheck disable=SC2086  # lists of words
 install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_TEST $PLVO_PACKAGES_CROSS
@@ -34,7 +34,7 @@ briefly() {
   suite asan --label-regex '^(core|golden|reader)$'
   build tsan --target threaded_tests
   suite tsan --label-regex '^threads$'
-  for preset in debug aarch64 armhf; do
+  for preset in debug aarch64 armhf cortex-m7; do
     build "$preset" --target golden_test
     suite "$preset" --tests-regex '^golden_test$'
   done

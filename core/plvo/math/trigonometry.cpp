@@ -80,12 +80,11 @@ double atan_polynomial(double x) {  // |x| ≤ tan(π/16) ≈ 0.199
   return x + x * (z * sum);
 }
 
-double atan_positive(double x) {  // x ≥ 0, finite
+double atan_small(double x) {  // 0 ≤ x ≤ 1
   // atan x = atan c + atan((x − c) / (1 + c x)) with c = 0, tan(π/8), 1: the remainder is at most tan(π/16).
   constexpr double kTanPi16 = 0.19891236737965800691;
   constexpr double kTan3Pi16 = 0.66817863791929891999;
   constexpr double kTanPi8 = 0.41421356237309504880;
-  if (x > 1) return kPi / 2 - atan_positive(1 / x);
   if (x <= kTanPi16) return atan_polynomial(x);
   if (x <= kTan3Pi16) return kPi / 8 + atan_polynomial((x - kTanPi8) / (1 + kTanPi8 * x));
   return kPi / 4 + atan_polynomial((x - 1) / (1 + x));
@@ -122,7 +121,7 @@ double atan2(double y, double x) {
   const double ay = y < 0 ? -y : y;
   const double ax = x < 0 ? -x : x;
   // Divide the smaller by the larger: never an overflow.
-  double angle = ay <= ax ? atan_positive(ay / ax) : kPi / 2 - atan_positive(ax / ay);
+  double angle = ay <= ax ? atan_small(ay / ax) : kPi / 2 - atan_small(ax / ay);
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;
 }

@@ -40,33 +40,42 @@ constexpr std::array<Weights, 1 << kFractionBits> make_weights() {
 }
 constexpr auto kWeights = make_weights();
 
-// The four regressors of the smoothed template, in quarters of a grey level: 2·∂T/∂x, 2·∂T/∂y, T less its
-// mean; and one. All zero where the mask is. And their normal equations, in grey levels.
+// The four regressors of the smoothed template, in 1/16 of a grey level: 2·∂T/∂x, 2·∂T/∂y, T less its mean;
+// and one. All zero where the mask is. And their normal equations, in grey levels.
 struct Template {
   std::array<std::int16_t, kPixels> gx, gy, value, one;
   int pixels = 0;
   Matrix4 normal;
 };
-constexpr double kTemplateUnit = 0.25;
+constexpr double kUnit = 1.0 / 16;
 
-// The window and one pixel around it, smoothed, in quarters of a grey level.
+// Eight bits of a grey level and the weights' seven are rounded to four bits after the first pass, and again
+// after the second.
+std::int16_t blend_across(const std::uint8_t* p, const Weights& w) {
+  return static_cast<std::int16_t>((p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3] + 4) >> 3);
+}
+std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
+  return static_cast<std::int16_t>(
+      (p[0] * w[0] + p[stride] * w[1] + p[2 * stride] * w[2] + p[3 * stride] * w[3] + 64) >> 7);
+}
+
+// The window and one pixel around it, smoothed as a reading at whole pixels is.
 constexpr int kSide = 2 * kWindowReach + 3;
 using Smoothed = std::array<std::int16_t, kSide * kSide>;
 
 Smoothed smooth(const Patch& patch) {
+  constexpr const Weights& kWhole = kWeights[0];
+  static_assert(kWhole[3] == 0, "the fourth tap would reach beyond the patch");
   Smoothed out;
-  std::array<std::int16_t, kSide * kPatchSide> rows;
+  std::array<std::int16_t, kSide*(kPatchSide + 1)> rows{};
   for (int y = 0; y < kPatchSide; ++y)
     for (int x = 0; x < kSide; ++x) {
       const std::uint8_t* p = patch.data() + y * kPatchSide + x;
-      rows[static_cast<std::size_t>(y * kSide + x)] = static_cast<std::int16_t>(p[0] + 4 * p[1] + p[2]);
+      rows[static_cast<std::size_t>(y * kSide + x)] =
+          static_cast<std::int16_t>((p[0] * kWhole[0] + p[1] * kWhole[1] + p[2] * kWhole[2] + 4) >> 3);
     }
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const std::int16_t* r = rows.data() + y * kSide + x;
-      out[static_cast<std::size_t>(y * kSide + x)] =
-          static_cast<std::int16_t>(((r[0] + 4 * r[kSide] + r[2 * kSide]) * 4 + 18) / 36);
-    }
+  for (int i = 0; i < kSide * kSide; ++i)
+    out[static_cast<std::size_t>(i)] = blend_down(rows.data() + i, kSide, kWhole);
   return out;
 }
 
@@ -105,7 +114,7 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
   constexpr int kRow[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 4; ++c) {
-      const double unit = (r < 3 ? kTemplateUnit : 1) * (c < 3 ? kTemplateUnit : 1);
+      const double unit = (r < 3 ? kUnit : 1) * (c < 3 ? kUnit : 1);
       t.normal(r, c) = unit * (r + c == 6 ? t.pixels : sums[static_cast<std::size_t>(kRow[r][c])]);
     }
   return t;
@@ -123,23 +132,16 @@ Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_
   const Weights& down = kWeights[static_cast<std::size_t>(y & (kOne - 1))];
   const std::uint8_t* first = image.data + ((y >> kFractionBits) - kWindowReach - 1) * image.stride +
                               (x >> kFractionBits) - kWindowReach - 1;
-  // In 1/16 of a grey level.
   constexpr int kBlendedRows = kRows + kTaps - 1;
   std::array<std::int16_t, kColumns * kBlendedRows> blended;
   for (int r = 0; r < kBlendedRows; ++r) {
     const std::uint8_t* p = first + r * image.stride;
     for (int c = 0; c < kColumns; ++c, ++p)
-      blended[static_cast<std::size_t>(r * kColumns + c)] = static_cast<std::int16_t>(
-          (p[0] * across[0] + p[1] * across[1] + p[2] * across[2] + p[3] * across[3] + 4) >> 3);
+      blended[static_cast<std::size_t>(r * kColumns + c)] = blend_across(p, across);
   }
   std::array<std::int16_t, kPixels> values;
-  for (std::size_t k = 0; k < kPixels; ++k) {
-    const std::int16_t* b = &blended[k];
-    values[k] = static_cast<std::int16_t>((b[0] * down[0] + b[kColumns] * down[1] +
-                                           b[2 * kColumns] * down[2] + b[3 * kColumns] * down[3] + 64) >>
-                                          7);
-  }
-  // 72 products of at most 4080 · 2040: below 2^30. Squares too, 72 · 4080².
+  for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
+  // 72 products of at most 4080 · 4080: below 2^31. Squares too, 72 · 4080².
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
   std::int32_t with_value = 0;
@@ -153,10 +155,9 @@ Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_
     sum += own;
     squared += own * own;
   }
-  constexpr double kUnit = 1.0 / 16;
   Moments moments;
-  moments.with_template << kTemplateUnit * kUnit * with_gx, kTemplateUnit * kUnit * with_gy,
-      kTemplateUnit * kUnit * with_value, kUnit * sum;
+  moments.with_template << kUnit * kUnit * with_gx, kUnit * kUnit * with_gy, kUnit * kUnit * with_value,
+      kUnit * sum;
   moments.squared = kUnit * kUnit * static_cast<double>(squared);
   return moments;
 }
@@ -217,8 +218,8 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     const double half_difference = 2 * (column_x[0] - column_y[1]);
     const double cross = 4 * column_x[1];
     const double largest = half_sum + sqrt(half_difference * half_difference + cross * cross);
-    // The spline leaves a quarter of white noise's variance but all of its strength where the gradients are, at low
-    // frequencies: neighbouring residuals are alike, and one in four counts.
+    // The spline leaves a quarter of white noise's variance but all of its strength where the gradients are,
+    // at low frequencies: neighbouring residuals are alike, and one in four counts.
     result.sigma_px = sqrt(4 * residual_variance * largest);
     result.ok = true;
   }

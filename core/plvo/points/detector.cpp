@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "plvo/base/heap_sort.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/points/fast.hpp"
 
@@ -176,7 +177,7 @@ std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t c
   if (candidates.size() <= capacity) return candidates.size();
   Candidate* first = candidates.begin();
   // Rank, then strength, then place: a total order, so that the sort's algorithm cannot show.
-  std::sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
+  heap_sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
     if (a.rank != b.rank) return a.rank < b.rank;
     if (a.strength != b.strength) return a.strength > b.strength;
     if (a.level != b.level) return a.level < b.level;

@@ -9,9 +9,12 @@ namespace plvo {
 
 class Clock {
  public:
-  virtual ~Clock() = default;
   virtual std::int64_t monotonic_ns() const = 0;
   virtual void sleep_until_ns(std::int64_t monotonic_ns) = 0;
+
+ protected:
+  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  ~Clock() = default;
 };
 
 }  // namespace plvo

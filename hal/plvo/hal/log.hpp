@@ -11,8 +11,11 @@ enum class LogLevel : std::uint8_t { kInfo, kWarning, kError };
 
 class Log {
  public:
-  virtual ~Log() = default;
   virtual void write(LogLevel level, std::string_view message) = 0;
+
+ protected:
+  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  ~Log() = default;
 };
 
 }  // namespace plvo

@@ -10,8 +10,6 @@ namespace plvo {
 
 class RgbdCamera {
  public:
-  virtual ~RgbdCamera() = default;
-
   // The calibration that the frames of this camera obey, as known after the camera was opened.
   virtual CameraModel model() const = 0;
 
@@ -23,6 +21,10 @@ class RgbdCamera {
   //   anything else the camera cannot go on
   // Stamps of frames that come back ok are strictly increasing.
   virtual Status next(RgbdFrame& frame) = 0;
+
+ protected:
+  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  ~RgbdCamera() = default;
 };
 
 }  // namespace plvo

@@ -18,7 +18,7 @@ namespace plvo {
 class PoseStream final : public PoseSink {
  public:
   PoseStream() = default;
-  ~PoseStream() override;
+  ~PoseStream();
   PoseStream(const PoseStream&) = delete;
   PoseStream& operator=(const PoseStream&) = delete;
 

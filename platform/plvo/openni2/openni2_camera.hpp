@@ -85,7 +85,7 @@ struct OpenNi2Counters {
 class OpenNi2Camera final : public RgbdCamera {
  public:
   OpenNi2Camera();
-  ~OpenNi2Camera() override;
+  ~OpenNi2Camera();
   OpenNi2Camera(const OpenNi2Camera&) = delete;
   OpenNi2Camera& operator=(const OpenNi2Camera&) = delete;
 

@@ -17,7 +17,7 @@ class SimulatedCamera final : public RgbdCamera {
  public:
   // kInvalidArgument for options out of range; what Trajectory::from_tum says for a trajectory file.
   static Status create(const SimulatorOptions& options, std::unique_ptr<SimulatedCamera>& camera);
-  ~SimulatedCamera() override;
+  ~SimulatedCamera();
 
   CameraModel model() const override;
   // Renders the next frame into the camera's own buffers. kEndOfStream after options.frames frames, or at the

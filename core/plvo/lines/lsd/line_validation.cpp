@@ -67,7 +67,7 @@ constexpr std::int32_t kMaxAcrossSd_q8 = 192;
 bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size) {
   for (int i = 0; i < 2 && !is_dense(rectangle, region.pixels.size()); ++i) {
     if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
-    const std::int32_t reach = std::max(256, 2 * rectangle.across_sd);
+    const std::int32_t reach = std::max<std::int32_t>(256, 2 * rectangle.across_sd);
     filter(field, region, [&](Pixel pixel) {
       const std::int32_t t = rectangle.across(pixel.x, pixel.y);
       return t >= -reach && t <= reach;

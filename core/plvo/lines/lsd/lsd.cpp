@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "plvo/base/heap_sort.hpp"
 #include "plvo/lines/lsd/edge_localisation.hpp"
 #include "plvo/lines/lsd/line_validation.hpp"
 
@@ -75,17 +76,17 @@ std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t
   const auto more_meaningful = [](const Candidate& p, const Candidate& q) {
     return p.meaningfulness != q.meaningfulness ? p.meaningfulness > q.meaningfulness : p.order < q.order;
   };
-  std::sort(candidates.begin(), candidates.end(), more_meaningful);
+  heap_sort(candidates.data(), candidates.data() + candidates.size(), more_meaningful);
   if (candidates.size() <= capacity) return candidates.size();
   std::array<std::int32_t, kCellColumns * kCellRows> in_cell{};
   for (Candidate& candidate : candidates) {
     candidate.rank = in_cell[cell_of(0.5 * (candidate.a + candidate.b), width_, height_)]++;
   }
   const std::span<Candidate> rest = candidates.subspan(capacity / 2);
-  std::sort(rest.begin(), rest.end(), [&](const Candidate& p, const Candidate& q) {
+  heap_sort(rest.data(), rest.data() + rest.size(), [&](const Candidate& p, const Candidate& q) {
     return p.rank != q.rank ? p.rank < q.rank : more_meaningful(p, q);
   });
-  std::sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(capacity), more_meaningful);
+  heap_sort(candidates.data(), candidates.data() + capacity, more_meaningful);
   return capacity;
 }
 

@@ -64,7 +64,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
 void add_inputs(const CameraOptions& options, FileRoles& files);
 
 struct OpenedCamera {
-  std::unique_ptr<RgbdCamera> camera;
+  std::shared_ptr<RgbdCamera> camera;      // not unique: it deletes the class that it was made with
   std::string name;                        // for people
   std::optional<std::size_t> frame_count;  // where it is known
   std::size_t unpaired_images = 0;         // colour images without depth

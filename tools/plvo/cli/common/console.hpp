@@ -16,7 +16,7 @@ class Console final : public Log {
  public:
   // quiet: warnings and errors alone.
   explicit Console(bool quiet);
-  ~Console() override { clear(); }
+  ~Console() { clear(); }
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 

@@ -39,6 +39,7 @@ bool is_oni_file(const std::string& path);
 
 class LiveCamera : public RgbdCamera {
  public:
+  virtual ~LiveCamera() = default;
   virtual std::string name() const = 0;  // for people: "Virtual RGB-D (virtual://plvo)"
   virtual OpenNi2Counters counters() const = 0;
   virtual bool registered_by_device() const = 0;
