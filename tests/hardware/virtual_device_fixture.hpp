@@ -20,7 +20,7 @@ using plvo::Status;
 using plvo::StatusCode;
 using Clock = std::chrono::steady_clock;
 
-struct Messages : plvo::Log {
+struct Messages final : plvo::Log {
   void write(plvo::LogLevel /*level*/, std::string_view message) override {
     text.append(message).append("\n");
   }

@@ -37,6 +37,8 @@ if(installed)
   message(SEND_ERROR "installed, though no public header needs it: ${installed} (take it out of plvo_public_headers)")
 endif()
 
+file(GLOB_RECURSE archive ${WORK}/prefix/libplvo_core.a)
+run(python3 ${CMAKE_CURRENT_LIST_DIR}/symbols.py ${archive} --sealed)
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER}
   -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)

@@ -124,6 +124,26 @@ TEST(Calibration, WhatIsWrittenIsReadToTheLastBit) {
   EXPECT_EQ(calibration_text(read), calibration_text(written));
 }
 
+TEST(Calibration, CarriesTheTimingOfDepth) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 525 319.5 239.5 5000 0 0 0 0 0 0.03\ndepth_delay_s -0.015\n", c).ok());
+  EXPECT_TRUE(c.camera.depth_timing.known);
+  EXPECT_EQ(c.camera.depth_timing.delay_s, -0.015);
+  EXPECT_EQ(c.camera.depth_timing.readout_s, 0.03) << "as colour, unless it is said";
+  ASSERT_TRUE(read_text("525 525 319.5 239.5 5000\ndepth_delay_s 0\ndepth_readout_s 0.02\n", c).ok());
+  EXPECT_TRUE(c.camera.depth_timing.known) << "a delay of nothing is known, too";
+  EXPECT_EQ(c.camera.depth_timing.readout_s, 0.02);
+  Calibration again;
+  ASSERT_TRUE(read_text(calibration_text(c), again).ok()) << calibration_text(c);
+  EXPECT_TRUE(again.camera.depth_timing.known);
+  EXPECT_EQ(again.camera.depth_timing.readout_s, 0.02);
+  ASSERT_TRUE(read_text("525 525 319.5 239.5", c).ok());
+  EXPECT_FALSE(c.camera.depth_timing.known);
+  EXPECT_TRUE(says(read_text("525 525 319.5 239.5\ndepth_readout_s 0.02", c), "needs depth_delay_s"));
+  ASSERT_TRUE(builtin_calibration("tum-fr1", c).ok());
+  EXPECT_TRUE(c.camera.depth_timing.known);
+}
+
 TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
   Calibration c;
   EXPECT_EQ(read_text("", c).code(), StatusCode::kDamaged);

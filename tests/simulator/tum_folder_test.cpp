@@ -102,7 +102,7 @@ TEST_F(TumFolder, HoldsWhatTheCameraSaw) {
 }
 
 TEST_F(TumFolder, DepthHasItsOwnStamps) {
-  options_.depth_timing.stamp_offset_s = -0.007;
+  options_.depth_schedule.stamp_offset_s = -0.007;
   ASSERT_TRUE(SimulatedCamera::create(options_, camera_).ok());
   ASSERT_TRUE(write_tum_folder(*camera_, (root_ / "x").string()).ok());
   const std::vector<std::string> rgb = lines(root_ / "x/rgb.txt");

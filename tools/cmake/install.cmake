@@ -10,6 +10,13 @@ foreach(target core hal)
 endforeach()
 install(TARGETS plvo_core plvo_hal EXPORT plvoTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  install(CODE "
+    execute_process(COMMAND ${CMAKE_COMMAND}
+      -DARCHIVE=\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:plvo_core>
+      -DCXX=${CMAKE_CXX_COMPILER} \"-DFLAGS=${CMAKE_CXX_FLAGS}\" -DNM=${CMAKE_NM} -DOBJCOPY=${CMAKE_OBJCOPY}
+      -DAR=${CMAKE_AR} -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake COMMAND_ERROR_IS_FATAL ANY)")
+endif()
 get_property(headers GLOBAL PROPERTY PLVO_PUBLIC_HEADERS)
 foreach(header ${headers})
   string(REGEX REPLACE "^${PROJECT_SOURCE_DIR}/(core|hal)/(.*)/[^/]*$" "\\2" room ${header})

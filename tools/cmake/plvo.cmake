@@ -43,10 +43,11 @@ endfunction()
 
 # plvo_seal(<archive target>): the archive keeps its copies of inline functions and templates for itself. Otherwise the
 # linker would keep one copy of a function that both the core and its user have compiled, perhaps the user's, with the
-# user's switches, and the core's bits would depend on them. Builds with sanitizers or link-time optimisation stay open:
-# their objects hold more than code, and nobody installs them.
+# user's switches, and the core's bits would depend on them. It is done where plvo is part of another project, and to what is
+# installed (install.cmake); plvo's own programs are compiled with the core's switches anyway. Builds with sanitizers or
+# link-time optimisation stay open: their objects hold more than code, and nobody installs them.
 function(plvo_seal target)
-  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" OR CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  if(PROJECT_IS_TOP_LEVEL OR CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" OR CMAKE_INTERPROCEDURAL_OPTIMIZATION)
     return()
   endif()
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM COMMAND ${CMAKE_COMMAND} -DARCHIVE=$<TARGET_FILE:${target}>

@@ -25,6 +25,10 @@ constexpr auto kKeys = std::to_array<Key>({
     {"k3", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k3; }},
     {"readout_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.readout_s; }},
     // Keys alone from here on.
+    {"depth_delay_s", KeyKind::kSensor,
+     [](N& n) -> double& { return n.calibration.camera.depth_timing.delay_s; }},
+    {"depth_readout_s", KeyKind::kSensor,
+     [](N& n) -> double& { return n.calibration.camera.depth_timing.readout_s; }},
     {"width", KeyKind::kSize, [](N& n) -> double& { return n.width; }},
     {"height", KeyKind::kSize, [](N& n) -> double& { return n.height; }},
 });
@@ -99,6 +103,12 @@ Status Collector::finish(Calibration& calibration) {
   }
   result.depth_scale_given = given("depth_scale");
   result.readout_given = given("readout_s");
+  // Where depth's delay is known, its rows are taken to roll as colour's unless the file says otherwise.
+  DepthTiming& depth = result.camera.depth_timing;
+  depth.known = given("depth_delay_s");
+  if (given("depth_readout_s") && !depth.known)
+    return damaged(path_, "depth_readout_s needs depth_delay_s beside it");
+  if (depth.known && !given("depth_readout_s")) depth.readout_s = result.camera.readout_s;
   calibration = result;
   return {};
 }

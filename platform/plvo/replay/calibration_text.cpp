@@ -72,7 +72,7 @@ std::string calibration_text(const Calibration& calibration) {
   for (std::size_t i = 0; i < places; ++i)
     text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
   for (const Key& key : keys().subspan(kPlaces))
-    if (key.kind == KeyKind::kSensor && !is_default(key))
+    if (key.kind == KeyKind::kSensor && (calibration.camera.depth_timing.known || !is_default(key)))
       text += fmt::format("\n{} {}", key.name, key.of(numbers));
   return text;
 }

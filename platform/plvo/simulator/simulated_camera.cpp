@@ -24,7 +24,7 @@ std::int64_t since_start_us(int frame, double fps) {
 
 // Is each pixel's depth taken at the moment of its colour?
 bool with_colour(const SimulatorOptions& options) {
-  const DepthTiming& timing = options.depth_timing;
+  const DepthSchedule& timing = options.depth_schedule;
   return timing.delay_s == 0 && timing.stamp_offset_s == 0 &&
          timing.fps.value_or(options.fps) == options.fps &&
          timing.readout_s.value_or(options.camera.readout_s) == options.camera.readout_s;
@@ -40,7 +40,7 @@ struct SimulatedCamera::Parts {
         lighting(chosen.light, chosen.seed),
         renderer(*scene, chosen.camera, chosen.threads),
         film(chosen.camera, chosen.seed, chosen.noise, chosen.threads),
-        clock(chosen.depth_timing, chosen.fps, chosen.seed),
+        clock(chosen.depth_schedule, chosen.fps, chosen.seed),
         sensor(*scene, chosen.camera, chosen.depth, chosen.seed, chosen.threads),
         exact(static_cast<std::size_t>(chosen.camera.width) *
               static_cast<std::size_t>(chosen.camera.height)) {
@@ -59,7 +59,7 @@ struct SimulatedCamera::Parts {
   // What the depth camera meets in its own time.
   ImageView<const sim::PixelHit> depth_hits(int frame) {
     if (!depth_caster) return renderer.hits();
-    const DepthTiming& timing = options.depth_timing;
+    const DepthSchedule& timing = options.depth_schedule;
     const std::int64_t stamp_us = clock.nearest(frame, since_start_us(frame, options.fps)).true_stamp_us;
     const double middle_s = static_cast<double>(stamp_us) * 1e-6 + timing.delay_s;
     depth_caster->cast(
@@ -108,7 +108,15 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
 SimulatedCamera::SimulatedCamera(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 SimulatedCamera::~SimulatedCamera() = default;
 
-CameraModel SimulatedCamera::model() const { return parts_->options.camera; }
+CameraModel SimulatedCamera::model() const {
+  const SimulatorOptions& options = parts_->options;
+  CameraModel model = options.camera;
+  if (!with_colour(options))
+    model.depth_timing = {.known = true,
+                          .delay_s = options.depth_schedule.delay_s,
+                          .readout_s = options.depth_schedule.readout_s.value_or(options.camera.readout_s)};
+  return model;
+}
 const SimulatorOptions& SimulatedCamera::options() const { return parts_->options; }
 int SimulatedCamera::frames() const { return parts_->frames; }
 

@@ -30,7 +30,7 @@ class SimulatedCamera final : public RgbdCamera {
   // Stamp of frame k: 1 600 000 000 s + k / fps, in whole microseconds, so that a TUM folder keeps it
   // exactly.
   std::int64_t stamp_ns(int frame) const;
-  // Stamp that frame k's depth image bears (options().depth_timing), in whole microseconds too.
+  // Stamp that frame k's depth image bears (options().depth_schedule), in whole microseconds too.
   std::int64_t depth_stamp_ns(int frame) const;
   // T_world_camera, exact: of frame k, and at any stamp (of the walk itself, not interpolated between
   // frames).

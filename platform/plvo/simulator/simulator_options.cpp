@@ -27,7 +27,7 @@ Status parse(std::string_view what, std::string_view text, const std::array<Name
 
 Status invalid(const char* what) { return Status(StatusCode::kInvalidArgument, "simulator: ").append(what); }
 
-Status validate_timing(const DepthTiming& timing, double colour_fps) {
+Status validate_timing(const DepthSchedule& timing, double colour_fps) {
   if (!(std::abs(timing.delay_s) <= 0.1)) return invalid("the depth delay must lie in -0.1 ... 0.1 seconds");
   if (timing.readout_s && !(*timing.readout_s >= 0 && *timing.readout_s <= 0.1))
     return invalid("the depth readout must lie in 0 ... 0.1 seconds");
@@ -85,7 +85,7 @@ Status SimulatorOptions::validate() const {
     return invalid("steps per pixel must lie in 0 ... 10000");
   if (!(depth.scale_error >= 0.5 && depth.scale_error <= 2))
     return invalid("the depth scale error is a factor: it must lie in 0.5 ... 2");
-  return validate_timing(depth_timing, fps);
+  return validate_timing(depth_schedule, fps);
 }
 
 }  // namespace plvo

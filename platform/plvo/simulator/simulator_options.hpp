@@ -39,7 +39,7 @@ struct DepthSensorOptions {
 };
 
 // When the depth images are exposed and what stamps they bear. By default depth is taken when colour is.
-struct DepthTiming {
+struct DepthSchedule {
   double delay_s = 0;  // the middle row is exposed this long after the stamp; negative: before it
   std::optional<double> readout_s;  // from the first row to the last; none: that of the colour image
   double stamp_offset_s = 0;        // of the depth stamp from the colour stamp, at most half a frame
@@ -60,7 +60,7 @@ struct SimulatorOptions {
   // depth of every surface within the range of the 16-bit format (13.1 m).
   bool noise = true;
   DepthSensorOptions depth;
-  DepthTiming depth_timing;
+  DepthSchedule depth_schedule;
   // A TUM ground-truth file that moves the camera instead of the seeded hand; empty: none.
   std::string trajectory_file;
   int threads = 2;  // the pictures do not depend on it

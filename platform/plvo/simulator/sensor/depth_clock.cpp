@@ -7,7 +7,7 @@
 
 namespace plvo::sim {
 
-DepthClock::DepthClock(const DepthTiming& timing, double colour_fps, std::uint64_t seed)
+DepthClock::DepthClock(const DepthSchedule& timing, double colour_fps, std::uint64_t seed)
     : timing_(timing),
       colour_fps_(colour_fps),
       seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x54U)) {}

@@ -10,7 +10,7 @@ namespace plvo::sim {
 
 class DepthClock {
  public:
-  DepthClock(const DepthTiming& timing, double colour_fps, std::uint64_t seed);
+  DepthClock(const DepthSchedule& timing, double colour_fps, std::uint64_t seed);
 
   struct Moment {
     std::int64_t stamp_us = 0;       // as reported, since the walk began
@@ -20,7 +20,7 @@ class DepthClock {
   Moment nearest(int frame, std::int64_t colour_us) const;
 
  private:
-  DepthTiming timing_;
+  DepthSchedule timing_;
   double colour_fps_;
   std::uint32_t seed_;
 };

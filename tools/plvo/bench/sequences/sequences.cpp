@@ -14,6 +14,7 @@
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/sequences/paper_table2.hpp"
 #include "plvo/bench/systems/system.hpp"
+#include "plvo/replay/calibration.hpp"
 
 namespace plvo::bench {
 namespace {

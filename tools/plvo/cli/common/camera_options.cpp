@@ -90,7 +90,7 @@ class CameraPart final : public RgbdCamera {
  public:
   CameraPart(std::unique_ptr<LiveCamera> camera, const FrameRange& range)
       : camera_(std::move(camera)), range_(range) {}
-  ~CameraPart() override { camera_->close(); }
+  ~CameraPart() { camera_->close(); }
 
   CameraModel model() const override { return camera_->model(); }
   Status next(RgbdFrame& frame) override {

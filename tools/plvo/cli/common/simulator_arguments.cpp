@@ -47,15 +47,16 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
             });
   group.number("--rolling-shutter", arguments.readout_s, {0, 1}, "SECONDS",
                "Time from the first row to the last (default 0: all rows at once; a Kinect's: 0.0261)");
-  group.number("--depth-delay", arguments.depth_timing.delay_s, {-0.1, 0.1}, "SECONDS",
+  group.number("--depth-delay", arguments.depth_schedule.delay_s, {-0.1, 0.1}, "SECONDS",
                "Depth is exposed this long after its stamp (default 0; negative: before)");
-  group.number("--depth-readout", arguments.depth_timing.readout_s, {0, 0.1}, "SECONDS",
+  group.number("--depth-readout", arguments.depth_schedule.readout_s, {0, 0.1}, "SECONDS",
                "Time from the first row of depth to the last (default: --rolling-shutter)");
-  group.number("--depth-stamp-offset", arguments.depth_timing.stamp_offset_s, {-0.5, 0.5}, "SECONDS",
+  group.number("--depth-stamp-offset", arguments.depth_schedule.stamp_offset_s, {-0.5, 0.5}, "SECONDS",
                "Depth is stamped, and taken, this long after colour: at most half a frame (default 0)");
-  group.number("--depth-fps", arguments.depth_timing.fps, {1, 1000}, "HZ",
-               "Depth images per second on a clock of their own, at least --fps (default: the colour's clock)");
-  group.number("--depth-stamp-jitter", arguments.depth_timing.stamp_jitter_s, {0, 0.1}, "SECONDS",
+  group.number(
+      "--depth-fps", arguments.depth_schedule.fps, {1, 1000}, "HZ",
+      "Depth images per second on a clock of their own, at least --fps (default: the colour's clock)");
+  group.number("--depth-stamp-jitter", arguments.depth_schedule.stamp_jitter_s, {0, 0.1}, "SECONDS",
                "Standard deviation of depth's stamps; the exposures keep their time (default 0)");
   group.number("--depth-scale-error", arguments.depth_scale_error, {0.5, 2}, "FACTOR",
                "Reported depth over true depth (default 1)");
@@ -77,7 +78,7 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   options.threads = arguments.threads;
   CameraModel& camera = options.camera;
   camera.readout_s = arguments.readout_s;
-  options.depth_timing = arguments.depth_timing;
+  options.depth_schedule = arguments.depth_schedule;
   options.depth.scale_error = arguments.depth_scale_error;
   if (arguments.width > 0) {
     const double scale = static_cast<double>(arguments.width) / camera.width;

@@ -20,7 +20,7 @@ struct SimulatorArguments {
   double fps = 30;
   double readout_s = 0;
   int width = 0, height = 0;  // 0: the simulator's own size
-  DepthTiming depth_timing;
+  DepthSchedule depth_schedule;
   double depth_scale_error = 1;
   std::string trajectory;
   bool clean = false;

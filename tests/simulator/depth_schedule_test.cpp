@@ -78,7 +78,7 @@ Shares measure(const SimulatorOptions& options, double exposed_s, double readout
 constexpr double kWallShare = 0.38;  // the rest is bricks, posters, the door, the window, the beam …
 constexpr double kByChance = 0.25;
 
-TEST(DepthTiming, ByDefaultDepthIsTakenWithColour) {
+TEST(DepthSchedule, ByDefaultDepthIsTakenWithColour) {
   const Shares shares = measure(bare_room(), 0, 0);
   EXPECT_GT(shares.own_time, kWallShare);
   EXPECT_EQ(shares.own_time, shares.colour_time);
@@ -86,10 +86,10 @@ TEST(DepthTiming, ByDefaultDepthIsTakenWithColour) {
   EXPECT_EQ(shares.farthest_ms, 0);
 }
 
-TEST(DepthTiming, DelayMovesTheExposureNotTheStamp) {
+TEST(DepthSchedule, DelayMovesTheExposureNotTheStamp) {
   for (const double delay_s : {-0.015, 0.02}) {
     SimulatorOptions options = bare_room();
-    options.depth_timing.delay_s = delay_s;
+    options.depth_schedule.delay_s = delay_s;
     const Shares shares = measure(options, delay_s, 0);
     EXPECT_GT(shares.own_time, kWallShare) << delay_s;
     EXPECT_LT(shares.colour_time, kByChance) << delay_s;
@@ -97,27 +97,27 @@ TEST(DepthTiming, DelayMovesTheExposureNotTheStamp) {
   }
 }
 
-TEST(DepthTiming, ReadoutRollsAboutTheMiddleRow) {
+TEST(DepthSchedule, ReadoutRollsAboutTheMiddleRow) {
   SimulatorOptions options = bare_room();
-  options.depth_timing.readout_s = 0.03;
+  options.depth_schedule.readout_s = 0.03;
   const Shares shares = measure(options, 0, 0.03);
   EXPECT_GT(shares.own_time, kWallShare);
   EXPECT_LT(shares.colour_time, 0.5 * shares.own_time);
 }
 
-TEST(DepthTiming, DepthRollsWithColourUnlessTold) {
+TEST(DepthSchedule, DepthRollsWithColourUnlessTold) {
   SimulatorOptions options = bare_room();
   options.camera.readout_s = 0.026;
   EXPECT_GT(measure(options, 0, 0.026).own_time, kWallShare);
-  options.depth_timing.readout_s = 0;
+  options.depth_schedule.readout_s = 0;
   EXPECT_GT(measure(options, 0, 0).own_time, kWallShare);
 }
 
-TEST(DepthTiming, StampOffsetIsSeenInTheStampAndInThePicture) {
+TEST(DepthSchedule, StampOffsetIsSeenInTheStampAndInThePicture) {
   SimulatorOptions options = bare_room();
-  options.depth_timing.stamp_offset_s = 0.012;
-  options.depth_timing.delay_s = -0.005;
-  options.depth_timing.readout_s = 0.02;
+  options.depth_schedule.stamp_offset_s = 0.012;
+  options.depth_schedule.delay_s = -0.005;
+  options.depth_schedule.readout_s = 0.02;
   const Shares shares = measure(options, -0.005, 0.02);
   EXPECT_GT(shares.own_time, kWallShare);
   EXPECT_LT(shares.colour_time, kByChance);
@@ -125,9 +125,9 @@ TEST(DepthTiming, StampOffsetIsSeenInTheStampAndInThePicture) {
   EXPECT_EQ(shares.farthest_ms, 12);
 }
 
-TEST(DepthTiming, AClockOfItsOwnSweepsThroughHalfAFrameToEachSide) {
+TEST(DepthSchedule, AClockOfItsOwnSweepsThroughHalfAFrameToEachSide) {
   SimulatorOptions options = bare_room();
-  options.depth_timing.fps = 31;
+  options.depth_schedule.fps = 31;
   const Shares shares = measure(options, 0, 0);
   EXPECT_GT(shares.own_time, kWallShare);
   const double half_frame_ms = 500 / 31.0;
@@ -142,13 +142,13 @@ TEST(DepthTiming, AClockOfItsOwnSweepsThroughHalfAFrameToEachSide) {
     EXPECT_GT(camera->depth_stamp_ns(k), camera->depth_stamp_ns(k - 1)) << "each depth image is used once";
 }
 
-TEST(DepthTiming, JitterMovesTheStampsAlone) {
+TEST(DepthSchedule, JitterMovesTheStampsAlone) {
   SimulatorOptions options = bare_room();
   options.frames = 400;
-  options.depth_timing.stamp_offset_s = 0.004;
+  options.depth_schedule.stamp_offset_s = 0.004;
   std::unique_ptr<SimulatedCamera> steady, jittery;
   ASSERT_TRUE(SimulatedCamera::create(options, steady).ok());
-  options.depth_timing.stamp_jitter_s = 0.002;
+  options.depth_schedule.stamp_jitter_s = 0.002;
   ASSERT_TRUE(SimulatedCamera::create(options, jittery).ok());
   double squares = 0;
   double sum = 0;
@@ -168,7 +168,7 @@ TEST(DepthTiming, JitterMovesTheStampsAlone) {
   EXPECT_TRUE(std::equal(a.depth.data, a.depth.data + 160 * 120, b.depth.data));
 }
 
-TEST(DepthTiming, ScaleErrorStretchesWhatIsReported) {
+TEST(DepthSchedule, ScaleErrorStretchesWhatIsReported) {
   SimulatorOptions options = bare_room();
   options.frames = 6;
   options.depth.scale_error = 1.01;
@@ -187,12 +187,12 @@ TEST(DepthTiming, ScaleErrorStretchesWhatIsReported) {
   EXPECT_GT(measured, right[0].depth.size() / 2);
 }
 
-TEST(DepthTiming, ColourDoesNotDependOnIt) {
+TEST(DepthSchedule, ColourDoesNotDependOnIt) {
   SimulatorOptions options = small_options(SceneName::kDesk);
   options.frames = 2;
   const std::vector<test::Shot> together = test::shoot(options);
-  options.depth_timing.delay_s = 0.02;
-  options.depth_timing.readout_s = 0.03;
+  options.depth_schedule.delay_s = 0.02;
+  options.depth_schedule.readout_s = 0.03;
   const std::vector<test::Shot> apart = test::shoot(options);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(together[k].colour, apart[k].colour);
@@ -201,19 +201,19 @@ TEST(DepthTiming, ColourDoesNotDependOnIt) {
   }
 }
 
-TEST(DepthTiming, RefusesWhatCannotBe) {
+TEST(DepthSchedule, RefusesWhatCannotBe) {
   const auto refused = [](auto change) {
     SimulatorOptions options = bare_room();
     change(options);
     return options.validate().code() == StatusCode::kInvalidArgument;
   };
   EXPECT_FALSE(refused([](SimulatorOptions&) {}));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.delay_s = 0.2; }));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.delay_s = std::nan(""); }));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.readout_s = -0.01; }));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.stamp_offset_s = 0.02; }));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.fps = 29; }));
-  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_timing.stamp_jitter_s = 0.004; }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.delay_s = 0.2; }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.delay_s = std::nan(""); }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.readout_s = -0.01; }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.stamp_offset_s = 0.02; }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.fps = 29; }));
+  EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth_schedule.stamp_jitter_s = 0.004; }));
   EXPECT_TRUE(refused([](SimulatorOptions& o) { o.depth.scale_error = 0; }));
 }
 
