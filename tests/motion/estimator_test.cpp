@@ -202,7 +202,8 @@ TEST(Estimator, AFullArenaIsSaid) {
   std::vector<std::byte> nothing(64);
   Arena full{std::span<std::byte>(nothing)};
   (void)full.take<std::byte>("test", 64);
-  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status, StatusCode::kOutOfMemory);
+  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status,
+            StatusCode::kOutOfMemory);
 }
 
 TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
@@ -284,9 +285,11 @@ TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
     Bench bench;
     bench.load(pair);
     PlaneSamples planes(samples, flags);
-    const MotionEstimate without = estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+    const MotionEstimate without =
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     bench.sets.push_back(&planes);
-    const MotionEstimate with = estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+    const MotionEstimate with =
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     ASSERT_EQ(without.status, StatusCode::kOk);
     ASSERT_EQ(with.status, StatusCode::kOk);
     EXPECT_GT(with.inliers[2], 280);

@@ -16,8 +16,9 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
                "What the motion is estimated from (default both)");
   group.choice("--reference", options.reference,
                Choices<ReferencePolicy>{{"previous", ReferencePolicy::kPreviousFrame},
-                                        {"keyframe", ReferencePolicy::kKeyframe}},
-               "What a frame is matched against: the frame before it, or the last keyframe");
+                                        {"keyframe", ReferencePolicy::kKeyframe},
+                                        {"both", ReferencePolicy::kKeyframeAndPrevious}},
+               "What a frame is matched against: the frame before it, the last keyframe, or both (default)");
   group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
 }
 
