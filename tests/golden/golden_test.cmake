@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the golden program and compares its output with the committed one, byte for byte.
 # cmake -DPROGRAM="<emulator;…;>program" -DGOLDEN=<file> [-DUPDATE=ON] [-DEIGEN=<version>] -P golden_test.cmake
+cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE output RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} ended with ${result}\n${output}")

@@ -97,7 +97,7 @@ TEST_F(CliRun, TheMainJob) {
       run_command(kPlvo + " eval --gt " + (sequence_ / "groundtruth.txt").string() + " --est " +
                   file("t.txt") + " --est-covariance " + file("c.txt") + " --est-motions " + file("m.txt"));
   EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
-  EXPECT_TRUE(contains(evaluated.out, "NEES of the motions")) << evaluated.out;
+  EXPECT_TRUE(contains(evaluated.out, "of the motions     all, 6")) << evaluated.out;
 }
 
 TEST_F(CliRun, SameInputSameBytes) {
