@@ -115,11 +115,11 @@ TEST(AlignmentBias, NoFractionOfAPixelIsFavoured) {
     const double mean_bilinear = bilinear_sum / found_bilinear;
     std::printf("fraction %d/8: mean error %+.4f px, with bilinear reading %+.4f px (%d of %d found)\n",
                 eighths, mean, mean_bilinear, found, tried);
-    EXPECT_LT(std::fabs(mean), 0.01) << eighths << "/8";
+    EXPECT_LT(std::fabs(mean), 0.005) << eighths << "/8";
     worst = std::max(worst, std::fabs(mean));
     worst_bilinear = std::max(worst_bilinear, std::fabs(mean_bilinear));
   }
-  EXPECT_GT(worst_bilinear, 2 * worst) << "the textures are too smooth to tell";
+  EXPECT_GT(worst_bilinear, 5 * worst) << "the textures are too smooth to tell";
 }
 
 // Two surfaces meet two pixels right of the patch's middle; each moves by its own shift.
