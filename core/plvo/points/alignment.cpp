@@ -18,23 +18,21 @@ constexpr int kLeastPixels = kPixels / 3;
 constexpr int kFractionBits = 5;  // positions are read on a grid of 1/32 px
 constexpr int kTaps = 4;          // of the cubic B-spline
 
-// The spline's weights at every fraction, in 1/128; they sum to 128.
+// The spline's weights at every fraction, in 1/128. Their sum is 128 and their centre the fraction itself,
+// both exactly: the outer two are rounded, the inner two follow from them. A centre beside the fraction would
+// move all points that are read there by as much.
 using Weights = std::array<std::int16_t, kTaps>;
 constexpr std::array<Weights, 1 << kFractionBits> make_weights() {
   std::array<Weights, 1 << kFractionBits> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double f = static_cast<double>(i) / (1 << kFractionBits);
     const double g = 1 - f;
-    const std::array<double, kTaps> exact = {g * g * g / 6, (4 + f * f * (3 * f - 6)) / 6,
-                                             (4 + g * g * (3 * g - 6)) / 6, f * f * f / 6};
-    int sum = 0;
-    for (std::size_t k = 0; k < kTaps; ++k) {
-      table[i][k] = static_cast<std::int16_t>(exact[k] * 128 + 0.5);
-      sum += table[i][k];
-    }
-    // What rounding left goes to the largest.
-    const std::size_t largest = f < 0.5 ? 1 : 2;
-    table[i][largest] = static_cast<std::int16_t>(table[i][largest] + 128 - sum);
+    const int before = static_cast<int>(g * g * g / 6 * 128 + 0.5);
+    const int behind = static_cast<int>(f * f * f / 6 * 128 + 0.5);
+    const int right = static_cast<int>(128 * f) + before - 2 * behind;
+    const int left = 128 - before - right - behind;
+    table[i] = {static_cast<std::int16_t>(before), static_cast<std::int16_t>(left),
+                static_cast<std::int16_t>(right), static_cast<std::int16_t>(behind)};
   }
   return table;
 }

@@ -23,12 +23,15 @@ WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, doub
   Vector2 centre = pixel;
   WindowMask mask{};
   if (!depth.locate(centre)) return mask;
-  const double step = 1 << keypoint.level;
+  const int step = 1 << keypoint.level;
+  // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
+  const int centre_x = static_cast<int>(centre.x() + 0.5);
+  const int centre_y = static_cast<int>(centre.y() + 0.5);
   std::array<Row, kRows> own{};
   for (int r = 0; r < kRows; ++r) {
-    const int y = static_cast<int>(centre.y() + (r - kRim - kWindowReach) * step + 0.5);
+    const int y = centre_y + (r - kRim - kWindowReach) * step;
     for (int c = 0; c < kColumns; ++c) {
-      const int x = static_cast<int>(centre.x() + (c - kRim - kWindowReach) * step + 0.5);
+      const int x = centre_x + (c - kRim - kWindowReach) * step;
       const double difference = depth.at(x, y) - depth_m;
       const double most = kSameSurface * depth_m;
       if (difference < most && difference > -most)

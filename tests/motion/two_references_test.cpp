@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matches with two references in one estimate, against the same matches carried to one reference by hand; and
+// matches with correlated residuals, against a dense covariance.
+#include "two_references.hpp"
+
+#include <gtest/gtest.h>
+
+namespace plvo {
+namespace {
+
+using test::difference;
+using test::Gaussian;
+using test::kAway;
+using test::Linearization;
+using test::linearize;
+using test::SimulatedPair;
+using test::Solution;
+using test::solve;
+using test::TwoReferences;
+
+TEST(TwoReferences, WithAnExactPoseAreOneProblem) {
+  // Points are eliminated exactly wherever T is; lines have settled landmarks near the truth only.
+  struct Case {
+    int points, lines;
+    double away, tolerance;
+  };
+  for (const Case& c : {Case{40, 0, 1, 1e-10}, Case{20, 15, 0, 1e-7}})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      TwoReferences two(seed, c.points, c.lines);
+      TwoReferences one(seed, c.points, c.lines);
+      const SimulatedPair carried = one.carried_to_base();
+      const auto sets_two = two.sets_of(two.pairs[0], two.pairs[1], 1);
+      const auto sets_one = one.sets_of(one.pairs[0], carried, 0);
+      const Se3 T = boxplus(two.truth, Vector6(c.away * kAway));
+      const Linearization a = linearize(sets_two, two.references, T);
+      const Linearization b = linearize(sets_one, MotionReferences{}, T);
+      EXPECT_NEAR(a.cost, b.cost, c.tolerance * b.cost);
+      EXPECT_LT(difference(a.H, b.H), c.tolerance);
+      EXPECT_LT(difference(a.g, b.g, b.H), 10 * c.tolerance * difference(b.g, Vector6::Zero(), b.H));
+    }
+}
+
+TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TwoReferences two(seed, 30, 10);
+    TwoReferences one(seed, 30, 10);
+    const SimulatedPair carried = one.carried_to_base();
+    const auto sets_two = two.sets_of(two.pairs[0], two.pairs[1], 1);
+    const auto sets_one = one.sets_of(one.pairs[0], carried, 0);
+    const Se3 start = boxplus(two.truth, kAway);
+    const Solution x = solve(sets_two, two.references, start);
+    const Solution y = solve(sets_one, MotionReferences{}, start);
+    ASSERT_TRUE(converged(x.summary.status));
+    ASSERT_TRUE(converged(y.summary.status));
+    EXPECT_LT(boxminus(x.T, y.T).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT(difference(x.H, y.H), 1e-6);
+
+    // And so in the whole estimator, consensus included.
+    const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, 5, nullptr, two.arena);
+    const MotionEstimate q = estimate_motion(sets_one, MotionReferences{}, {}, {}, 5, nullptr, one.arena);
+    ASSERT_EQ(p.status, StatusCode::kOk);
+    ASSERT_EQ(q.status, StatusCode::kOk);
+    EXPECT_EQ(p.inliers, q.inliers);
+    EXPECT_LT(boxminus(p.T_current_reference, q.T_current_reference).cwiseAbs().maxCoeff(), 1e-7);
+  }
+}
+
+TEST(TwoReferences, AnExactPoseAndAnUnknownOneAreTheLimits) {
+  TwoReferences two(7, 30, 10);
+  const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
+  const std::span<ConstraintSet* const> first(sets.data(), 2);
+  const Se3 start = boxplus(two.truth, kAway);
+
+  two.references[1].covariance.setZero();
+  const Solution exact = solve(sets, two.references, start);
+  two.references[1].covariance = 1e-14 * Matrix6::Identity();
+  const Solution nearly_exact = solve(sets, two.references, start);
+  EXPECT_LT(difference(nearly_exact.H, exact.H), 1e-5);
+  EXPECT_LT(boxminus(nearly_exact.T, exact.T).cwiseAbs().maxCoeff(), 1e-7);
+
+  const Solution alone = solve(first, two.references, start);
+  two.references[1].covariance = 1e4 * Matrix6::Identity();
+  const Solution unknown = solve(sets, two.references, start);
+  ASSERT_TRUE(converged(unknown.summary.status));
+  EXPECT_LT(difference(unknown.H, alone.H), 1e-5);
+  EXPECT_LT(boxminus(unknown.T, alone.T).cwiseAbs().maxCoeff(), 1e-7);
+  // They are not the same to begin with.
+  EXPECT_GT(difference(exact.H, alone.H), 0.3);
+  EXPECT_GT(difference(exact.H, unknown.H), 0.3);
+}
+
+TEST(CorrelatedResiduals, WeighAsADenseCovarianceSays) {
+  // n numbers that share a part of their error tell of their common value 1ᵀ Σ⁻¹ 1.
+  for (const int n : {1, 2, 7, 40})
+    for (const double rho : {0.0, 0.005, 0.05, 0.5}) {
+      const Eigen::MatrixXd Sigma =
+          (1 - rho) * Eigen::MatrixXd::Identity(n, n) + rho * Eigen::MatrixXd::Ones(n, n);
+      const double weight = Sigma.llt().solve(Eigen::VectorXd::Ones(n)).sum();
+      // n times the same match, and as many more that are no inliers.
+      Gaussian gaussian(11);
+      SimulatedPair one;
+      one.truth = test::random_motion(gaussian);
+      one.add_point(gaussian, test::random_point(gaussian));
+      one.add_random_line(gaussian);
+      SimulatedPair many = one;
+      for (int i = 1; i < 2 * n; ++i) {
+        many.point_matches.push_back({0, 0});
+        many.line_matches.push_back({0, 0});
+      }
+      test::Bench single, bench;
+      single.load(one);
+      bench.load(many);
+      for (std::size_t kind = 0; kind < 2; ++kind) {
+        ConstraintSet* const first[] = {single.sets[kind]};
+        ConstraintSet* const all[] = {bench.sets[kind]};
+        test::flag_all(*first[0]);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) all[0]->inliers()[2 * i] = 1;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) all[0]->inliers()[2 * i + 1] = 0;
+        all[0]->set_reference(0, rho);
+        const Se3 T = boxplus(one.truth, kAway);
+        const Linearization a = linearize(first, MotionReferences{}, T);
+        const Linearization b = linearize(all, MotionReferences{}, T);
+        EXPECT_NEAR(b.cost, weight * a.cost, 1e-9 * b.cost) << n << " of kind " << kind << ", rho " << rho;
+        const double scale = a.H.cwiseAbs().maxCoeff() * weight;
+        EXPECT_LT((b.H - weight * a.H).cwiseAbs().maxCoeff(), 1e-9 * scale);
+        EXPECT_LT((b.g - weight * a.g).cwiseAbs().maxCoeff(), 1e-9 * weight * a.g.cwiseAbs().maxCoeff());
+      }
+    }
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frames a frame is matched with, and how its points are found there: by default the keyframe and the
+// last frame at once, registered; with the paper's settings the last frame alone, by descriptors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr Limits kLimits{160, 120, 250, 64};
+constexpr int kFrames = 10;
+
+using Pixels = std::set<std::pair<float, float>>;
+
+// What one frame showed.
+struct Shown {
+  TrackResult result;
+  Pixels keypoints;
+  std::vector<SegmentView> segments, reference_segments;
+  std::vector<PointTrackView> point_tracks;
+  std::size_t line_tracks = 0;
+};
+
+std::vector<Shown> run(const Config& config) {
+  ProceduralSequence sequence(kLimits.width, kLimits.height);
+  std::vector<std::byte> memory(required_bytes(kLimits));
+  Odometry odometry;
+  const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+  EXPECT_TRUE(status.ok()) << status.message();
+  std::vector<Shown> all;
+  for (int i = 0; i < kFrames; ++i) {
+    Shown shown;
+    shown.result = odometry.track(sequence.render(i));
+    EXPECT_NE(shown.result.state, TrackState::kLost) << shown.result.status.message();
+    const FeatureView view = odometry.features();
+    for (const Keypoint& keypoint : view.keypoints) shown.keypoints.insert({keypoint.u, keypoint.v});
+    shown.segments.assign(view.segments.begin(), view.segments.end());
+    shown.reference_segments.assign(view.reference_segments.begin(), view.reference_segments.end());
+    shown.point_tracks.assign(view.point_tracks.begin(), view.point_tracks.end());
+    shown.line_tracks = view.line_tracks.size();
+    all.push_back(shown);
+  }
+  return all;
+}
+
+int count(const std::vector<PointTrackView>& tracks, const Pixels& pixels, bool in_reference) {
+  return static_cast<int>(std::count_if(tracks.begin(), tracks.end(), [&](const PointTrackView& track) {
+    return pixels.count(in_reference ? std::pair(track.u_reference, track.v_reference)
+                                     : std::pair(track.u, track.v)) > 0;
+  }));
+}
+
+bool same_places(const std::vector<SegmentView>& a, const std::vector<SegmentView>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SegmentView& x, const SegmentView& y) {
+    return x.a_u == y.a_u && x.a_v == y.a_v && x.b_u == y.b_u && x.b_v == y.b_v;
+  });
+}
+
+// The tracks and the segments of the reference in frame i are those of frame i − 1.
+void expect_shows_the_last_frame(const std::vector<Shown>& all, std::size_t i) {
+  const Shown& now = all[i];
+  ASSERT_GT(now.point_tracks.size(), 10u) << i;
+  EXPECT_EQ(count(now.point_tracks, all[i - 1].keypoints, true), static_cast<int>(now.point_tracks.size()))
+      << i;
+  EXPECT_TRUE(same_places(now.reference_segments, all[i - 1].segments)) << i;
+}
+
+TEST(References, BothTheKeyframeAndTheLastFrameServeByDefault) {
+  const std::vector<Shown> all = run(Config{});
+  std::size_t keyframe = 0;
+  int with_both = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const TrackResult& result = all[i].result;
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    // The keyframe stays or becomes the frame before.
+    if (result.reference_stamp_ns != all[keyframe].result.stamp_ns) keyframe = i - 1;
+    EXPECT_EQ(result.reference_stamp_ns, all[keyframe].result.stamp_ns) << i;
+    expect_shows_the_last_frame(all, i);
+    // What is counted is of all references, what is shown of the last one.
+    const int shown = static_cast<int>(all[i].point_tracks.size());
+    if (keyframe == i - 1) {
+      EXPECT_EQ(result.points.matched, shown) << i;
+      EXPECT_EQ(result.lines.matched, static_cast<int>(all[i].line_tracks)) << i;
+      continue;
+    }
+    ++with_both;
+    EXPECT_GT(result.points.matched, shown + 10) << i;
+    EXPECT_LT(count(all[i].point_tracks, all[keyframe].keypoints, true), shown) << i;
+    // The motion is that from the keyframe.
+    const Se3 expected = result.T_world_camera.inverse() * all[keyframe].result.T_world_camera;
+    EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
+  }
+  EXPECT_GE(with_both, 3) << "a keyframe must be kept for some frames";
+}
+
+TEST(References, AKeyframeAloneIsWhatIsShown) {
+  Config config;
+  config.references.policy = ReferencePolicy::kKeyframe;
+  config.references.keyframe_inlier_ratio = 0;
+  const std::vector<Shown> all = run(config);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const int shown = static_cast<int>(all[i].point_tracks.size());
+    EXPECT_EQ(all[i].result.reference_stamp_ns, all[0].result.stamp_ns);
+    EXPECT_EQ(all[i].result.points.matched, shown);
+    EXPECT_EQ(count(all[i].point_tracks, all[0].keypoints, true), shown) << i;
+  }
+}
+
+TEST(References, ThePaperUsesTheLastFrameAndNoRegistration) {
+  const std::vector<Shown> all = run(Config::paper());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].result.reference_stamp_ns, all[i - 1].result.stamp_ns) << i;
+    expect_shows_the_last_frame(all, i);
+    const int shown = static_cast<int>(all[i].point_tracks.size());
+    EXPECT_EQ(all[i].result.points.matched, shown) << i;
+    // Without registration a point is where the detector put it.
+    EXPECT_EQ(count(all[i].point_tracks, all[i].keypoints, false), shown) << i;
+  }
+  // With it hardly any is, so this can be told.
+  const std::vector<Shown> registered = run(Config{});
+  for (std::size_t i = 1; i < registered.size(); ++i)
+    EXPECT_LT(count(registered[i].point_tracks, registered[i].keypoints, false),
+              static_cast<int>(registered[i].point_tracks.size()) / 4)
+        << i;
+}
+
+}  // namespace
+}  // namespace plvo
