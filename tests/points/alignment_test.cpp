@@ -84,11 +84,10 @@ TEST(Alignment, TheSamePatchStaysWhereItIs) {
   const Patch patch = cut_patch(image.view(), kCentre, kCentre);
   const Alignment got = align_patch(patch, kWholeWindow, image.view(), kCentre, kCentre, {});
   ASSERT_TRUE(got.ok);
-  // The template is kept in quarters of a grey level.
-  EXPECT_NEAR(got.x, kCentre, 5e-3);
-  EXPECT_NEAR(got.y, kCentre, 5e-3);
+  EXPECT_NEAR(got.x, kCentre, 1e-6);
+  EXPECT_NEAR(got.y, kCentre, 1e-6);
   EXPECT_EQ(got.iterations, 1);
-  EXPECT_LT(got.sigma_px, 0.02);
+  EXPECT_LT(got.sigma_px, 0.01);
 }
 
 TEST(Alignment, RefusesWhatCannotBeLocated) {

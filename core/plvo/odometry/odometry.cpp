@@ -180,7 +180,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 // The keyframe, which is the base, and the last good frame, as far as the policy wants both.
 std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
   references[0] = {&frame(keyframe_), prior_of(keyframe_, stamp_ns), {}};
-  if (last_ == keyframe_ || config_.references.policy != ReferencePolicy::kKeyframeAndPrevious) return 1;
+  if (!uses_both_references()) return 1;
   const Se3 T_last_keyframe = anchor(last_).T_world_camera.inverse() * anchor(keyframe_).T_world_camera;
   references[1] = {
       &frame(last_), prior_of(last_, stamp_ns), {T_last_keyframe, anchor(last_).motion_covariance}};
@@ -312,7 +312,7 @@ void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
 // Of the latest reference; without a motion there is nothing to show.
 void Odometry::fill_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
-  const bool both = last_ != keyframe_ && config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
+  const bool both = uses_both_references();
   const FrameFeatures& reference = frame(both ? last_ : keyframe_);
   const ReferenceTracks& tracks = rooms_.tracking.tracks(both ? 1 : 0);
   point_track_count_ = tracks.points.matches.size();

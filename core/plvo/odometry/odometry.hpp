@@ -125,6 +125,11 @@ class Odometry {
   double depth_after_colour_s(const RgbdFrame& frame) const;
   Exposure predict_exposure(std::int64_t stamp_ns) const;
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
+  // Without registration find() is the whole estimate, of the base alone.
+  bool uses_both_references() const {
+    return last_ != keyframe_ && config_.points.registered &&
+           config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
+  }
   TrackedMotion estimate_motion(const DepthSampler& depth, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
