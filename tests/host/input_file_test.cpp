@@ -6,17 +6,15 @@
 
 #include <string_view>
 
+#include "says.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
+using test::says;
 using test::TemporaryFolder;
 using test::write_file;
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
-}
 
 TEST(InputFile, ReadsWholeFiles) {
   const TemporaryFolder folder;

@@ -12,20 +12,20 @@ namespace {
 
 using test::GrayImage;
 
-constexpr int kWidth = 37;
-constexpr int kHeight = 11;
+constexpr int kColourWidth = 37;
+constexpr int kColourHeight = 11;
 
 // Rows are longer than three times the width, as some cameras deliver them.
 struct Colour {
-  explicit Colour(PixelFormat format) : bytes(kStride * kHeight) {
+  explicit Colour(PixelFormat format) : bytes(kStride * kColourHeight) {
     Random random(601);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.below(256));
-    view = {bytes.data(), kWidth, kHeight, kStride, format};
+    view = {bytes.data(), kColourWidth, kColourHeight, kStride, format};
   }
   int byte(int x, int y, int channel) const {
     return bytes[static_cast<std::size_t>(y * kStride + 3 * x + channel)];
   }
-  static constexpr int kStride = 3 * kWidth + 7;
+  static constexpr int kStride = 3 * kColourWidth + 7;
   std::vector<std::uint8_t> bytes;
   ColourView view;
 };
@@ -33,11 +33,11 @@ struct Colour {
 TEST(Gray, IsTheFormulaInBothOrdersOfTheChannels) {
   for (PixelFormat format : {PixelFormat::kRgb8, PixelFormat::kBgr8}) {
     const Colour colour(format);
-    GrayImage gray(kWidth, kHeight, 3);
+    GrayImage gray(kColourWidth, kColourHeight, 3);
     to_gray(colour.view, gray.view());
     const int red = format == PixelFormat::kRgb8 ? 0 : 2;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kColourHeight; ++y)
+      for (int x = 0; x < kColourWidth; ++x) {
         const int r = colour.byte(x, y, red);
         const int g = colour.byte(x, y, 1);
         const int b = colour.byte(x, y, 2 - red);
@@ -51,10 +51,10 @@ TEST(Gray, IsTheFormulaInBothOrdersOfTheChannels) {
 
 TEST(Gray, GreyIsCopiedAndColourWithoutColourStays) {
   const Colour one(PixelFormat::kGray8);
-  GrayImage gray(kWidth, kHeight, 2);
+  GrayImage gray(kColourWidth, kColourHeight, 2);
   to_gray(one.view, gray.view());
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kColourHeight; ++y)
+    for (int x = 0; x < kColourWidth; ++x)
       ASSERT_EQ(gray.view().at(x, y), one.bytes[static_cast<std::size_t>(y * Colour::kStride + x)]);
 
   for (int level = 0; level < 256; ++level) {

@@ -16,13 +16,13 @@ namespace {
 
 using test::GrayImage;
 
-constexpr int kWidth = 161;
-constexpr int kHeight = 119;
+constexpr int kBentWidth = 161;
+constexpr int kBentHeight = 119;
 
 CameraModel camera_with(const Distortion& distortion) {
   CameraModel camera;
-  camera.width = kWidth;
-  camera.height = kHeight;
+  camera.width = kBentWidth;
+  camera.height = kBentHeight;
   camera.pinhole = {135, 134, 81.2, 58.7};
   camera.distortion = distortion;
   return camera;
@@ -34,7 +34,7 @@ const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
 
 class Table {
  public:
-  explicit Table(const CameraModel& camera) : memory_(kWidth * kHeight * 4 + 2 * kArenaAlignment) {
+  explicit Table(const CameraModel& camera) : memory_(kBentWidth * kBentHeight * 4 + 2 * kArenaAlignment) {
     Arena arena(memory_);
     table.carve(arena, camera.width, camera.height);
     table.init(camera);
@@ -48,8 +48,8 @@ class Table {
 // A bilinear read touches the next pixel too, so the last row and column count as unseen. Within a step of
 // the table from the border either answer is right: reach = 1/32 px widens, −1/32 px narrows.
 bool seen(const Vector2& raw, double reach = 0) {
-  return raw.x() >= -reach && raw.y() >= -reach && raw.x() < kWidth - 1 + reach &&
-         raw.y() < kHeight - 1 + reach;
+  return raw.x() >= -reach && raw.y() >= -reach && raw.x() < kBentWidth - 1 + reach &&
+         raw.y() < kBentHeight - 1 + reach;
 }
 constexpr double kStep = 1.0 / 32;
 
@@ -65,8 +65,8 @@ double bilinear(GrayView image, const Vector2& at) {
 TEST(Undistortion, WithoutALensNothingMoves) {
   const Table owned(camera_with({}));
   EXPECT_FALSE(owned.table.active());
-  for (int y = 0; y < kHeight; y += 7)
-    for (int x = 0; x < kWidth; x += 5) {
+  for (int y = 0; y < kBentHeight; y += 7)
+    for (int x = 0; x < kBentWidth; x += 5) {
       int raw_x = -1, raw_y = -1;
       EXPECT_TRUE(owned.table.raw_pixel(x, y, raw_x, raw_y));
       EXPECT_EQ(raw_x, x);
@@ -77,24 +77,24 @@ TEST(Undistortion, WithoutALensNothingMoves) {
 TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
   // Slopes of up to 10 grey levels a pixel: a table in 1/32 px is then good to half a level, and the result
   // is rounded.
-  GrayImage raw(kWidth, kHeight, 6);
+  GrayImage raw(kBentWidth, kBentHeight, 6);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
   for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
     const CameraModel camera = camera_with(lens);
     ASSERT_TRUE(camera.validate().ok()) << camera.validate().message();
     const Table owned(camera);
     ASSERT_TRUE(owned.table.active());
-    GrayImage ideal(kWidth, kHeight, 1);
+    GrayImage ideal(kBentWidth, kBentHeight, 1);
     owned.table.undistort(raw.view(), ideal.view());
     int inside = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kBentHeight; ++y)
+      for (int x = 0; x < kBentWidth; ++x) {
         const Vector2 at = distort_pixel(camera, Vector2(x, y));
         if (!seen(at)) continue;
         ++inside;
         ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), at), 1.0) << x << " " << y;
       }
-    EXPECT_GT(inside, kWidth * kHeight / 2);
+    EXPECT_GT(inside, kBentWidth * kBentHeight / 2);
   }
 }
 
@@ -102,8 +102,8 @@ TEST(Undistortion, TheNearestRawPixelOrNone) {
   for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
     const CameraModel camera = camera_with(lens);
     const Table owned(camera);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kBentHeight; ++y)
+      for (int x = 0; x < kBentWidth; ++x) {
         const Vector2 at = distort_pixel(camera, Vector2(x, y));
         int raw_x = -1, raw_y = -1;
         const bool known = owned.table.raw_pixel(x, y, raw_x, raw_y);
@@ -117,26 +117,26 @@ TEST(Undistortion, TheNearestRawPixelOrNone) {
         // Half a pixel, and the step of the table.
         ASSERT_LE(std::abs(raw_x - at.x()), 0.5 + kStep);
         ASSERT_LE(std::abs(raw_y - at.y()), 0.5 + kStep);
-        ASSERT_TRUE(raw_x >= 0 && raw_y >= 0 && raw_x < kWidth && raw_y < kHeight);
+        ASSERT_TRUE(raw_x >= 0 && raw_y >= 0 && raw_x < kBentWidth && raw_y < kBentHeight);
       }
   }
 }
 
 TEST(Undistortion, WhatTheCameraDidNotSeeRepeatsItsNearestBorder) {
-  GrayImage raw(kWidth, kHeight);
+  GrayImage raw(kBentWidth, kBentHeight);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
   const CameraModel camera = camera_with(kPincushion);
   const Table owned(camera);
-  GrayImage ideal(kWidth, kHeight);
+  GrayImage ideal(kBentWidth, kBentHeight);
   owned.table.undistort(raw.view(), ideal.view());
   int unseen = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kBentHeight; ++y)
+    for (int x = 0; x < kBentWidth; ++x) {
       const Vector2 at = distort_pixel(camera, Vector2(x, y));
       if (seen(at)) continue;
       ++unseen;
-      const Vector2 border(std::clamp(at.x(), 0.0, kWidth - 1 - kStep),
-                           std::clamp(at.y(), 0.0, kHeight - 1 - kStep));
+      const Vector2 border(std::clamp(at.x(), 0.0, kBentWidth - 1 - kStep),
+                           std::clamp(at.y(), 0.0, kBentHeight - 1 - kStep));
       ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), border), 1.0) << x << " " << y;
     }
   EXPECT_GT(unseen, 100);

@@ -3,10 +3,11 @@
 // Jacobians and dense Gauss–Newton over the six numbers [A, B].
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
+#include "dense.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/lines/line3d.hpp"
 
@@ -14,9 +15,9 @@ namespace plvo::reference {
 
 // (5) by ever finer grids over λ, no formula for its minimum.
 inline double mahalanobis_by_search(const Point3d& point, const Vector3& a, const Vector3& b) {
-  const Eigen::Matrix3d information = Eigen::Matrix3d(point.Sigma).inverse();
+  const Matrix3 information = point.Sigma.inverse();
   const auto value = [&](double lambda) {
-    const Eigen::Vector3d e = point.p - (a + lambda * (b - a));
+    const Vector3 e = point.p - (a + lambda * (b - a));
     return e.dot(information * e);
   };
   double centre = 0.5, half = 20;
@@ -31,30 +32,29 @@ inline double mahalanobis_by_search(const Point3d& point, const Vector3& a, cons
 }
 
 // (6).
-inline Eigen::Vector3d delta(const Point3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Matrix3d information = Eigen::Matrix3d(point.Sigma).inverse();
-  const Eigen::Vector3d d = b - a, e = a - point.p;
+inline Vector3 delta(const Point3d& point, const Vector3& a, const Vector3& b) {
+  const Matrix3 information = point.Sigma.inverse();
+  const Vector3 d = b - a, e = a - point.p;
   return point.p - (a - d.dot(information * e) / d.dot(information * d) * d);
 }
 
 // (8), whitened by Σ_w.
-inline Eigen::VectorXd whitened_w(const std::vector<Point3d>& points, const Eigen::Matrix<double, 6, 1>& L) {
-  const Eigen::Vector3d a = L.head<3>(), b = L.tail<3>();
-  Eigen::VectorXd w(3 * points.size());
+inline test::DenseVector whitened_w(const std::vector<Point3d>& points, const Vector6& L) {
+  const Vector3 a = L.head<3>(), b = L.tail<3>();
+  test::DenseVector w(3 * points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Eigen::Vector3d e = delta(points[i], a, b);
+    Vector3 e = delta(points[i], a, b);
     if (i == 0) e = points[i].p - a;
     if (i + 1 == points.size()) e = points[i].p - b;
-    const Eigen::LLT<Eigen::Matrix3d> llt{Eigen::Matrix3d(points[i].Sigma)};
-    w.segment<3>(3 * static_cast<Eigen::Index>(i)) = llt.matrixL().solve(e);
+    w.segment<3>(3 * static_cast<Eigen::Index>(i)) = test::solve_lower(test::cholesky(points[i].Sigma), e);
   }
   return w;
 }
 
-inline Eigen::MatrixXd jacobian(const std::vector<Point3d>& points, const Eigen::Matrix<double, 6, 1>& L) {
-  Eigen::MatrixXd J(3 * points.size(), 6);
+inline test::Dense jacobian(const std::vector<Point3d>& points, const Vector6& L) {
+  test::Dense J(3 * points.size(), 6);
   for (int k = 0; k < 6; ++k) {
-    Eigen::Matrix<double, 6, 1> plus = L, minus = L;
+    Vector6 plus = L, minus = L;
     plus(k) += 1e-5;
     minus(k) -= 1e-5;
     J.col(k) = (whitened_w(points, plus) - whitened_w(points, minus)) / 2e-5;
@@ -63,8 +63,8 @@ inline Eigen::MatrixXd jacobian(const std::vector<Point3d>& points, const Eigen:
 }
 
 struct Mle {
-  Eigen::Matrix<double, 6, 1> L;
-  Eigen::Matrix<double, 6, 6> covariance;
+  Vector6 L;
+  Matrix6 covariance;
   double cost = 0;
 };
 
@@ -74,11 +74,11 @@ inline Mle maximum_likelihood(const std::vector<Point3d>& points) {
   mle.L << points.front().p, points.back().p;
   double damping = 1e-3;
   for (int i = 0; i < 100; ++i) {
-    const Eigen::VectorXd w = whitened_w(points, mle.L);
-    const Eigen::MatrixXd J = jacobian(points, mle.L);
-    Eigen::Matrix<double, 6, 6> H = J.transpose() * J;
+    const test::DenseVector w = whitened_w(points, mle.L);
+    const test::Dense J = jacobian(points, mle.L);
+    Matrix6 H = test::transposed_product(J, J);
     H.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, 6, 1> moved = mle.L - H.ldlt().solve(J.transpose() * w);
+    const Vector6 moved = mle.L - test::solve_positive(H, test::transposed_product(J, w));
     if (whitened_w(points, moved).squaredNorm() <= w.squaredNorm()) {
       mle.L = moved;
       damping *= 0.1;
@@ -86,8 +86,8 @@ inline Mle maximum_likelihood(const std::vector<Point3d>& points) {
       damping *= 10;
     }
   }
-  const Eigen::MatrixXd J = jacobian(points, mle.L);
-  mle.covariance = (J.transpose() * J).inverse();
+  const test::Dense J = jacobian(points, mle.L);
+  mle.covariance = test::inverse(test::transposed_product(J, J));
   mle.cost = whitened_w(points, mle.L).squaredNorm();
   return mle;
 }

@@ -2,8 +2,10 @@
 // Monte Carlo: is the covariance (10) true, and do occluding edges leave the line where it is?
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
+#include "dense.hpp"
 #include "line_scene.hpp"
 #include "plvo/lines/line3d.hpp"
 
@@ -15,19 +17,19 @@ using test::LineScene;
 // The four numbers of a line that a match can see: where it crosses the two planes z = const … here, the
 // offsets of A and B from the true line in two directions across it.
 struct Offsets {
-  Eigen::Vector4d error;
-  Eigen::Matrix4d covariance;
+  Vector4 error;
+  Matrix4 covariance;
 };
 
 Offsets across(const Line3d& line, const LineScene& truth) {
-  const Eigen::Vector3d d = (truth.b - truth.a).normalized();
-  const Eigen::Vector3d u = d.unitOrthogonal(), v = d.cross(u);
-  Eigen::Matrix<double, 4, 6> J = Eigen::Matrix<double, 4, 6>::Zero();
+  const Vector3 d = (truth.b - truth.a).normalized();
+  const Vector3 u = d.unitOrthogonal(), v = d.cross(u);
+  Matrix<4, 6> J = Matrix<4, 6>::Zero();
   J.block<1, 3>(0, 0) = u.transpose();
   J.block<1, 3>(1, 0) = v.transpose();
   J.block<1, 3>(2, 3) = u.transpose();
   J.block<1, 3>(3, 3) = v.transpose();
-  Eigen::Matrix<double, 6, 1> e;
+  Vector6 e;
   e << line.a - truth.a, line.b - truth.a;
   return {J * e, J * line.Sigma * J.transpose()};
 }
@@ -63,10 +65,10 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
     Line3d line;
     ASSERT_EQ(fit_line3d(seen, samples, pinhole, config, line).outcome, Line3dOutcome::kOk);
     const Offsets o = across(line, scene);
-    nees += o.error.dot(o.covariance.inverse() * o.error) / trials;
-    Eigen::Matrix<double, 6, 1> e;
+    nees += o.error.dot(Vector4(test::solve_positive(o.covariance, o.error))) / trials;
+    Vector6 e;
     e << line.a - scene.point_at(first_t), line.b - scene.point_at(last_t);
-    nees_ends += e.dot(Eigen::Matrix<double, 6, 6>(line.Sigma).inverse() * e) / trials;
+    nees_ends += e.dot(Vector6(test::solve_positive(line.Sigma, e))) / trials;
   }
   EXPECT_NEAR(nees, 4, half_band(trials, 4));
   RecordProperty("nees_4", std::to_string(nees));
@@ -105,16 +107,15 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
       config.trust_residuals = nees == &as_seen;
       Line3d line;
       ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, line).outcome, Line3dOutcome::kOk);
-      const Eigen::Vector3d d = (scene.b - scene.a).normalized();
-      const Eigen::Vector3d across_plane =
-          Eigen::Vector3d(scene.a).cross(Eigen::Vector3d(scene.b)).normalized();
-      const Eigen::Vector3d in_plane = d.cross(across_plane);
-      Eigen::Matrix<double, 2, 6> J = Eigen::Matrix<double, 2, 6>::Zero();
+      const Vector3 d = (scene.b - scene.a).normalized();
+      const Vector3 across_plane = scene.a.cross(scene.b).normalized();
+      const Vector3 in_plane = d.cross(across_plane);
+      Matrix<2, 6> J = Matrix<2, 6>::Zero();
       J.block<1, 3>(0, 0) = J.block<1, 3>(1, 3) = in_plane.transpose();
-      Eigen::Matrix<double, 6, 1> e;
+      Vector6 e;
       e << line.a - scene.a, line.b - scene.a;
-      const Eigen::Vector2d error2 = J * e;
-      const Eigen::Matrix2d C = J * line.Sigma * J.transpose();
+      const Vector2 error2 = J * e;
+      const Matrix2 C = J * line.Sigma * J.transpose();
       *nees += error2.dot(C.inverse() * error2) / trials;
     }
   }

@@ -35,8 +35,8 @@ TEST(PlaneLine, DistanceIsThatOfThreeDimensions) {
     const double expected = reference::mahalanobis_by_search(point, a, b);
     EXPECT_NEAR(std::abs(signed_distance(w, line)), expected, 1e-6 * (1 + expected));
     EXPECT_NEAR(squared_distance(w, Chord(line)), expected * expected, 1e-6 * (1 + expected * expected));
-    const Eigen::Vector3d foot = point.p - reference::delta(point, a, b);
-    const Vector2 foot_px = project(pinhole, Vector3(foot));
+    const Vector3 foot = point.p - reference::delta(point, a, b);
+    const Vector2 foot_px = project(pinhole, foot);
     EXPECT_NEAR((foot_px - s.middle()).dot(s.direction()), foot_pixel(w, Chord(line)), 1e-6);
   }
 }
@@ -90,13 +90,13 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
     const reference::Mle mle = reference::maximum_likelihood(points);
     EXPECT_NEAR(report.cost, mle.cost, 1e-5 * mle.cost);
     // A thousandth of a standard deviation is where the fast one stops.
-    const Eigen::Matrix<double, 6, 1> sd = mle.covariance.diagonal().cwiseSqrt();
+    const Vector6 sd = mle.covariance.diagonal().cwiseSqrt();
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(line.a(k), mle.L(k), 5e-3 * sd(k));
       EXPECT_NEAR(line.b(k), mle.L(3 + k), 5e-3 * sd(3 + k));
     }
-    const Eigen::Matrix<double, 6, 6> scale = sd.cwiseInverse().asDiagonal();
-    EXPECT_LT((scale * (Eigen::Matrix<double, 6, 6>(line.Sigma) - mle.covariance) * scale).norm(), 0.02);
+    const Matrix6 scale = sd.cwiseInverse().asDiagonal();
+    EXPECT_LT((scale * (line.Sigma - mle.covariance) * scale).norm(), 0.02);
   }
 }
 

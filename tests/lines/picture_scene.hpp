@@ -3,7 +3,7 @@
 // segments.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
 #include <vector>

@@ -11,24 +11,26 @@ namespace plvo {
 namespace {
 
 using test::Bench;
+using test::Dense;
+using test::DenseVector;
 using test::Gaussian;
 using test::SimulatedPair;
-using Dense = Eigen::MatrixXd;
-using DenseVector = Eigen::VectorXd;
 
 // (6) for both ends of a segment at once: the whitened residual of [A; B] against the line through p and q,
 // each end free to slide along it. With B(λ) linear in the two λ this is a least-squares residual, (I − Q Qᵀ)
 // L⁻¹ r.
 Vector6 sliding_residual(const Line3d& measured, const Vector3& p, const Vector3& q) {
-  const Eigen::Matrix<double, 6, 6> L = Eigen::Matrix<double, 6, 6>(measured.Sigma).llt().matrixL();
-  Eigen::Matrix<double, 6, 2> D = Eigen::Matrix<double, 6, 2>::Zero();
+  const Dense L = test::cholesky(measured.Sigma);
+  Dense D = Dense::Zero(6, 2);
   D.block<3, 1>(0, 0) = q - p;
   D.block<3, 1>(3, 1) = q - p;
-  Eigen::Matrix<double, 6, 1> r;
+  Vector6 r;
   r << measured.a - p, measured.b - p;
-  const Eigen::Matrix<double, 6, 2> D_white = L.triangularView<Eigen::Lower>().solve(D);
-  const Eigen::Matrix<double, 6, 1> r_white = L.triangularView<Eigen::Lower>().solve(r);
-  return r_white - D_white * (D_white.transpose() * D_white).ldlt().solve(D_white.transpose() * r_white);
+  const Dense D_white = test::solve_lower(L, D);
+  const Dense r_white = test::solve_lower(L, r);
+  const Dense slide = test::solve_positive(test::transposed_product(D_white, D_white),
+                                           test::transposed_product(D_white, r_white));
+  return r_white - test::product(D_white, slide);
 }
 
 // (6), one end with its own 3×3 covariance, straight from the formula of the paper.
@@ -80,13 +82,13 @@ struct JointProblem {
                   12 * static_cast<Eigen::Index>(lines.size()));
     Eigen::Index k = 0;
     const auto add3 = [&](const Matrix3& Sigma, const Vector3& v) {
-      r.segment<3>(k) = Eigen::Matrix3d(Sigma).llt().matrixL().solve(Eigen::Vector3d(v));
+      r.segment<3>(k) = test::solve_lower(test::cholesky(Sigma), v);
       k += 3;
     };
     const auto add6 = [&](const Matrix6& Sigma, const Vector3& a, const Vector3& b) {
-      Eigen::Matrix<double, 6, 1> v;
+      Vector6 v;
       v << a, b;
-      r.segment<6>(k) = Eigen::Matrix<double, 6, 6>(Sigma).llt().matrixL().solve(v);
+      r.segment<6>(k) = test::solve_lower(test::cholesky(Sigma), v);
       k += 6;
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -119,10 +121,10 @@ struct JointProblem {
   // JᵀJ, made regular by forbidding every landmark's two points to slide along their line: a gauge of its
   // own, unlike that of the eliminated solver, and of any weight.
   Dense normal_matrix(const Dense& J, double gauge_weight) const {
-    Dense N = J.transpose() * J;
+    Dense N = test::transposed_product(J, J);
     Eigen::Index k = 6 + 3 * static_cast<Eigen::Index>(points.size());
     for (const Vector6& landmark : lines) {
-      const Eigen::Vector3d d = (landmark.tail<3>() - landmark.head<3>()).normalized();
+      const Vector3 d = (landmark.tail<3>() - landmark.head<3>()).normalized();
       N.block<3, 3>(k, k) += gauge_weight * d * d.transpose();
       N.block<3, 3>(k + 3, k + 3) += gauge_weight * d * d.transpose();
       k += 10;
@@ -132,14 +134,13 @@ struct JointProblem {
   void solve() {
     for (int iteration = 0; iteration < 8; ++iteration) {
       const Dense J = jacobian();
-      move(-normal_matrix(J, 1e6).llt().solve(J.transpose() * residuals()));
+      move(-test::solve_positive(normal_matrix(J, 1e6), test::transposed_product(J, residuals())));
     }
   }
   // Covariance of ξ: the 6×6 corner of the inverse, where the gauge must not show.
   Matrix6 covariance(double gauge_weight) const {
     const Dense J = jacobian();
-    return Matrix6(Dense(normal_matrix(J, gauge_weight).llt().solve(Dense::Identity(J.cols(), J.cols())))
-                       .topLeftCorner<6, 6>());
+    return test::inverse(normal_matrix(J, gauge_weight)).topLeftCorner<6, 6>();
   }
 };
 
@@ -158,7 +159,7 @@ TEST_P(Joint, EliminationEqualsTheDenseSolve) {
   joint.solve();
   const Matrix6 C = joint.covariance(1e6);
   EXPECT_LT((joint.covariance(1e3) - C).norm(), 1e-5 * C.norm()) << "the gauge shows";
-  const Matrix6 C_eliminated = H.inverse();
+  const Matrix6 C_eliminated = test::inverse(H);
   const Vector6 difference = boxminus(T, joint.T);
   for (int i = 0; i < 6; ++i) {
     const double sigma = std::sqrt(C(i, i));
@@ -300,13 +301,9 @@ TEST(Theorem1, FusionBeatsEitherKind) {
     ASSERT_EQ(estimate.status, StatusCode::kOk);
     const Matrix6 sum = estimate.information[0] + estimate.information[1];
     EXPECT_LT((estimate.C_H * sum - Matrix6::Identity()).norm(), 1e-6);
-    const auto eigenvalues = [](const Matrix6& C) {
-      return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(Eigen::Matrix<double, 6, 6>(C))
-          .eigenvalues();
-    };
-    const auto H = eigenvalues(estimate.C_H);
-    const auto P = eigenvalues(estimate.information[0].inverse());
-    const auto L = eigenvalues(estimate.information[1].inverse());
+    const DenseVector H = test::symmetric_eigenvalues(estimate.C_H);
+    const DenseVector P = test::symmetric_eigenvalues(test::inverse(estimate.information[0]));
+    const DenseVector L = test::symmetric_eigenvalues(test::inverse(estimate.information[1]));
     for (int i = 0; i < 6; ++i) {
       EXPECT_LT(H[i], P[i]);
       EXPECT_LT(H[i], L[i]);

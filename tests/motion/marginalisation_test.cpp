@@ -40,8 +40,7 @@ struct DenseTwelve {
     for (std::size_t i = 0; i < pair.points_reference.size(); ++i) {
       const Point3d& reference = pair.points_reference[i];
       const Point3d& current = pair.points_current[i];
-      const Eigen::Matrix3d W =
-          Eigen::Matrix3d(T_c_1.R * reference.Sigma * T_c_1.R.transpose() + current.Sigma).inverse();
+      const Matrix3 W = Matrix3(T_c_1.R * reference.Sigma * T_c_1.R.transpose() + current.Sigma).inverse();
       const Vector3 e = current.p - T_c_1 * reference.p;
       const Vector3 landmark = T_c_1.inverse() * Vector3(current.p - current.Sigma * (W * e));
       const Matrix<3, 12> J = numeric_jacobian<3, 12>(
@@ -51,7 +50,7 @@ struct DenseTwelve {
       g += J.transpose() * W * e;
       cost += 0.5 * e.dot(W * e);
     }
-    N.bottomRightCorner<6, 6>() += Eigen::Matrix<double, 6, 6>(C).inverse();
+    N.bottomRightCorner<6, 6>() += test::inverse(C);
     // The same perturbation of T_current_1 that the prior's is worth, by numeric derivatives.
     A = numeric_jacobian<6, 6>(
         [&](const Vector6& xi) {
@@ -70,12 +69,13 @@ struct DenseTwelve {
   }
   // η eliminated.
   Linearization on_motion() const {
-    const Eigen::Matrix<double, 6, 6> cross = N.topRightCorner<6, 6>();
-    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> eta(N.bottomRightCorner<6, 6>());
+    const Matrix6 cross = N.bottomLeftCorner<6, 6>();
+    const Vector6 of_eta = test::solve_positive(N.bottomRightCorner<6, 6>(), g.tail<6>());
     Linearization out;
-    out.H = N.topLeftCorner<6, 6>() - cross * eta.solve(cross.transpose());
-    out.g = g.head<6>() - cross * eta.solve(g.tail<6>());
-    out.cost = cost - 0.5 * g.tail<6>().dot(eta.solve(g.tail<6>()));
+    out.H = N.topLeftCorner<6, 6>() -
+            test::transposed_product(cross, test::solve_positive(N.bottomRightCorner<6, 6>(), cross));
+    out.g = g.head<6>() - cross.transpose() * of_eta;
+    out.cost = cost - 0.5 * g.tail<6>().dot(of_eta);
     return out;
   }
   Eigen::Matrix<double, 12, 12> N = Eigen::Matrix<double, 12, 12>::Zero();
@@ -103,9 +103,9 @@ TEST(TwoReferences, MarginaliseTheirPoseAsADenseProblemDoes) {
     // The covariance does take information away, and what is left is (H⁻¹ + B C Bᵀ)⁻¹.
     const Linearization exact = linearize(second, two.references, T, false);
     EXPECT_GT(difference(got.H, exact.H), 0.3);
-    const Matrix6 A_inverse = dense.A.inverse();
+    const Matrix6 A_inverse = test::inverse(dense.A);
     const Matrix6 H1 = A_inverse.transpose() * exact.H * A_inverse;
-    const Matrix6 left = Matrix6(Matrix6(H1.inverse()) + dense.B * C * dense.B.transpose()).inverse();
+    const Matrix6 left = test::inverse(test::inverse(H1) + dense.B * C * dense.B.transpose());
     EXPECT_LT(difference(got.H, dense.A.transpose() * left * dense.A), 1e-5);
 
     // Reference 0 just adds what it knows.

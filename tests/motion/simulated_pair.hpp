@@ -3,11 +3,11 @@
 // their covariances state: what the estimator assumes, so that its covariance can be held to its word.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
+#include "dense.hpp"
 #include "plvo/base/arena.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/base/random.hpp"
@@ -36,8 +36,7 @@ class Gaussian {
   }
   template <int N>
   Vector<N> draw(const Matrix<N, N>& Sigma) {
-    const Eigen::Matrix<double, N, N> L = Eigen::Matrix<double, N, N>(Sigma).llt().matrixL();
-    return Vector<N>(L * vector<N>());
+    return product(cholesky(Sigma), vector<N>());
   }
   Random& random() { return random_; }
   // Silent: no noise, but uniform() goes on.

@@ -117,7 +117,7 @@ inline double difference(const Matrix6& A, const Matrix6& B) {
 }
 inline double difference(const Vector6& a, const Vector6& b, const Matrix6& H) {
   const Vector6 d = a - b;
-  return std::sqrt(d.dot(Matrix6(H.inverse()) * d));
+  return std::sqrt(d.dot(Vector6(solve_positive(H, d))));
 }
 
 // Away from the truth, by millimetres and milliradians.

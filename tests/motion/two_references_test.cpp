@@ -95,7 +95,7 @@ TEST(CorrelatedResiduals, WeighAsADenseCovarianceSays) {
     for (const double rho : {0.0, 0.005, 0.05, 0.5}) {
       const Eigen::MatrixXd Sigma =
           (1 - rho) * Eigen::MatrixXd::Identity(n, n) + rho * Eigen::MatrixXd::Ones(n, n);
-      const double weight = Sigma.llt().solve(Eigen::VectorXd::Ones(n)).sum();
+      const double weight = test::solve_positive(Sigma, Eigen::VectorXd::Ones(n)).sum();
       // n times the same match, and as many more that are no inliers.
       Gaussian gaussian(11);
       SimulatedPair one;

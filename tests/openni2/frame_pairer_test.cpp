@@ -37,15 +37,15 @@ TEST(FramePairer, PairsWithinTheToleranceOnly) {
 // Against the obvious rule on random streams: of all images so far, a colour image belongs to the depth image
 // within the tolerance, and every image ends up in one pair or as unmatched.
 TEST(FramePairer, AgreesWithTheObviousRuleOnRandomStreams) {
-  constexpr std::int64_t kPeriod = 1000;
+  constexpr std::int64_t kSpacing = 1000;
   Random random(3);
   FramePairer pairer;
-  pairer.reset(8, 8, kPeriod / 2);
+  pairer.reset(8, 8, kSpacing / 2);
   std::deque<std::int64_t> stamps[2];
   std::uint64_t pairs = 0, expected_pairs = 0;
   std::uint64_t images[2] = {0, 0};
   for (int i = 0; i < 5000; ++i) {
-    const std::int64_t tick = i * kPeriod;
+    const std::int64_t tick = i * kSpacing;
     // Each stream jitters by up to a quarter of a period and loses every tenth image.
     const std::int64_t stamp[2] = {tick + random.below(250), tick + random.below(250)};
     const bool lost[2] = {random.below(10) == 0, random.below(10) == 0};

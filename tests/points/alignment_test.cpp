@@ -19,15 +19,15 @@ namespace {
 
 using test::GrayImage;
 
-constexpr int kSide = 60;
-constexpr int kCentre = 30;
+constexpr int kImageSide = 60;
+constexpr int kImageCentre = 30;
 // Smooth enough that bilinear interpolation between the pixels is nearly exact.
 constexpr double kGrain = 1.2;
 
 // The texture shifted by (dx, dy), darkened and lifted, with noise of this SD.
 GrayImage render(const test::Texture& texture, double dx, double dy, double gain, double offset, double noise,
                  Random& random) {
-  GrayImage image(kSide, kSide, 5);
+  GrayImage image(kImageSide, kImageSide, 5);
   image.paint([&](int x, int y) {
     return gain * std::clamp(texture(x - dx, y - dy), 0.0, 255.0) + offset +
            (noise > 0 ? noise * test::gaussian(random) : 0);
@@ -36,11 +36,11 @@ GrayImage render(const test::Texture& texture, double dx, double dy, double gain
 }
 
 // Where a detector would look: the strongest corner near the middle.
-struct Corner {
-  int x = kCentre, y = kCentre;
+struct StrongestCorner {
+  int x = kImageCentre, y = kImageCentre;
 };
-Corner strongest_corner(GrayView image) {
-  Corner best;
+StrongestCorner strongest_corner(GrayView image) {
+  StrongestCorner best;
   for (int y = 20; y <= 40; ++y)
     for (int x = 20; x <= 40; ++x)
       if (corner_strength(image, x, y) > corner_strength(image, best.x, best.y)) best = {x, y};
@@ -55,7 +55,7 @@ TEST(Alignment, RecoversShiftsUnderAnotherLight) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const test::Texture texture(seed, 100, kGrain);
     const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
-    const Corner at = strongest_corner(reference.view());
+    const StrongestCorner at = strongest_corner(reference.view());
     const Patch patch = cut_patch(reference.view(), at.x, at.y);
     for (int trial = 0; trial < 12; ++trial) {
       const double dx = 1.6 * random.uniform() - 0.8;
@@ -81,34 +81,34 @@ TEST(Alignment, RecoversShiftsUnderAnotherLight) {
 TEST(Alignment, TheSamePatchStaysWhereItIs) {
   Random random(3);
   const GrayImage image = render(test::Texture(5), 0, 0, 1, 0, 0, random);
-  const Patch patch = cut_patch(image.view(), kCentre, kCentre);
-  const Alignment got = align_patch(patch, kWholeWindow, image.view(), kCentre, kCentre, {});
+  const Patch patch = cut_patch(image.view(), kImageCentre, kImageCentre);
+  const Alignment got = align_patch(patch, kWholeWindow, image.view(), kImageCentre, kImageCentre, {});
   ASSERT_TRUE(got.ok);
-  EXPECT_NEAR(got.x, kCentre, 1e-6);
-  EXPECT_NEAR(got.y, kCentre, 1e-6);
+  EXPECT_NEAR(got.x, kImageCentre, 1e-6);
+  EXPECT_NEAR(got.y, kImageCentre, 1e-6);
   EXPECT_EQ(got.iterations, 1);
   EXPECT_LT(got.sigma_px, 0.01);
 }
 
 TEST(Alignment, RefusesWhatCannotBeLocated) {
   // Nothing at all; one straight edge; a patch of one grey level in a rich image.
-  GrayImage flat(kSide, kSide, 0, 90);
-  EXPECT_FALSE(
-      align_patch(cut_patch(flat.view(), kCentre, kCentre), kWholeWindow, flat.view(), kCentre, kCentre, {})
-          .ok);
-  GrayImage edge(kSide, kSide);
+  GrayImage flat(kImageSide, kImageSide, 0, 90);
+  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kImageCentre, kImageCentre), kWholeWindow, flat.view(),
+                           kImageCentre, kImageCentre, {})
+                   .ok);
+  GrayImage edge(kImageSide, kImageSide);
   edge.paint([](int x, int) { return 40 + 150 / (1 + std::exp(-(x - 30.3))); });
-  EXPECT_FALSE(
-      align_patch(cut_patch(edge.view(), kCentre, kCentre), kWholeWindow, edge.view(), kCentre, kCentre, {})
-          .ok);
+  EXPECT_FALSE(align_patch(cut_patch(edge.view(), kImageCentre, kImageCentre), kWholeWindow, edge.view(),
+                           kImageCentre, kImageCentre, {})
+                   .ok);
   Random random(8);
   const GrayImage rich = render(test::Texture(8), 0, 0, 1, 0, 0, random);
-  EXPECT_FALSE(
-      align_patch(cut_patch(flat.view(), kCentre, kCentre), kWholeWindow, rich.view(), kCentre, kCentre, {})
-          .ok);
-  EXPECT_FALSE(
-      align_patch(cut_patch(rich.view(), kCentre, kCentre), kWholeWindow, flat.view(), kCentre, kCentre, {})
-          .ok);
+  EXPECT_FALSE(align_patch(cut_patch(flat.view(), kImageCentre, kImageCentre), kWholeWindow, rich.view(),
+                           kImageCentre, kImageCentre, {})
+                   .ok);
+  EXPECT_FALSE(align_patch(cut_patch(rich.view(), kImageCentre, kImageCentre), kWholeWindow, flat.view(),
+                           kImageCentre, kImageCentre, {})
+                   .ok);
 }
 
 TEST(Alignment, RefusesAnotherPatch) {
@@ -118,8 +118,8 @@ TEST(Alignment, RefusesAnotherPatch) {
   for (int i = 0; i < kTrials; ++i) {
     const GrayImage a = render(test::Texture(100 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
     const GrayImage b = render(test::Texture(500 + static_cast<std::uint64_t>(i)), 0, 0, 1, 0, 0, random);
-    const Alignment got =
-        align_patch(cut_patch(a.view(), kCentre, kCentre), kWholeWindow, b.view(), kCentre, kCentre, {});
+    const Alignment got = align_patch(cut_patch(a.view(), kImageCentre, kImageCentre), kWholeWindow, b.view(),
+                                      kImageCentre, kImageCentre, {});
     EXPECT_LE(got.iterations, AlignmentOptions{}.max_iterations);
     accepted += got.ok ? 1 : 0;
   }
@@ -130,18 +130,19 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
   // The image is exactly as large as its memory: a sanitizer would see a step beside it. Nor may a start
   // outside the image, or none at all, do harm.
   const test::Texture texture(10);
-  GrayImage image(kSide, kSide);
+  GrayImage image(kImageSide, kImageSide);
   image.paint([&](int x, int y) { return texture(x, y); });
-  const Patch patch = cut_patch(image.view(), kCentre, kCentre);
-  for (double along : {-1e300, -100.0, -1.0, 0.0, 2.0, 3.9, kSide - 5.5, kSide - 1.0, kSide + 40.0, 1e300}) {
-    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), along, kCentre, {}).ok) << along;
-    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kCentre, along, {}).ok) << along;
+  const Patch patch = cut_patch(image.view(), kImageCentre, kImageCentre);
+  for (double along :
+       {-1e300, -100.0, -1.0, 0.0, 2.0, 3.9, kImageSide - 5.5, kImageSide - 1.0, kImageSide + 40.0, 1e300}) {
+    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), along, kImageCentre, {}).ok) << along;
+    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kImageCentre, along, {}).ok) << along;
   }
   const double nan = std::nan("");
-  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), nan, kCentre, {}).ok);
-  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kCentre, nan, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), nan, kImageCentre, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kImageCentre, nan, {}).ok);
   // As near to the border as a keypoint gets, it works.
-  for (int near : {kPatchRadius + 1, kSide - kPatchRadius - 3}) {
+  for (int near : {kPatchRadius + 1, kImageSide - kPatchRadius - 3}) {
     const Alignment got =
         align_patch(cut_patch(image.view(), near, near), kWholeWindow, image.view(), near, near, {});
     EXPECT_TRUE(got.ok) << near;
@@ -150,20 +151,20 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
 
 TEST(Alignment, ARunawayIsNotAMatch) {
   // A wide smooth blob: the registration would go far, and is stopped.
-  GrayImage blob(kSide, kSide), far(kSide, kSide);
+  GrayImage blob(kImageSide, kImageSide), far(kImageSide, kImageSide);
   const auto paint = [](double cx) {
     return [cx](int x, int y) {
       return 30 + 190 * std::exp(-((x - cx) * (x - cx) + (y - 30.0) * (y - 30.0)) / 32);
     };
   };
   blob.paint(paint(30));
-  const Patch patch = cut_patch(blob.view(), kCentre, kCentre);
+  const Patch patch = cut_patch(blob.view(), kImageCentre, kImageCentre);
   far.paint(paint(34.5));
-  EXPECT_FALSE(align_patch(patch, kWholeWindow, far.view(), kCentre, kCentre, {}).ok);
+  EXPECT_FALSE(align_patch(patch, kWholeWindow, far.view(), kImageCentre, kImageCentre, {}).ok);
   AlignmentOptions patient;
   patient.max_shift_px = 8;
   patient.max_iterations = 30;
-  const Alignment got = align_patch(patch, kWholeWindow, far.view(), kCentre, kCentre, patient);
+  const Alignment got = align_patch(patch, kWholeWindow, far.view(), kImageCentre, kImageCentre, patient);
   ASSERT_TRUE(got.ok) << "with more patience it is found, so the bound is what refused it";
   EXPECT_NEAR(got.x, 34.5, 0.05);
 }
@@ -177,8 +178,8 @@ TEST(Alignment, StopsAtItsBound) {
   options.tolerance_px = 0;
   for (int bound : {0, 1, 3, 8}) {
     options.max_iterations = bound;
-    const Alignment got = align_patch(cut_patch(reference.view(), kCentre, kCentre), kWholeWindow,
-                                      current.view(), kCentre, kCentre, options);
+    const Alignment got = align_patch(cut_patch(reference.view(), kImageCentre, kImageCentre), kWholeWindow,
+                                      current.view(), kImageCentre, kImageCentre, options);
     EXPECT_FALSE(got.ok) << "a tolerance of zero is never met";
     EXPECT_EQ(got.iterations, bound);
   }
@@ -192,7 +193,7 @@ TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
     int textures = 0;
     for (std::uint64_t seed = 31; seed < 37; ++seed) {
       const test::Texture texture(seed, 100, kGrain);
-      const Corner at = strongest_corner(render(texture, 0, 0, 1, 0, 0, random).view());
+      const StrongestCorner at = strongest_corner(render(texture, 0, 0, 1, 0, 0, random).view());
       double xx = 0, xy = 0, yy = 0, sigma_sum = 0;
       int n = 0;
       for (int trial = 0; trial < 100; ++trial) {

@@ -23,9 +23,9 @@ constexpr int kWidth = 257;
 constexpr int kHeight = 199;
 
 // Pyramid, depth and scratch of one image. Depth is 1 m everywhere unless a pixel is cleared.
-class Frame {
+class DetectorFrame {
  public:
-  explicit Frame(const GrayImage& image) : depth_(kWidth * kHeight, 1000), memory_(bytes()) {
+  explicit DetectorFrame(const GrayImage& image) : depth_(kWidth * kHeight, 1000), memory_(bytes()) {
     Arena arena(memory_);
     pyramid.carve(arena, kWidth, kHeight);
     pyramid.init(kWidth, kHeight);
@@ -56,7 +56,7 @@ struct Detection {
   int candidates = 0;
 };
 
-Detection detect(const Frame& frame, const DetectorConfig& options, std::size_t capacity) {
+Detection detect(const DetectorFrame& frame, const DetectorConfig& options, std::size_t capacity) {
   ArenaSizer sizer;
   reserve_detection(sizer, kWidth, kHeight);
   std::vector<std::byte> memory(sizer.peak() + kArenaAlignment);
@@ -91,7 +91,7 @@ bool is_maximum(GrayView image, int x, int y) {
 // (rank, −strength, level, y, x): the order in which candidates are kept.
 using Place = std::tuple<int, float, int, int, int>;
 
-std::vector<Place> reference_candidates(const Frame& frame, const DetectorConfig& options) {
+std::vector<Place> reference_candidates(const DetectorFrame& frame, const DetectorConfig& options) {
   std::vector<Place> all;
   const DepthSampler depth = frame.depth();
   for (int level = 0; level < options.levels; ++level) {
@@ -165,7 +165,7 @@ TEST(CornerStrength, IsTheSmallerEigenvalueOfTheMeanStructureTensor) {
 
 TEST(Detector, KeepsWhatTheRuleSays) {
   for (std::uint64_t seed : {11U, 12U, 13U}) {
-    Frame frame(textured(seed, seed == 13 ? 6 : 1.5));
+    DetectorFrame frame(textured(seed, seed == 13 ? 6 : 1.5));
     Random random(seed);
     for (int i = 0; i < 8000; ++i)
       frame.clear_depth(static_cast<int>(random.below(kWidth)), static_cast<int>(random.below(kHeight)));
@@ -196,7 +196,7 @@ TEST(Detector, KeepsWhatTheRuleSays) {
 }
 
 TEST(Detector, StaysOffTheBorderAndWithinHalfAPixel) {
-  const Frame frame(textured(21));
+  const DetectorFrame frame(textured(21));
   const Detection got = detect(frame, {}, 2000);
   ASSERT_GT(got.keypoints.size(), 100U);
   int levels[3] = {};
@@ -214,12 +214,12 @@ TEST(Detector, StaysOffTheBorderAndWithinHalfAPixel) {
 }
 
 TEST(Detector, WithoutDepthOrTextureThereIsNothing) {
-  Frame blind(textured(22));
+  DetectorFrame blind(textured(22));
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) blind.clear_depth(x, y);
   EXPECT_TRUE(detect(blind, {}, 500).keypoints.empty());
   EXPECT_EQ(detect(blind, {}, 500).dropped, 0U);
-  const Frame bare(GrayImage(kWidth, kHeight, 0, 77));
+  const DetectorFrame bare(GrayImage(kWidth, kHeight, 0, 77));
   EXPECT_TRUE(detect(bare, {}, 500).keypoints.empty());
   EXPECT_EQ(detect(bare, {}, 500).candidates, 0);
 }
@@ -245,9 +245,9 @@ TEST(Detector, TheSameCornersStayWhenTheLightDims) {
                    : 0;
     return count / static_cast<double>(of.keypoints.size());
   };
-  const Detection bright = detect(Frame(render(1)), {}, 250);
-  const Detection again = detect(Frame(render(1)), {}, 250);
-  const Detection dim = detect(Frame(render(0.4)), {}, 250);
+  const Detection bright = detect(DetectorFrame(render(1)), {}, 250);
+  const Detection again = detect(DetectorFrame(render(1)), {}, 250);
+  const Detection dim = detect(DetectorFrame(render(0.4)), {}, 250);
   std::printf("repeated: %.2f in the same light, %.2f at 40 %%; %zu and %zu keypoints\n",
               repeated(bright, again), repeated(bright, dim), bright.keypoints.size(), dim.keypoints.size());
   EXPECT_GT(dim.keypoints.size(), bright.keypoints.size() * 8 / 10);
@@ -264,7 +264,7 @@ TEST(Detector, TheSpreadLeavesNoTexturedCellEmpty) {
   DetectorConfig options;
   options.levels = 1;
   const std::size_t cells = detection_cells(kWidth, kHeight, options.cell_px);
-  const Detection got = detect(Frame(image), options, cells);
+  const Detection got = detect(DetectorFrame(image), options, cells);
   ASSERT_EQ(got.keypoints.size(), cells);
   std::vector<int> count(cells);
   for (const Keypoint& k : got.keypoints) {
@@ -295,7 +295,7 @@ TEST(Detector, FindsRenderedCornersBelowThePixel) {
       const double bottom = 1 - covered(y, cy + 50);
       return 40 + 160 * covered(x, cx) * right * covered(y, cy) * bottom;
     });
-    const Detection got = detect(Frame(image), options, 100);
+    const Detection got = detect(DetectorFrame(image), options, 100);
     const Keypoint* nearest = nullptr;
     for (const Keypoint& k : got.keypoints)
       if (nearest == nullptr ||

@@ -13,23 +13,25 @@
 namespace plvo {
 namespace {
 
-constexpr int kWidth = 96;
-constexpr int kHeight = 80;
+constexpr int kSceneWidth = 96;
+constexpr int kSceneHeight = 80;
 constexpr double kUnit = 0.001;  // m
 
 // A depth image made from a function of the pixel, in metres, 0 for none; no lens.
 struct Scene {
   template <typename Function>
-  explicit Scene(Function depth_m) : units(kWidth * kHeight) {
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x)
-        units[static_cast<std::size_t>(y * kWidth + x)] =
+  explicit Scene(Function depth_m) : units(kSceneWidth * kSceneHeight) {
+    for (int y = 0; y < kSceneHeight; ++y)
+      for (int x = 0; x < kSceneWidth; ++x)
+        units[static_cast<std::size_t>(y * kSceneWidth + x)] =
             static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
   }
-  DepthSampler sampler() const { return {{units.data(), kWidth, kHeight, kWidth, kUnit}, table, {}}; }
+  DepthSampler sampler() const {
+    return {{units.data(), kSceneWidth, kSceneHeight, kSceneWidth, kUnit}, table, {}};
+  }
   double at(int x, int y) const {
-    if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) return 0;
-    return units[static_cast<std::size_t>(y * kWidth + x)] * kUnit;
+    if (x < 0 || y < 0 || x >= kSceneWidth || y >= kSceneHeight) return 0;
+    return units[static_cast<std::size_t>(y * kSceneWidth + x)] * kUnit;
   }
   std::vector<std::uint16_t> units;
   UndistortionTable table;
@@ -85,8 +87,8 @@ TEST(OwnSurface, IsWhatItsDefinitionSays) {
   int whole = 0, empty = 0, partly = 0;
   for (int trial = 0; trial < 8000; ++trial) {
     // As close to the border as the window's centre gets.
-    const double u = (kWidth - 1.0) * random.uniform();
-    const double v = (kHeight - 1.0) * random.uniform();
+    const double u = (kSceneWidth - 1.0) * random.uniform();
+    const double v = (kSceneHeight - 1.0) * random.uniform();
     const Keypoint keypoint = keypoint_at(u, v, trial % 3);
     const double depth_m = scene.at(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
     if (depth_m == 0) continue;

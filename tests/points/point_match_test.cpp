@@ -12,13 +12,13 @@
 namespace plvo {
 namespace {
 
-constexpr int kWidth = 333;
-constexpr int kHeight = 250;
+constexpr int kViewWidth = 333;
+constexpr int kViewHeight = 250;
 constexpr int kCapacity = 400;
 
 constexpr std::size_t scratch_bytes() {
   ArenaSizer sizer;
-  reserve_point_match(sizer, kCapacity, kWidth, kHeight);
+  reserve_point_match(sizer, kCapacity, kViewWidth, kViewHeight);
   return sizer.peak() + kArenaAlignment;
 }
 
@@ -51,7 +51,8 @@ std::vector<Match> match(const Frame& reference, const std::vector<Prediction>& 
   Arena scratch(memory);
   std::vector<Match> storage(kCapacity);
   FixedVector<Match> out(storage);
-  match_points(reference.features, predictions, current.features, kWidth, kHeight, options, scratch, out);
+  match_points(reference.features, predictions, current.features, kViewWidth, kViewHeight, options, scratch,
+               out);
   EXPECT_FALSE(scratch.exhausted());
   EXPECT_EQ(scratch.used(), 0U) << "the scratch is given back";
   EXPECT_EQ(out.dropped(), 0U);
@@ -113,7 +114,7 @@ void expect_equal(const std::vector<Match>& got, const std::vector<Match>& expec
   }
 }
 
-Descriptor random_descriptor(Random& random) {
+Descriptor random_view_descriptor(Random& random) {
   Descriptor descriptor{};
   for (std::uint64_t& word : descriptor)
     word = static_cast<std::uint64_t>(random.next()) << 32 | random.next();
@@ -133,7 +134,7 @@ TEST(PointMatch, IsTheBruteForceResult) {
     Frame reference, current;
     std::vector<Prediction> predictions;
     // Few different descriptors, few bits apart: ties, rivals and shared choices happen all the time.
-    const Descriptor base = random_descriptor(random);
+    const Descriptor base = random_view_descriptor(random);
     const int variants = trial % 3 == 0 ? 4 : 120;
     const auto draw = [&] {
       return with_flipped_bits(base, static_cast<int>(random.below(static_cast<std::uint32_t>(variants))));
@@ -142,12 +143,12 @@ TEST(PointMatch, IsTheBruteForceResult) {
     for (int i = 0; i < n; ++i) {
       reference.add(0, 0, static_cast<int>(random.below(3)), draw());
       // Predictions may lie outside the image.
-      predictions.push_back({static_cast<float>(random.uniform() * (kWidth + 60) - 30),
-                             static_cast<float>(random.uniform() * (kHeight + 60) - 30),
+      predictions.push_back({static_cast<float>(random.uniform() * (kViewWidth + 60) - 30),
+                             static_cast<float>(random.uniform() * (kViewHeight + 60) - 30),
                              random.below(8) != 0});
     }
     for (int j = 0; j < n; ++j)
-      current.add(random.uniform() * (kWidth - 1), random.uniform() * (kHeight - 1),
+      current.add(random.uniform() * (kViewWidth - 1), random.uniform() * (kViewHeight - 1),
                   static_cast<int>(random.below(3)), draw());
     PointMatchConfig options;
     options.radius_px = trial % 4 == 0 ? 12 : trial % 4 == 1 ? 30 : trial % 4 == 2 ? 75.5 : 1000;

@@ -5,11 +5,13 @@
 
 #include <string>
 
+#include "says.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
+using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
@@ -17,10 +19,6 @@ Status read_text(const std::string& text, Calibration& calibration, const char* 
   const TemporaryFolder folder;
   write_file(folder / name, text);
   return read_calibration(folder / name, calibration);
-}
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
 }
 
 TEST(Calibration, ReadsNumbers) {

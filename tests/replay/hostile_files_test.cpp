@@ -14,18 +14,17 @@
 #include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/tum_camera.hpp"
 #include "plvo/replay/tum_index.hpp"
+#include "says.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
+using test::says;
+
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 using test::write_file;
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
-}
 
 // The most that this process ever had, in KiB.
 long peak_kib() {

@@ -5,6 +5,7 @@
 
 #include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/image_writer.hpp"
+#include "says.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
 
@@ -13,12 +14,9 @@ namespace {
 
 using test::kTinyHeight;
 using test::kTinyWidth;
+using test::says;
 using test::TemporaryFolder;
 using test::TinyFrame;
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
-}
 
 TEST(Image, PngRoundTripIsExact) {
   const TemporaryFolder folder;

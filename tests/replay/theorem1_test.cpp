@@ -3,12 +3,11 @@
 // of features the motion's covariance is below that with either kind alone, eigenvalue by eigenvalue.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "dense.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
 #include "plvo/replay/tum_camera.hpp"
@@ -18,7 +17,6 @@ namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
-using Dense6 = Eigen::Matrix<double, 6, 6>;
 
 struct Rooms {
   FeatureExtraction extraction;
@@ -86,9 +84,7 @@ class Pairs {
   bool has_reference_ = false;
 };
 
-Eigen::Vector<double, 6> eigenvalues(const Matrix6& C) {
-  return Eigen::SelfAdjointEigenSolver<Dense6>(Dense6(0.5 * (C + C.transpose()))).eigenvalues();
-}
+Vector6 eigenvalues(const Matrix6& C) { return test::symmetric_eigenvalues(0.5 * (C + C.transpose())); }
 
 void expect_theorem1(const MotionEstimate& motion, const std::string& where) {
   const Matrix6& I_P = motion.information[0];
@@ -97,9 +93,9 @@ void expect_theorem1(const MotionEstimate& motion, const std::string& where) {
   const Matrix6 product = motion.C_H * Matrix6(I_P + I_L);
   EXPECT_LT((product - Matrix6::Identity()).norm(), 1e-5) << where;
   // (25); of a kind that leaves a direction open, C has an infinite eigenvalue, and there is nothing to show.
-  const Eigen::Vector<double, 6> both = eigenvalues(motion.C_H);
+  const Vector6 both = eigenvalues(motion.C_H);
   for (const Matrix6& information : {I_P, I_L}) {
-    const Eigen::Vector<double, 6> alone = eigenvalues(information);
+    const Vector6 alone = eigenvalues(information);
     for (int i = 0; i < 6; ++i) {
       if (alone[5 - i] > 1e-9 * alone[5]) {
         EXPECT_LE(both[i], (1 + 1e-9) / alone[5 - i]) << where << ", eigenvalue " << i;

@@ -7,21 +7,20 @@
 
 #include "plvo/replay/image_writer.hpp"
 #include "plvo/replay/paced_camera.hpp"
+#include "says.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
 
 namespace plvo {
 namespace {
 
+using test::says;
+
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 using test::tiny_stamp;
 using test::TinyFrame;
 using test::write_tiny_sequence;
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
-}
 
 Status open(TumCamera& camera, const fs::path& folder, const TumOptions& options = {}) {
   Calibration calibration;

@@ -4,19 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "plvo/host/stamp_text.hpp"
+#include "says.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
+using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
 constexpr std::int64_t kTolerance = 20'000'000;
-
-bool says(const Status& status, std::string_view words) {
-  return std::string_view(status.message()).find(words) != std::string_view::npos;
-}
 
 TEST(StampText, RoundTripsEveryNanosecond) {
   std::int64_t stamp = 0;

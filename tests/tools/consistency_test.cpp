@@ -5,16 +5,13 @@
 
 #include <cmath>
 
+#include "normal.hpp"
 #include "plvo/base/random.hpp"
 
 namespace plvo::eval {
 namespace {
 
-double normal(Random& random) {  // the sum of twelve uniforms has variance 1, and no tail that matters here
-  double sum = -6;
-  for (int i = 0; i < 12; ++i) sum += random.uniform();
-  return sum;
-}
+using test::normal;
 
 // Motions whose errors are drawn from `sigma` while `claimed` is reported.
 Consistency monte_carlo(double sigma, double claimed) {

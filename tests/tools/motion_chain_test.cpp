@@ -5,26 +5,23 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "dense.hpp"
+#include "normal.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/eval/consistency.hpp"
 
 namespace plvo::eval {
 namespace {
 
+using test::normal;
+
 constexpr std::int64_t kFrame_ns = 33'333'333;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr int kFrames = 6000;  // 200 s
 // From each frame on but the last ones; one that is a frame short of a second is near enough.
 constexpr std::size_t kSeconds = kFrames - 28;
-
-double normal(Random& random) {  // the sum of twelve uniforms has variance 1, and no tail that matters here
-  double sum = -6;
-  for (int i = 0; i < 12; ++i) sum += random.uniform();
-  return sum;
-}
 
 // A constant twist, which linear and spherical interpolation follow exactly.
 Se3 truth_at(std::int64_t stamp_ns) {
@@ -57,8 +54,7 @@ struct Drawing {
 
 std::vector<UncertainMotion> draw(const Drawing& how) {
   const Matrix6 C = covariance();
-  const Eigen::Matrix<double, 6, 6> full = C;
-  const Eigen::Matrix<double, 6, 6> L = full.llt().matrixL();
+  const Matrix6 L = test::cholesky(C);
   Random random(17);
   const auto noise = [&] {
     Eigen::Matrix<double, 6, 1> n;

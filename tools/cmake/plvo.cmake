@@ -25,11 +25,11 @@ set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-mat
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 
-# plvo_precompile(<target> <header>…): read these headers once for all files of the target. Where ccache launches the
+# plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target. Where ccache launches the
 # compiler they are left out: it would keep nothing then, and files that forget an include are found.
 function(plvo_precompile target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
-    target_precompile_headers(${target} PRIVATE ${ARGN})
+    target_precompile_headers(${target} ${ARGN})
   endif()
 endfunction()
 
@@ -65,5 +65,6 @@ function(plvo_core_variant name)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/core)
   target_compile_options(${name} PRIVATE ${PLVO_CORE_OPTIONS} ${ARGN})
-  plvo_precompile(${name} ${PLVO_CORE_PRECOMPILED})
+  plvo_precompile(${name} PRIVATE ${PLVO_CORE_PRECOMPILED})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
 endfunction()

@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // How long one wait in OpenNI2 may last: an unplug is noticed within this time.
-constexpr int kSlice_ms = 20;
+constexpr int kWaitSlice_ms = 20;
 
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
@@ -193,7 +193,7 @@ Status OpenNi2Camera::Impl::next(RgbdFrame& frame) {
     if (now >= deadline) return timeout();
     const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now).count();
     DeviceImage image;
-    switch (device->wait(static_cast<int>(std::clamp<std::int64_t>(left_ms, 1, kSlice_ms)), image)) {
+    switch (device->wait(static_cast<int>(std::clamp<std::int64_t>(left_ms, 1, kWaitSlice_ms)), image)) {
       case ImageDevice::Wait::kImage:
         if (Status status = take(image); !status.ok()) return status;
         break;
@@ -355,7 +355,7 @@ Status OpenNi2Camera::Impl::replug(Clock::time_point deadline) {
       status = Status(StatusCode::kUnplugged, "it is back but does not open yet: ").append(opened.message());
     }
     if (Clock::now() >= deadline) return status;
-    std::this_thread::sleep_for(std::chrono::milliseconds(kSlice_ms));
+    std::this_thread::sleep_for(std::chrono::milliseconds(kWaitSlice_ms));
   }
 }
 

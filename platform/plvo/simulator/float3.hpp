@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plvo/math/types.hpp"
+
 namespace plvo::sim {
 
 struct Float3 {
@@ -15,6 +17,9 @@ struct Float3 {
   float operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
 };
 
+inline Float3 to_float(const Vector3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
 inline Float3 operator+(Float3 a, Float3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Float3 operator-(Float3 a, Float3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Float3 operator-(Float3 a) { return {-a.x, -a.y, -a.z}; }

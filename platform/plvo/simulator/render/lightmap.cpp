@@ -14,7 +14,6 @@ constexpr float kPiF = 3.14159265F;
 constexpr std::uint32_t kUnset = 0xffffffffU;
 constexpr float kDirectScale = 4096;  // 16 bits hold irradiances up to 16
 constexpr float kOpenScale = 65534;   // so that the all-ones word stays free for "unset"
-constexpr float kLift = 1e-3F;        // m, how far above a surface its rays start
 constexpr int kPanelEdge = 3;         // 3 × 3 samples on a ceiling panel
 constexpr int kRings = 3;             // ambient occlusion: 3 rings of 8 directions
 constexpr int kSpokes = 8;

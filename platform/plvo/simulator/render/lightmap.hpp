@@ -14,6 +14,8 @@
 
 namespace plvo::sim {
 
+constexpr float kLift = 1e-3F;  // m, how far above a surface its rays start
+
 class Lightmap {
  public:
   explicit Lightmap(const Scene& scene);

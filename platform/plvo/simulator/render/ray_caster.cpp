@@ -6,14 +6,6 @@
 #include "plvo/simulator/parallel.hpp"
 
 namespace plvo::sim {
-namespace {
-
-Float3 to_float(const Vector3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-}  // namespace
-
 RayCaster::RayCaster(const Scene& scene, const CameraModel& camera, int threads)
     : scene_(scene), width_(camera.width), height_(camera.height), threads_(threads) {
   const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);

@@ -13,7 +13,6 @@ namespace {
 constexpr int kBlock = 4;          // px between the points at which the lamp's shadow is sampled first
 constexpr int kLampEdge = 3;       // 3 × 3 shadow rays to the lamp
 constexpr float kPenumbra = 0.3F;  // a block whose corners differ by less is interpolated
-constexpr float kLift = 1e-3F;     // m, how far above a surface its rays start
 static_assert(kThreadRows % kBlock == 0);
 constexpr float kReflectiveGloss = 0.25F;  // below it no mirror image is traced
 // Four sub-pixel samples that differ in both coordinates (a rotated grid).

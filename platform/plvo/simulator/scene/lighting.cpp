@@ -15,10 +15,6 @@ constexpr double kDimmest = 0.12;       // of full brightness
 constexpr double kSwing_rad = 0.55;     // to either side
 constexpr double kNod_rad = 0.28;
 
-Float3 to_float(const Vector3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
 }  // namespace
 
 Lighting::Lighting(LightName name, std::uint64_t seed) : name_(name) {

@@ -7,9 +7,9 @@
 namespace plvo::sim {
 namespace {
 
-constexpr float kLength = 6;  // x
-constexpr float kWidth = 5;   // y
-constexpr float kHeight = 2.7F;
+constexpr float kBareLength = 6;  // x
+constexpr float kBareWidth = 5;   // y
+constexpr float kBareHeight = 2.7F;
 
 }  // namespace
 
@@ -31,31 +31,32 @@ std::unique_ptr<Scene> build_bare(std::uint64_t seed) {
                                   .base = {0.34F, 0.19F, 0.13F},
                                   .second = {0.36F, 0.33F, 0.3F},
                                   .contrast = 1.3F});
-  b.shell({0, 0, 0}, {kLength, kWidth, kHeight}, concrete, plain, white);
+  b.shell({0, 0, 0}, {kBareLength, kBareWidth, kBareHeight}, concrete, plain, white);
   const Wall south{{0, 0, 0}, true, 1};
-  const Wall north{{0, kWidth, 0}, true, -1};
+  const Wall north{{0, kBareWidth, 0}, true, -1};
   const Wall west{{0, 0, 0}, false, 1};
-  const Wall east{{kLength, 0, 0}, false, -1};
-  f.skirting(south, kLength);
-  f.skirting(north, kLength);
-  f.skirting(west, kWidth);
+  const Wall east{{kBareLength, 0, 0}, false, -1};
+  f.skirting(south, kBareLength);
+  f.skirting(north, kBareLength);
+  f.skirting(west, kBareWidth);
   // The textured wall: a panel of bricks between two white piers.
-  f.on_wall(east, {0.6F, kWidth - 0.6F}, {0, 0.01F}, {0, kHeight}, bricks);
+  f.on_wall(east, {0.6F, kBareWidth - 0.6F}, {0, 0.01F}, {0, kBareHeight}, bricks);
   const int posters = 3 + static_cast<int>(b.uniform(0, 1.99F));
   for (int k = 0; k < posters; ++k) {
-    const float slot = (kWidth - 1.4F) / static_cast<float>(posters);
+    const float slot = (kBareWidth - 1.4F) / static_cast<float>(posters);
     const float width = b.uniform(0.4F, 0.6F);
-    f.poster({{kLength - 0.01F, 0, 0}, false, -1}, 0.8F + static_cast<float>(k) * slot + b.uniform(0, 0.15F),
-             b.uniform(0.9F, 1.3F), width, width * b.uniform(0.75F, 1.4F));
+    f.poster({{kBareLength - 0.01F, 0, 0}, false, -1},
+             0.8F + static_cast<float>(k) * slot + b.uniform(0, 0.15F), b.uniform(0.9F, 1.3F), width,
+             width * b.uniform(0.75F, 1.4F));
   }
   f.door(north, b.uniform(3.2F, 4.0F), 0.9F, 2.03F);
   f.switches(north, 2.6F);
   f.window(south, {b.uniform(2.9F, 3.3F), 4.6F}, {0.95F, 2.1F});
   // A beam under the ceiling and a boxed pipe in a corner.
-  b.box({3.6F, 0, kHeight - 0.25F}, {3.85F, kWidth, kHeight}, white);
-  b.box({5.75F, kWidth - 0.25F, 0}, {kLength, kWidth, kHeight}, white);
-  b.ceiling_panel(2, kWidth / 2, kHeight, 0.3F, 0.6F, 9);
-  b.ceiling_panel(4.9F, kWidth / 2, kHeight, 0.3F, 0.6F, 9);
+  b.box({3.6F, 0, kBareHeight - 0.25F}, {3.85F, kBareWidth, kBareHeight}, white);
+  b.box({5.75F, kBareWidth - 0.25F, 0}, {kBareLength, kBareWidth, kBareHeight}, white);
+  b.ceiling_panel(2, kBareWidth / 2, kBareHeight, 0.3F, 0.6F, 9);
+  b.ceiling_panel(4.9F, kBareWidth / 2, kBareHeight, 0.3F, 0.6F, 9);
 
   Scene& scene = b.scene();
   scene.ambient = 0.32F;

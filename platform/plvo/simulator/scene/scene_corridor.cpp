@@ -8,15 +8,15 @@
 namespace plvo::sim {
 namespace {
 
-constexpr float kLength = 24;
-constexpr float kWidth = 2.1F;
-constexpr float kHeight = 2.6F;
+constexpr float kCorridorLength = 24;
+constexpr float kCorridorWidth = 2.1F;
+constexpr float kCorridorHeight = 2.6F;
 
 // Doors, and whatever hangs between them, along one wall.
 void furnish(SceneBuilder& b, Furniture& f, const Wall& wall, bool left) {
-  f.skirting(wall, kLength);
+  f.skirting(wall, kCorridorLength);
   float s = b.uniform(0.5F, 1.6F);
-  while (s + 1.1F < kLength) {
+  while (s + 1.1F < kCorridorLength) {
     f.door(wall, s, 0.9F, 2.03F);
     s += 1.0F;
     const float gap = b.uniform(1.3F, 2.4F);
@@ -36,7 +36,9 @@ void furnish(SceneBuilder& b, Furniture& f, const Wall& wall, bool left) {
     s += gap;
   }
   // A cable duct under the ceiling, on one side.
-  if (left) f.on_wall(wall, {0, kLength}, {0, 0.1F}, {kHeight - 0.2F, kHeight - 0.12F}, f.white);
+  if (left)
+    f.on_wall(wall, {0, kCorridorLength}, {0, 0.1F}, {kCorridorHeight - 0.2F, kCorridorHeight - 0.12F},
+              f.white);
 }
 
 }  // namespace
@@ -44,16 +46,17 @@ void furnish(SceneBuilder& b, Furniture& f, const Wall& wall, bool left) {
 std::unique_ptr<Scene> build_corridor(std::uint64_t seed) {
   SceneBuilder b(seed);
   Furniture f(b);
-  b.shell({0, 0, 0}, {kLength, kWidth, kHeight}, f.floor, f.ceiling, f.plaster);
+  b.shell({0, 0, 0}, {kCorridorLength, kCorridorWidth, kCorridorHeight}, f.floor, f.ceiling, f.plaster);
   furnish(b, f, {{0, 0, 0}, true, 1}, false);
-  furnish(b, f, {{0, kWidth, 0}, true, -1}, true);
-  const Wall end{{kLength, 0, 0}, false, -1};
-  f.skirting(end, kWidth);
+  furnish(b, f, {{0, kCorridorWidth, 0}, true, -1}, true);
+  const Wall end{{kCorridorLength, 0, 0}, false, -1};
+  f.skirting(end, kCorridorWidth);
   f.window(end, {0.55F, 1.55F}, {0.95F, 2.1F});
   const Wall begin{{0, 0, 0}, false, 1};
-  f.skirting(begin, kWidth);
+  f.skirting(begin, kCorridorWidth);
   f.door(begin, 0.55F, 1.0F, 2.03F);
-  for (float x = 1.4F; x < kLength; x += 3) b.ceiling_panel(x, kWidth / 2, kHeight, 0.6F, 0.15F, 7);
+  for (float x = 1.4F; x < kCorridorLength; x += 3)
+    b.ceiling_panel(x, kCorridorWidth / 2, kCorridorHeight, 0.6F, 0.15F, 7);
 
   Scene& scene = b.scene();
   scene.ambient = 0.3F;

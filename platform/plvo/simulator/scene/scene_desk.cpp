@@ -6,9 +6,9 @@
 namespace plvo::sim {
 namespace {
 
-constexpr float kLength = 5;
-constexpr float kWidth = 4.2F;
-constexpr float kHeight = 2.6F;
+constexpr float kDeskLength = 5;
+constexpr float kDeskWidth = 4.2F;
+constexpr float kDeskHeight = 2.6F;
 constexpr float kTop = 0.74F;  // height of the desk
 
 void desk_top(SceneBuilder& b, Furniture& f) {
@@ -51,23 +51,23 @@ std::unique_ptr<Scene> build_desk(std::uint64_t seed) {
                                   .base = b.colour(0.16F, 0.4F),
                                   .second = b.colour(0.09F, 0.3F),
                                   .infrared = 0.45F});
-  b.shell({0, 0, 0}, {kLength, kWidth, kHeight}, carpet, f.ceiling, f.plaster);
+  b.shell({0, 0, 0}, {kDeskLength, kDeskWidth, kDeskHeight}, carpet, f.ceiling, f.plaster);
   const Wall south{{0, 0, 0}, true, 1};
-  const Wall north{{0, kWidth, 0}, true, -1};
+  const Wall north{{0, kDeskWidth, 0}, true, -1};
   const Wall west{{0, 0, 0}, false, 1};
-  const Wall east{{kLength, 0, 0}, false, -1};
-  f.skirting(south, kLength);
-  f.skirting(north, kLength);
-  f.skirting(west, kWidth);
-  f.skirting(east, kWidth);
+  const Wall east{{kDeskLength, 0, 0}, false, -1};
+  f.skirting(south, kDeskLength);
+  f.skirting(north, kDeskLength);
+  f.skirting(west, kDeskWidth);
+  f.skirting(east, kDeskWidth);
   desk_top(b, f);
   f.chair({2.75F, 2.6F, 0}, b.uniform(-0.6F, 0.2F), 0.46F);
   f.chair({1.2F, 0.8F, 0}, b.uniform(0.3F, 1.0F), 0.46F);
   f.bin({4.4F, 0.7F, 0});
   f.cardboard_box({4.5F, 3.7F, 0}, {0.22F, 0.18F, 0.16F}, 0.4F);
 
-  f.shelf({kLength, 0.15F, 0}, {kLength - 0.28F, 1.35F, 2.0F}, false, -1, 5);
-  f.shelf({kLength, 3.0F, 0.0F}, {kLength - 0.28F, 4.0F, 1.6F}, false, -1, 4);
+  f.shelf({kDeskLength, 0.15F, 0}, {kDeskLength - 0.28F, 1.35F, 2.0F}, false, -1, 5);
+  f.shelf({kDeskLength, 3.0F, 0.0F}, {kDeskLength - 0.28F, 4.0F, 1.6F}, false, -1, 4);
   f.board(east, {1.55F, 2.85F}, {1.15F, 2.0F}, f.whiteboard);
   f.poster(south, 3.3F, 1.1F, 0.5F, 0.7F);
   f.poster(south, 2.4F, 1.2F, 0.4F, 0.55F);
@@ -76,8 +76,8 @@ std::unique_ptr<Scene> build_desk(std::uint64_t seed) {
   f.radiator(north, {2.7F, 4.1F});
   f.door(west, 1.6F, 0.9F, 2.03F);
   f.poster(west, 3.0F, 1.1F, 0.5F, 0.7F);
-  b.ceiling_panel(1.6F, kWidth / 2, kHeight, 0.3F, 0.6F, 9);
-  b.ceiling_panel(3.6F, kWidth / 2, kHeight, 0.3F, 0.6F, 9);
+  b.ceiling_panel(1.6F, kDeskWidth / 2, kDeskHeight, 0.3F, 0.6F, 9);
+  b.ceiling_panel(3.6F, kDeskWidth / 2, kDeskHeight, 0.3F, 0.6F, 9);
 
   Scene& scene = b.scene();
   scene.ambient = 0.32F;

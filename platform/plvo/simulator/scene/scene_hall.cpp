@@ -7,9 +7,9 @@
 namespace plvo::sim {
 namespace {
 
-constexpr float kLength = 13;
-constexpr float kWidth = 10;
-constexpr float kHeight = 4;
+constexpr float kHallLength = 13;
+constexpr float kHallWidth = 10;
+constexpr float kHallHeight = 4;
 
 void bench(SceneBuilder& b, Furniture& f, float x, float y) {
   for (int k = 0; k < 4; ++k) {
@@ -21,7 +21,7 @@ void bench(SceneBuilder& b, Furniture& f, float x, float y) {
 
 void pillar(SceneBuilder& b, Furniture& f, float x, float y) {
   constexpr float kHalf = 0.22F;
-  b.box({x - kHalf, y - kHalf, 0}, {x + kHalf, y + kHalf, kHeight}, f.plaster);
+  b.box({x - kHalf, y - kHalf, 0}, {x + kHalf, y + kHalf, kHallHeight}, f.plaster);
   b.box({x - kHalf - 0.02F, y - kHalf - 0.02F, 0}, {x + kHalf + 0.02F, y + kHalf + 0.02F, 0.12F},
         f.skirting_wood);
   const Wall side{{x - kHalf, y - kHalf, 0}, true, -1};
@@ -42,22 +42,22 @@ std::unique_ptr<Scene> build_hall(std::uint64_t seed) {
                                  .gloss = 0.3F});
   const auto cork = b.material(
       {.pattern = Pattern::kCarpet, .base = {0.36F, 0.24F, 0.13F}, .second = {0.24F, 0.15F, 0.08F}});
-  b.shell({0, 0, 0}, {kLength, kWidth, kHeight}, tiles, f.ceiling, f.plaster);
+  b.shell({0, 0, 0}, {kHallLength, kHallWidth, kHallHeight}, tiles, f.ceiling, f.plaster);
   const Wall south{{0, 0, 0}, true, 1};
-  const Wall north{{0, kWidth, 0}, true, -1};
+  const Wall north{{0, kHallWidth, 0}, true, -1};
   const Wall west{{0, 0, 0}, false, 1};
-  const Wall east{{kLength, 0, 0}, false, -1};
-  f.skirting(south, kLength);
-  f.skirting(north, kLength);
-  f.skirting(west, kWidth);
-  f.skirting(east, kWidth);
+  const Wall east{{kHallLength, 0, 0}, false, -1};
+  f.skirting(south, kHallLength);
+  f.skirting(north, kHallLength);
+  f.skirting(west, kHallWidth);
+  f.skirting(east, kHallWidth);
 
   for (float s = 1; s < 12; s += 2.6F) f.window(south, {s, s + 1.5F}, {0.9F, 2.8F});
   for (float s = 0.8F; s < 11; s += 3.1F) f.door(north, s, 1.0F, 2.1F);
   for (float s = 2.2F; s < 11; s += 3.1F) f.poster(north, s, b.uniform(1.1F, 1.3F), 0.6F, 0.85F);
   f.board(east, {1.2F, 3.4F}, {1.0F, 2.1F}, cork);
   for (int k = 0; k < 6; ++k)
-    f.sign(Wall{{kLength - 0.024F, 0, 0}, false, -1}, 1.3F + 0.34F * static_cast<float>(k),
+    f.sign(Wall{{kHallLength - 0.024F, 0, 0}, false, -1}, 1.3F + 0.34F * static_cast<float>(k),
            1.1F + 0.45F * static_cast<float>(k % 2) + b.uniform(0, 0.1F), 0.21F, 0.297F);
   f.door(east, 4.4F, 1.8F, 2.2F);
   f.poster(east, 7.2F, 1.0F, 0.9F, 1.25F);
@@ -83,7 +83,7 @@ std::unique_ptr<Scene> build_hall(std::uint64_t seed) {
   f.paper({5.7F, 8.2F, 0.74F}, 1.2F);
   f.chair({5.5F, 7.4F, 0}, 1.6F, 0.45F);
   for (const float x : {2.2F, 6.5F, 10.8F}) {
-    for (const float y : {2.5F, 7.5F}) b.ceiling_panel(x, y, kHeight, 0.6F, 0.6F, 26);
+    for (const float y : {2.5F, 7.5F}) b.ceiling_panel(x, y, kHallHeight, 0.6F, 0.6F, 26);
   }
 
   Scene& scene = b.scene();

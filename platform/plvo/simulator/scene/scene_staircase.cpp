@@ -9,18 +9,18 @@
 namespace plvo::sim {
 namespace {
 
-constexpr float kLength = 7.2F;
-constexpr float kWidth = 2.9F;
-constexpr float kHeight = 5.6F;
+constexpr float kStaircaseLength = 7.2F;
+constexpr float kStaircaseWidth = 2.9F;
+constexpr float kStaircaseHeight = 5.6F;
 constexpr float kRise = 0.17F;
 constexpr float kRun = 0.29F;
-constexpr int kSteps = 10;
+constexpr int kStairs = 10;
 constexpr float kFoot = 2.6F;     // x of the first riser
 constexpr float kFlight = 1.35F;  // width of a flight
 
 void flight(SceneBuilder& b, Furniture& f, float foot_x, float foot_z, float y, float direction,
             std::uint16_t stone) {
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kStairs; ++k) {
     const float x0 = foot_x + direction * kRun * static_cast<float>(k);
     const float x1 = foot_x + direction * kRun * static_cast<float>(k + 1);
     const float z = foot_z + kRise * static_cast<float>(k + 1);
@@ -39,9 +39,9 @@ void handrail(SceneBuilder& b, Furniture& f, float foot_x, float foot_z, float y
   const auto at = [&](float step, float above) {
     return Float3{foot_x + direction * kRun * step, y, foot_z + kRise * (step + 0.5F) + above};
   };
-  b.rod(at(0, 0.95F), at(kSteps, 0.95F), 0.024F, f.skirting_wood);
-  b.rod(at(0, 0.5F), at(kSteps, 0.5F), 0.01F, f.metal);
-  for (int k = 0; k <= kSteps; ++k)
+  b.rod(at(0, 0.95F), at(kStairs, 0.95F), 0.024F, f.skirting_wood);
+  b.rod(at(0, 0.5F), at(kStairs, 0.5F), 0.01F, f.metal);
+  for (int k = 0; k <= kStairs; ++k)
     b.rod(at(static_cast<float>(k), -0.1F), at(static_cast<float>(k), 0.95F), 0.009F, f.frame_paint);
 }
 
@@ -59,28 +59,28 @@ std::unique_ptr<Scene> build_staircase(std::uint64_t seed) {
                                  .base = b.colour(0.36F, 0.08F),
                                  .second = {0.1F, 0.1F, 0.1F},
                                  .contrast = 1.5F});
-  b.shell({0, 0, 0}, {kLength, kWidth, kHeight}, tiles, f.ceiling, f.plaster);
+  b.shell({0, 0, 0}, {kStaircaseLength, kStaircaseWidth, kStaircaseHeight}, tiles, f.ceiling, f.plaster);
 
-  const float top_x = kFoot + kRun * kSteps;
-  const float top_z = kRise * kSteps;
-  const float other_y = kWidth - kFlight;
+  const float top_x = kFoot + kRun * kStairs;
+  const float top_z = kRise * kStairs;
+  const float other_y = kStaircaseWidth - kFlight;
   flight(b, f, kFoot, 0, 0, 1, stone);
-  b.box({top_x, 0, top_z - 0.2F}, {kLength, kWidth, top_z}, stone);  // the landing
+  b.box({top_x, 0, top_z - 0.2F}, {kStaircaseLength, kStaircaseWidth, top_z}, stone);  // the landing
   flight(b, f, top_x, top_z, other_y, -1, stone);
-  b.box({0, other_y, 2 * top_z - 0.2F}, {kFoot, kWidth, 2 * top_z}, stone);
+  b.box({0, other_y, 2 * top_z - 0.2F}, {kFoot, kStaircaseWidth, 2 * top_z}, stone);
   handrail(b, f, kFoot, 0, kFlight + 0.02F, 1);
   handrail(b, f, top_x, top_z, other_y - 0.02F, -1);
   b.rod({0, other_y + 0.03F, 2 * top_z + 0.95F}, {kFoot, other_y + 0.03F, 2 * top_z + 0.95F}, 0.024F,
         f.skirting_wood);
 
   const Wall right{{0, 0, 0}, true, 1};
-  const Wall left{{0, kWidth, 0}, true, -1};
-  const Wall end{{kLength, 0, 0}, false, -1};
+  const Wall left{{0, kStaircaseWidth, 0}, true, -1};
+  const Wall end{{kStaircaseLength, 0, 0}, false, -1};
   const Wall begin{{0, 0, 0}, false, 1};
-  f.skirting(left, kLength);
-  f.skirting(begin, kWidth);
-  f.on_wall(end, {0, kWidth}, {0, 0.016F}, {top_z, top_z + 0.1F}, f.skirting_wood);
-  f.on_wall(right, {top_x, kLength}, {0, 0.016F}, {top_z, top_z + 0.1F}, f.skirting_wood);
+  f.skirting(left, kStaircaseLength);
+  f.skirting(begin, kStaircaseWidth);
+  f.on_wall(end, {0, kStaircaseWidth}, {0, 0.016F}, {top_z, top_z + 0.1F}, f.skirting_wood);
+  f.on_wall(right, {top_x, kStaircaseLength}, {0, 0.016F}, {top_z, top_z + 0.1F}, f.skirting_wood);
   f.on_wall(right, {0, kFoot}, {0, 0.016F}, {0, 0.1F}, f.skirting_wood);
   f.window(end, {0.8F, 2.1F}, {top_z + 1.0F, top_z + 2.3F});
   f.radiator(end, {0.8F, 2.1F});
@@ -93,9 +93,9 @@ std::unique_ptr<Scene> build_staircase(std::uint64_t seed) {
   f.sign(right, top_x + 0.4F, top_z + 1.5F, 0.3F, 0.3F);
   f.poster(end, 0.15F, top_z + 1.1F, 0.4F, 0.6F);
   f.switches(right, 0.5F);
-  b.ceiling_panel(1.4F, 0.7F, kHeight, 0.5F, 0.2F, 22);
-  b.ceiling_panel(4.2F, 1.4F, kHeight, 0.6F, 0.3F, 30);
-  b.ceiling_panel(6.3F, 1.4F, kHeight, 0.4F, 0.4F, 18);
+  b.ceiling_panel(1.4F, 0.7F, kStaircaseHeight, 0.5F, 0.2F, 22);
+  b.ceiling_panel(4.2F, 1.4F, kStaircaseHeight, 0.6F, 0.3F, 30);
+  b.ceiling_panel(6.3F, 1.4F, kStaircaseHeight, 0.4F, 0.4F, 18);
 
   Scene& scene = b.scene();
   scene.ambient = 0.35F;
@@ -104,7 +104,7 @@ std::unique_ptr<Scene> build_staircase(std::uint64_t seed) {
   scene.free_hi = {2.2F, 2.4F, 1.9F};
   // Up to the landing facing it, and backwards down again; the eye keeps its height above the steps.
   const auto eye = [&](float x) {
-    return 1.5F + kRise * std::min(std::max((x - kFoot) / kRun, 0.0F), static_cast<float>(kSteps));
+    return 1.5F + kRise * std::min(std::max((x - kFoot) / kRun, 0.0F), static_cast<float>(kStairs));
   };
   scene.stroll = {{{1.5F, 0.75F, eye(1.5F)}, 0.02F, 0.0F},   {{2.3F, 0.7F, eye(2.3F)}, 0.12F, -0.1F},
                   {{3.2F, 0.65F, eye(3.2F)}, 0.2F, -0.2F},   {{4.1F, 0.7F, eye(4.1F)}, 0.05F, -0.25F},

@@ -32,7 +32,7 @@ TumOptions tum_options(const CameraOptions& options) {
   return tum;
 }
 
-std::string name_of(const fs::path& path) {
+std::string sequence_name(const fs::path& path) {
   const fs::path normal = path.lexically_normal();
   return (normal.filename().empty() ? normal.parent_path() : normal).filename().string();
 }
@@ -54,7 +54,7 @@ Status open_tum(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   for (const std::string& sentence : calibration.assumptions()) log.write(LogLevel::kWarning, sentence);
   opened.frame_count = camera->frame_count();
   opened.unpaired_images = index.unpaired_colour;
-  opened.name = name_of(folder);
+  opened.name = sequence_name(folder);
   std::error_code error;
   if (const fs::path truth_file = folder / "groundtruth.txt"; fs::exists(truth_file, error)) {
     opened.ground_truth = [truth_file](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
@@ -112,7 +112,7 @@ Status open_oni(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   live.calibration = options.calibration;
   std::unique_ptr<LiveCamera> camera;
   if (Status status = open_live_camera(live, log, camera); !status.ok()) return status;
-  opened.name = name_of(options.sequence);
+  opened.name = sequence_name(options.sequence);
   opened.camera = std::make_unique<CameraPart>(std::move(camera), options.frames);
   return {};
 }

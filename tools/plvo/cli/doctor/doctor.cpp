@@ -20,7 +20,7 @@
 namespace plvo::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kDoctorHelp =
     "Looks at the USB, permissions, OpenNI2 and its drivers, then captures for three seconds, and says\n"
     "what is wrong and what to type. Exit code 0: pictures come. 4: they do not, and the end of the page\n"
     "says why.\n";
@@ -101,7 +101,8 @@ void check(const CLI::App& command, const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
-  CLI::App& command = add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kHelp);
+  CLI::App& command =
+      add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kDoctorHelp);
   add_live_camera_options(command, options->camera);
   OptionGroup group(command);
   group.number("--seconds", options->seconds, kSeconds, "SECONDS", "Capture only so long (default 3)");

@@ -10,7 +10,7 @@
 namespace plvo::cli {
 namespace {
 
-constexpr std::size_t kWidth = 100;  // of a page, in characters
+constexpr std::size_t kPageWidth = 100;  // of a page, in characters
 
 const char* word(UsbAccess access) {
   switch (access) {
@@ -39,7 +39,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   std::size_t column = indent;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
-    if (column + (end - at) > kWidth && column > indent) {
+    if (column + (end - at) > kPageWidth && column > indent) {
       out.pop_back();  // the space before
       out += '\n' + std::string(indent, ' ');
       column = indent;

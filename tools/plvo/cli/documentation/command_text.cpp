@@ -7,7 +7,7 @@
 namespace plvo::cli {
 namespace {
 
-OptionText describe(const CLI::Option& option) {
+OptionText describe_option(const CLI::Option& option) {
   OptionText text;
   text.positional = option.get_positional();
   for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
@@ -34,7 +34,7 @@ bool OptionText::takes_folder() const { return type == "DIR"; }
 
 CommandText describe(const CLI::App& command) {
   CommandText text{command.get_name(), command.get_description(), command.get_footer(), {}};
-  for (const CLI::Option* option : command.get_options()) text.options.push_back(describe(*option));
+  for (const CLI::Option* option : command.get_options()) text.options.push_back(describe_option(*option));
   return text;
 }
 

@@ -27,7 +27,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 // Inside single quotes of a Bourne shell.
-std::string quoted(const std::string& text) { return '\'' + replaced(text, "'", "'\\''") + '\''; }
+std::string shell_quoted(const std::string& text) { return '\'' + replaced(text, "'", "'\\''") + '\''; }
 
 // What bash does after an option.
 std::string bash_values(const OptionText& option) {
@@ -51,11 +51,11 @@ std::string zsh_values(const OptionText& option) {
 
 std::string zsh_option(const OptionText& option, const std::string& name) {
   std::string what = replaced(replaced(option.what, "[", "\\["), "]", "\\]");
-  return quoted(name + '[' + replaced(what, ":", "\\:") + ']' + zsh_values(option));
+  return shell_quoted(name + '[' + replaced(what, ":", "\\:") + ']' + zsh_values(option));
 }
 
 std::string fish_option(const OptionText& option, const std::string& condition) {
-  std::string line = "complete -c plvo -n " + quoted(condition);
+  std::string line = "complete -c plvo -n " + shell_quoted(condition);
   for (const std::string& name : option.names)
     line += name.rfind("--", 0) == 0 ? " -l " + name.substr(2) : " -s " + name.substr(1);
   line += " -d \"" + replaced(replaced(option.what, "\\", "\\\\"), "\"", "\\\"") + '"';
@@ -112,7 +112,7 @@ std::string zsh_completion(const CLI::App& app) {
       "commands=(\n";
   const std::vector<CommandText> commands = describe_commands(app);
   for (const CommandText& command : commands)
-    text += "    " + quoted(command.name + ':' + command.what) + '\n';
+    text += "    " + shell_quoted(command.name + ':' + command.what) + '\n';
   text += "  )\n  if (( CURRENT == 2 )); then\n    _describe command commands\n    _arguments";
   for (const OptionText& option : describe(app).options)
     for (const std::string& name : option.names) text += ' ' + zsh_option(option, name);
@@ -122,8 +122,8 @@ std::string zsh_completion(const CLI::App& app) {
     text += "    " + command.name + ") _arguments";
     for (const OptionText& option : command.options)
       for (const std::string& name : option.names)
-        text +=
-            " \\\n      " + (option.positional ? quoted("*" + zsh_values(option)) : zsh_option(option, name));
+        text += " \\\n      " +
+                (option.positional ? shell_quoted("*" + zsh_values(option)) : zsh_option(option, name));
     text += " ;;\n";
   }
   return text + "  esac\n}\n_plvo \"$@\"\n";

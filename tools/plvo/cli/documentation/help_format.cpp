@@ -7,8 +7,8 @@
 namespace plvo::cli {
 namespace {
 
-constexpr std::size_t kLeft = 30;   // columns of names
-constexpr std::size_t kWidth = 80;  // columns of a line
+constexpr std::size_t kLeft = 30;       // columns of names
+constexpr std::size_t kHelpWidth = 80;  // columns of a line
 
 class HelpFormat final : public CLI::Formatter {
  public:
@@ -31,7 +31,7 @@ class HelpFormat final : public CLI::Formatter {
     std::size_t column = kLeft;
     std::istringstream words(make_option_desc(option));
     for (std::string word; words >> word;) {
-      if (column > kLeft && column + 1 + word.size() > kWidth) {
+      if (column > kLeft && column + 1 + word.size() > kHelpWidth) {
         line += '\n';
         line.append(kLeft, ' ');
         column = kLeft;

@@ -21,7 +21,7 @@
 namespace plvo::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kEvalHelp =
     "Examples:\n"
     "  plvo eval --gt walk/groundtruth.txt --est trajectory.txt\n"
     "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n";
@@ -140,7 +140,7 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
 void add_eval(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvalOptions>();
   CLI::App& command =
-      add_command(app, "eval", "Compare an estimated trajectory with the ground truth", kHelp);
+      add_command(app, "eval", "Compare an estimated trajectory with the ground truth", kEvalHelp);
   add_inputs(command, *options);
   OptionGroup group(command);
   group.choice("--gt-sampling", options->sampling,

@@ -14,7 +14,7 @@
 namespace plvo::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kLiveHelp =
     "Examples:\n"
     "  plvo live --view 8080                      look at http://127.0.0.1:8080/ meanwhile\n"
     "  plvo live --out poses.txt --record walk    keep the poses and the images\n"
@@ -94,7 +94,7 @@ void check(const CLI::App& command, const LiveOptions& options) {
 
 void add_live(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LiveOptions>();
-  CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kHelp);
+  CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kLiveHelp);
   add_live_camera_options(command, options->camera);
   OptionGroup group(command);
   group.number("--rate", options->rate_hz, positive(1000), "HZ", "Track so many frames a second at most");

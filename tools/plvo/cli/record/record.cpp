@@ -18,8 +18,8 @@
 namespace plvo::cli {
 namespace {
 
-constexpr int kPatience_ms = 100;
-constexpr const char* kHelp =
+constexpr int kRingPatience_ms = 100;
+constexpr const char* kRecordHelp =
     "Examples:\n"
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
     "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
@@ -80,7 +80,7 @@ int record_command(const RecordOptions& options) {
   RgbdFrame frame;
   std::int64_t arrival_ns = 0;
   while (!interrupted() && seconds() < options.seconds) {
-    if (ring.take(frame, arrival_ns, kPatience_ms) == FrameRing::Take::kClosed) break;
+    if (ring.take(frame, arrival_ns, kRingPatience_ms) == FrameRing::Take::kClosed) break;
     const LiveCapture::State state = capture.state();
     if (state.frames >= options.frames || !state.recorder.ok()) break;
     if (console.wants_line()) show_line(console, state, recording);
@@ -123,7 +123,7 @@ void check(const CLI::App& command, const RecordOptions& options) {
 void add_record(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App& command =
-      add_command(app, "record", "Keep what a sensor sees, as a folder or an .oni file", kHelp);
+      add_command(app, "record", "Keep what a sensor sees, as a folder or an .oni file", kRecordHelp);
   OptionGroup group(command);
   require(group.path("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file",
                      "DIR|FILE.oni"));

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t kReportedDamages = 10;  // further ones are only counted
 constexpr std::size_t kUnknownFrameCount = 4096;
-constexpr const char* kHelp =
+constexpr const char* kRunHelp =
     "Examples:\n"
     "  plvo run --camera sim --frames 100                   no sensor and no recording needed\n"
     "  plvo run DIR --camera-model tum-fr1 --out t.txt      a TUM recording of the fr1 series\n"
@@ -183,7 +183,7 @@ void check(const CLI::App& command, const RunOptions& options) {
 
 void add_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App& command = add_command(app, "run", "Track a recorded or simulated sequence", kHelp);
+  CLI::App& command = add_command(app, "run", "Track a recorded or simulated sequence", kRunHelp);
   add_camera_options(command, options->camera);
   OptionGroup(command).choice(
       "--pace", options->pace,

@@ -13,7 +13,7 @@ namespace plvo::cli {
 namespace {
 
 // RFC 4180: quotes inside are doubled.
-std::string quoted(std::string_view text) {
+std::string csv_quoted(std::string_view text) {
   std::string result = "\"";
   for (char c : text) {
     if (c == '"') result += c;
@@ -78,7 +78,7 @@ std::string stats_row(const FrameRecord& record) {
   const Status& status = record.damaged() ? record.camera_status : result.status;
   std::string row =
       fmt::format("{},{},{},{},{},{:.2f}", record.number, format_stamp(result.stamp_ns),
-                  record.damaged() ? "damaged" : to_string(result.state), quoted(status.message()),
+                  record.damaged() ? "damaged" : to_string(result.state), csv_quoted(status.message()),
                   format_stamp(result.reference_stamp_ns), result.mean_brightness);
   append_counts(row, result.points);
   append_counts(row, result.lines);

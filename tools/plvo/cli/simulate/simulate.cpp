@@ -20,7 +20,7 @@
 namespace plvo::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kSimulateHelp =
     "Examples:\n"
     "  plvo simulate --out walk                                   300 frames; then: plvo run walk\n"
     "  plvo simulate --out dim --scene hall --light varying       a harder one\n";
@@ -65,7 +65,8 @@ void check(const SimulateOptions& options) {
 
 void add_simulate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App& command = add_command(app, "simulate", "Write a simulated sequence as a TUM folder", kHelp);
+  CLI::App& command =
+      add_command(app, "simulate", "Write a simulated sequence as a TUM folder", kSimulateHelp);
   OptionGroup group(command);
   require(group.path("--out", options->folder, "A new folder for the sequence", "DIR"));
   group.whole("--frames", options->frames, 1, kMostSimulatedFrames,

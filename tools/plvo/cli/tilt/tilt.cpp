@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kRadPerDegree = 3.14159265358979323846 / 180;
 constexpr double kMaxTilt_deg = 31;  // what the motor can do
-constexpr const char* kHelp =
+constexpr const char* kTiltHelp =
     "Examples:\n"
     "  plvo tilt                       where the head stands, and which way is down\n"
     "  plvo tilt -10                   look 10 degrees down\n"
@@ -106,7 +106,7 @@ int tilt_command(const TiltOptions&) {
 
 void add_tilt(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TiltOptions>();
-  CLI::App& command = add_command(app, "tilt", "A Kinect v1's motor, light and accelerometer", kHelp);
+  CLI::App& command = add_command(app, "tilt", "A Kinect v1's motor, light and accelerometer", kTiltHelp);
   OptionGroup group(command);
   group.number("angle", options->angle_deg, {-kMaxTilt_deg, kMaxTilt_deg}, "DEGREES",
                "Turn the head to this angle against the horizon, up positive, from -31 to 31");
