@@ -201,9 +201,8 @@ TEST(LineResidual, MahalanobisDistanceIsThatOfTheBestLandmark) {
     bench.load(pair);
     test::flag_all(bench.lines[0]);
     bench.lines[0].begin();
-    Matrix6 H = Matrix6::Zero();
-    Vector6 g = Vector6::Zero();
-    const double cost = bench.lines[0].linearize(pair.truth, RobustKernel(RobustLoss::kNone, 4), H, g);
+    JointInformation sum;
+    const double cost = bench.lines[0].linearize(pair.truth, {}, RobustKernel(RobustLoss::kNone, 4), sum);
     const double s = bench.lines[0].mahalanobis_squared(0, pair.truth, 1e9);
     EXPECT_NEAR(2 * cost, s, 0.15 * s + 0.05);
   }
@@ -226,12 +225,12 @@ TEST_P(Gradient, IsThatOfTheEliminatedCost) {
   offset << 0.006, -0.003, 0.009, 0.0015, 0.0024, -0.0015;  // far enough for the losses to bend
   const Se3 T = boxplus(pair.truth, offset);
   const auto evaluate = [&](const Se3& at, Vector6& g) {
-    Matrix6 H = Matrix6::Zero();
     double cost = 0;
     set.begin();
     for (int i = 0; i < 4; ++i) {  // landmarks to their optimum
-      g.setZero();
-      cost = set.linearize(at, kernel, H, g);
+      JointInformation sum;
+      cost = set.linearize(at, {}, kernel, sum);
+      g = sum.g.head<6>();
       set.accept();
     }
     return cost;

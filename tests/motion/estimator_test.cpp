@@ -2,6 +2,8 @@
 // The estimator as the odometry uses it: outliers, little evidence, bad input, determinism.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <cstring>
 #include <limits>
 
@@ -202,7 +204,7 @@ TEST(Estimator, AFullArenaIsSaid) {
   std::vector<std::byte> nothing(64);
   Arena full{std::span<std::byte>(nothing)};
   (void)full.take<std::byte>("test", 64);
-  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status,
+  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, full).status,
             StatusCode::kOutOfMemory);
 }
 
@@ -242,7 +244,8 @@ class PlaneSamples final : public ConstraintSet {
   }
   void begin() override {}
   void accept() override {}
-  double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) override {
+  double linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
+                   JointInformation& sum) override {
     double cost = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (inliers_[i] == 0) continue;
@@ -257,8 +260,8 @@ class PlaneSamples final : public ConstraintSet {
       const double r = residual(sample, T);
       double weight = 1;
       cost += 0.5 * kernel(r * r * information, weight);
-      H += weight * information * J * J.transpose();
-      g += weight * information * r * J;
+      sum.H.block<6, 6>(0, 0) += weight * information * J * J.transpose();
+      sum.g.head<6>() += weight * information * r * J;
     }
     return cost;
   }
@@ -286,10 +289,10 @@ TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
     bench.load(pair);
     PlaneSamples planes(samples, flags);
     const MotionEstimate without =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, bench.arena);
     bench.sets.push_back(&planes);
     const MotionEstimate with =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, bench.arena);
     ASSERT_EQ(without.status, StatusCode::kOk);
     ASSERT_EQ(with.status, StatusCode::kOk);
     EXPECT_GT(with.inliers[2], 280);

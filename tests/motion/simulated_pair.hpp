@@ -153,7 +153,7 @@ struct Bench {
     points.clear();
     lines.clear();
     load(pair);
-    return estimate_motion(sets, MotionReferences{}, config, lm, seed, prediction, arena);
+    return estimate_motion(sets, MotionReferences{}, shared, config, lm, seed, prediction, arena);
   }
 
   std::vector<std::byte> memory;
@@ -161,6 +161,7 @@ struct Bench {
   std::vector<PointConstraints> points;
   std::vector<LineConstraints> lines;
   std::vector<ConstraintSet*> sets;
+  SharedErrors shared;
 };
 
 inline void flag_all(ConstraintSet& set) {
@@ -174,7 +175,8 @@ inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& 
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  MotionProblem problem(bench.sets, MotionReferences{}, MotionProblem::make_kernels(bench.sets, loss), start);
+  MotionProblem problem(bench.sets, MotionReferences{}, {}, MotionProblem::make_kernels(bench.sets, loss),
+                        start);
   LevenbergMarquardt<6> solver;
   const LmSummary summary = solver.solve(problem);
   T = problem.T_current_reference();

@@ -79,8 +79,10 @@ struct Linearization {
 inline constexpr int kLandmarkRounds = 8;
 inline Linearization linearize(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                                const Se3& T, bool marginalise = true, const Vector6& step = Vector6::Zero()) {
-  MotionProblem problem(sets, references, MotionProblem::make_kernels(sets, RobustLoss::kNone), T,
-                        marginalise);
+  MotionReferences judged = references;
+  if (!marginalise)
+    for (MotionReference& reference : judged) reference.covariance.setZero();
+  MotionProblem problem(sets, judged, {}, MotionProblem::make_kernels(sets, RobustLoss::kNone), T);
   Linearization out;
   // The lines' landmarks take a few rounds to their optimum.
   for (int round = 0; round < kLandmarkRounds; ++round) {
@@ -98,7 +100,7 @@ struct Solution {
 };
 inline Solution solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                       const Se3& start) {
-  MotionProblem problem(sets, references, MotionProblem::make_kernels(sets, RobustLoss::kHuber), start);
+  MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, RobustLoss::kHuber), start);
   LevenbergMarquardt<6> solver;
   Solution solution;
   solution.summary = solver.solve(problem);

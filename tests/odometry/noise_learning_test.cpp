@@ -187,6 +187,50 @@ TEST(Learning, StaysWithinItsBounds) {
   EXPECT_GT(scales.depth, 0.04);
 }
 
+// Estimates of the shared errors as a frame makes them: drawn with the true SD, seen with a noise of their
+// own, and shrunk towards the prior as that noise deserves.
+TEST(Learning, SettlesAtTheTrueSizeOfSharedErrors) {
+  NoiseConfig config;
+  CameraModel camera;
+  camera.readout_s = 0.03;
+  Gaussian gaussian(7);
+  // Far larger and far smaller than where it starts; with little and with much of it seen.
+  for (const double truth : {0.2, 2.5})
+    for (const double seen_with : {0.5, 2.0}) {
+      NoiseScales scales;
+      double mean_turning = 0;
+      double mean_depth = 0;
+      constexpr int kFrames = 4000;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        const SharedErrors prior(Exposure(camera, Vector6::Zero(), 0), std::sqrt(scales.turning),
+                                 std::sqrt(scales.shared_depth));
+        SharedErrorEstimate estimate;
+        for (int k = 0; k < SharedErrors::kCount; ++k) {
+          const double variance = prior.sigma(k) * prior.sigma(k);
+          const double noise = seen_with * truth;
+          const double gain = variance / (variance + noise * noise);
+          estimate.value[k] = gain * (truth * gaussian() + noise * gaussian());
+          estimate.variance[k] = (1 - gain) * variance;
+        }
+        NoiseScales shown;
+        note_shared(prior, estimate, shown);
+        learn(config, shown, scales);
+        if (frame < kFrames / 2) continue;
+        mean_turning += 2 * scales.turning / kFrames;
+        mean_depth += 2 * scales.shared_depth / kFrames;
+      }
+      EXPECT_NEAR(std::sqrt(mean_turning) / truth, 1, 0.25) << truth << ", " << seen_with;
+      EXPECT_NEAR(std::sqrt(mean_depth) / truth, 1, 0.25) << truth << ", " << seen_with;
+    }
+}
+
+TEST(Learning, WhatThereIsNotShowsNothing) {
+  NoiseScales shown;
+  note_shared(SharedErrors{}, {}, shown);
+  EXPECT_EQ(shown.turning, 1);
+  EXPECT_EQ(shown.shared_depth, 1);
+}
+
 TEST(Learning, SettlesAtTheTruth) {
   // Covariances carry the scales learnt so far, as in the odometry: what is shown is what is left to learn.
   const NoiseScales truth{2, 0.25, 3};

@@ -28,6 +28,11 @@ class Exposure {
   // The other way round: where a point of the middle row's moment is when its own row is exposed.
   Vector3 as_seen(const Vector3& p_mid) const;
 
+  // True when a rolling shutter's rows are exposed one after the other.
+  bool rolling() const { return rolling_; }
+  // Seconds from the middle row's exposure to that of the row which p projects to.
+  double delay_s(const Vector3& p) const;
+
   // True when depth's row v is not exposed together with colour's row v.
   bool depth_apart() const { return depth_apart_; }
   // p as colour's row v saw it → where it was when depth's row depth_v was exposed, and back. Rows in px.
@@ -37,8 +42,6 @@ class Exposure {
   const Pinhole& pinhole() const { return pinhole_; }
 
  private:
-  // Seconds from the middle row's exposure to that of the row which p projects to.
-  double delay_s(const Vector3& p) const;
   // Seconds from colour's row v to depth's row depth_v.
   double depth_lag_s(double v, double depth_v) const;
 

@@ -14,6 +14,7 @@
 
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/robust_kernel.hpp"
+#include "plvo/motion/shared_errors.hpp"
 
 namespace plvo {
 
@@ -26,6 +27,14 @@ struct Primitive {
   Vector3 d_reference, d_current;
   double sigma_p_m = 0;    // SD of p_reference − p_current in any one direction, about
   double sigma_d_rad = 0;  // SD of the angle between the directions, about
+};
+
+// Information and gradient of the motion's perturbation ξ and of the shared errors β: Σ w Jᵀ Σ⁻¹ J and Σ w Jᵀ
+// Σ⁻¹ r with J the derivative by (ξ, β).
+struct JointInformation {
+  static constexpr int kSize = 6 + SharedErrors::kCount;
+  Matrix<kSize, kSize> H = Matrix<kSize, kSize>::Zero();
+  Vector<kSize> g = Vector<kSize>::Zero();
 };
 
 class ConstraintSet {
@@ -43,21 +52,26 @@ class ConstraintSet {
   virtual double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const = 0;
 
   // Refinement. begin() sets the landmarks of the inliers back to their measurements. linearize() then moves
-  // candidate landmarks to their optimum for T, adds their Schur complement on ξ to H and g (both over the
-  // inliers) and returns ½ Σ ρ there; accept() keeps the candidates. Time is linear in size().
+  // candidate landmarks to their optimum for T and the shared errors' value, adds their Schur complement on
+  // (ξ, β) to `sum` (over the inliers; what belongs to β only if there are any) and returns ½ Σ ρ there;
+  // accept() keeps the candidates. Time is linear in size().
   virtual void begin() = 0;
-  virtual double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) = 0;
+  virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                           JointInformation& sum) = 0;
   virtual void accept() = 0;
 
-  // Which of the references the matches are with (motion_problem.hpp), 0 unless said otherwise; and ρ, the
+  // Which of the references the matches are with (motion_problem.hpp), 0 unless said otherwise; ρ, the
   // correlation between the residuals of any two matches: errors that the features of a scene share do not
-  // average out, so n matches weigh as n / (1 + (n − 1) ρ) independent ones.
-  void set_reference(std::size_t reference, double correlation) {
+  // average out, so n matches weigh as n / (1 + (n − 1) ρ) independent ones; and what each weighs besides,
+  // less than 1 where another set judges the same measurements.
+  void set_reference(std::size_t reference, double correlation, double weight = 1) {
     reference_ = reference;
     correlation_ = correlation;
+    weight_ = weight;
   }
   std::size_t reference() const { return reference_; }
   double correlation() const { return correlation_; }
+  double weight() const { return weight_; }
 
   // One flag per match, written by RANSAC, read by the refinement and by the caller.
   std::span<std::uint8_t> inliers() { return inliers_; }
@@ -74,6 +88,7 @@ class ConstraintSet {
  private:
   std::size_t reference_ = 0;
   double correlation_ = 0;
+  double weight_ = 1;
 };
 
 }  // namespace plvo

@@ -255,17 +255,24 @@ void LineConstraints::begin() {
 
 void LineConstraints::accept() { std::swap(landmarks_, candidates_); }
 
-double LineConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) {
+double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                                  JointInformation& sum) {
+  constexpr int kSize = JointInformation::kSize;
+  const int size = shared.any() ? kSize : 6;
   double cost = 0;
-  Matrix6 H_sum = Matrix6::Zero();  // lower triangle
-  Vector6 g_sum = Vector6::Zero();
+  JointInformation lower;  // H: lower triangle
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
     Landmark landmark = landmarks_[i];
+    Line3d current = current_[matches_[i].current];
+    if (shared.any()) {
+      current.a -= shared.shift(current.a);
+      current.b -= shared.shift(current.b);
+    }
     Linearized at;
     Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
     for (int step = 0; step < kMaxLandmarkSteps; ++step) {
-      if (!linearize_line(reference_[matches_[i].reference], current_[matches_[i].current], T, landmark, at))
+      if (!linearize_line(reference_[matches_[i].reference], current, T, landmark, at))
         return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
       q = T.R.lazyProduct(landmark.q);
       landmark = moved(landmark, at);
@@ -275,26 +282,30 @@ double LineConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matr
 
     double weight = 1;
     cost += 0.5 * kernel(at.c.dot(at.w), weight);
-    // −∂c/∂ξ, one row per end and direction u across: [uᵀ, (S × u)ᵀ], S the end's place on the line less t.
-    Matrix<4, 6> J;
+    // −∂c/∂(ξ, β), one row per end and direction u across: [uᵀ, (S × u)ᵀ, uᵀ F], S the end's place on the
+    // line less t.
+    Matrix<4, kSize> J;
     for (int end = 0; end < 2; ++end) {
       const Vector3 S = q + at.ends[end] * at.G_current.col(2);
+      Matrix<3, SharedErrors::kCount> F = Matrix<3, SharedErrors::kCount>::Zero();
+      if (shared.any()) F = shared.fields(S + T.t);
       for (int k = 0; k < 2; ++k) {
         const Vector3 u = at.G_current.col(k);
+        if (shared.any()) J.block<1, SharedErrors::kCount>(2 * end + k, 6) = u.transpose().lazyProduct(F);
         J.block<1, 3>(2 * end + k, 0) = u.transpose();
         J.block<1, 3>(2 * end + k, 3) = S.cross(u).transpose();
       }
     }
-    Matrix<4, 6> whitened;
-    for (int column = 0; column < 6; ++column) whitened.col(column) = at.W.solve_lower(J.col(column));
-    for (int r = 0; r < 6; ++r) {
-      g_sum[r] -= weight * J.col(r).dot(at.w);
-      for (int c = 0; c <= r; ++c) H_sum(r, c) += weight * whitened.col(r).dot(whitened.col(c));
+    Matrix<4, kSize> whitened;
+    for (int column = 0; column < size; ++column) whitened.col(column) = at.W.solve_lower(J.col(column));
+    for (int r = 0; r < size; ++r) {
+      lower.g[r] -= weight * J.col(r).dot(at.w);
+      for (int c = 0; c <= r; ++c) lower.H(r, c) += weight * whitened.col(r).dot(whitened.col(c));
     }
   }
-  for (int r = 0; r < 6; ++r)
-    for (int c = 0; c < 6; ++c) H(r, c) += r >= c ? H_sum(r, c) : H_sum(c, r);
-  g += g_sum;
+  for (int r = 0; r < size; ++r)
+    for (int c = 0; c < size; ++c) sum.H(r, c) += r >= c ? lower.H(r, c) : lower.H(c, r);
+  sum.g += lower.g;
   return cost;
 }
 

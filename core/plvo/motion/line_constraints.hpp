@@ -70,7 +70,8 @@ class LineConstraints final : public ConstraintSet {
   // noise.
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
   void begin() override;
-  double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) override;
+  double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                   JointInformation& sum) override;
   void accept() override;
 
   // The landmarks of the inliers after a refinement.

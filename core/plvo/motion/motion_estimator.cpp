@@ -53,8 +53,8 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
 }
 
 StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed, const Se3* prediction,
-                 std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
+                 SharedErrors shared, const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                 const Se3* prediction, std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
       MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
   Ransac ransac(sets, references, config, kernels, scratch);
@@ -72,11 +72,14 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
     if (!consensus()) return StatusCode::kNoConsensus;
     if (round > 0 && !changed) break;
-    MotionProblem problem(sets, references, kernels, T);
+    MotionProblem problem(sets, references, shared, kernels, T);
     estimate.lm = solver.solve(problem, lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
+    Cholesky<6> cholesky;
+    if (cholesky.factor(solver.hessian())) estimate.shared = problem.shared(cholesky.inverse());
+    shared.value = estimate.shared.value;
     for (std::size_t kind = 0; kind < sets.size(); ++kind)
       estimate.information[kind] = problem.information(kind);
   }
@@ -94,8 +97,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 }  // namespace
 
 MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                               const Se3* prediction, Arena& arena) {
+                               const SharedErrors& shared, const MotionConfig& config, const LmOptions& lm,
+                               std::uint64_t seed, const Se3* prediction, Arena& arena) {
   if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
   std::size_t matches = 0;
   for (ConstraintSet* set : sets) {
@@ -107,7 +110,7 @@ MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const Motio
   MotionEstimate estimate;
   estimate.status = scratch.size() < matches
                         ? StatusCode::kOutOfMemory
-                        : solve(sets, references, config, lm, seed, prediction, scratch, estimate);
+                        : solve(sets, references, shared, config, lm, seed, prediction, scratch, estimate);
   if (estimate.status == StatusCode::kOk) {
     count(sets, estimate);
     return estimate;

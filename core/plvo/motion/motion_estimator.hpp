@@ -33,6 +33,7 @@ struct MotionEstimate {
   // kind.
   std::array<Matrix6, kMaxConstraintKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
                                                           Matrix6::Zero()};
+  SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
   RansacSummary ransac;
@@ -42,15 +43,16 @@ struct MotionEstimate {
 };
 
 // sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
-// references: the frames that they match with; the motion is that from the base, reference 0.
-// prediction, if any, is tried as hypothesis number zero, and decides between rotations that perpendicular
-// lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch) is taken from
-// the arena and given back; an arena without room for it is kOutOfMemory.
-// kDegenerate also when the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or
-// when no minimal set of the consensus is free of degeneracy: all lines parallel, all points on a line, …
+// references: the frames that they match with; the motion is that from the base, reference 0. shared: errors
+// of the current frame, from whose value the estimate starts. prediction, if any, is tried as hypothesis
+// number zero, and decides between rotations that perpendicular lines cannot tell apart. The same arguments
+// give the same bits. Scratch (take_ransac_scratch) is taken from the arena and given back; an arena without
+// room for it is kOutOfMemory. kDegenerate also when the information (scaled to a unit diagonal) has an
+// eigenvalue ratio below 1e-10, or when no minimal set of the consensus is free of degeneracy: all lines
+// parallel, all points on a line, …
 MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                               const Se3* prediction, Arena& arena);
+                               const SharedErrors& shared, const MotionConfig& config, const LmOptions& lm,
+                               std::uint64_t seed, const Se3* prediction, Arena& arena);
 
 // What points, lines (of each reference) and estimate_motion take between mark and rewind, for sizing.
 template <typename Memory>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/motion_problem.hpp"
 
+#include <limits>
+
 #include "plvo/math/cholesky.hpp"
 
 namespace plvo {
@@ -22,24 +24,29 @@ MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionRefer
 
 namespace {
 
-int count_inliers(const ConstraintSet& set) {
+constexpr int kSize = JointInformation::kSize;
+using Joint = Matrix<kSize, kSize>;
+
+// Of a set's n inliers, whose residuals correlate by ρ: n / (1 + (n − 1) ρ) independent ones, times what each
+// weighs, as a share of n.
+double share_of(const ConstraintSet& set) {
   int n = 0;
   for (const std::uint8_t flag : set.inliers()) n += flag;
-  return n;
+  return set.weight() * (n > 1 ? 1 / (1 + (n - 1) * set.correlation()) : 1);
 }
 
-// H ← (H⁻¹ + S)⁻¹ with S = L Lᵀ, the gradient and the cost with it: what is left when a motion of covariance
-// S between the two frames is minimised over.
-double convolve(const Matrix6& L, Matrix6& H, Vector6& g) {
-  const Matrix6 HL = H * L;
-  const Matrix6 M = Matrix6::Identity() + L.transpose() * HL;
+// H ← (H⁻¹ + S)⁻¹ on the motion's part of H, S = L Lᵀ, the gradient and the cost with it: what is left when a
+// motion of covariance S between the two frames is minimised over.
+double convolve(const Matrix6& L, JointInformation& sum) {
+  const Matrix<kSize, 6> HL = sum.H.block<kSize, 6>(0, 0) * L;
+  const Matrix6 M = Matrix6::Identity() + L.transpose() * HL.block<6, 6>(0, 0);
   Cholesky<6> cholesky;
   if (!cholesky.factor(M)) return 0;
-  const Vector6 Lg = L.transpose() * g;
+  const Vector6 Lg = L.transpose() * sum.g.head<6>();
   const Vector6 x = cholesky.solve(Lg);
-  H -= HL * (cholesky.inverse() * HL.transpose());
-  H = 0.5 * (H + Matrix6(H.transpose()));
-  g -= HL * x;
+  sum.H -= HL * (cholesky.inverse() * HL.transpose());
+  sum.H = 0.5 * (sum.H + Joint(sum.H.transpose()));
+  sum.g -= HL * x;
   return -0.5 * Lg.dot(x);
 }
 
@@ -63,69 +70,103 @@ Matrix6 root(const Matrix6& S) {
 }  // namespace
 
 MotionProblem::MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                             const Kernels& kernels, const Se3& T, bool marginalise)
+                             const SharedErrors& shared, const Kernels& kernels, const Se3& T)
     : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
       references_(references),
-      marginalise_(marginalise),
       kernels_(kernels),
       T_(T),
-      candidate_(T) {
+      candidate_(T),
+      shared_(shared),
+      candidate_shared_(shared.value) {
   for (Matrix6& information : information_) information.setZero();
-  for (ConstraintSet* set : sets_) set->begin();
+  for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
+    sets_[kind]->begin();
+    share_[kind] = share_of(*sets_[kind]);
+  }
+  for (std::size_t r = 1; r < kMaxReferences; ++r) root_[r] = root(references_[r].covariance);
 }
 
 double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   candidate_ = boxplus(T_, step);
-  H.setZero();
-  g.setZero();
   const MotionsToCurrent motions = motions_to_current(candidate_, references_);
+  JointInformation sum;
   double cost = 0;
-  for (std::size_t r = 0; r < kMaxReferences; ++r) {
-    Matrix6 H_r = Matrix6::Zero();
-    Vector6 g_r = Vector6::Zero();
-    double cost_r = 0;
-    bool any = false;
-    for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-      ConstraintSet& set = *sets_[kind];
-      if (set.reference() != r) continue;
-      any = true;
-      Matrix6& information = candidate_information_[kind];
-      information.setZero();
-      Vector6 g_k = Vector6::Zero();
-      const double cost_k = set.linearize(motions[r], kernels_[kind], information, g_k);
-      const double share =
-          1 / (1 + (count_inliers(set) > 1 ? count_inliers(set) - 1 : 0) * set.correlation());
-      information *= share;
-      H_r += information;
-      g_r += share * g_k;
-      cost_r += share * cost_k;
-    }
-    if (!any) continue;
-    if (r == 0) {
-      H += H_r;
-      g += g_r;
-      cost += cost_r;
-      continue;
-    }
-    const Matrix3 Q = skew(motions[r].R * references_[r].T_reference_base.t);
-    Matrix6 A = Matrix6::Identity();
-    A.block<3, 3>(0, 3) = Q;
-    if (marginalise_) {
-      Matrix6 B = Matrix6::Zero();
-      B.block<3, 3>(0, 0) = motions[r].R;
-      B.block<3, 3>(0, 3) = Q * motions[r].R;
-      B.block<3, 3>(3, 3) = motions[r].R;
-      cost_r += convolve(root(B * references_[r].covariance * B.transpose()), H_r, g_r);
-    }
-    H += A.transpose() * H_r * A;
-    g += A.transpose() * g_r;
-    cost += cost_r;
-  }
+  for (std::size_t r = 0; r < kMaxReferences; ++r) cost += add_reference(r, motions[r], sum);
+  if (shared_.any()) cost += eliminate_shared(sum);
+  H = sum.H.block<6, 6>(0, 0);
+  g = sum.g.head<6>();
   return cost;
+}
+
+double MotionProblem::add_reference(std::size_t r, const Se3& T, JointInformation& sum) {
+  JointInformation of_reference;
+  double cost = 0;
+  bool any = false;
+  for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
+    ConstraintSet& set = *sets_[kind];
+    if (set.reference() != r) continue;
+    any = true;
+    JointInformation of_kind;
+    cost += share_[kind] * set.linearize(T, shared_, kernels_[kind], of_kind);
+    candidate_information_[kind] = share_[kind] * of_kind.H.block<6, 6>(0, 0);
+    of_reference.H += share_[kind] * of_kind.H;
+    of_reference.g += share_[kind] * of_kind.g;
+  }
+  if (!any) return 0;
+  if (r == 0) {
+    sum.H += of_reference.H;
+    sum.g += of_reference.g;
+    return cost;
+  }
+  const Matrix3 Q = skew(T.R * references_[r].T_reference_base.t);
+  Matrix6 B = Matrix6::Zero();
+  B.block<3, 3>(0, 0) = T.R;
+  B.block<3, 3>(0, 3) = Q * T.R;
+  B.block<3, 3>(3, 3) = T.R;
+  if (references_[r].covariance.trace() > 0) cost += convolve(B * root_[r], of_reference);
+  Joint A = Joint::Identity();
+  A.block<3, 3>(0, 3) = Q;
+  sum.H += A.transpose() * of_reference.H * A;
+  sum.g += A.transpose() * of_reference.g;
+  return cost;
+}
+
+// With the prior, at the shared errors' best value for this motion.
+double MotionProblem::eliminate_shared(JointInformation& sum) {
+  constexpr int n = SharedErrors::kCount;
+  double cost = 0;
+  for (int k = 0; k < n; ++k) {
+    const double sigma = shared_.sigma(k);
+    // A kind that there is not has no derivative either: any information holds it where it is.
+    const double information = sigma > 0 ? 1 / (sigma * sigma) : 1;
+    sum.H(6 + k, 6 + k) += information;
+    sum.g[6 + k] += information * shared_.value[k];
+    cost += 0.5 * information * shared_.value[k] * shared_.value[k];
+  }
+  Cholesky<n> cholesky;
+  if (!cholesky.factor(sum.H.block<n, n>(6, 6))) return std::numeric_limits<double>::infinity();
+  const SharedErrors::Vector g = sum.g.tail<n>();
+  const SharedErrors::Vector step = cholesky.solve(g);
+  candidate_shared_ = shared_.value - step;
+  candidate_inverse_ = cholesky.inverse();
+  candidate_gain_ = candidate_inverse_ * sum.H.block<n, 6>(6, 0);
+  const Matrix<6, n> coupling = sum.H.block<6, n>(0, 6);
+  const Matrix6 eliminated = coupling * candidate_gain_;
+  sum.H.block<6, 6>(0, 0) -= 0.5 * (eliminated + Matrix6(eliminated.transpose()));
+  sum.g.head<6>() -= coupling * step;
+  return cost - 0.5 * g.dot(step);
+}
+
+SharedErrorEstimate MotionProblem::shared(const Matrix6& covariance) const {
+  if (!shared_.any()) return {};
+  return {shared_.value, inverse_.diagonal() + (gain_ * covariance * gain_.transpose()).diagonal()};
 }
 
 void MotionProblem::accept() {
   T_ = {renormalise(candidate_.R), candidate_.t};
+  shared_.value = candidate_shared_;
+  inverse_ = candidate_inverse_;
+  gain_ = candidate_gain_;
   information_ = candidate_information_;
   for (ConstraintSet* set : sets_) set->accept();
 }

@@ -35,24 +35,42 @@ class MotionProblem {
   // One kernel per set; made once, for the quantile in it takes longer than a residual.
   static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
 
-  // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T.
-  // marginalise: false takes the references' poses for exact.
+  // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T and at the shared
+  // errors' value.
   MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                const Kernels& kernels, const Se3& T, bool marginalise = true);
+                const SharedErrors& shared, const Kernels& kernels, const Se3& T);
 
+  // The shared errors are eliminated like landmarks: moved to their optimum for the candidate, H and g their
+  // Schur complement.
   double linearize(const Vector6& step, Matrix6& H, Vector6& g);
   void accept();
 
   const Se3& T_current_reference() const { return T_; }
-  // The Schur complement of one kind at the accepted state: C_P⁻¹ (14), C_L⁻¹ (19).
+  // At the accepted state, where the motion has this covariance.
+  SharedErrorEstimate shared(const Matrix6& covariance) const;
+  // The Schur complement of one kind at the accepted state, the shared errors taken for known: C_P⁻¹ (14),
+  // C_L⁻¹ (19).
   const Matrix6& information(std::size_t kind) const { return information_[kind]; }
 
  private:
+  using SharedMatrix = Matrix<SharedErrors::kCount, SharedErrors::kCount>;
+  using SharedGain = Matrix<SharedErrors::kCount, 6>;
+
+  double add_reference(std::size_t r, const Se3& T, JointInformation& sum);
+  double eliminate_shared(JointInformation& sum);
+
   std::span<ConstraintSet* const> sets_;
   MotionReferences references_;
-  bool marginalise_;
+  std::array<Matrix6, kMaxReferences> root_;  // of the references' covariances
   Kernels kernels_;
+  std::array<double, kMaxConstraintKinds>
+      share_{};  // that a kind's inliers weigh, of as many independent ones
   Se3 T_, candidate_;
+  SharedErrors shared_;
+  SharedErrors::Vector candidate_shared_;
+  // Of the shared errors given the motion: their covariance, and how they follow the motion.
+  SharedMatrix inverse_ = SharedMatrix::Zero(), candidate_inverse_ = SharedMatrix::Zero();
+  SharedGain gain_ = SharedGain::Zero(), candidate_gain_ = SharedGain::Zero();
   std::array<Matrix6, kMaxConstraintKinds> information_, candidate_information_;
 };
 

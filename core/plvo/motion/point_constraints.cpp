@@ -90,7 +90,35 @@ double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double
   return e.dot(inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma)) * e);
 }
 
-double PointConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) {
+namespace {
+
+// What one match adds to the part of β: F its fields, W its information, J_ξ = [I, −[q]×].
+void add_shared(const Matrix<3, SharedErrors::kCount>& F, const Matrix3& W, const Vector3& We,
+                const Vector3& q, JointInformation& sum) {
+  constexpr int n = SharedErrors::kCount;
+  for (int k = 0; k < n; ++k) {
+    const Vector3 f = F.col(k);
+    const Vector3 Wf = W.lazyProduct(f);
+    const Vector3 turned = q.cross(Wf);
+    for (int r = 0; r < 3; ++r) {
+      sum.H(6 + k, r) += Wf[r];
+      sum.H(6 + k, 3 + r) += turned[r];
+    }
+    for (int l = 0; l <= k; ++l) sum.H(6 + k, 6 + l) += Wf.dot(F.col(l));
+    sum.g[6 + k] -= f.dot(We);
+  }
+}
+
+// The upper triangle of β's rows and columns from the lower one.
+void mirror_shared(JointInformation& sum) {
+  for (int r = 6; r < JointInformation::kSize; ++r)
+    for (int c = 0; c < r; ++c) sum.H(c, r) = sum.H(r, c);
+}
+
+}  // namespace
+
+double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                                   JointInformation& sum) {
   double cost = 0;
   Matrix3 H_vv = Matrix3::Zero();
   Matrix3 H_vw = Matrix3::Zero();
@@ -101,12 +129,18 @@ double PointConstraints::linearize(const Se3& T, const RobustKernel& kernel, Mat
     if (inliers_[i] == 0) continue;
     const Point3d& reference = reference_[matches_[i].reference];
     const Point3d& current = current_[matches_[i].current];
-    const Vector3 e = current.p - T * reference.p;
+    Vector3 p = current.p;
+    Matrix<3, SharedErrors::kCount> F = Matrix<3, SharedErrors::kCount>::Zero();
+    if (shared.any()) {
+      F = shared.fields(current.p);
+      p -= F.lazyProduct(shared.value);
+    }
+    const Vector3 e = p - T * reference.p;
     Symmetric3 W = inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma));
     Vector3 We = W * e;
     double weight = 1;
     cost += 0.5 * kernel(e.dot(We), weight);
-    const Vector3 q = current.p - current.Sigma * We - T.t;  // R X*
+    const Vector3 q = p - current.Sigma * We - T.t;  // R X*
     We *= weight;
     W = {W.xx * weight, W.xy * weight, W.xz * weight, W.yy * weight, W.yz * weight, W.zz * weight};
 
@@ -121,6 +155,7 @@ double PointConstraints::linearize(const Se3& T, const RobustKernel& kernel, Mat
       B(r, 1) = rows(r, 2) * q.x() - rows(r, 0) * q.z();
       B(r, 2) = rows(r, 0) * q.y() - rows(r, 1) * q.x();
     }
+    if (shared.any()) add_shared(F, rows, We, q, sum);
     H_vv += rows;
     H_vw -= B;
     for (int c = 0; c < 3; ++c) {
@@ -129,12 +164,13 @@ double PointConstraints::linearize(const Se3& T, const RobustKernel& kernel, Mat
       H_ww(2, c) += B(0, c) * q.y() - B(1, c) * q.x();
     }
   }
-  H.block<3, 3>(0, 0) += H_vv;
-  H.block<3, 3>(0, 3) += H_vw;
-  H.block<3, 3>(3, 0) += H_vw.transpose();
-  H.block<3, 3>(3, 3) += 0.5 * (H_ww + H_ww.transpose());
-  g.head<3>() += g_v;
-  g.tail<3>() += g_w;
+  sum.H.block<3, 3>(0, 0) += H_vv;
+  sum.H.block<3, 3>(0, 3) += H_vw;
+  sum.H.block<3, 3>(3, 0) += H_vw.transpose();
+  sum.H.block<3, 3>(3, 3) += 0.5 * (H_ww + H_ww.transpose());
+  sum.g.head<3>() += g_v;
+  sum.g.segment<3>(3) += g_w;
+  if (shared.any()) mirror_shared(sum);
   return cost;
 }
 

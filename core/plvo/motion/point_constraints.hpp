@@ -39,7 +39,8 @@ class PointConstraints final : public ConstraintSet {
   Primitive primitive(std::size_t i) const override;
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
   void begin() override {}
-  double linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) override;
+  double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                   JointInformation& sum) override;
   void accept() override {}
 
  private:

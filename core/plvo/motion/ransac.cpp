@@ -35,6 +35,8 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& ref
       references_(references),
       config_(config),
       kernels_(kernels) {
+  // A hypothesis needs no honest weights: the references' poses are taken for exact.
+  for (MotionReference& reference : references_) reference.covariance.setZero();
   for (const bool samplable : {true, false})
     for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
       const ConstraintSet& set = *sets_[kind];
@@ -168,7 +170,7 @@ void Ransac::refine(Se3& T) {
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
-    MotionProblem problem(sets_, references_, kernels_, T, false);
+    MotionProblem problem(sets_, references_, {}, kernels_, T);
     LevenbergMarquardt<6> solver;
     LmOptions options;
     options.max_iterations = kRefinementSteps;

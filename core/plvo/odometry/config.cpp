@@ -45,6 +45,10 @@ Status validate(const NoiseConfig& noise) {
       !within(noise.initial.lines, 0.01, 100))
     return out_of_range("noise.initial image, depth, lines", "between 0.01 and 100");
   if (!within(noise.learning_rate, 0, 0.5)) return out_of_range("noise.learning_rate", "0 to 0.5");
+  if (!within(noise.initial.turning, 0.01, 100) || !within(noise.initial.shared_depth, 0.01, 100))
+    return out_of_range("noise.initial turning, shared_depth", "between 0.01 and 100");
+  if (!within(noise.turning_rad_per_s, 0, 10) || !within(noise.shared_depth_m, 0, 1))
+    return out_of_range("noise.turning_rad_per_s, shared_depth_m", "0 to 10 rad/s, 1 m");
   if (!within(noise.point_correlation, 0, 1) || !within(noise.line_correlation, 0, 1))
     return out_of_range("noise.point_correlation, line_correlation", "0 to 1");
   return {};
@@ -133,7 +137,12 @@ Config Config::paper() {
   Config config;
   config.references.policy = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
-  config.noise = {.initial = {}, .learning_rate = 0, .point_correlation = 0, .line_correlation = 0};
+  config.noise = {.initial = {},
+                  .learning_rate = 0,
+                  .turning_rad_per_s = 0,
+                  .shared_depth_m = 0,
+                  .point_correlation = 0,
+                  .line_correlation = 0};
   config.points.registered = false;
   config.points.sigma_px = 1;
   config.points.depth_reach_px = 0;

@@ -63,10 +63,13 @@ struct NoiseConfig {
   NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1};
   // Each frame moves the scales by this share of what its residuals show; 0: they stay.
   double learning_rate = 0.1;
-  // The correlation between the residuals of any two points, or lines, of a frame: what they share
-  // (reflections, the lens, the clock) does not average out.
-  double point_correlation = 0.05;
-  double line_correlation = 0.005;
+  // Where the errors start that all features of a frame share (shared_errors.hpp), SD; 0: there are none.
+  double turning_rad_per_s = 0.1;
+  double shared_depth_m = 0.001;  // at 1 m
+  // The correlation between the residuals of any two points, or lines, of a frame: what else they share
+  // (reflections, the lens, the clock) does not average out either.
+  double point_correlation = 0.1;
+  double line_correlation = 0.02;
 };
 
 struct ReferenceConfig {

@@ -20,6 +20,8 @@ constexpr std::size_t kLeast = 12;
 // One frame may not say more than this, and the scales stay within these bounds.
 constexpr double kMostOfAFrame = 4;
 constexpr double kLeastScale = 0.04;
+// A rendered depth image has no smooth error at all.
+constexpr double kLeastSharedScale = 0.0025;
 constexpr double kMostScale = 25;
 
 double median_over(FixedVector<double>& values, double expected) {
@@ -50,9 +52,17 @@ PointResidual residual_of(const Pinhole& pinhole, const Point3d& reference, cons
           d * d / Sigma(2, 2)};
 }
 
-double step(double scale, double shown, double rate) {
+double step(double scale, double shown, double rate, double least = kLeastScale) {
   const double bounded = std::clamp(shown, 1 / kMostOfAFrame, kMostOfAFrame);
-  return std::clamp(scale * (1 + rate * (bounded - 1)), kLeastScale, kMostScale);
+  return std::clamp(scale * (1 + rate * (bounded - 1)), least, kMostScale);
+}
+
+double mean_square(const SharedErrors& shared, const SharedErrorEstimate& estimate, int first, int count) {
+  const double sigma = shared.sigma(first);
+  if (!(sigma > 0)) return 1;
+  const double sum =
+      estimate.value.segment(first, count).squaredNorm() + estimate.variance.segment(first, count).sum();
+  return sum / (count * sigma * sigma);
 }
 
 }  // namespace
@@ -77,13 +87,25 @@ NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& poin
     const double s = lines.mahalanobis_squared(i, T_current_reference, kFarthestLine);
     if (s < kFarthestLine) line.push_back(s);
   }
-  return {median_over(image, kMedian2), median_over(depth, kMedian1), median_over(line, kMedian4)};
+  NoiseScales shown;
+  shown.image = median_over(image, kMedian2);
+  shown.depth = median_over(depth, kMedian1);
+  shown.lines = median_over(line, kMedian4);
+  return shown;
+}
+
+void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown) {
+  shown.turning = mean_square(shared, estimate, 0, SharedErrors::kTurning);
+  shown.shared_depth = mean_square(shared, estimate, SharedErrors::kTurning, SharedErrors::kDepth);
 }
 
 void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales) {
   scales.image = step(scales.image, shown.image, config.learning_rate);
   scales.depth = step(scales.depth, shown.depth, config.learning_rate);
   scales.lines = step(scales.lines, shown.lines, config.learning_rate);
+  scales.turning = step(scales.turning, shown.turning, config.learning_rate, kLeastSharedScale);
+  scales.shared_depth =
+      step(scales.shared_depth, shown.shared_depth, config.learning_rate, kLeastSharedScale);
 }
 
 }  // namespace plvo

@@ -12,6 +12,7 @@
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/motion/line_constraints.hpp"
 #include "plvo/motion/point_constraints.hpp"
+#include "plvo/motion/shared_errors.hpp"
 #include "plvo/odometry/config.hpp"
 
 namespace plvo {
@@ -20,6 +21,11 @@ namespace plvo {
 // to tell. Scratch: see reserve_noise_learning.
 NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
                             const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch);
+
+// What the shared errors' estimate says of their variances: the mean square of each kind's parameters, with
+// what is not known of them, over the prior's (expectation maximisation of a variance component); 1 for a
+// kind that there is not.
+void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown);
 
 // One step of `scales` towards what a frame showed, shown times the scales themselves.
 void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales);

@@ -68,7 +68,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
         .append(" bytes for these Limits, got ")
         .append(static_cast<std::int64_t>(memory.size()));
   arena_ = Arena(memory);
-  rooms_.carve(arena_, limits);
+  std::array<FrameFeatures, kFrames> features;
+  rooms_.carve(arena_, limits, features);
+  for (std::size_t i = 0; i < kFrames; ++i) frames_[i].features = features[i];
   arena_.seal();
   camera_ = camera;
   config_ = config;
@@ -104,8 +106,8 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   if (last_ != kNobody) {
-    result.T_world_camera = anchor(last_).T_world_camera;
-    result.pose_covariance = anchor(last_).covariance;
+    result.T_world_camera = frame(last_).T_world_camera;
+    result.pose_covariance = frame(last_).covariance;
   }
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   if (Status status = check(input); !status.ok()) {
@@ -119,17 +121,17 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
   const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
-  rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_), result);
-  segment_count_ = view_segments(frame(current_).lines, rooms_.segment_views);
+  rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
+  segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
   if (keyframe_ == kNobody) {
-    rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).points);
+    rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).features.points);
     start(result);
     return result;
   }
   const TrackedMotion tracked = estimate_motion(depth, result);
   fill_views(tracked.motion);
   if (tracked.motion.status == StatusCode::kOk) {
-    rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).points);
+    rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
     accept(tracked, result);
   } else {
     lose(tracked.motion, result);
@@ -154,24 +156,23 @@ Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
 
 // The motion from the reference to now, if the camera goes on as it did between the last two good frames.
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
-  const Se3 T_last_reference = anchor(last_).T_world_camera.inverse() * anchor(reference).T_world_camera;
-  if (motion_ns_ <= 0) return T_last_reference;
-  const std::int64_t elapsed = elapsed_ns(frame(last_).stamp_ns, stamp_ns);
+  const Frame& last = frame(last_);
+  const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
+  const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
   // Beyond a few frames a prediction is worse than none.
-  const double ratio = static_cast<double>(elapsed) / static_cast<double>(motion_ns_);
-  if (!(ratio < 3)) return T_last_reference;
-  const Vector6 velocity = boxminus(T_last_previous_, Se3{});
-  return boxplus(Se3{}, ratio * velocity) * T_last_reference;
+  if (!(last.motion_ns > 0 && elapsed / last.motion_ns < 3)) return T_last_reference;
+  return boxplus(Se3{}, static_cast<double>(elapsed) * 1e-9 * last.velocity) * T_last_reference;
 }
 
 PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
-  const Anchor& from = anchor(reference);
+  const Frame& from = frame(reference);
+  const Frame& last = frame(last_);
   PairPrior prior;
   prior.T_current_reference = predict_motion(reference, stamp_ns);
-  prior.T_reference_last = from.T_world_camera.inverse() * anchor(last_).T_world_camera;
-  prior.seconds_since_last = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, stamp_ns)) * 1e-9;
+  prior.T_reference_last = from.T_world_camera.inverse() * last.T_world_camera;
+  prior.seconds_since_last = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9;
   prior.reference_velocity = from.velocity;
-  prior.reference_velocity_known = from.velocity_known;
+  prior.reference_velocity_known = from.motion_ns > 0;
   prior.reference_is_last = reference == last_;
   prior.depth_after_colour_s = depth_after_colour_s_;
   return prior;
@@ -179,11 +180,11 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 
 // The keyframe, which is the base, and the last good frame, as far as the policy wants both.
 std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
-  references[0] = {&frame(keyframe_), prior_of(keyframe_, stamp_ns), {}};
+  references[0] = {&frame(keyframe_).features, prior_of(keyframe_, stamp_ns), {}};
   if (!uses_both_references()) return 1;
-  const Se3 T_last_keyframe = anchor(last_).T_world_camera.inverse() * anchor(keyframe_).T_world_camera;
+  const Se3 T_last_keyframe = frame(last_).T_world_camera.inverse() * frame(keyframe_).T_world_camera;
   references[1] = {
-      &frame(last_), prior_of(last_, stamp_ns), {T_last_keyframe, anchor(last_).motion_covariance}};
+      &frame(last_).features, prior_of(last_, stamp_ns), {T_last_keyframe, frame(last_).motion_covariance}};
   return 2;
 }
 
@@ -192,8 +193,8 @@ std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& refer
 TrackedMotion Odometry::estimate_motion(const DepthSampler& depth, TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
-  const CurrentFrame current{frame(current_), rooms_.extraction, depth, noise_};
-  result.reference_stamp_ns = frame(keyframe_).stamp_ns;
+  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_};
+  result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   TrackedMotion tracked;
   for (std::size_t attempt = 0; attempt <= count; ++attempt) {
     const bool wide = attempt > 0;
@@ -227,7 +228,8 @@ void Odometry::start(TrackResult& result) {
   // At the very start the anchor is the world's origin; after a loss the last good pose, whose covariance
   // grows by all the time that nobody saw.
   if (last_ != kNobody) {
-    const double seconds = static_cast<double>(elapsed_ns(frame(last_).stamp_ns, result.stamp_ns)) * 1e-9;
+    const double seconds =
+        static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns)) * 1e-9;
     const double sigma_m = config_.references.unseen_m_per_s * seconds;
     const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
     for (int i = 0; i < 3; ++i) {
@@ -235,15 +237,15 @@ void Odometry::start(TrackResult& result) {
       result.pose_covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
     }
   }
-  anchor(current_).T_world_camera = result.T_world_camera;
-  anchor(current_).covariance = result.pose_covariance;
-  anchor(current_).velocity_known = false;
-  anchor(current_).motion_covariance.setZero();
+  Frame& current = frame(current_);
+  current.T_world_camera = result.T_world_camera;
+  current.covariance = result.pose_covariance;
+  current.motion_covariance.setZero();
+  current.motion_ns = 0;
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = last_ = current_;
-  current_ = (current_ + 1) % 3;
-  motion_ns_ = 0;
+  current_ = (current_ + 1) % static_cast<int>(kFrames);
   lost_frames_ = 0;
 }
 
@@ -252,7 +254,7 @@ void Odometry::accept(const TrackedMotion& tracked, TrackResult& result) {
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
   result.motion_covariance = motion.C_H;
-  const Anchor& from = anchor(keyframe_);
+  const Frame& from = frame(keyframe_);
   const Se3 T_reference_current = motion.T_current_reference.inverse();
   Se3 T_world_camera = from.T_world_camera * T_reference_current;
   T_world_camera.R = renormalise(T_world_camera.R);
@@ -260,33 +262,32 @@ void Odometry::accept(const TrackedMotion& tracked, TrackResult& result) {
                                                 inverse_covariance(motion.T_current_reference, motion.C_H));
   result.T_world_camera = T_world_camera;
   result.pose_covariance = covariance;
-  anchor(current_).T_world_camera = T_world_camera;
-  anchor(current_).covariance = covariance;
-  anchor(current_).motion_covariance = motion.C_H;
-
-  T_last_previous_ = T_world_camera.inverse() * anchor(last_).T_world_camera;
-  motion_ns_ = elapsed_ns(frame(last_).stamp_ns, result.stamp_ns);
-  note_velocity();
+  Frame& current = frame(current_);
+  current.T_world_camera = T_world_camera;
+  current.covariance = covariance;
+  current.motion_covariance = motion.C_H;
+  note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
   lost_frames_ = 0;
   learn(config_.noise, tracked.shown, noise_);
   choose_keyframe();
 }
 
 // Of the current frame, and so more of the last one.
-void Odometry::note_velocity() {
-  Anchor& last = anchor(last_);
-  Anchor& current = anchor(current_);
-  current.velocity = boxminus(T_last_previous_, Se3{}) / (static_cast<double>(motion_ns_) * 1e-9);
-  current.velocity_known = true;
-  last.velocity = last.velocity_known ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
-  last.velocity_known = true;
+void Odometry::note_velocity(std::int64_t motion_ns) {
+  Frame& last = frame(last_);
+  Frame& current = frame(current_);
+  const Se3 T_current_last = current.T_world_camera.inverse() * last.T_world_camera;
+  current.velocity = boxminus(T_current_last, Se3{}) / (static_cast<double>(motion_ns) * 1e-9);
+  current.motion_ns = motion_ns;
+  last.velocity = last.motion_ns > 0 ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
+  last.motion_ns = motion_ns;
 }
 
 // The tracked frame becomes the last good one, and the keyframe too, unless the keyframe goes on being a good
 // one.
 void Odometry::choose_keyframe() {
   last_ = current_;
-  const FrameFeatures& features = frame(keyframe_);
+  const FrameFeatures& features = frame(keyframe_).features;
   std::size_t available = features.lines.count_3d;
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
@@ -306,14 +307,14 @@ void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
   // Nothing is seen any more of what the reference saw. The next usable frame starts anew at the last good
   // pose.
   keyframe_ = kNobody;
-  current_ = (last_ + 1) % 3;
+  current_ = (last_ + 1) % static_cast<int>(kFrames);
 }
 
 // Of the latest reference; without a motion there is nothing to show.
 void Odometry::fill_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
   const bool both = uses_both_references();
-  const FrameFeatures& reference = frame(both ? last_ : keyframe_);
+  const FrameFeatures& reference = frame(both ? last_ : keyframe_).features;
   const ReferenceTracks& tracks = rooms_.tracking.tracks(both ? 1 : 0);
   point_track_count_ = tracks.points.matches.size();
   for (std::size_t i = 0; i < point_track_count_; ++i) {
@@ -333,7 +334,7 @@ FeatureView Odometry::features() const {
   FeatureView view;
   if (!ready_ || !has_stamp_) return view;
   view.image = rooms_.extraction.pyramid().level(0);
-  view.keypoints = frame(view_slot_).points.keypoints.span();
+  view.keypoints = frame(view_slot_).features.points.keypoints.span();
   view.point_tracks = rooms_.point_track_views.first(point_track_count_);
   view.segments = rooms_.segment_views.first(segment_count_);
   view.reference_segments = rooms_.reference_segment_views.first(reference_segment_count_);

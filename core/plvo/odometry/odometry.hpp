@@ -53,17 +53,19 @@ struct FeatureView {
   std::span<const LineTrackView> line_tracks;
 };
 
+// The keyframe, the last good frame, the frame being tracked.
+inline constexpr std::size_t kFrames = 3;
+
 // What init carves, in order; on an ArenaSizer the same code counts it.
 struct OdometryRooms {
   FeatureExtraction extraction;
   ReferenceTracking tracking;
-  std::array<FrameFeatures, 3> frames;  // the keyframe, the last good frame, the frame being tracked
   std::span<PointTrackView> point_track_views;
   std::span<LineTrackView> line_track_views;
   std::span<SegmentView> segment_views, reference_segment_views;
 
   template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Memory& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
     for (FrameFeatures& frame : frames) frame.carve(memory, limits);
     point_track_views =
         memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
@@ -86,7 +88,8 @@ struct OdometryRooms {
 constexpr std::size_t required_bytes(const Limits& limits) {
   ArenaSizer sizer;
   OdometryRooms rooms;
-  rooms.carve(sizer, limits);
+  std::array<FrameFeatures, kFrames> frames;
+  rooms.carve(sizer, limits, frames);
   OdometryRooms::reserve(sizer, limits);
   return sizer.peak() + kArenaAlignment;
 }
@@ -109,15 +112,16 @@ class Odometry {
   FeatureView features() const;
 
  private:
-  // What is known of the frame in a slot of rooms_.frames, once it is tracked.
-  struct Anchor {
+  // A frame; all but its features is known once it is tracked.
+  struct Frame {
+    FrameFeatures features;
     Se3 T_world_camera;
     Matrix6 covariance = Matrix6::Zero();         // of T_world_camera
     Matrix6 motion_covariance = Matrix6::Zero();  // of T_camera_keyframe, the keyframe being the present one
-    // Per second (exposure.hpp): since the good frame before it; once the next one is tracked, the mean of
-    // both.
+    // Per second (exposure.hpp): since the good frame before it, which was motion_ns earlier (0: there is
+    // none and the velocity is not known); once the next one is tracked, the mean of both.
     Vector6 velocity = Vector6::Zero();
-    bool velocity_known = false;
+    std::int64_t motion_ns = 0;
   };
   using References = std::array<Reference, kMaxReferences>;
 
@@ -133,17 +137,15 @@ class Odometry {
   TrackedMotion estimate_motion(const DepthSampler& depth, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
-  void note_velocity();
+  void note_velocity(std::int64_t motion_ns);
   void accept(const TrackedMotion& tracked, TrackResult& result);
   void start(TrackResult& result);
   void lose(const MotionEstimate& motion, TrackResult& result);
   void choose_keyframe();
   void fill_views(const MotionEstimate& motion);
 
-  FrameFeatures& frame(int slot) { return rooms_.frames[static_cast<std::size_t>(slot)]; }
-  const FrameFeatures& frame(int slot) const { return rooms_.frames[static_cast<std::size_t>(slot)]; }
-  Anchor& anchor(int slot) { return anchors_[static_cast<std::size_t>(slot)]; }
-  const Anchor& anchor(int slot) const { return anchors_[static_cast<std::size_t>(slot)]; }
+  Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }
+  const Frame& frame(int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
   Arena arena_;
   OdometryRooms rooms_;
@@ -151,17 +153,15 @@ class Odometry {
   Config config_;
   bool ready_ = false;
 
-  // Slots of rooms_.frames. Until the first usable frame there is no keyframe (−1).
+  std::array<Frame, kFrames> frames_;
+  // Slots of frames_. Until the first usable frame there is no keyframe (−1).
   int keyframe_ = -1;
   int last_ = -1;
   int current_ = 0;
-  std::array<Anchor, 3> anchors_;
   NoiseScales noise_;                // learnt so far
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
   bool has_stamp_ = false;
-  Se3 T_last_previous_;  // the last motion, and how long it took: the prediction of the next one
-  std::int64_t motion_ns_ = 0;
   int lost_frames_ = 0;
   int view_slot_ = 0;  // whose keypoints features() shows
   std::size_t point_track_count_ = 0;

@@ -13,6 +13,10 @@ namespace {
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
 constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
 
+// Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
+// and two such weigh as 2 / (1 + ½) independent ones.
+constexpr double kWeightOfTwo = 2.0 / 3;
+
 void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
   result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
   for (std::size_t r = 0; r < tracks.size(); ++r) {
@@ -35,23 +39,29 @@ void ReferenceTracking::init(const CameraModel& camera, const Config& config) {
   config_ = config;
 }
 
+SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const NoiseScales& noise) const {
+  return {exposure, config_.noise.turning_rad_per_s * sqrt(noise.turning),
+          config_.noise.shared_depth_m * sqrt(noise.shared_depth)};
+}
+
 TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                                       const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
-                                       TrackResult& result) {
+                                       const SharedErrors& shared, const Se3& T_predicted,
+                                       const LmOptions& lm, Arena& scratch, TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
+  const double weight = features.size() > 1 ? kWeightOfTwo : 1;
   const auto points_of = [&](std::size_t r) {
     const PointTracks& tracks = tracks_[r].points;
     PointConstraints set(features[r].reference_points, tracks.points, tracks.matches.span(),
                          PointConstraints::Workspace::take(scratch, tracks.matches.size()));
-    set.set_reference(r, config_.noise.point_correlation);
+    set.set_reference(r, config_.noise.point_correlation, weight);
     return set;
   };
   const auto lines_of = [&](std::size_t r) {
     LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks_[r].lines.span(),
                         LineConstraints::Workspace::take(scratch, tracks_[r].lines.size()));
-    set.set_reference(r, config_.noise.line_correlation);
+    set.set_reference(r, config_.noise.line_correlation, weight);
     return set;
   };
   std::array<PointConstraints, kMaxReferences> points{points_of(0), points_of(last)};
@@ -59,17 +69,19 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
   const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
 
   TrackedMotion tracked;
-  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm,
-                                   config_.seed, &T_predicted, scratch);
+  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, shared, config_.motion,
+                                   lm, config_.seed, &T_predicted, scratch);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
-  if (tracked.motion.status == StatusCode::kOk && config_.noise.learning_rate > 0)
+  if (tracked.motion.status == StatusCode::kOk && config_.noise.learning_rate > 0) {
     tracked.shown =
         residual_scales(camera_.pinhole, points[last], lines[last],
                         motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
+    note_shared(shared, tracked.motion.shared, tracked.shown);
+  }
   return tracked;
 }
 
@@ -91,8 +103,11 @@ TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentF
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
   }
-  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, T_predicted,
-                                config_.points.registered ? kRoughSolve : kFineSolve, scratch, result);
+  // Without registration this is the whole estimate, else it only leads to it.
+  const bool whole = !config_.points.registered;
+  TrackedMotion tracked = solve({&features, 1}, MotionReferences{},
+                                whole ? shared_errors(features.current, current.noise) : SharedErrors{},
+                                T_predicted, whole ? kFineSolve : kRoughSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
   return tracked;
@@ -124,7 +139,8 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
   TrackedMotion tracked =
-      solve(std::span(features).first(references.size()), poses, T_current_base, kFineSolve, scratch, result);
+      solve(std::span(features).first(references.size()), poses, shared_errors(exposure, current.noise),
+            T_current_base, kFineSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors that all features of the current frame have in common. They do not average out over features, so a
+// model without them makes the estimate follow them and its covariance deny them. Two kinds, each smooth over
+// the image, each with a Gaussian prior of mean zero:
+//
+//   turning  – how far the angular velocity during the exposure is off what was predicted; with a rolling
+//              shutter it shears the image (3 parameters, rad/s);
+//   depth    – a smooth error of the depth image, growing with the square of the depth as an error of
+//              disparity does: 1, x, y and x² + y² times d² along the ray, x and y being X/Z and Y/Z
+//              (4 parameters, 1/m).
+//
+// Each parameter moves all measured points p of the current camera frame along a field F(p): measured = true
+// + F(p) β. The motion problem estimates β besides the motion and eliminates it (motion_problem.hpp), so that
+// the motion's covariance contains it: nuisance parameters, as in bundle adjustment with self-calibration.
+#pragma once
+
+#include "plvo/camera/exposure.hpp"
+#include "plvo/math/types.hpp"
+
+namespace plvo {
+
+class SharedErrors {
+ public:
+  static constexpr int kTurning = 3, kDepth = 4;
+  static constexpr int kCount = kTurning + kDepth;
+  using Vector = plvo::Vector<kCount>;
+
+  // There are none.
+  SharedErrors() = default;
+  // Their SDs: turning in rad/s (has no effect with a global shutter), depth in metres of error at 1 m; 0:
+  // none of this kind. exposure: of the current frame.
+  SharedErrors(const Exposure& exposure, double turning_rad_per_s, double depth_m);
+
+  bool any() const { return turning_ > 0 || depth_ > 0; }
+  // Prior SD of parameter k; 0: there is no such error.
+  double sigma(int k) const { return k < kTurning ? turning_ : depth_; }
+
+  // F(p), and what it makes of β.
+  Matrix<3, kCount> fields(const Vector3& p) const;
+  Vector3 shift(const Vector3& p) const { return fields(p).lazyProduct(value); }
+
+  Vector value = Vector::Zero();  // β
+
+ private:
+  Exposure exposure_;
+  double turning_ = 0, depth_ = 0;
+};
+
+// What was found of them.
+struct SharedErrorEstimate {
+  SharedErrors::Vector value = SharedErrors::Vector::Zero();
+  SharedErrors::Vector variance = SharedErrors::Vector::Zero();
+};
+
+}  // namespace plvo
