@@ -224,5 +224,93 @@ TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
   }
 }
 
+// A keyframe's patch after the camera came nearer, turned and looked from the side.
+TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
+  Random random(9);
+  const auto render_warped = [&](const test::Texture& texture, const StrongestCorner& about, const Matrix2& W,
+                                 double dx, double dy) {
+    const Matrix2 back = (Matrix2() << W(1, 1), -W(0, 1), -W(1, 0), W(0, 0)).finished() /
+                         (W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0));
+    GrayImage image(kImageSide, kImageSide, 5);
+    image.paint([&](int x, int y) {
+      const Vector2 at = back * Vector2(x - about.x - dx, y - about.y - dy) + Vector2(about.x, about.y);
+      return std::clamp(texture(at.x(), at.y()), 0.0, 255.0) + 0.5 * test::gaussian(random);
+    });
+    return image;
+  };
+  const Matrix2 warps[] = {(Matrix2() << 1.3, 0, 0, 1.3).finished(), (Matrix2() << 0.8, 0, 0, 0.8).finished(),
+                           (Matrix2() << 0.94, -0.34, 0.34, 0.94).finished(),
+                           (Matrix2() << 1.1, 0.2, -0.05, 0.85).finished()};
+  double with = 0;
+  int found = 0, found_without = 0, tried = 0;
+  double without = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const test::Texture texture(seed, 100, kGrain);
+    const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
+    const StrongestCorner at = strongest_corner(reference.view());
+    const Patch patch = cut_patch(reference.view(), at.x, at.y);
+    for (const Matrix2& W : warps) {
+      const double dx = 0.37;
+      const double dy = -0.21;
+      const GrayImage current = render_warped(texture, at, W, dx, dy);
+      const auto squared_error = [&](const Alignment& got) {
+        return (got.x - at.x - dx) * (got.x - at.x - dx) + (got.y - at.y - dy) * (got.y - at.y - dy);
+      };
+      ++tried;
+      const Alignment got = align_patch(patch, kWholeWindow, current.view(), at.x, at.y, {}, {W});
+      if (got.ok) {
+        ++found;
+        with += squared_error(got);
+      }
+      const Alignment plain = align_patch(patch, kWholeWindow, current.view(), at.x, at.y, {});
+      if (plain.ok) {
+        ++found_without;
+        without += squared_error(plain);
+      }
+    }
+  }
+  EXPECT_EQ(found, tried);
+  EXPECT_LT(std::sqrt(with / found), 0.06);
+  // Unwarped most are given up, and what is found lies elsewhere.
+  EXPECT_LT(found_without, tried);
+  EXPECT_GT(std::sqrt(without / std::max(found_without, 1)), 3 * std::sqrt(with / found));
+}
+
+TEST(Alignment, AWarpNextToNoneIsNone) {
+  Random random(10);
+  const test::Texture texture(4, 100, kGrain);
+  const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
+  const GrayImage current = render(texture, 0.3, 0.4, 1, 0, 1, random);
+  const Patch patch = cut_patch(reference.view(), kImageCentre, kImageCentre);
+  const Alignment plain = align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {});
+  // As good as none: the same bits. Just beyond it: the same place, read pixel by pixel.
+  PatchWarp warp;
+  warp.W(0, 1) = 0.012;
+  EXPECT_TRUE(warp.is_identity());
+  const Alignment same =
+      align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
+  EXPECT_EQ(same.x, plain.x);
+  EXPECT_EQ(same.sigma_px, plain.sigma_px);
+  warp.W(0, 1) = 0.013;
+  EXPECT_FALSE(warp.is_identity());
+  const Alignment near =
+      align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
+  ASSERT_TRUE(plain.ok && near.ok);
+  EXPECT_NEAR(near.x, plain.x, 0.02);
+  EXPECT_NEAR(near.y, plain.y, 0.02);
+}
+
+TEST(Alignment, AWarpThatNoSurfaceMakesIsRefused) {
+  Random random(11);
+  const test::Texture texture(5, 100, kGrain);
+  const GrayImage image = render(texture, 0, 0, 1, 0, 0, random);
+  const Patch patch = cut_patch(image.view(), kImageCentre, kImageCentre);
+  const double nan = std::nan("");
+  for (const Matrix2& W : {(Matrix2() << 4, 0, 0, 4).finished(), (Matrix2() << 0.1, 0, 0, 0.1).finished(),
+                           (Matrix2() << 1, 0, 0, -1).finished(), (Matrix2() << nan, 0, 0, 1).finished(),
+                           (Matrix2() << 1e300, 0, 0, 1e300).finished()})
+    EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kImageCentre, kImageCentre, {}, {W}).ok);
+}
+
 }  // namespace
 }  // namespace plvo

@@ -41,9 +41,23 @@ void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, do
   point.p = view.exposure.at_mid_exposure(point.p);
 }
 
+// What a small patch around reference point p becomes, taken to face the camera there: by the derivative of
+// its projection after the motion.
+PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current_reference) {
+  const Vector3 q = T_current_reference * p;
+  Matrix<2, 3> J;
+  J << pinhole.fx / q.z(), 0, -pinhole.fx * q.x() / (q.z() * q.z()), 0, pinhole.fy / q.z(),
+      -pinhole.fy * q.y() / (q.z() * q.z());
+  Matrix<3, 2> facing = T_current_reference.R.block<3, 2>(0, 0);
+  facing.col(0) *= p.z() / pinhole.fx;
+  facing.col(1) *= p.z() / pinhole.fy;
+  return {J * facing};
+}
+
 // Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
 void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i, double u,
-                       double v, const AlignmentOptions& options, PointTracks& tracks) {
+                       double v, const AlignmentOptions& options, const PatchWarp& warp,
+                       PointTracks& tracks) {
   const Keypoint& keypoint = reference.keypoints[i];
   const double scale = 1 << keypoint.level;
   // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
@@ -51,7 +65,7 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
   const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
   const Alignment alignment =
       align_patch(reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
-                  u / scale - offset_x, v / scale - offset_y, options);
+                  u / scale - offset_x, v / scale - offset_y, options, warp);
   if (!alignment.ok) return;
   add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
             scale * registered_sigma_px(view.config, alignment), tracks);
@@ -79,7 +93,9 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   for (const Match& match : putative) {
     const Keypoint& found = current.keypoints[match.current];
     if (view.config.registered)
-      register_keypoint(view, reference, match.reference, found.u, found.v, kRough, tracks);
+      register_keypoint(view, reference, match.reference, found.u, found.v, kRough,
+                        warp_of(view.pinhole, reference_points[match.reference].p, T_current_reference),
+                        tracks);
     else
       add_track(view, match.reference, {static_cast<double>(found.u), static_cast<double>(found.v)},
                 view.config.sigma_px * (1 << found.level), tracks);
@@ -93,7 +109,8 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
   for (std::size_t i = 0; i < reference.keypoints.size(); ++i) {
     const Prediction prediction = predict(view, reference_points[i], T_current_reference);
     if (prediction.visible)
-      register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{}, tracks);
+      register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{},
+                        warp_of(view.pinhole, reference_points[i].p, T_current_reference), tracks);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/points/alignment.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -46,6 +47,8 @@ struct Template {
   Matrix4 normal;
 };
 constexpr double kUnit = 1.0 / 16;
+
+constexpr double kMostStretch = 3;
 
 // Eight bits of a grey level and the weights' seven are rounded to four bits after the first pass, and again
 // after the second.
@@ -123,11 +126,13 @@ struct Moments {
   double squared = 0;                       // Σ I²
 };
 
+using Window = std::array<std::int16_t, kPixels>;
+constexpr std::int32_t kOnePixel = 1 << kFractionBits;
+
 // (x, y): the position of the patch's centre, in 1/32 px; the window must lie inside the image.
-Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_t y) {
-  constexpr std::int32_t kOne = 1 << kFractionBits;
-  const Weights& across = kWeights[static_cast<std::size_t>(x & (kOne - 1))];
-  const Weights& down = kWeights[static_cast<std::size_t>(y & (kOne - 1))];
+Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
+  const Weights& across = kWeights[static_cast<std::size_t>(x & (kOnePixel - 1))];
+  const Weights& down = kWeights[static_cast<std::size_t>(y & (kOnePixel - 1))];
   const std::uint8_t* first = image.data + ((y >> kFractionBits) - kWindowReach - 1) * image.stride +
                               (x >> kFractionBits) - kWindowReach - 1;
   constexpr int kBlendedRows = kRows + kTaps - 1;
@@ -137,8 +142,56 @@ Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_
     for (int c = 0; c < kColumns; ++c, ++p)
       blended[static_cast<std::size_t>(r * kColumns + c)] = blend_across(p, across);
   }
-  std::array<std::int16_t, kPixels> values;
+  Window values;
   for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
+  return values;
+}
+
+// Where the window's pixels lie from the patch's centre, in 1/32 px, once it is warped.
+struct WarpedWindow {
+  std::array<std::int16_t, kPixels> x, y;
+  int reach = kWindowReach;  // the farthest of them, px
+};
+
+std::int16_t rounded(double offset) {
+  constexpr int kBeyond = 1 << 14;  // no offset is as far: what is cut off is a fraction
+  return static_cast<std::int16_t>(static_cast<int>(offset + 0.5 + kBeyond) - kBeyond);
+}
+
+WarpedWindow warp_window(const PatchWarp& warp) {
+  WarpedWindow window;
+  std::size_t i = 0;
+  int farthest = 0;
+  for (int row = -kWindowReach; row < kRows - kWindowReach; ++row)
+    for (int column = -kWindowReach; column < kColumns - kWindowReach; ++column, ++i) {
+      const Vector2 at = kOnePixel * (warp.W * Vector2(column, row));
+      window.x[i] = rounded(at.x());
+      window.y[i] = rounded(at.y());
+      for (const int offset : {static_cast<int>(window.x[i]), static_cast<int>(window.y[i])})
+        farthest = std::max(farthest, offset < 0 ? -offset : offset);
+    }
+  window.reach = farthest / kOnePixel + 1;
+  return window;
+}
+
+// Each pixel at a fraction of its own.
+Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+  Window values;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    const std::int32_t at_x = x + window.x[k];
+    const std::int32_t at_y = y + window.y[k];
+    const Weights& across = kWeights[static_cast<std::size_t>(at_x & (kOnePixel - 1))];
+    const Weights& down = kWeights[static_cast<std::size_t>(at_y & (kOnePixel - 1))];
+    const std::uint8_t* p =
+        image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
+    std::array<std::int16_t, kTaps> column;
+    for (std::size_t r = 0; r < kTaps; ++r, p += image.stride) column[r] = blend_across(p, across);
+    values[k] = blend_down(column.data(), 1, down);
+  }
+  return values;
+}
+
+Moments correlate(const Template& t, const Window& values) {
   // 72 products of at most 4080 · 4080: below 2^31. Squares too, 72 · 4080².
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
@@ -162,9 +215,22 @@ Moments correlate(const Template& t, GrayView image, std::int32_t x, std::int32_
 
 }  // namespace
 
+bool PatchWarp::is_identity() const {
+  constexpr double kNegligible_px = 0.05;
+  return (W - Matrix2::Identity()).cwiseAbs().maxCoeff() * kWindowReach < kNegligible_px;
+}
+
 Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
-                      double start_y, const AlignmentOptions& options) {
+                      double start_y, const AlignmentOptions& options, const PatchWarp& warp) {
   Alignment result;
+  const bool warped = !warp.is_identity();
+  const Matrix2 W = warped ? warp.W : Matrix2(Matrix2::Identity());
+  // A patch so stretched, or so shrunk, is no longer the same to look at.
+  if (!(W.cwiseAbs().maxCoeff() < kMostStretch &&
+        W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0) > 1 / (kMostStretch * kMostStretch)))
+    return result;
+  WarpedWindow window;
+  if (warped) window = warp_window(warp);
   const Template t = make_template(patch, mask);
   if (t.pixels < kLeastPixels) return result;
   Cholesky<4> factor;
@@ -176,14 +242,15 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
   bool converged = false;
   while (!converged && result.iterations < options.max_iterations) {
     // Floor, then the read touches one pixel before the window and two behind it.
-    constexpr int kFirst = kWindowReach + 2;
-    if (!(result.x >= kFirst && result.y >= kFirst && result.x < image.width - kFirst - 1 &&
-          result.y < image.height - kFirst - 1))
+    const int first = window.reach + 2;
+    if (!(result.x >= first && result.y >= first && result.x < image.width - first - 1 &&
+          result.y < image.height - first - 1))
       return result;
-    constexpr double kOne = 1 << kFractionBits;
+    constexpr double kOne = kOnePixel;
     const auto x = static_cast<std::int32_t>(result.x * kOne + 0.5);
     const auto y = static_cast<std::int32_t>(result.y * kOne + 0.5);
-    const Moments moments = correlate(t, image, x, y);
+    const Moments moments =
+        correlate(t, warped ? read_warped(image, window, x, y) : read_window(image, x, y));
     const Vector4 solution = factor.solve(moments.with_template);
     ++result.iterations;
     const double gain = solution[2];
@@ -191,8 +258,9 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     // The regressors are twice the gradients.
     const double before_x = result.x;
     const double before_y = result.y;
-    result.x = x / kOne - 2 * solution[0] / gain;
-    result.y = y / kOne - 2 * solution[1] / gain;
+    const Vector2 moved = 2 / gain * (W * solution.head<2>());
+    result.x = x / kOne - moved.x();
+    result.y = y / kOne - moved.y();
     const double dx = result.x - start_x;
     const double dy = result.y - start_y;
     if (!(dx * dx + dy * dy <= max_shift_squared)) return result;
@@ -210,11 +278,13 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     // Covariance of (c_x, c_y): the noise of one pixel through the inverse of the normal equations, so that
     // what gain and offset take of the gradients' information is not counted. Regressors are twice the
     // gradients.
-    const Vector4 column_x = factor.solve(Vector4::Unit(0));
-    const Vector4 column_y = factor.solve(Vector4::Unit(1));
-    const double half_sum = 2 * (column_x[0] + column_y[1]);
-    const double half_difference = 2 * (column_x[0] - column_y[1]);
-    const double cross = 4 * column_x[1];
+    Matrix2 C;
+    C.col(0) = factor.solve(Vector4::Unit(0)).head<2>();
+    C.col(1) = factor.solve(Vector4::Unit(1)).head<2>();
+    C = W * C * W.transpose();
+    const double half_sum = 2 * (C(0, 0) + C(1, 1));
+    const double half_difference = 2 * (C(0, 0) - C(1, 1));
+    const double cross = 4 * C(1, 0);
     const double largest = half_sum + sqrt(half_difference * half_difference + cross * cross);
     // The spline leaves a quarter of white noise's variance but all of its strength where the gradients are,
     // at low frequencies: neighbouring residuals are alike, and one in four counts.

@@ -14,6 +14,7 @@
 #pragma once
 
 #include "plvo/image/image_view.hpp"
+#include "plvo/math/types.hpp"
 #include "plvo/points/keypoint.hpp"
 
 namespace plvo {
@@ -33,10 +34,18 @@ struct Alignment {
   int iterations = 0;
 };
 
+// How the patch has been deformed since: a pixel (dx, dy) from its centre is now at W (dx, dy) from it. The
+// identity costs nothing; anything else about twice as much.
+struct PatchWarp {
+  Matrix2 W = Matrix2::Identity();
+  // Below this much of an offset in pixels at the window's rim, W is as good as the identity.
+  bool is_identity() const;
+};
+
 // patch: cut around whole pixel (px, py) of the reference's level; of its window the pixels in `mask` are
 // compared, of which there must be a third at least. (start_x, start_y): where that pixel is expected on the
 // same level of the current image.
 Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
-                      double start_y, const AlignmentOptions& options);
+                      double start_y, const AlignmentOptions& options, const PatchWarp& warp = {});
 
 }  // namespace plvo
