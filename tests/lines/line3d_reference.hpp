@@ -3,6 +3,7 @@
 // Jacobians and dense Gauss–Newton over the six numbers [A, B].
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <vector>
@@ -46,7 +47,7 @@ inline test::DenseVector whitened_w(const std::vector<Point3d>& points, const Ve
     Vector3 e = delta(points[i], a, b);
     if (i == 0) e = points[i].p - a;
     if (i + 1 == points.size()) e = points[i].p - b;
-    w.segment<3>(3 * static_cast<Eigen::Index>(i)) = test::solve_lower(test::cholesky(points[i].Sigma), e);
+    w.segment<3>(3 * static_cast<Eigen::Index>(i)) = points[i].Sigma.llt().matrixL().solve(e);
   }
   return w;
 }

@@ -10,7 +10,7 @@ namespace plvo {
 
 namespace {
 
-constexpr std::uint16_t kNone = 0xffff;
+constexpr std::uint16_t kNoLine = 0xffff;
 
 LinePose pose_of(const Segment& segment) {
   const Vector2 m = segment.middle(), u = segment.direction();
@@ -45,14 +45,14 @@ bool same_line(const LinePose& a, const LinePose& b, const Gates& gates) {
 // The best candidate of a reference segment if it is near enough and no other line comes close to it.
 LineCandidate clear_best(std::span<const LineCandidate> candidates, std::span<const LinePose> current,
                          const Gates& gates, const LineMatchConfig& config) {
-  LineCandidate best{kNone, config.max_distance + 1};
+  LineCandidate best{kNoLine, config.max_distance + 1};
   for (const LineCandidate& c : candidates)
     if (c.distance < best.distance) best = c;  // of equals the first
-  if (best.index == kNone) return best;
+  if (best.index == kNoLine) return best;
   const double limit = config.max_ratio * config.max_ratio;
   for (const LineCandidate& c : candidates) {
     if (best.distance < limit * c.distance || c.index == best.index) continue;
-    if (!same_line(current[best.index], current[c.index], gates)) return {kNone, 0};
+    if (!same_line(current[best.index], current[c.index], gates)) return {kNoLine, 0};
   }
   return best;
 }
@@ -68,7 +68,7 @@ void match_lines(std::span<const Segment> predicted, std::span<const LineDescrip
   if (memory.exhausted()) return;
   for (std::size_t j = 0; j < current.size(); ++j) {
     scratch.current[j] = pose_of(current[j]);
-    scratch.best_of_current[j] = {kNone, std::numeric_limits<int>::max()};
+    scratch.best_of_current[j] = {kNoLine, std::numeric_limits<int>::max()};
   }
   const Gates gates{static_cast<float>(cos(config.max_angle_rad)), static_cast<float>(config.max_offset_px),
                     static_cast<float>(config.min_overlap), static_cast<float>(cos(config.same_line_rad)),
@@ -89,7 +89,7 @@ void match_lines(std::span<const Segment> predicted, std::span<const LineDescrip
   }
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const std::uint16_t j = scratch.best_of_reference[i];
-    if (j != kNone && scratch.best_of_current[j].index == i)
+    if (j != kNoLine && scratch.best_of_current[j].index == i)
       matches.push_back({static_cast<std::uint16_t>(i), j});
   }
 }

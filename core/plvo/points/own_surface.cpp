@@ -12,8 +12,8 @@ constexpr int kRim = 2;
 // A surface as steep as this changes so much of its depth over a window; what differs by more is another one.
 constexpr double kSameSurface = 0.06;
 
-constexpr int kColumns = kWindowColumns + 2 * kRim;
-constexpr int kRows = kWindowRows + 2 * kRim;
+constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
+constexpr int kSurfaceRows = kWindowRows + 2 * kRim;
 using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
 
 }  // namespace
@@ -27,10 +27,10 @@ WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, doub
   // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
   const int centre_x = static_cast<int>(centre.x() + 0.5);
   const int centre_y = static_cast<int>(centre.y() + 0.5);
-  std::array<Row, kRows> own{};
-  for (int r = 0; r < kRows; ++r) {
+  std::array<Row, kSurfaceRows> own{};
+  for (int r = 0; r < kSurfaceRows; ++r) {
     const int y = centre_y + (r - kRim - kWindowReach) * step;
-    for (int c = 0; c < kColumns; ++c) {
+    for (int c = 0; c < kSurfaceColumns; ++c) {
       const int x = centre_x + (c - kRim - kWindowReach) * step;
       const double difference = depth.at(x, y) - depth_m;
       const double most = kSameSurface * depth_m;
