@@ -296,8 +296,8 @@ TEST(Alignment, AWarpNextToNoneIsNone) {
   const Alignment near =
       align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
   ASSERT_TRUE(plain.ok && near.ok);
-  EXPECT_NEAR(near.x, plain.x, 0.02);
-  EXPECT_NEAR(near.y, plain.y, 0.02);
+  EXPECT_NEAR(near.x, plain.x, 0.05);
+  EXPECT_NEAR(near.y, plain.y, 0.05);
 }
 
 TEST(Alignment, AWarpThatNoSurfaceMakesIsRefused) {
