@@ -24,7 +24,7 @@ struct Row {
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> all = {
-      {"image", "grey, lens", {"plvo::to_gray(", "plvo::UndistortionTable::undistort("}},
+      {"image", "grey, lens", {"plvo::to_gray(", "plvo::UndistortionMap::undistort("}},
       {"image", "pyramid", {"plvo::halve_binomial5("}},
       {"points", "detect", {"plvo::detect_keypoints("}},
       {"points", "smooth", {"plvo::smooth_binomial7("}},
