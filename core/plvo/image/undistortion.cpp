@@ -5,11 +5,11 @@
 #include <array>
 #include <cstring>
 
+#include "plvo/base/lanes.hpp"
+
 namespace plvo {
 namespace {
 
-// Eight 16-bit numbers, which compilers keep in one register of any board that has such.
-using Lanes = std::int16_t __attribute__((vector_size(16)));
 using WideLanes = std::int32_t __attribute__((vector_size(32)));
 
 constexpr int kWeightBits = 7;  // of a position's fraction in the blend
