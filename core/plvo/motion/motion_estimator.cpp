@@ -53,8 +53,8 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
 }
 
 StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed, const Se3* prediction,
-                 std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
+                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                 const MotionStart& start, std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
       MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
   Ransac ransac(sets, references, config, kernels, scratch);
@@ -66,7 +66,13 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  if (!ransac.run(seed, prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  bool known = start.known && start.prediction != nullptr && start.prediction->is_finite();
+  if (known) {
+    T = *start.prediction;
+    (void)ransac.judge(T, kFirstRoundScale);
+    known = consensus();
+  }
+  if (!known && !ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
   LevenbergMarquardt<6> solver;
   for (int round = 0; round <= kMaxRounds; ++round) {
     const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
@@ -95,7 +101,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 
 MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                                const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                               const Se3* prediction, Arena& arena) {
+                               const MotionStart& start, Arena& arena) {
   if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
   std::size_t matches = 0;
   for (ConstraintSet* set : sets) {
@@ -107,7 +113,7 @@ MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const Motio
   MotionEstimate estimate;
   estimate.status = scratch.size() < matches
                         ? StatusCode::kOutOfMemory
-                        : solve(sets, references, config, lm, seed, prediction, scratch, estimate);
+                        : solve(sets, references, config, lm, seed, start, scratch, estimate);
   if (estimate.status == StatusCode::kOk) {
     count(sets, estimate);
     return estimate;

@@ -36,7 +36,7 @@ void ReferenceTracking::init(const CameraModel& camera, const Config& config) {
 }
 
 TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                                       const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
+                                       const MotionStart& start, const LmOptions& lm, Arena& scratch,
                                        TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
@@ -60,7 +60,7 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
 
   TrackedMotion tracked;
   tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm,
-                                   config_.seed, &T_predicted, scratch);
+                                   config_.seed, start, scratch);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
@@ -91,7 +91,7 @@ TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentF
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
   }
-  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, T_predicted,
+  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, &T_predicted,
                                 config_.points.registered ? kRoughSolve : kFineSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
@@ -123,8 +123,8 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
     match_predicted_lines(camera_.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
-  TrackedMotion tracked =
-      solve(std::span(features).first(references.size()), poses, T_current_base, kFineSolve, scratch, result);
+  TrackedMotion tracked = solve(std::span(features).first(references.size()), poses, {&T_current_base, true},
+                                kFineSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);

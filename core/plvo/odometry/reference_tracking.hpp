@@ -96,7 +96,7 @@ class ReferenceTracking {
 
  private:
   TrackedMotion solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                      const Se3& T_predicted, const LmOptions& lm, Arena& scratch, TrackResult& result);
+                      const MotionStart& start, const LmOptions& lm, Arena& scratch, TrackResult& result);
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {
     return {camera_.pinhole, config_.points, current.extraction.pyramid(), depth, exposure, current.noise};
