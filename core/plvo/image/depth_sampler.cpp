@@ -82,7 +82,7 @@ bool DepthSampler::locate(Vector2& pixel) const {
   if (!exposure_.depth_apart()) return true;
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
   // rotation's, the same for every depth.
-  constexpr int kGuesses = 3;
+  constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
   constexpr double kNearest_m = 0.1;
   const Pinhole& pinhole = exposure_.pinhole();

@@ -123,8 +123,12 @@ std::ptrdiff_t UndistortionMap::locate_plain(const Cell& c, int j, std::ptrdiff_
 // One by one, where the camera's border may be near.
 std::ptrdiff_t UndistortionMap::locate_clamped(int x, int y, std::ptrdiff_t stride, Row& row,
                                                int first) const {
+  const Cell& c = cell(x, y);
+  const int j = y % kCell;
+  const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
+  const std::int64_t right = c.right + j * c.twist;
   for (int i = 0; i < kCell; ++i) {
-    const std::int64_t at = position(x + i, y);
+    const std::int64_t at = start + i * right + bow(i) * c.bend_right;
     const std::int32_t at_x = std::clamp(x_of(at), 0, last_x_);
     const std::int32_t at_y = std::clamp(y_of(at), 0, last_y_);
     constexpr std::int32_t kFraction = (1 << kFractionBits) - 1;

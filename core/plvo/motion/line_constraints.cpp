@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/pair.hpp"
 
 namespace plvo {
 namespace {
@@ -59,14 +60,20 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   const Vector3 b = G.transpose().lazyProduct(line.b - q);
   offsets.e << a.x(), a.y(), b.x(), b.y();
   offsets.lambda << a.z(), b.z();
-  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted.
-  const Matrix<3, 2> U = G.block<3, 2>(0, 0);
+  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted, both of an end at once.
+  const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
   for (int j = 0; j < 2; ++j) {
-    const Matrix<6, 2> right = line.Sigma.block<6, 3>(0, 3 * j).lazyProduct(U);
+    Pair right[6];
+    for (int r = 0; r < 6; ++r)
+      right[r] =
+          line.Sigma(r, 3 * j) * U[0] + line.Sigma(r, 3 * j + 1) * U[1] + line.Sigma(r, 3 * j + 2) * U[2];
     for (int i = 0; i < 2; ++i) {
-      const Matrix<3, 2> block = right.block<3, 2>(3 * i, 0);
-      offsets.C.block<2, 2>(2 * i, 2 * j) = U.transpose().lazyProduct(block);
-      offsets.C_le.block<1, 2>(i, 2 * j) = G.col(2).transpose().lazyProduct(block);
+      const Pair* block = right + 3 * i;
+      for (int k = 0; k < 3; ++k) {
+        const Pair row = G(0, k) * block[0] + G(1, k) * block[1] + G(2, k) * block[2];
+        for (int c = 0; c < 2; ++c)
+          (k < 2 ? offsets.C(2 * i + k, 2 * j + c) : offsets.C_le(i, 2 * j + c)) = row[c];
+      }
     }
   }
   return offsets;
@@ -96,14 +103,20 @@ struct Interpolation {
   }
   // N C Nᵀ
   Matrix4 sandwich(const Matrix4& C) const {
-    Matrix4 NC;
-    for (int i = 0; i < 2; ++i)
-      for (int k = 0; k < 2; ++k)
-        for (int c = 0; c < 4; ++c) NC(2 * i + k, c) = n[i][0] * C(k, c) + n[i][1] * C(2 + k, c);
+    Pair NC[2][4];  // two rows each
+    for (int c = 0; c < 4; ++c) {
+      const Pair first = {C(0, c), C(1, c)};
+      const Pair second = {C(2, c), C(3, c)};
+      for (int i = 0; i < 2; ++i) NC[i][c] = n[i][0] * first + n[i][1] * second;
+    }
     Matrix4 result;
-    for (int r = 0; r < 4; ++r)
+    for (int r = 0; r < 2; ++r)
       for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k) result(r, 2 * i + k) = n[i][0] * NC(r, k) + n[i][1] * NC(r, 2 + k);
+        for (int k = 0; k < 2; ++k) {
+          const Pair rows = n[i][0] * NC[r][k] + n[i][1] * NC[r][2 + k];
+          result(2 * r, 2 * i + k) = rows[0];
+          result(2 * r + 1, 2 * i + k) = rows[1];
+        }
     return result;
   }
 };
@@ -166,6 +179,24 @@ LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const
 
 LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
   return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
+}
+
+// H += weight · Jᵀ W⁻¹ J, two columns at a time; of its lower triangle at least.
+void add_information(const Cholesky<4>& W, const Matrix<4, 6>& J, double weight, Pair (&H)[6][3]) {
+  Pair whitened[4][3];
+  for (int pair = 0; pair < 3; ++pair) {
+    Pair column[4];
+    for (int k = 0; k < 4; ++k) column[k] = Pair{J(k, 2 * pair), J(k, 2 * pair + 1)};
+    W.solve_lower(column);
+    for (int k = 0; k < 4; ++k) whitened[k][pair] = column[k];
+  }
+  for (int r = 0; r < 6; ++r) {
+    double row[4];
+    for (int k = 0; k < 4; ++k) row[k] = weight * whitened[k][r / 2][r % 2];
+    for (int pair = 0; 2 * pair <= r; ++pair)
+      H[r][pair] += row[0] * whitened[0][pair] + row[1] * whitened[1][pair] + row[2] * whitened[2][pair] +
+                    row[3] * whitened[3][pair];
+  }
 }
 
 }  // namespace
@@ -257,7 +288,7 @@ void LineConstraints::accept() { std::swap(landmarks_, candidates_); }
 
 double LineConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matrix6& H, Vector6& g) {
   double cost = 0;
-  Matrix6 H_sum = Matrix6::Zero();  // lower triangle
+  Pair H_sum[6][3] = {};  // two columns each; the lower triangle
   Vector6 g_sum = Vector6::Zero();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
@@ -285,15 +316,11 @@ double LineConstraints::linearize(const Se3& T, const RobustKernel& kernel, Matr
         J.block<1, 3>(2 * end + k, 3) = S.cross(u).transpose();
       }
     }
-    Matrix<4, 6> whitened;
-    for (int column = 0; column < 6; ++column) whitened.col(column) = at.W.solve_lower(J.col(column));
-    for (int r = 0; r < 6; ++r) {
-      g_sum[r] -= weight * J.col(r).dot(at.w);
-      for (int c = 0; c <= r; ++c) H_sum(r, c) += weight * whitened.col(r).dot(whitened.col(c));
-    }
+    for (int r = 0; r < 6; ++r) g_sum[r] -= weight * J.col(r).dot(at.w);
+    add_information(at.W, J, weight, H_sum);
   }
   for (int r = 0; r < 6; ++r)
-    for (int c = 0; c < 6; ++c) H(r, c) += r >= c ? H_sum(r, c) : H_sum(c, r);
+    for (int c = 0; c < 6; ++c) H(r, c) += r >= c ? H_sum[r][c / 2][c % 2] : H_sum[c][r / 2][r % 2];
   g += g_sum;
   return cost;
 }
