@@ -20,7 +20,7 @@ constexpr double kMinLengthSigmas = 4;
 // Gauss–Newton steps of one landmark per linearisation, and the step (m) below which the next would be in
 // vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
-constexpr double kLandmarkTolerance = 1e-5;
+constexpr double kLandmarkTolerance = 1e-4;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
