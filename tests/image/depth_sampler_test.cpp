@@ -27,10 +27,10 @@ struct Scene {
   DepthSampler sampler(double registration_px = 0) const {
     DepthNoise noise;
     noise.registration_px = registration_px;
-    return {{units.data(), kWidth, kHeight, kWidth, kUnit}, table, noise};
+    return {{units.data(), kWidth, kHeight, kWidth, kUnit}, map, noise};
   }
   std::vector<std::uint16_t> units;
-  UndistortionTable table;
+  UndistortionMap map;
 };
 
 // A plane of the world is one in inverse depth: q = q0 + qx x + qy y.
@@ -171,14 +171,14 @@ TEST(DepthSampler, ReadsThroughTheLens) {
   std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
   Arena arena(memory);
   Scene scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; });
-  scene.table.carve(arena, kWidth, kHeight);
-  scene.table.init(camera);
+  scene.map.carve(arena, kWidth, kHeight);
+  scene.map.init(camera);
   const DepthSampler sampler = scene.sampler();
   int unseen = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       int raw_x = 0, raw_y = 0;
-      if (!scene.table.raw_pixel(x, y, raw_x, raw_y)) {
+      if (!scene.map.raw_pixel(x, y, raw_x, raw_y)) {
         ++unseen;
         ASSERT_EQ(sampler.at(x, y), 0);
         continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both filters against the sum over the whole two-dimensional kernel, in double precision (exact here: every
-// product is an integer below 2^20), rounded half up, borders repeated.
+// Both filters against sums in double precision (exact here: every product is an integer below 2^20), rounded
+// half up, borders repeated: the one that halves over the whole two-dimensional kernel, the other down and
+// then across, as it is defined.
 #include "plvo/image/smoothing.hpp"
 
 #include <gtest/gtest.h>
@@ -26,6 +27,21 @@ std::uint8_t filtered(GrayView image, int x, int y, const std::vector<int>& weig
   return static_cast<std::uint8_t>(std::floor(sum / (sum_of_weights * sum_of_weights) + 0.5));
 }
 
+// Down, rounded to quarters, then across.
+std::uint8_t filtered_in_turn(GrayView image, int x, int y, const std::vector<int>& weights,
+                              double sum_of_weights) {
+  const int radius = static_cast<int>(weights.size() / 2);
+  double sum = 0;
+  for (int dx = -radius; dx <= radius; ++dx) {
+    double column = 0;
+    for (int dy = -radius; dy <= radius; ++dy)
+      column += weights[static_cast<std::size_t>(dy + radius)] *
+                image.at(std::clamp(x + dx, 0, image.width - 1), std::clamp(y + dy, 0, image.height - 1));
+    sum += weights[static_cast<std::size_t>(dx + radius)] * std::floor(4 * column / sum_of_weights + 0.5);
+  }
+  return static_cast<std::uint8_t>(std::floor(sum / (4 * sum_of_weights) + 0.5));
+}
+
 const std::vector<int> kBinomial7{1, 6, 15, 20, 15, 6, 1};
 const std::vector<int> kBinomial5{1, 4, 6, 4, 1};
 
@@ -45,7 +61,7 @@ void expect_padding_untouched(const GrayImage& image) {
     }
 }
 
-TEST(Smoothing, Binomial7IsTheTwoDimensionalSum) {
+TEST(Smoothing, Binomial7IsTheSumDownAndThenAcross) {
   Random random(7);
   for (const Size& size : kSizes) {
     SCOPED_TRACE(testing::Message() << size.width << "x" << size.height);
@@ -55,7 +71,7 @@ TEST(Smoothing, Binomial7IsTheTwoDimensionalSum) {
     smooth_binomial7(in.view(), out.view(), row);
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x)
-        ASSERT_EQ(out.view().at(x, y), filtered(in.view(), x, y, kBinomial7, 64)) << x << " " << y;
+        ASSERT_EQ(out.view().at(x, y), filtered_in_turn(in.view(), x, y, kBinomial7, 64)) << x << " " << y;
     expect_padding_untouched(out);
   }
 }

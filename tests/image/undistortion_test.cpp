@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table against the lens itself, distort_pixel, evaluated in double precision at every pixel.
+// The map against the lens itself, distort_pixel, evaluated in double precision at every pixel.
 #include "plvo/image/undistortion.hpp"
 
 #include <gtest/gtest.h>
@@ -32,21 +32,22 @@ const Distortion kBarrel{-0.25, 0.06, 0, 0, 0};
 const Distortion kPincushion{0.12, 0.02, 0.002, -0.001, 0};
 const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
 
-class Table {
+class Map {
  public:
-  explicit Table(const CameraModel& camera) : memory_(kBentWidth * kBentHeight * 4 + 2 * kArenaAlignment) {
+  explicit Map(const CameraModel& camera)
+      : memory_(camera.width * camera.height + (camera.width + camera.height) * 8 + 1000) {
     Arena arena(memory_);
-    table.carve(arena, camera.width, camera.height);
-    table.init(camera);
+    map.carve(arena, camera.width, camera.height);
+    map.init(camera);
   }
-  UndistortionTable table;
+  UndistortionMap map;
 
  private:
   std::vector<std::byte> memory_;
 };
 
 // A bilinear read touches the next pixel too, so the last row and column count as unseen. Within a step of
-// the table from the border either answer is right: reach = 1/32 px widens, −1/32 px narrows.
+// the map from the border either answer is right: reach = 1/32 px widens, −1/32 px narrows.
 bool seen(const Vector2& raw, double reach = 0) {
   return raw.x() >= -reach && raw.y() >= -reach && raw.x() < kBentWidth - 1 + reach &&
          raw.y() < kBentHeight - 1 + reach;
@@ -63,58 +64,96 @@ double bilinear(GrayView image, const Vector2& at) {
 }
 
 TEST(Undistortion, WithoutALensNothingMoves) {
-  const Table owned(camera_with({}));
-  EXPECT_FALSE(owned.table.active());
+  const Map owned(camera_with({}));
+  EXPECT_FALSE(owned.map.active());
   for (int y = 0; y < kBentHeight; y += 7)
     for (int x = 0; x < kBentWidth; x += 5) {
       int raw_x = -1, raw_y = -1;
-      EXPECT_TRUE(owned.table.raw_pixel(x, y, raw_x, raw_y));
+      EXPECT_TRUE(owned.map.raw_pixel(x, y, raw_x, raw_y));
       EXPECT_EQ(raw_x, x);
       EXPECT_EQ(raw_y, y);
     }
 }
 
 TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
-  // Slopes of up to 10 grey levels a pixel: a table in 1/32 px is then good to half a level, and the result
-  // is rounded.
+  // Slopes of up to 10 grey levels a pixel: a place good to 1/40 px is then good to a quarter of a level, and
+  // the result is rounded.
   GrayImage raw(kBentWidth, kBentHeight, 6);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
   for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
     const CameraModel camera = camera_with(lens);
     ASSERT_TRUE(camera.validate().ok()) << camera.validate().message();
-    const Table owned(camera);
-    ASSERT_TRUE(owned.table.active());
+    const Map owned(camera);
+    ASSERT_TRUE(owned.map.active());
     GrayImage ideal(kBentWidth, kBentHeight, 1);
-    owned.table.undistort(raw.view(), ideal.view());
+    owned.map.undistort(raw.view(), ideal.view());
     int inside = 0;
     for (int y = 0; y < kBentHeight; ++y)
       for (int x = 0; x < kBentWidth; ++x) {
         const Vector2 at = distort_pixel(camera, Vector2(x, y));
         if (!seen(at)) continue;
         ++inside;
-        ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), at), 1.0) << x << " " << y;
+        ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), at), 0.75) << x << " " << y;
       }
     EXPECT_GT(inside, kBentWidth * kBentHeight / 2);
   }
 }
 
+// TUM's fr1, whose lens is the strongest of the Kinects there, at both sizes.
+TEST(Undistortion, AKinectsLensIsMetToAFiftiethOfAPixel) {
+  for (const int halvings : {0, 1}) {
+    CameraModel camera;
+    const double scale = 1.0 / (1 << halvings);
+    camera.width = 640 >> halvings;
+    camera.height = 480 >> halvings;
+    camera.pinhole = {517.306408 * scale, 516.469215 * scale, 318.643040 * scale, 255.313989 * scale};
+    camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+    const Map owned(camera);
+    double worst = 0;
+    for (int y = 0; y < camera.height; ++y)
+      for (int x = 0; x < camera.width; ++x) {
+        const Vector2 error = owned.map.position_px(x, y) - distort_pixel(camera, Vector2(x, y));
+        worst = std::max({worst, std::abs(error.x()), std::abs(error.y())});
+      }
+    EXPECT_LT(worst, 0.02) << camera.width;
+  }
+}
+
+// A window's plane goes through the map at its centre, and stays near it.
+TEST(Undistortion, AWindowFollowsTheMap) {
+  const CameraModel camera = camera_with(kBarrel);
+  const Map owned(camera);
+  for (int y = 20; y < kBentHeight - 20; y += 7)
+    for (int x = 20; x < kBentWidth - 20; x += 5) {
+      const UndistortionMap::Window window(owned.map, x, y);
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+          int raw_x = -1, raw_y = -1;
+          ASSERT_TRUE(window.raw_pixel(dx, dy, raw_x, raw_y));
+          const Vector2 at = distort_pixel(camera, Vector2(x + dx, y + dy));
+          ASSERT_LE(std::abs(raw_x - at.x()), dx == 0 && dy == 0 ? 0.5 + kStep : 0.55);
+          ASSERT_LE(std::abs(raw_y - at.y()), dx == 0 && dy == 0 ? 0.5 + kStep : 0.55);
+        }
+    }
+}
+
 TEST(Undistortion, TheNearestRawPixelOrNone) {
   for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
     const CameraModel camera = camera_with(lens);
-    const Table owned(camera);
+    const Map owned(camera);
     for (int y = 0; y < kBentHeight; ++y)
       for (int x = 0; x < kBentWidth; ++x) {
         const Vector2 at = distort_pixel(camera, Vector2(x, y));
         int raw_x = -1, raw_y = -1;
-        const bool known = owned.table.raw_pixel(x, y, raw_x, raw_y);
+        const bool known = owned.map.raw_pixel(x, y, raw_x, raw_y);
         if (seen(at, -2 * kStep)) {
           ASSERT_TRUE(known) << x << " " << y;
         }
-        if (!seen(at)) {
+        if (!seen(at, kStep)) {
           ASSERT_FALSE(known) << x << " " << y;
         }
         if (!known) continue;
-        // Half a pixel, and the step of the table.
+        // Half a pixel, and what the map is off by.
         ASSERT_LE(std::abs(raw_x - at.x()), 0.5 + kStep);
         ASSERT_LE(std::abs(raw_y - at.y()), 0.5 + kStep);
         ASSERT_TRUE(raw_x >= 0 && raw_y >= 0 && raw_x < kBentWidth && raw_y < kBentHeight);
@@ -126,9 +165,9 @@ TEST(Undistortion, WhatTheCameraDidNotSeeRepeatsItsNearestBorder) {
   GrayImage raw(kBentWidth, kBentHeight);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
   const CameraModel camera = camera_with(kPincushion);
-  const Table owned(camera);
+  const Map owned(camera);
   GrayImage ideal(kBentWidth, kBentHeight);
-  owned.table.undistort(raw.view(), ideal.view());
+  owned.map.undistort(raw.view(), ideal.view());
   int unseen = 0;
   for (int y = 0; y < kBentHeight; ++y)
     for (int x = 0; x < kBentWidth; ++x) {

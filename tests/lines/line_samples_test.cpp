@@ -18,19 +18,29 @@ Segment segment(double ax, double ay, double bx, double by) {
   return s;
 }
 
-TEST(LineSamples, CountIsThePapers) {
-  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), 100), 0);
-  EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), 100), 20);
-  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), 100), 100);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), 100), 100);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), 50), 50);
+constexpr SampleOptions kPaper{100, 1, 0};
+
+TEST(LineSamples, OneAPixelIsThePapersCount) {
+  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), kPaper), 0);
+  EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), kPaper), 20);
+  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), kPaper), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), kPaper), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {50, 1, 0}), 50);
+}
+
+TEST(LineSamples, WiderSpacingTakesFewerButLeavesEnough) {
+  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {100, 3, 0}), 0);
+  EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {100, 3, 0}), 12);
+  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {100, 3, 0}), kEnoughSamples);
+  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {100, 3, 0}), 33);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {100, 3, 0}), 100);
 }
 
 TEST(LineSamples, EvenlySpacedFromEndToEnd) {
   const Segment s = segment(10, 20, 70, 100);
   LineSamples samples;
   std::vector<Vector2> asked;
-  sample_segment(s, DepthNoise{}, 100, 0, test::DepthFunction{[&](int x, int y) {
+  sample_segment(s, DepthNoise{}, kPaper, test::DepthFunction{[&](int x, int y) {
                    asked.emplace_back(x, y);
                    return 2.0;
                  }},
@@ -47,7 +57,7 @@ TEST(LineSamples, EvenlySpacedFromEndToEnd) {
 
 TEST(LineSamples, NoDepthIsLeftOut) {
   LineSamples samples;
-  sample_segment(segment(0, 0, 50, 0), DepthNoise{}, 100, 0,
+  sample_segment(segment(0, 0, 50, 0), DepthNoise{}, kPaper,
                  test::DepthFunction{[](int x, int) { return x < 20 ? 0.0 : 1.0; }}, samples);
   EXPECT_EQ(samples.asked, 50);
   EXPECT_EQ(samples.count, 30);
@@ -58,9 +68,9 @@ TEST(LineSamples, ASlopeAcrossTheSegmentIsLessSure) {
   noise.registration_px = 2;
   LineSamples samples;
   const test::DepthFunction slope{[](int, int y) { return 2 + 0.01 * y; }};
-  sample_segment(segment(0, 0, 50, 0), noise, 100, 3, slope, samples);
+  sample_segment(segment(0, 0, 50, 0), noise, {100, 1, 3}, slope, samples);
   EXPECT_NEAR(samples.sample[10].sigma_d_m, std::sqrt(noise.sigma(2) * noise.sigma(2) + 0.02 * 0.02), 1e-6);
-  sample_segment(segment(0, 0, 0, 50), noise, 100, 3, slope, samples);
+  sample_segment(segment(0, 0, 0, 50), noise, {100, 1, 3}, slope, samples);
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
 }
 

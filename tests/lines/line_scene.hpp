@@ -62,7 +62,7 @@ struct LineScene {
 
   LineSamples exact_samples() const {
     LineSamples samples;
-    samples.asked = samples.count = sample_count(segment, kMaxLineSamples);
+    samples.asked = samples.count = sample_count(segment, {});
     for (int i = 0; i < samples.count; ++i) {
       const double t = segment.length_px() * (static_cast<double>(i) / (samples.count - 1) - 0.5);
       samples.sample[static_cast<std::size_t>(i)] = {t, depth_at(t), DepthNoise{}.sigma(depth_at(t))};

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <cstring>
 #include <limits>
 
@@ -63,6 +62,27 @@ TEST(Estimator, NothingToWorkWith) {
   const MotionEstimate estimate = bench.estimate(pair);
   EXPECT_EQ(estimate.status, StatusCode::kTooFewFeatures);
   expect_finite(estimate);
+}
+
+// A motion that is known already is refined, not searched for; and searched for where the matches deny it.
+TEST(Estimator, AKnownMotionIsRefinedWithoutDraws) {
+  Gaussian gaussian(17);
+  Bench bench;
+  const SimulatedPair pair = test::simulate(gaussian, 200, 40, 0.3);
+  const MotionEstimate searched = bench.estimate(pair);
+  ASSERT_EQ(searched.status, StatusCode::kOk);
+  const Se3 near = boxplus(pair.truth, Vector6::Constant(1e-3));
+  const MotionEstimate refined = bench.estimate(pair, {}, 1, {&near, true});
+  ASSERT_EQ(refined.status, StatusCode::kOk);
+  EXPECT_EQ(refined.ransac.draws, 0);
+  EXPECT_EQ(refined.ransac.hypotheses, 0);
+  EXPECT_LT(boxminus(refined.T_current_reference, searched.T_current_reference).norm(), 1e-4);
+
+  const Se3 wrong = boxplus(pair.truth, Vector6::Constant(0.5));
+  const MotionEstimate found = bench.estimate(pair, {}, 1, {&wrong, true});
+  ASSERT_EQ(found.status, StatusCode::kOk);
+  EXPECT_GT(found.ransac.draws, 0);
+  EXPECT_LT(boxminus(found.T_current_reference, searched.T_current_reference).norm(), 1e-4);
 }
 
 TEST(Estimator, SameSeedSameBits) {
@@ -204,7 +224,7 @@ TEST(Estimator, AFullArenaIsSaid) {
   std::vector<std::byte> nothing(64);
   Arena full{std::span<std::byte>(nothing)};
   (void)full.take<std::byte>("test", 64);
-  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, full).status,
+  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status,
             StatusCode::kOutOfMemory);
 }
 
@@ -289,10 +309,10 @@ TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
     bench.load(pair);
     PlaneSamples planes(samples, flags);
     const MotionEstimate without =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     bench.sets.push_back(&planes);
     const MotionEstimate with =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     ASSERT_EQ(without.status, StatusCode::kOk);
     ASSERT_EQ(with.status, StatusCode::kOk);
     EXPECT_GT(with.inliers[2], 280);

@@ -148,12 +148,12 @@ struct Bench {
     sets = {&points.back(), &lines.back()};
   }
   MotionEstimate estimate(const SimulatedPair& pair, const MotionConfig& config = {}, std::uint64_t seed = 1,
-                          const Se3* prediction = nullptr,
+                          const MotionStart& start = nullptr,
                           const LmOptions& lm = {.max_iterations = 20, .step_tolerance = 1e-7}) {
     points.clear();
     lines.clear();
     load(pair);
-    return estimate_motion(sets, MotionReferences{}, shared, config, lm, seed, prediction, arena);
+    return estimate_motion(sets, MotionReferences{}, config, lm, seed, start, arena);
   }
 
   std::vector<std::byte> memory;
@@ -161,7 +161,6 @@ struct Bench {
   std::vector<PointConstraints> points;
   std::vector<LineConstraints> lines;
   std::vector<ConstraintSet*> sets;
-  SharedErrors shared;
 };
 
 inline void flag_all(ConstraintSet& set) {

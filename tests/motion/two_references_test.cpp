@@ -56,8 +56,8 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
     EXPECT_LT(difference(x.H, y.H), 1e-6);
 
     // And so in the whole estimator, consensus included.
-    const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, {}, 5, nullptr, two.arena);
-    const MotionEstimate q = estimate_motion(sets_one, MotionReferences{}, {}, {}, {}, 5, nullptr, one.arena);
+    const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, 5, nullptr, two.arena);
+    const MotionEstimate q = estimate_motion(sets_one, MotionReferences{}, {}, {}, 5, nullptr, one.arena);
     ASSERT_EQ(p.status, StatusCode::kOk);
     ASSERT_EQ(q.status, StatusCode::kOk);
     EXPECT_EQ(p.inliers, q.inliers);

@@ -33,7 +33,7 @@ class DetectorFrame {
       for (int x = 0; x < kWidth; ++x) pyramid.base().at(x, y) = image.view().at(x, y);
     pyramid.build();
   }
-  DepthSampler depth() const { return {{depth_.data(), kWidth, kHeight, kWidth, 0.001}, table_, {}}; }
+  DepthSampler depth() const { return {{depth_.data(), kWidth, kHeight, kWidth, 0.001}, map_, {}}; }
   void clear_depth(int x, int y) { depth_[static_cast<std::size_t>(y * kWidth + x)] = 0; }
 
   Pyramid pyramid;
@@ -47,7 +47,7 @@ class DetectorFrame {
   }
   std::vector<std::uint16_t> depth_;
   std::vector<std::byte> memory_;
-  UndistortionTable table_;
+  UndistortionMap map_;
 };
 
 struct Detection {

@@ -27,14 +27,14 @@ struct Scene {
             static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
   }
   DepthSampler sampler() const {
-    return {{units.data(), kSceneWidth, kSceneHeight, kSceneWidth, kUnit}, table, {}};
+    return {{units.data(), kSceneWidth, kSceneHeight, kSceneWidth, kUnit}, map, {}};
   }
   double at(int x, int y) const {
     if (x < 0 || y < 0 || x >= kSceneWidth || y >= kSceneHeight) return 0;
     return units[static_cast<std::size_t>(y * kSceneWidth + x)] * kUnit;
   }
   std::vector<std::uint16_t> units;
-  UndistortionTable table;
+  UndistortionMap map;
 };
 
 Keypoint keypoint_at(double u, double v, int level) {

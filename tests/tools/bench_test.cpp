@@ -222,6 +222,22 @@ TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
   EXPECT_EQ(run_command(PLVO_STATISTICS_BINARY).exit_code, 2);
 }
 
+// The rows of instructions name functions of the core: one that is renamed would count nothing.
+TEST_F(Bench, StagesCountTimeAndInstructions) {
+  const fs::path results = *folder_ / "stages";
+  const CommandResult run =
+      run_command(kBench + " stages " + walk("constant") + " --instructions --out " + results.string());
+  if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(read_file(results / "stages.md"), run.out);
+  EXPECT_EQ(lines_of(run.out)[0], fs::path(walk("constant")).filename().string() + ": 2 frames, 0 lost");
+  for (const char* stage : {"image", "points", "lines", "matching", "motion"})
+    EXPECT_GE(rows_with(run.out, std::string("| ") + stage + " | ").size(), 3U) << run.out;
+  EXPECT_TRUE(rows_with(run.out, "| 0.00 | 0.0 |").empty()) << run.out;
+  EXPECT_EQ(rows_with(run.out, "| 100.0 |").size(), 1U) << run.out;
+  EXPECT_EQ(run_command(kBench + " stages --image moon --out " + results.string()).exit_code, 2);
+}
+
 TEST_F(Bench, SaysWhatIsWrong) {
   const std::string out_option = " --out " + (*folder_ / "bad").string();
   const CommandResult system =

@@ -6,9 +6,10 @@
 PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev"
 
-# The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages.
+# The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages, a counter of
+# instructions.
 PLVO_PACKAGES_TEST="googletest libgtest-dev python3 python3-numpy clang libclang-rt-dev clang-format clang-tidy
-  umockdev libumockdev-dev chromium fonts-liberation"
+  umockdev libumockdev-dev chromium fonts-liberation valgrind"
 
 # The boards: cross compilers, and processors that are emulated.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi

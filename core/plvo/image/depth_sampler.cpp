@@ -82,7 +82,7 @@ bool DepthSampler::locate(Vector2& pixel) const {
   if (!exposure_.depth_apart()) return true;
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
   // rotation's, the same for every depth.
-  constexpr int kGuesses = 3;
+  constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
   constexpr double kNearest_m = 0.1;
   const Pinhole& pinhole = exposure_.pinhole();
@@ -116,11 +116,13 @@ DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
   std::size_t count = 0;
   const int x0 = static_cast<int>(u + 0.5);
   const int y0 = static_cast<int>(v + 0.5);
+  if (!inside(x0, y0)) return {};  // at most half a pixel beside the image
   radius = std::min(radius, kMaxRadius);
-  for (int y = y0 - radius; y <= y0 + radius; ++y) {
-    for (int x = x0 - radius; x <= x0 + radius; ++x) {
-      const double z = at(x, y);
-      if (z > 0) window[count++] = {x - u, y - v, z};
+  const Window readings(*this, x0, y0);
+  for (int dy = -radius; dy <= radius; ++dy) {
+    for (int dx = -radius; dx <= radius; ++dx) {
+      const double z = readings.at(dx, dy);
+      if (z > 0) window[count++] = {x0 + dx - u, y0 + dy - v, z};
     }
   }
   const auto side = static_cast<std::size_t>(2 * radius + 1);

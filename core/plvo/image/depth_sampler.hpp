@@ -23,12 +23,12 @@ struct DepthSample {
 
 class DepthSampler {
  public:
-  DepthSampler(const DepthView& depth, const UndistortionTable& table, const DepthNoise& noise,
+  DepthSampler(const DepthView& depth, const UndistortionMap& map, const DepthNoise& noise,
                const Exposure& exposure = {})
-      : depth_(depth), table_(table), noise_(noise), exposure_(exposure) {}
+      : depth_(depth), map_(map), noise_(noise), exposure_(exposure) {}
 
   // The same images, with another idea of how the camera moved while they were exposed.
-  DepthSampler with(const Exposure& exposure) const { return {depth_, table_, noise_, exposure}; }
+  DepthSampler with(const Exposure& exposure) const { return {depth_, map_, noise_, exposure}; }
 
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
   // place itself unless depth is exposed apart.
@@ -45,10 +45,28 @@ class DepthSampler {
   double at(int x, int y) const {
     int raw_x = 0;
     int raw_y = 0;
-    if (x < 0 || y < 0 || x >= depth_.width || y >= depth_.height || !table_.raw_pixel(x, y, raw_x, raw_y))
-      return 0;
+    if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
+  // For many readings around (x, y), which lies in the image: at(dx, dy) is the depth at (x + dx, y + dy).
+  class Window {
+   public:
+    Window(const DepthSampler& sampler, int x, int y)
+        : sampler_(sampler), map_(sampler.map_, x, y), x_(x), y_(y) {}
+    double at(int dx, int dy) const {
+      int raw_x = 0;
+      int raw_y = 0;
+      if (!sampler_.inside(x_ + dx, y_ + dy) || !map_.raw_pixel(dx, dy, raw_x, raw_y)) return 0;
+      const DepthView& depth = sampler_.depth_;
+      return depth.data[raw_y * depth.stride + raw_x] * depth.metres_per_unit;
+    }
+
+   private:
+    const DepthSampler& sampler_;
+    UndistortionMap::Window map_;
+    int x_, y_;
+  };
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < depth_.width && y < depth_.height; }
 
   static constexpr int kMaxRadius = 3;
   // The depth at colour pixel (u, v), inside the image, from a plane fitted to the nearer surface in the
@@ -61,7 +79,7 @@ class DepthSampler {
   DepthSample sample_window(double u, double v, int radius) const;
 
   DepthView depth_;
-  const UndistortionTable& table_;
+  const UndistortionMap& map_;
   DepthNoise noise_;
   Exposure exposure_;
 };

@@ -34,16 +34,17 @@ void smooth_binomial7(GrayView in, ImageView<std::uint8_t> out, std::span<std::u
     const std::uint8_t* r5 = clamped_row(in, y + 2);
     const std::uint8_t* r6 = clamped_row(in, y + 3);
     for (int x = 0; x < width; ++x) {
-      sums[x] =
+      const auto sum =
           static_cast<std::uint16_t>(r0[x] + r6[x] + 6 * (r1[x] + r5[x]) + 15 * (r2[x] + r4[x]) + 20 * r3[x]);
+      sums[x] = static_cast<std::uint16_t>((sum + 8) >> 4);  // quarters of a grey level
     }
     repeat_borders(sums, width, 3);
     std::uint8_t* line = out.row(y);
     for (int x = 0; x < width; ++x) {
       const std::uint16_t* s = sums + x;
-      const std::uint32_t sum = s[-3] + s[3] + 6u * (static_cast<std::uint32_t>(s[-2]) + s[2]) +
-                                15u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 20u * s[0];
-      line[x] = static_cast<std::uint8_t>((sum + 2048) >> 12);
+      const auto sum = static_cast<std::uint16_t>(s[-3] + s[3] + 6 * (s[-2] + s[2]) + 15 * (s[-1] + s[1]) +
+                                                  20 * s[0] + 128);  // at most 64 · 1020 + 128
+      line[x] = static_cast<std::uint8_t>(sum >> 8);
     }
   }
 }

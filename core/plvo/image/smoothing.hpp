@@ -17,7 +17,8 @@ constexpr std::span<std::uint16_t> take_smoothing_row(Memory& memory, int width)
   return memory.template take<std::uint16_t>("smoothing row", static_cast<std::size_t>(width) + 16);
 }
 
-// out = in ∗ [1 6 15 20 15 6 1]/64 in both directions (σ = 1.22 px). Same size, not in place.
+// out = in ∗ [1 6 15 20 15 6 1]/64 in both directions (σ = 1.22 px), down first and rounded to quarters of a
+// grey level, so that 16 bits suffice. Same size, not in place.
 void smooth_binomial7(GrayView in, ImageView<std::uint8_t> out, std::span<std::uint16_t> row_sums);
 
 // Next pyramid level: in ∗ [1 4 6 4 1]/16 in both directions, every second pixel of every second row kept, so

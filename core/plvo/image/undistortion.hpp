@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Removes the lens (assumption a.1 of the paper) by a table made once: for every pixel of the ideal pinhole
-// image, where the camera imaged it, in 1/32 px. One table serves both images, since depth is registered to
-// colour. The grey image is resampled whole, bilinearly; depth must never be blended across an edge and is
-// read only where somebody asks, at the nearest pixel.
+// Removes the lens (assumption a.1 of the paper) by a map made once: for every pixel of the ideal pinhole
+// image, where the camera imaged it. The map is a polynomial for each cell of 8×8 pixels, in integers: of
+// second order along either side, off by less than 1/50 px for a Kinect's lens, in a fifth of the memory that
+// a table of all pixels takes. One map serves both images, since depth is registered to colour. The grey
+// image is resampled whole, bilinearly, at positions in 1/128 px; depth must never be blended across an edge
+// and is read only where somebody asks, at the nearest pixel.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +15,30 @@
 
 namespace plvo {
 
-class UndistortionTable {
+class UndistortionMap {
  public:
-  static constexpr int kFractionBits = 5;
-  static constexpr int kMaxSide = 2047;  // px: a coordinate is 11 + 5 bits
+  static constexpr int kMaxSide = 2047;  // px
+  static constexpr int kCell = 8;        // px
 
-  // Takes width × height × 4 bytes.
+  // Takes width × height × ¾ bytes.
   template <typename Memory>
   constexpr void carve(Memory& memory, int width, int height) {
-    entries_ = memory.template take<Entry>(
-        "undistortion table", static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    cells_ = memory.template take<Cell>("undistortion map", cells_along(width) * cells_along(height));
   }
 
-  // For a lens without distortion the table stays unused and the images pass through untouched.
+  // For a lens without distortion the map stays unused and the images pass through untouched.
   void init(const CameraModel& camera);
   bool active() const { return active_; }
 
-  // ideal(x, y) ← raw at the table's position; pixels that the camera did not see repeat its border.
+  // ideal(x, y) ← raw at the map's position; pixels that the camera did not see repeat its border. raw's
+  // stride is at most kMaxSide.
   void undistort(GrayView raw, ImageView<std::uint8_t> ideal) const;
+
+  // Where the map says that ideal pixel (x, y) was imaged.
+  Vector2 position_px(int x, int y) const {
+    const std::int64_t at = position(x, y);
+    return Vector2(x_of(at), y_of(at)) / (1 << kFractionBits);
+  }
 
   // The raw pixel nearest to where ideal pixel (x, y) was imaged; false when the camera did not see it.
   bool raw_pixel(int x, int y, int& raw_x, int& raw_y) const {
@@ -39,25 +47,83 @@ class UndistortionTable {
       raw_y = y;
       return true;
     }
-    const Entry& entry = entries_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                  static_cast<std::size_t>(x)];
-    constexpr int kHalf = 1 << (kFractionBits - 1);
-    raw_x = (entry.x + kHalf) >> kFractionBits;
-    raw_y = (entry.y + kHalf) >> kFractionBits;
-    return entry.x != 0 && entry.y != 0 && entry.x != last_x_ && entry.y != last_y_;
+    return nearest(position(x, y), raw_x, raw_y);
   }
 
- private:
-  struct Entry {
-    std::uint16_t x, y;  // 1/32 px
+  // The map around one pixel as a plane: where a small window, whose centre (x, y) lies in the image, was
+  // imaged. At 3 px from the centre it is off by less than 1/20 px for a Kinect's lens.
+  class Window {
+   public:
+    Window(const UndistortionMap& map, int x, int y) : map_(map), x_(x), y_(y) {
+      if (!map.active_) return;
+      const Cell& c = map.cell(x, y);
+      const int i = x % kCell;
+      const int j = y % kCell;
+      at_ = map.position(x, y);
+      right_ = c.right + j * c.twist + (kCell / 2 - i) * c.bend_right;
+      down_ = c.down + i * c.twist + (kCell / 2 - j) * c.bend_down;
+    }
+    // As raw_pixel(x + dx, y + dy, …).
+    bool raw_pixel(int dx, int dy, int& raw_x, int& raw_y) const {
+      if (!map_.active_) return map_.raw_pixel(x_ + dx, y_ + dy, raw_x, raw_y);
+      return map_.nearest(at_ + dx * right_ + dy * down_, raw_x, raw_y);
+    }
+
+   private:
+    const UndistortionMap& map_;
+    int x_, y_;
+    std::int64_t at_ = 0, right_ = 0, down_ = 0;
   };
-  // What the camera did not see is entered at the border nearest to it. A bilinear read touches the next
-  // pixel too: the last position is just before the last pixel.
-  std::span<Entry> entries_;
+
+ private:
+  static constexpr int kFractionBits = 16;
+
+  // Positions and their derivatives come in pairs, x · 2^32 + y, both in 2^-16 px: every step serves both. In
+  // a cell, i pixels to the right and j down from its first one:
+  //   at + i · right + j · down + i j · twist + B(i) · bend_right + B(j) · bend_down,   B(i) = i (8 − i) / 2.
+  struct Cell {
+    std::int64_t at, right, down, twist, bend_right, bend_down;
+  };
+  static constexpr std::int64_t bow(int i) { return i * (kCell - i) / 2; }  // integer: kCell is even
+  static constexpr std::int32_t x_of(std::int64_t pair) { return static_cast<std::int32_t>(pair >> 32); }
+  static constexpr std::int32_t y_of(std::int64_t pair) { return static_cast<std::int32_t>(pair); }
+
+  static constexpr std::size_t cells_along(int pixels) {
+    return static_cast<std::size_t>((pixels + kCell - 1) / kCell);
+  }
+  const Cell& cell(int x, int y) const {
+    return cells_[static_cast<std::size_t>(y / kCell) * columns_ + static_cast<std::size_t>(x / kCell)];
+  }
+  std::int64_t position(int x, int y) const {
+    const Cell& c = cell(x, y);
+    const int i = x % kCell;
+    const int j = y % kCell;
+    return c.at + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
+  }
+  bool nearest(std::int64_t at, int& raw_x, int& raw_y) const {
+    constexpr std::int32_t kHalf = 1 << (kFractionBits - 1);
+    const std::int32_t x = x_of(at);
+    const std::int32_t y = y_of(at);
+    raw_x = (x + kHalf) >> kFractionBits;
+    raw_y = (y + kHalf) >> kFractionBits;
+    return x > 0 && y > 0 && x < last_x_ && y < last_y_;
+  }
+  // Does the whole of the cell lie inside the raw image, and does it fit the 16-bit lanes?
+  bool is_plain(const Cell& c) const;
+
+  struct Row;
+  // Weights and offsets of eight pixels into the row, from its entry `first` on; what the offsets count from.
+  static std::ptrdiff_t locate_plain(const Cell& c, int j, std::ptrdiff_t stride, Row& row, int first);
+  std::ptrdiff_t locate_clamped(int x, int y, std::ptrdiff_t stride, Row& row, int first) const;
+  static void gather(const std::uint8_t* base, std::ptrdiff_t stride, Row& row, int first);
+
+  std::span<Cell> cells_;
+  std::size_t columns_ = 0;
   int width_ = 0;
   int height_ = 0;
-  std::uint16_t last_x_ = 0;
-  std::uint16_t last_y_ = 0;
+  // A bilinear read touches the next pixel too: the last position is just before the last pixel.
+  std::int32_t last_x_ = 0;
+  std::int32_t last_y_ = 0;
   bool active_ = false;
 };
 

@@ -24,7 +24,9 @@ namespace plvo {
 // The defaults are calibrated on rendered sequences with exact truth (tools/plvo/bench/line_match_precision);
 // paper() is Lu & Song's.
 struct Line3dConfig {
-  int max_samples = 100;            // of n_s
+  int max_samples = 100;  // of n_s
+  // From one sample to the next: depths nearer to each other have most of their error in common (below).
+  double sample_spacing_px = 3;
   double min_consensus = 0.6;       // τ: least n_con / n_s
   double min_agreement = 0.8;       // least n_con / samples with depth: else a second surface had a say
   double sigma_p_px = 0.5;          // σ_p of (3), of one sample
@@ -46,6 +48,7 @@ struct Line3dConfig {
 
   static Line3dConfig paper() {
     Line3dConfig config;
+    config.sample_spacing_px = 1;
     config.min_agreement = 0;
     config.side_reach_px = 0;
     config.depth_correlation_px = 1;
@@ -83,7 +86,8 @@ template <typename Depth>
 Line3dReport observe_line(const Segment& segment, const Depth& depth, const Pinhole& pinhole,
                           const DepthNoise& noise, const Line3dConfig& config, Line3d& line) {
   LineSamples samples;
-  sample_segment(segment, noise, config.max_samples, config.side_reach_px, depth, samples);
+  const SampleOptions options{config.max_samples, config.sample_spacing_px, config.side_reach_px};
+  sample_segment(segment, noise, options, depth, samples);
   return fit_line3d(segment, samples, pinhole, config, line);
 }
 

@@ -60,11 +60,12 @@ SurfaceReading nearer_surface(std::span<const float> profile, const DepthNoise& 
   return {static_cast<double>(best.depth_m), surfaces > 1 || best.nearest_offset > 0};
 }
 
-int sample_count(const Segment& segment, int max_samples) {
+int sample_count(const Segment& segment, const SampleOptions& options) {
   const double length = segment.length_px();
   if (!(length >= 2)) return 0;
-  const int most = std::clamp(max_samples, 2, kMaxLineSamples);
-  return length >= most ? most : static_cast<int>(length);
+  const double spaced = std::max(length / options.spacing_px, std::min<double>(length, kEnoughSamples));
+  const int most = std::clamp(options.max_samples, 2, kMaxLineSamples);
+  return spaced >= most ? most : static_cast<int>(spaced);
 }
 
 }  // namespace plvo

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box L2 of the paper: n_s = min(100, floor(length)) evenly spaced samples on a segment, each with its depth
-// and the SD of that depth, equation (2). Assumes ideal pinhole pixels.
+// Box L2 of the paper: evenly spaced samples on a segment, each with its depth and the SD of that depth,
+// equation (2); the paper's n_s = min(100, floor(length)), one a pixel, or fewer. Assumes ideal pinhole
+// pixels.
 //
 // Occluding edges. A segment on the border of an object lies between two surfaces, and a Kinect's depth image
 // is displaced against the colour by a pixel or more, so the reading under the segment may belong to either.
@@ -21,6 +22,16 @@ namespace plvo {
 
 inline constexpr int kMaxLineSamples = 100;
 inline constexpr int kMaxSideReach = 5;  // px
+
+// A segment so short that the spacing would leave fewer samples than this gets so many, but never more than
+// one a pixel.
+inline constexpr int kEnoughSamples = 20;
+
+struct SampleOptions {
+  int max_samples = kMaxLineSamples;
+  double spacing_px = 1;
+  int side_reach_px = 0;  // 0 … kMaxSideReach: how far the profile reaches to either side; 0: the paper
+};
 
 struct LineSample {
   double t_px = 0;       // along the segment, from its middle, towards b
@@ -67,21 +78,21 @@ inline int nearest_pixel(double x) {
   return truncated - (truncated > x + 0.5 ? 1 : 0);
 }
 
-// n_s of the paper; 0 for a segment shorter than 2 px.
-int sample_count(const Segment& segment, int max_samples);
+// n_s; 0 for a segment shorter than 2 px.
+int sample_count(const Segment& segment, const SampleOptions& options);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
 // depth, which DepthSampler is: locate(Vector2&) finds where the depth image shows what is seen at a pixel,
 // at(int x, int y) returns metres there, 0 where there is none or outside the image, and at_colour_time(v,
-// located, metres) carries a reading back to the moment of colour's row v. side_reach_px (0 … kMaxSideReach):
-// how far the profile reaches to either side; 0 is the paper, which looks only under the segment.
+// located, metres) carries a reading back to the moment of colour's row v.
 template <typename Depth>
-void sample_segment(const Segment& segment, const DepthNoise& noise, int max_samples, int side_reach_px,
+void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {
+  const int side_reach_px = options.side_reach_px;
   out.count = 0;
   out.mixed = 0;
-  out.asked = sample_count(segment, max_samples);
+  out.asked = sample_count(segment, options);
   if (out.asked == 0) return;
   const double length = segment.length_px();
   const Vector2 along = segment.direction();

@@ -44,6 +44,16 @@ class Cholesky {
     return x;
   }
 
+  // The same in place, for N numbers of a type that doubles multiply: Pair solves for two at once.
+  template <typename T>
+  void solve_lower(T (&x)[N]) const {
+    for (int i = 0; i < N; ++i) {
+      T sum = x[i];
+      for (int k = 0; k < i; ++k) sum -= L_(i, k) * x[k];
+      x[i] = sum * reciprocal_[i];
+    }
+  }
+
   // x with A x = b.
   Vector<N> solve(const Vector<N>& b) const {
     Vector<N> x = solve_lower(b);

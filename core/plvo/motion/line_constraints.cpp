@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/pair.hpp"
 
 namespace plvo {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kMinLengthSigmas = 4;
 // Gauss–Newton steps of one landmark per linearisation, and the step (m) below which the next would be in
 // vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
-constexpr double kLandmarkTolerance = 1e-5;
+constexpr double kLandmarkTolerance = 1e-4;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
@@ -59,14 +60,20 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   const Vector3 b = G.transpose().lazyProduct(line.b - q);
   offsets.e << a.x(), a.y(), b.x(), b.y();
   offsets.lambda << a.z(), b.z();
-  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted.
-  const Matrix<3, 2> U = G.block<3, 2>(0, 0);
+  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted, both of an end at once.
+  const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
   for (int j = 0; j < 2; ++j) {
-    const Matrix<6, 2> right = line.Sigma.block<6, 3>(0, 3 * j).lazyProduct(U);
+    Pair right[6];
+    for (int r = 0; r < 6; ++r)
+      right[r] =
+          line.Sigma(r, 3 * j) * U[0] + line.Sigma(r, 3 * j + 1) * U[1] + line.Sigma(r, 3 * j + 2) * U[2];
     for (int i = 0; i < 2; ++i) {
-      const Matrix<3, 2> block = right.block<3, 2>(3 * i, 0);
-      offsets.C.block<2, 2>(2 * i, 2 * j) = U.transpose().lazyProduct(block);
-      offsets.C_le.block<1, 2>(i, 2 * j) = G.col(2).transpose().lazyProduct(block);
+      const Pair* block = right + 3 * i;
+      for (int k = 0; k < 3; ++k) {
+        const Pair row = G(0, k) * block[0] + G(1, k) * block[1] + G(2, k) * block[2];
+        for (int c = 0; c < 2; ++c)
+          (k < 2 ? offsets.C(2 * i + k, 2 * j + c) : offsets.C_le(i, 2 * j + c)) = row[c];
+      }
     }
   }
   return offsets;
@@ -96,14 +103,20 @@ struct Interpolation {
   }
   // N C Nᵀ
   Matrix4 sandwich(const Matrix4& C) const {
-    Matrix4 NC;
-    for (int i = 0; i < 2; ++i)
-      for (int k = 0; k < 2; ++k)
-        for (int c = 0; c < 4; ++c) NC(2 * i + k, c) = n[i][0] * C(k, c) + n[i][1] * C(2 + k, c);
+    Pair NC[2][4];  // two rows each
+    for (int c = 0; c < 4; ++c) {
+      const Pair first = {C(0, c), C(1, c)};
+      const Pair second = {C(2, c), C(3, c)};
+      for (int i = 0; i < 2; ++i) NC[i][c] = n[i][0] * first + n[i][1] * second;
+    }
     Matrix4 result;
-    for (int r = 0; r < 4; ++r)
+    for (int r = 0; r < 2; ++r)
       for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 2; ++k) result(r, 2 * i + k) = n[i][0] * NC(r, k) + n[i][1] * NC(r, 2 + k);
+        for (int k = 0; k < 2; ++k) {
+          const Pair rows = n[i][0] * NC[r][k] + n[i][1] * NC[r][2 + k];
+          result(2 * r, 2 * i + k) = rows[0];
+          result(2 * r + 1, 2 * i + k) = rows[1];
+        }
     return result;
   }
 };
@@ -166,6 +179,29 @@ LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const
 
 LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
   return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
+}
+
+// Columns of the motion and of the shared errors, and one of nothing to make the number even.
+constexpr int kPairs = (JointInformation::kSize + 1) / 2;
+using Jacobian = Matrix<4, 2 * kPairs>;
+
+// H += weight · Jᵀ W⁻¹ J, two columns at a time; of its lower triangle at least.
+void add_information(const Cholesky<4>& W, const Jacobian& J, int pairs, double weight,
+                     Pair (&H)[2 * kPairs][kPairs]) {
+  Pair whitened[4][kPairs];
+  for (int pair = 0; pair < pairs; ++pair) {
+    Pair column[4];
+    for (int k = 0; k < 4; ++k) column[k] = Pair{J(k, 2 * pair), J(k, 2 * pair + 1)};
+    W.solve_lower(column);
+    for (int k = 0; k < 4; ++k) whitened[k][pair] = column[k];
+  }
+  for (int r = 0; r < 2 * pairs; ++r) {
+    double row[4];
+    for (int k = 0; k < 4; ++k) row[k] = weight * whitened[k][r / 2][r % 2];
+    for (int pair = 0; 2 * pair <= r; ++pair)
+      H[r][pair] += row[0] * whitened[0][pair] + row[1] * whitened[1][pair] + row[2] * whitened[2][pair] +
+                    row[3] * whitened[3][pair];
+  }
 }
 
 }  // namespace
@@ -260,7 +296,9 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
   constexpr int kSize = JointInformation::kSize;
   const int size = shared.any() ? kSize : 6;
   double cost = 0;
-  JointInformation lower;  // H: lower triangle
+  const int pairs = shared.any() ? kPairs : 3;
+  Pair H_sum[2 * kPairs][kPairs] = {};  // two columns each; the lower triangle
+  Vector<kSize> g_sum = Vector<kSize>::Zero();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
     Landmark landmark = landmarks_[i];
@@ -284,7 +322,7 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
     cost += 0.5 * kernel(at.c.dot(at.w), weight);
     // −∂c/∂(ξ, β), one row per end and direction u across: [uᵀ, (S × u)ᵀ, uᵀ F], S the end's place on the
     // line less t.
-    Matrix<4, kSize> J;
+    Jacobian J = Jacobian::Zero();
     for (int end = 0; end < 2; ++end) {
       const Vector3 S = q + at.ends[end] * at.G_current.col(2);
       Matrix<3, SharedErrors::kCount> F = Matrix<3, SharedErrors::kCount>::Zero();
@@ -296,16 +334,12 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
         J.block<1, 3>(2 * end + k, 3) = S.cross(u).transpose();
       }
     }
-    Matrix<4, kSize> whitened;
-    for (int column = 0; column < size; ++column) whitened.col(column) = at.W.solve_lower(J.col(column));
-    for (int r = 0; r < size; ++r) {
-      lower.g[r] -= weight * J.col(r).dot(at.w);
-      for (int c = 0; c <= r; ++c) lower.H(r, c) += weight * whitened.col(r).dot(whitened.col(c));
-    }
+    for (int r = 0; r < size; ++r) g_sum[r] -= weight * J.col(r).dot(at.w);
+    add_information(at.W, J, pairs, weight, H_sum);
   }
   for (int r = 0; r < size; ++r)
-    for (int c = 0; c < size; ++c) sum.H(r, c) += r >= c ? lower.H(r, c) : lower.H(c, r);
-  sum.g += lower.g;
+    for (int c = 0; c < size; ++c) sum.H(r, c) += r >= c ? H_sum[r][c / 2][c % 2] : H_sum[c][r / 2][r % 2];
+  sum.g += g_sum;
   return cost;
 }
 

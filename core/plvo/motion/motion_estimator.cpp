@@ -53,8 +53,8 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
 }
 
 StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                 SharedErrors shared, const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                 const Se3* prediction, std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
+                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                 const MotionStart& start, std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
       MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
   Ransac ransac(sets, references, config, kernels, scratch);
@@ -66,8 +66,15 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  if (!ransac.run(seed, prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  bool known = start.known && start.prediction != nullptr && start.prediction->is_finite();
+  if (known) {
+    T = *start.prediction;
+    (void)ransac.judge(T, kFirstRoundScale);
+    known = consensus();
+  }
+  if (!known && !ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
   LevenbergMarquardt<6> solver;
+  SharedErrors shared = start.shared;
   for (int round = 0; round <= kMaxRounds; ++round) {
     const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
     if (!consensus()) return StatusCode::kNoConsensus;
@@ -97,8 +104,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 }  // namespace
 
 MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const SharedErrors& shared, const MotionConfig& config, const LmOptions& lm,
-                               std::uint64_t seed, const Se3* prediction, Arena& arena) {
+                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                               const MotionStart& start, Arena& arena) {
   if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
   std::size_t matches = 0;
   for (ConstraintSet* set : sets) {
@@ -110,7 +117,7 @@ MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const Motio
   MotionEstimate estimate;
   estimate.status = scratch.size() < matches
                         ? StatusCode::kOutOfMemory
-                        : solve(sets, references, shared, config, lm, seed, prediction, scratch, estimate);
+                        : solve(sets, references, config, lm, seed, start, scratch, estimate);
   if (estimate.status == StatusCode::kOk) {
     count(sets, estimate);
     return estimate;

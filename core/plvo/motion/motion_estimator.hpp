@@ -42,17 +42,26 @@ struct MotionEstimate {
   static constexpr double kUnknownVariance = 1e6;
 };
 
+// What is thought of the motion before anything is estimated. known: an estimate already, from fewer or worse
+// matches: then no minimal sets are drawn unless the matches do not agree with it.
+struct MotionStart {
+  MotionStart(const Se3* T_predicted, bool is_known = false, const SharedErrors& shared_errors = {})
+      : prediction(T_predicted), known(is_known), shared(shared_errors) {}
+  const Se3* prediction;
+  bool known;
+  SharedErrors shared;  // of the current frame
+};
+
 // sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
-// references: the frames that they match with; the motion is that from the base, reference 0. shared: errors
-// of the current frame, from whose value the estimate starts. prediction, if any, is tried as hypothesis
-// number zero, and decides between rotations that perpendicular lines cannot tell apart. The same arguments
-// give the same bits. Scratch (take_ransac_scratch) is taken from the arena and given back; an arena without
-// room for it is kOutOfMemory. kDegenerate also when the information (scaled to a unit diagonal) has an
-// eigenvalue ratio below 1e-10, or when no minimal set of the consensus is free of degeneracy: all lines
-// parallel, all points on a line, …
+// references: the frames that they match with; the motion is that from the base, reference 0.
+// start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
+// perpendicular lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch)
+// is taken from the arena and given back; an arena without room for it is kOutOfMemory. kDegenerate also when
+// the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or when no minimal set of
+// the consensus is free of degeneracy: all lines parallel, all points on a line, …
 MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const SharedErrors& shared, const MotionConfig& config, const LmOptions& lm,
-                               std::uint64_t seed, const Se3* prediction, Arena& arena);
+                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                               const MotionStart& start, Arena& arena);
 
 // What points, lines (of each reference) and estimate_motion take between mark and rewind, for sizing.
 template <typename Memory>

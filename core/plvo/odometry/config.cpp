@@ -56,6 +56,8 @@ Status validate(const NoiseConfig& noise) {
 
 Status validate(const Line3dConfig& fit) {
   if (!within(fit.max_samples, 2, kMaxLineSamples)) return out_of_range("lines.fit.max_samples", "2 to 100");
+  if (!within(fit.sample_spacing_px, 1, 1000))
+    return out_of_range("lines.fit.sample_spacing_px", "1 to 1000");
   if (!within(fit.min_consensus, 0, 1)) return out_of_range("lines.fit.min_consensus", "0 to 1");
   if (!within(fit.min_agreement, 0, 1)) return out_of_range("lines.fit.min_agreement", "0 to 1");
   if (!within(fit.sigma_p_px, 0.01, 20)) return out_of_range("lines.fit.sigma_p_px", "between 0.01 and 20");

@@ -15,19 +15,19 @@ namespace plvo {
 void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   camera_ = camera;
   config_ = config;
-  table_.init(camera);
+  map_.init(camera);
   pyramid_.init(camera.width, camera.height);
   segment_detector_[0] = SegmentDetector((camera.width + 1) / 2, (camera.height + 1) / 2);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
-  if (table_.active()) {
+  if (map_.active()) {
     const ScratchScope scope(scratch);
     const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
     const std::span<std::uint8_t> raw = scratch.take<std::uint8_t>("raw grey image", pixels);
     const ImageView<std::uint8_t> raw_view{raw.data(), camera_.width, camera_.height, camera_.width};
     to_gray(colour, raw_view);
-    table_.undistort(raw_view, pyramid_.base());
+    map_.undistort(raw_view, pyramid_.base());
   } else {
     to_gray(colour, pyramid_.base());
   }

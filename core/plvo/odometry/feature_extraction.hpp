@@ -24,7 +24,7 @@ class FeatureExtraction {
  public:
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
-    table_.carve(memory, limits.width, limits.height);
+    map_.carve(memory, limits.width, limits.height);
     pyramid_.carve(memory, limits.width, limits.height);
     segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
   }
@@ -54,7 +54,7 @@ class FeatureExtraction {
 
   // A sampler of the frame's own depth: as long as the frame's views are valid.
   DepthSampler depth_sampler(const RgbdFrame& frame) const {
-    return {frame.depth, table_, config_.depth_noise};
+    return {frame.depth, map_, config_.depth_noise};
   }
 
   // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Its points have
@@ -81,7 +81,7 @@ class FeatureExtraction {
 
   CameraModel camera_;
   Config config_;
-  UndistortionTable table_;
+  UndistortionMap map_;
   Pyramid pyramid_;
   std::span<SegmentDetector> segment_detector_;  // one
 };

@@ -45,8 +45,8 @@ SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const No
 }
 
 TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                                       const SharedErrors& shared, const Se3& T_predicted,
-                                       const LmOptions& lm, Arena& scratch, TrackResult& result) {
+                                       const MotionStart& start, const LmOptions& lm, Arena& scratch,
+                                       TrackResult& result) {
   const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
@@ -69,8 +69,8 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
   const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
 
   TrackedMotion tracked;
-  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, shared, config_.motion,
-                                   lm, config_.seed, &T_predicted, scratch);
+  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm,
+                                   config_.seed, start, scratch);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
@@ -80,7 +80,7 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
     tracked.shown =
         residual_scales(camera_.pinhole, points[last], lines[last],
                         motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
-    note_shared(shared, tracked.motion.shared, tracked.shown);
+    note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
   return tracked;
 }
@@ -105,9 +105,9 @@ TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentF
   }
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config_.points.registered;
-  TrackedMotion tracked = solve({&features, 1}, MotionReferences{},
-                                whole ? shared_errors(features.current, current.noise) : SharedErrors{},
-                                T_predicted, whole ? kFineSolve : kRoughSolve, scratch, result);
+  const SharedErrors shared = whole ? shared_errors(features.current, current.noise) : SharedErrors{};
+  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, {&T_predicted, false, shared},
+                                whole ? kFineSolve : kRoughSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
   return tracked;
@@ -139,8 +139,8 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
   TrackedMotion tracked =
-      solve(std::span(features).first(references.size()), poses, shared_errors(exposure, current.noise),
-            T_current_base, kFineSolve, scratch, result);
+      solve(std::span(features).first(references.size()), poses,
+            {&T_current_base, true, shared_errors(exposure, current.noise)}, kFineSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);

@@ -96,8 +96,7 @@ class ReferenceTracking {
 
  private:
   TrackedMotion solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                      const SharedErrors& shared, const Se3& T_predicted, const LmOptions& lm, Arena& scratch,
-                      TrackResult& result);
+                      const MotionStart& start, const LmOptions& lm, Arena& scratch, TrackResult& result);
   SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {

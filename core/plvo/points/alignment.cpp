@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
+#include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -48,12 +50,18 @@ struct Template {
 };
 constexpr double kUnit = 1.0 / 16;
 
+// A patch that is stretched or shrunk by more is no longer the same to look at.
 constexpr double kMostStretch = 3;
 
 // Eight bits of a grey level and the weights' seven are rounded to four bits after the first pass, and again
 // after the second.
-std::int16_t blend_across(const std::uint8_t* p, const Weights& w) {
-  return static_cast<std::int16_t>((p[0] * w[0] + p[1] * w[1] + p[2] * w[2] + p[3] * w[3] + 4) >> 3);
+// Eight pixels at once: no weighted sum passes 255 · 128.
+void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
+  Lanes tap[kTaps];
+  for (int i = 0; i < kTaps; ++i) load_bytes(p + i, tap[i]);
+  const Lanes blended =
+      (tap[0] * w[0] + tap[1] * w[1] + tap[2] * w[2] + tap[3] * w[3] + std::int16_t{4}) >> 3;
+  std::memcpy(out, &blended, sizeof blended);
 }
 std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
   return static_cast<std::int16_t>(
@@ -87,37 +95,47 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
   std::int32_t total = 0;
   for (const std::int16_t value : smoothed) total += value;
   const std::int32_t mean = total / (kSide * kSide);
-  std::array<std::int32_t, 9> sums{};
-  std::size_t i = 0;
+  constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
+  const auto load = [](const std::int16_t* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); };
+  const auto store = [](const Lanes& lanes, std::int16_t* to) { std::memcpy(to, &lanes, sizeof lanes); };
   for (std::size_t y = 0; y < kRows; ++y) {
     const std::int16_t* row = smoothed.data() + (y + 1) * kSide + 1;
-    for (int x = 0; x < kColumns; ++x, ++i) {
-      const std::int32_t on = (mask[y] >> x) & 1;
-      const std::int32_t gx = on * (row[x + 1] - row[x - 1]);
-      const std::int32_t gy = on * (row[x + kSide] - row[x - kSide]);
-      const std::int32_t value = on * (row[x] - mean);
-      t.gx[i] = static_cast<std::int16_t>(gx);
-      t.gy[i] = static_cast<std::int16_t>(gy);
-      t.value[i] = static_cast<std::int16_t>(value);
-      t.one[i] = static_cast<std::int16_t>(on);
-      t.pixels += on;
-      sums[0] += gx * gx;
-      sums[1] += gx * gy;
-      sums[2] += gx * value;
-      sums[3] += gx;
-      sums[4] += gy * gy;
-      sums[5] += gy * value;
-      sums[6] += gy;
-      sums[7] += value * value;
-      sums[8] += value;
-    }
+    Lanes here, left, right, above, below;
+    load(row, here);
+    load(row - 1, left);
+    load(row + 1, right);
+    load(row - kSide, above);
+    load(row + kSide, below);
+    const Lanes on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
+    const std::size_t first = y * kColumns;
+    store(on & (right - left), &t.gx[first]);
+    store(on & (below - above), &t.gy[first]);
+    store(on & (here - static_cast<std::int16_t>(mean)), &t.value[first]);
+    store(on & std::int16_t{1}, &t.one[first]);
   }
-  constexpr int kRow[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+  std::int32_t gx_gx = 0, gx_gy = 0, gx_value = 0, gy_gy = 0, gy_value = 0, value_value = 0;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    gx_gx += t.gx[k] * t.gx[k];
+    gx_gy += t.gx[k] * t.gy[k];
+    gx_value += t.gx[k] * t.value[k];
+    gy_gy += t.gy[k] * t.gy[k];
+    gy_value += t.gy[k] * t.value[k];
+    value_value += t.value[k] * t.value[k];
+  }
+  std::int32_t gx_one = 0, gy_one = 0, value_one = 0, one_one = 0;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    gx_one += t.gx[k] * t.one[k];
+    gy_one += t.gy[k] * t.one[k];
+    value_one += t.value[k] * t.one[k];
+    one_one += t.one[k] * t.one[k];
+  }
+  t.pixels = one_one;
+  const std::int32_t sums[4][4] = {{gx_gx, gx_gy, gx_value, gx_one},
+                                   {gx_gy, gy_gy, gy_value, gy_one},
+                                   {gx_value, gy_value, value_value, value_one},
+                                   {gx_one, gy_one, value_one, one_one}};
   for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) {
-      const double unit = (r < 3 ? kUnit : 1) * (c < 3 ? kUnit : 1);
-      t.normal(r, c) = unit * (r + c == 6 ? t.pixels : sums[static_cast<std::size_t>(kRow[r][c])]);
-    }
+    for (int c = 0; c < 4; ++c) t.normal(r, c) = (r < 3 ? kUnit : 1) * (c < 3 ? kUnit : 1) * sums[r][c];
   return t;
 }
 
@@ -138,9 +156,8 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
   constexpr int kBlendedRows = kRows + kTaps - 1;
   std::array<std::int16_t, kColumns * kBlendedRows> blended;
   for (int r = 0; r < kBlendedRows; ++r) {
-    const std::uint8_t* p = first + r * image.stride;
-    for (int c = 0; c < kColumns; ++c, ++p)
-      blended[static_cast<std::size_t>(r * kColumns + c)] = blend_across(p, across);
+    static_assert(kColumns * sizeof(std::int16_t) == sizeof(Lanes));
+    blend_across(first + r * image.stride, across, &blended[static_cast<std::size_t>(r * kColumns)]);
   }
   Window values;
   for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
@@ -185,7 +202,9 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
     const std::uint8_t* p =
         image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
     std::array<std::int16_t, kTaps> column;
-    for (std::size_t r = 0; r < kTaps; ++r, p += image.stride) column[r] = blend_across(p, across);
+    for (std::size_t r = 0; r < kTaps; ++r, p += image.stride)
+      column[r] = static_cast<std::int16_t>(
+          (p[0] * across[0] + p[1] * across[1] + p[2] * across[2] + p[3] * across[3] + 4) >> 3);
     values[k] = blend_down(column.data(), 1, down);
   }
   return values;
@@ -216,7 +235,7 @@ Moments correlate(const Template& t, const Window& values) {
 }  // namespace
 
 bool PatchWarp::is_identity() const {
-  constexpr double kNegligible_px = 0.05;
+  constexpr double kNegligible_px = 0.1;
   return (W - Matrix2::Identity()).cwiseAbs().maxCoeff() * kWindowReach < kNegligible_px;
 }
 
@@ -225,7 +244,6 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
   Alignment result;
   const bool warped = !warp.is_identity();
   const Matrix2 W = warped ? warp.W : Matrix2(Matrix2::Identity());
-  // A patch so stretched, or so shrunk, is no longer the same to look at.
   if (!(W.cwiseAbs().maxCoeff() < kMostStretch &&
         W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0) > 1 / (kMostStretch * kMostStretch)))
     return result;

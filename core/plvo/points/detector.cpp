@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "plvo/base/heap_sort.hpp"
+#include "plvo/base/lanes.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/points/fast.hpp"
 
@@ -58,6 +60,15 @@ class Tile {
   }
 
   std::uint8_t score(int x, int y) const { return *at(x, y); }
+
+  // Does any of the eight pixels from x on pass at this threshold, at most 127? Most do not.
+  bool any_of_eight(int x, int y, int threshold) const {
+    constexpr std::uint64_t kOnes = 0x0101010101010101;
+    std::uint64_t scores = 0;
+    std::memcpy(&scores, at(x, y), sizeof scores);
+    // A byte above the threshold sets its own highest bit, or has it; what it carries on changes no answer.
+    return (((scores + kOnes * static_cast<std::uint64_t>(127 - threshold)) | scores) & (kOnes << 7)) != 0;
+  }
 
   // Of equal neighbours the first is the maximum: the suppression has a total order.
   bool is_maximum(int x, int y) const {
@@ -122,6 +133,9 @@ void search_cell(Search& search, Tile& tile, int level, const Cell& cell) {
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int x = cell.x0; x < cell.x1; ++x) {
+      // The tile is computed in whole vectors: eight from any pixel of the cell on are there.
+      while (x + 8 <= cell.x1 && !tile.any_of_eight(x, y, threshold)) x += 8;
+      if (x == cell.x1) break;
       if (tile.score(x, y) <= threshold || !tile.is_maximum(x, y)) continue;
       const auto strength = static_cast<float>(corner_strength(image, x, y));
       if (strength < static_cast<float>(search.options.min_strength)) continue;
@@ -191,23 +205,34 @@ std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t c
 
 double corner_strength(GrayView image, int x, int y) {
   constexpr int kRadius = 3;
+  constexpr int kSide = 2 * kRadius + 1;
+  // Rows of eight, the last of which counts nothing.
+  constexpr std::size_t kRow = 8;
+  constexpr Lanes kCounts = {-1, -1, -1, -1, -1, -1, -1, 0};
+  alignas(16) std::array<std::int16_t, kRow * kSide> gx;
+  alignas(16) std::array<std::int16_t, kRow * kSide> gy;
+  for (int r = 0; r < kSide; ++r) {
+    const std::uint8_t* row = image.data + (y + r - kRadius) * image.stride + x - kRadius;
+    Lanes left, right, above, below;
+    load_bytes(row - 1, left);
+    load_bytes(row + 1, right);
+    load_bytes(row - image.stride, above);
+    load_bytes(row + image.stride, below);
+    const Lanes across = (right - left) & kCounts;
+    const Lanes down = (below - above) & kCounts;
+    std::memcpy(&gx[static_cast<std::size_t>(r) * kRow], &across, sizeof across);
+    std::memcpy(&gy[static_cast<std::size_t>(r) * kRow], &down, sizeof down);
+  }
   std::int32_t xx = 0;
   std::int32_t xy = 0;
   std::int32_t yy = 0;
-  for (int dy = -kRadius; dy <= kRadius; ++dy) {
-    const std::uint8_t* row = image.data + (y + dy) * image.stride + x;
-    const std::uint8_t* above = row - image.stride;
-    const std::uint8_t* below = row + image.stride;
-    for (int dx = -kRadius; dx <= kRadius; ++dx) {
-      const std::int32_t gx = row[dx + 1] - row[dx - 1];
-      const std::int32_t gy = below[dx] - above[dx];
-      xx += gx * gx;
-      xy += gx * gy;
-      yy += gy * gy;
-    }
+  for (std::size_t i = 0; i < gx.size(); ++i) {
+    xx += gx[i] * gx[i];
+    xy += gx[i] * gy[i];
+    yy += gy[i] * gy[i];
   }
   // Central differences are twice the gradient, hence the 4.
-  constexpr double kScale = 1.0 / (4 * (2 * kRadius + 1) * (2 * kRadius + 1));
+  constexpr double kScale = 1.0 / (4 * kSide * kSide);
   const double half_sum = 0.5 * (xx + yy);
   const double half_difference = 0.5 * (xx - yy);
   return kScale * (half_sum - sqrt(half_difference * half_difference + static_cast<double>(xy) * xy));

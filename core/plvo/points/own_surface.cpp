@@ -27,13 +27,14 @@ WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, doub
   // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
   const int centre_x = static_cast<int>(centre.x() + 0.5);
   const int centre_y = static_cast<int>(centre.y() + 0.5);
+  if (!depth.inside(centre_x, centre_y)) return mask;
+  const DepthSampler::Window readings(depth, centre_x, centre_y);
+  const double most = kSameSurface * depth_m;
   std::array<Row, kSurfaceRows> own{};
   for (int r = 0; r < kSurfaceRows; ++r) {
-    const int y = centre_y + (r - kRim - kWindowReach) * step;
     for (int c = 0; c < kSurfaceColumns; ++c) {
-      const int x = centre_x + (c - kRim - kWindowReach) * step;
-      const double difference = depth.at(x, y) - depth_m;
-      const double most = kSameSurface * depth_m;
+      const double difference =
+          readings.at((c - kRim - kWindowReach) * step, (r - kRim - kWindowReach) * step) - depth_m;
       if (difference < most && difference > -most)
         own[static_cast<std::size_t>(r)] |= static_cast<Row>(1 << c);
     }

@@ -69,7 +69,7 @@ std::string text_of(const char* begin, std::size_t size) {
 }
 
 bool from_wire(const WireFormat& wire, bool colour, StreamFormat& f) {
-  constexpr int kSide = UndistortionTable::kMaxSide;
+  constexpr int kSide = UndistortionMap::kMaxSide;
   const bool known = colour ? wire.format <= 1 : wire.format == 2 || wire.format == 3;
   if (!known || wire.mirrored > 1 || wire.width < 1 || wire.width > kSide || wire.height < 1 ||
       wire.height > kSide || wire.fps < 0 || wire.fps > 10000)

@@ -15,7 +15,7 @@
 
 namespace plvo {
 
-inline constexpr int kMaxImageSide = UndistortionTable::kMaxSide;  // px: what the core can take
+inline constexpr int kMaxImageSide = UndistortionMap::kMaxSide;  // px: what the core can take
 inline constexpr std::uintmax_t kMaxImageBytes = 64u << 20;  // of a file; no image of that size has as many
 
 struct ImageInfo {

@@ -32,5 +32,7 @@ int finish(const Status& status);
 void add_sequences(CLI::App& app, int& exit_code);
 // lighting, walk
 void add_lighting(CLI::App& app, int& exit_code);
+// stages [DIR]
+void add_stages(CLI::App& app, int& exit_code);
 
 }  // namespace plvo::bench

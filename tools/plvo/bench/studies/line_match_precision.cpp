@@ -59,8 +59,8 @@ class FrontEnd {
   explicit FrontEnd(const plvo::CameraModel& camera)
       : camera_(camera), detector_((camera.width + 1) / 2, (camera.height + 1) / 2), memory_(32u << 20) {
     arena_ = plvo::Arena(memory_);
-    table_.carve(arena_, camera.width, camera.height);
-    table_.init(camera);
+    map_.carve(arena_, camera.width, camera.height);
+    map_.init(camera);
     raw_.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
     pyramid_.carve(arena_, camera.width, camera.height);
     pyramid_.init(camera.width, camera.height);
@@ -68,15 +68,15 @@ class FrontEnd {
 
   FrameLines look(const plvo::RgbdFrame& frame, const plvo::Line3dConfig& config) {
     const plvo::ImageView<std::uint8_t> raw{raw_.data(), camera_.width, camera_.height, camera_.width};
-    plvo::to_gray(frame.colour, table_.active() ? raw : pyramid_.base());
-    if (table_.active()) table_.undistort(raw, pyramid_.base());
+    plvo::to_gray(frame.colour, map_.active() ? raw : pyramid_.base());
+    if (map_.active()) map_.undistort(raw, pyramid_.base());
     pyramid_.build();
     std::vector<plvo::Segment> storage(kCapacity);
     plvo::FixedVector<plvo::Segment> segments{std::span<plvo::Segment>(storage)};
     const plvo::Status status = detector_.detect(pyramid_.level(1), 2, pyramid_.level(0), arena_, segments);
     if (!status.ok()) fmt::print(stderr, "{}\n", status.message());
     const plvo::DepthNoise noise;
-    const plvo::DepthSampler depth(frame.depth, table_, noise);
+    const plvo::DepthSampler depth(frame.depth, map_, noise);
     FrameLines result;
     for (const plvo::Segment& s : segments) {
       if (s.length_px() < 20) continue;
@@ -97,7 +97,7 @@ class FrontEnd {
   plvo::SegmentDetector detector_;
   std::vector<std::byte> memory_;
   plvo::Arena arena_;
-  plvo::UndistortionTable table_;
+  plvo::UndistortionMap map_;
   plvo::Pyramid pyramid_;
   std::vector<std::uint8_t> raw_;
 };

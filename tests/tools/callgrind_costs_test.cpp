@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A profile by hand, in the compressed form that callgrind writes: names once, then by number; calls with the
+// cost of what they called; lines relative to the one before.
+#include "plvo/bench/stages/callgrind_costs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace plvo::bench {
+namespace {
+
+TEST(CallgrindCosts, OfAFunctionAreItsOwnAndThoseOfWhatItCalls) {
+  std::istringstream file(
+      "version: 1\n"
+      "positions: line\n"
+      "events: Ir\n"
+      "summary: 999\n"
+      "\n"
+      "fl=(1) main.cpp\n"
+      "fn=(1) track(Frame const&)\n"
+      "10 5\n"
+      "+1 2\n"
+      "cfn=(2) detect(int) [clone .isra.0]\n"
+      "calls=3 20\n"
+      "* 100\n"
+      "cfi=(2) other.cpp\n"
+      "cfn=(3) describe(int)\n"
+      "calls=1 7\n"
+      "-2 40\n"
+      "\n"
+      "fn=(2)\n"
+      "20 60\n"
+      "cfn=(3)\n"
+      "calls=1 7\n"
+      "21 40\n"
+      "\n"
+      "fn=(3)\n"
+      "7 80\n");
+  const CallgrindCosts costs = read_callgrind(file);
+  EXPECT_EQ(costs.total, 5U + 2 + 60 + 80);
+  EXPECT_EQ(costs.of("track("), 147U);
+  EXPECT_EQ(costs.of("detect("), 100U);
+  EXPECT_EQ(costs.of("describe("), 80U);
+  EXPECT_EQ(costs.of("de"), 180U);
+  EXPECT_EQ(costs.of("absent("), 0U);
+}
+
+TEST(CallgrindCosts, OfAFileThatIsNoProfileAreNone) {
+  std::istringstream file("not a profile\n");
+  EXPECT_EQ(read_callgrind(file).total, 0U);
+}
+
+}  // namespace
+}  // namespace plvo::bench

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/bench/stages/callgrind_costs.hpp"
+
+#include <cctype>
+#include <sstream>
+
+namespace plvo::bench {
+namespace {
+
+bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
+
+// "(12) name" gives a name a number the first time; "(12)" means it from then on.
+std::string resolve(const std::string& text, std::map<std::string, std::string>& names) {
+  const std::size_t end = text.find(')');
+  if (text.empty() || text[0] != '(' || end == std::string::npos) return text;
+  const std::string number = text.substr(0, end + 1);
+  if (text.size() > end + 2) names[number] = text.substr(end + 2);
+  return names[number];
+}
+
+// The cost of "line cost …", where the line may be "*", "+3" or "-3".
+bool read_cost(const std::string& line, std::uint64_t& cost) {
+  const char first = line.empty() ? 'x' : line[0];
+  if (first != '*' && first != '+' && first != '-' && std::isdigit(static_cast<unsigned char>(first)) == 0)
+    return false;
+  std::istringstream words(line);
+  std::string position;
+  return static_cast<bool>(words >> position >> cost);
+}
+
+}  // namespace
+
+std::uint64_t CallgrindCosts::of(const std::string& name) const {
+  std::uint64_t sum = 0;
+  for (const auto& [function, cost] : inclusive)
+    if (starts_with(function, name.c_str())) sum += cost;
+  return sum;
+}
+
+CallgrindCosts read_callgrind(std::istream& file) {
+  CallgrindCosts costs;
+  std::map<std::string, std::string> names;
+  std::string function;
+  bool of_callee = false;  // the next line of costs is that of a call
+  for (std::string line; std::getline(file, line);) {
+    std::uint64_t cost = 0;
+    if (starts_with(line, "fn=")) {
+      function = resolve(line.substr(3), names);
+    } else if (starts_with(line, "cfn=")) {
+      (void)resolve(line.substr(4), names);
+    } else if (starts_with(line, "calls=")) {
+      of_callee = true;
+    } else if (read_cost(line, cost)) {
+      costs.inclusive[function] += cost;
+      if (!of_callee) costs.total += cost;
+      of_callee = false;
+    }
+  }
+  return costs;
+}
+
+}  // namespace plvo::bench

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one call during which callgrind collects. In a file of its own, so that no compiler inlines it.
+#pragma once
+
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo::bench {
+
+inline constexpr const char* kCountedFunction = "plvo::bench::track_counted(*";
+
+TrackResult track_counted(Odometry& odometry, const RgbdFrame& frame);
+
+}  // namespace plvo::bench
