@@ -62,6 +62,7 @@ if(TARGET plvo_shared)
 endif()
 
 if(TARGET plvo_python_odometry)
+  include(tools/cmake/python.cmake)
   set(PLVO_PYTHON_INSTALL_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix or absolute")
   set(python_source ${PROJECT_SOURCE_DIR}/platform/plvo/python/plvo)
   install(TARGETS plvo_python_odometry plvo_python_evaluation
