@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "plvo/image/frame.hpp"
 #include "plvo/math/types.hpp"
