@@ -14,11 +14,15 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL library development tools)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-if(CMAKE_LIBRARY_ARCHITECTURE MATCHES "^aarch64")
-  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
-elseif(CMAKE_LIBRARY_ARCHITECTURE MATCHES "^arm.*hf$")
-  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE armhf)
+if(CMAKE_CROSSCOMPILING)
+  # What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot.
+  set(needed "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libspng0, libturbojpeg0, libyaml-cpp0.7")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed}")
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
+    "${needed}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
+else()
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 endif()
 
 # plvo_package(<component> <name> <section> <text>)

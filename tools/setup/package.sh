@@ -21,8 +21,13 @@ case "${1:-}" in
     build=build/package-$architecture
     install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_CROSS lintian
     make_sysroot "$architecture" "$PWD/build/sysroot-$architecture"
-    if [ "$architecture" = arm64 ]; then preset=raspberry-pi-64; else preset=raspberry-pi-32; fi
-    cmake --preset $preset -B "$build" -DCMAKE_INSTALL_PREFIX=/usr -DPLVO_BUILD_TESTS=OFF >&2
+    if [ "$architecture" = arm64 ]; then
+      preset=raspberry-pi-64 triplet=aarch64-linux-gnu
+    else
+      preset=raspberry-pi-32 triplet=arm-linux-gnueabihf
+    fi
+    cmake --preset $preset -B "$build" -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/$triplet \
+      -DPLVO_OPENNI2_DRIVER_DIR=/usr/lib/$triplet/OpenNI2/Drivers -DPLVO_BUILD_TESTS=OFF >&2
     ;;
   *)
     say "usage: tools/setup/package.sh [arm64|armhf]"
@@ -38,6 +43,22 @@ debs=("$build"/*_"$architecture".deb)
 lintian --fail-on error "${debs[@]}" >&2
 say "lintian has no error to tell of"
 if [ $# -gt 0 ]; then
+  say "trying what is in them under emulation"
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  for deb in "${debs[@]}"; do dpkg-deb -x "$deb" "$work"; done
+  sysroot=$PWD/build/sysroot-$architecture
+  if [ "$architecture" = arm64 ]; then emulator=qemu-aarch64; else emulator=qemu-arm; fi
+  board=("$emulator" -L "$sysroot" -E "LD_LIBRARY_PATH=$work/usr/lib/$triplet")
+  "${board[@]}" "$work/usr/bin/plvo" --version >&2
+  "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
+  sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$work/track_folder.c"
+  "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
+    -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
+  "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
+  grep -v '^#' "$work/run.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
+  say "the command line and a C program with the shared library agree on $(wc -l <"$work/c.poses") poses"
   printf '%s\n' "${debs[@]}"
   exit
 fi
