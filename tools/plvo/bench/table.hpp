@@ -2,10 +2,14 @@
 // A table of text, written as Markdown, CSV or HTML.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace plvo::bench {
+
+inline constexpr const char* kIdentity = "never moves";
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // shown as –
 
 struct Table {
   std::vector<std::string> header;

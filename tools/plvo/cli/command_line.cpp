@@ -9,6 +9,7 @@
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/common/usage_error.hpp"
+#include "plvo/cli/common/version.hpp"
 #include "plvo/cli/documentation/help_format.hpp"
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_camera.hpp"
@@ -23,7 +24,7 @@ int run_command_line(int argc, const char* const* argv) {
   CLI::App app("RGB-D odometry from points and lines: frames in, a trajectory with covariances out.", "plvo");
   app.formatter(make_help_format());
   app.set_help_flag("-h,--help", "Print this help");
-  app.set_version_flag("--version", "plvo " PLVO_VERSION, "Print the version");
+  app.set_version_flag("--version", kVersionText, "Print the version, the commit and the build");
   app.footer(kExitCodeHelp);
   app.require_subcommand(1);
 

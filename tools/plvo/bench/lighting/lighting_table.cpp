@@ -8,8 +8,6 @@
 namespace plvo::bench {
 namespace {
 
-constexpr const char* kIdentity = "never moves";
-
 using Results = std::map<std::pair<std::string, std::string>, Result>;  // sequence, system
 using Value = double (*)(const Result&);
 

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+
+#include "plvo/bench/table.hpp"
 
 namespace plvo::bench {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct PaperRow {
   const char* name;

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <set>
 
@@ -15,6 +14,8 @@
 #include "plvo/bench/sequences/named_folder.hpp"
 #include "plvo/bench/sequences/paper_table2.hpp"
 #include "plvo/bench/systems/system.hpp"
+#include "plvo/bench/table.hpp"
+#include "plvo/replay/calibration.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -22,9 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPeer = "opencv-rgbd";  // whose time is the unit of the last column
-constexpr const char* kIdentity = "never moves";
 constexpr const char* kMean = "mean, weighted by frames";
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kExactDecimals = 6;
 
 // A row for a camera that never moves goes before each sequence's systems.

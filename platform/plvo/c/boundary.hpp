@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What crosses between C and the library: statuses, matrices, and structs whose sizes tell how their caller
+// was compiled.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "plvo/base/status.hpp"
+#include "plvo/c/plvo.h"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/math/se3.hpp"
+
+namespace plvo::c {
+
+// The size of each struct when it was first released: no caller has a smaller one.
+template <typename Struct>
+inline constexpr std::size_t kFirstSize = 0;
+template <typename Struct, typename Member>
+constexpr std::size_t end_of(std::size_t offset, Member Struct::*) {
+  return offset + sizeof(Member);
+}
+template <>
+inline constexpr std::size_t kFirstSize<plvo_camera> = end_of(offsetof(plvo_camera, depth_readout_s),
+                                                              &plvo_camera::depth_readout_s);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_limits> = end_of(offsetof(plvo_limits, segments),
+                                                              &plvo_limits::segments);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_config> = end_of(offsetof(plvo_config, stage_clock),
+                                                              &plvo_config::stage_clock);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_frame> = end_of(offsetof(plvo_frame, metres_per_unit),
+                                                             &plvo_frame::metres_per_unit);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_result> = end_of(offsetof(plvo_result, stage_ns),
+                                                              &plvo_result::stage_ns);
+
+// kInvalidArgument unless the struct is there and its size one that this library knows.
+template <typename Struct>
+Status check_struct(const Struct* given, const char* name) {
+  if (given == nullptr) return Status(StatusCode::kInvalidArgument, name).append(" is NULL");
+  if (given->struct_size < kFirstSize<Struct>)
+    return Status(StatusCode::kInvalidArgument, name)
+        .append(".struct_size is ")
+        .append(static_cast<std::int64_t>(given->struct_size))
+        .append("; set it to sizeof(plvo_")
+        .append(name)
+        .append(")");
+  if (given->struct_size > sizeof(Struct))
+    return Status(StatusCode::kInvalidArgument, name)
+        .append(".struct_size is ")
+        .append(static_cast<std::int64_t>(given->struct_size))
+        .append(" and this library knows ")
+        .append(static_cast<std::int64_t>(sizeof(Struct)))
+        .append(" bytes: the program was compiled for a newer plvo");
+  return {};
+}
+
+// Overwrites as much of `whole`, which holds the defaults, as the caller knows of.
+template <typename Struct>
+Status take_struct(const Struct* given, Struct& whole, const char* name) {
+  if (Status status = check_struct(given, name); !status.ok()) return status;
+  std::memcpy(&whole, given, given->struct_size);
+  return {};
+}
+
+// The caller's struct_size stays what it is. The size must have been checked.
+template <typename Struct>
+void give_struct(Struct whole, Struct* caller) {
+  whole.struct_size = caller->struct_size;
+  std::memcpy(caller, &whole, caller->struct_size);
+}
+
+inline plvo_status to_c(const Status& status) {
+  plvo_status result;
+  static_assert(sizeof result.message >= Status::kCapacity && sizeof result == 256);
+  std::memset(&result, 0, sizeof result);
+  result.code = static_cast<std::int32_t>(status.code());
+  std::memcpy(result.message, status.message(), std::strlen(status.message()));
+  return result;
+}
+
+CameraModel from_c(const plvo_camera& camera);
+plvo_camera to_c(const CameraModel& model);
+
+}  // namespace plvo::c

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// The odometry behind plvo.h. Its handle stands at the front of the caller's block; the core's memory
+// follows.
+#include <algorithm>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "plvo/c/boundary.hpp"
+#include "plvo/c/plvo.h"
+#include "plvo/odometry/odometry.hpp"
+
+struct plvo_odometry {
+  plvo::Odometry odometry;
+};
+static_assert(std::is_trivially_destructible_v<plvo_odometry>,
+              "nobody ends it: the caller takes the memory back");
+
+namespace {
+
+using plvo::Status;
+using plvo::StatusCode;
+using plvo::c::to_c;
+
+constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
+
+Status refuse(const char* why) { return {StatusCode::kInvalidArgument, why}; }
+
+plvo_limits to_c(const plvo::Limits& limits) {
+  return {sizeof(plvo_limits), limits.width, limits.height, limits.keypoints, limits.segments};
+}
+
+plvo_config default_config() {
+  plvo_config config;
+  std::memset(&config, 0, sizeof config);
+  config.struct_size = sizeof config;
+  config.seed = plvo::Config().seed;
+  return config;
+}
+
+Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
+  if (given == nullptr) return {};
+  plvo_limits whole = to_c(limits);
+  if (Status status = plvo::c::take_struct(given, whole, "limits"); !status.ok()) return status;
+  limits = {whole.width, whole.height, whole.keypoints, whole.segments};
+  return limits.validate();
+}
+
+Status take_config(const plvo_config* given, plvo::Config& config) {
+  if (given == nullptr) return {};
+  plvo_config whole = default_config();
+  if (Status status = plvo::c::take_struct(given, whole, "config"); !status.ok()) return status;
+  if (whole.preset != PLVO_PRESET_DEFAULT && whole.preset != PLVO_PRESET_PAPER)
+    return refuse("config: preset must be PLVO_PRESET_DEFAULT or PLVO_PRESET_PAPER");
+  if (whole.preset == PLVO_PRESET_PAPER) config = plvo::Config::paper();
+  switch (whole.features) {
+    case PLVO_FEATURES_OF_PRESET: break;
+    case PLVO_FEATURES_POINTS: config.features = plvo::Features::kPoints; break;
+    case PLVO_FEATURES_LINES: config.features = plvo::Features::kLines; break;
+    case PLVO_FEATURES_BOTH: config.features = plvo::Features::kBoth; break;
+    default: return refuse("config: features must be one of PLVO_FEATURES_…");
+  }
+  using plvo::ReferencePolicy;
+  switch (whole.reference) {
+    case PLVO_REFERENCE_OF_PRESET: break;
+    case PLVO_REFERENCE_PREVIOUS: config.references.policy = ReferencePolicy::kPreviousFrame; break;
+    case PLVO_REFERENCE_KEYFRAME: config.references.policy = ReferencePolicy::kKeyframe; break;
+    case PLVO_REFERENCE_BOTH: config.references.policy = ReferencePolicy::kKeyframeAndPrevious; break;
+    default: return refuse("config: reference must be one of PLVO_REFERENCE_…");
+  }
+  config.seed = whole.seed;
+  config.stage_clock = whole.stage_clock;
+  return {};
+}
+
+Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {
+  plvo_frame whole;
+  if (Status status = plvo::c::take_struct(given, whole, "frame"); !status.ok()) return status;
+  if (whole.colour_format < PLVO_PIXELS_GRAY8 || whole.colour_format > PLVO_PIXELS_BGR8)
+    return refuse("frame: colour_format must be one of PLVO_PIXELS_…");
+  constexpr std::int64_t kDepthBytes = sizeof(std::uint16_t);
+  if (whole.depth_stride_bytes % kDepthBytes != 0 ||
+      reinterpret_cast<std::uintptr_t>(whole.depth) % alignof(std::uint16_t) != 0)
+    return refuse("frame: depth and its stride must be multiples of 2 bytes");
+  constexpr std::int64_t kMostStride = std::int64_t{1} << 30;
+  if (std::max(whole.colour_stride_bytes, whole.depth_stride_bytes) > kMostStride)
+    return refuse("frame: a stride is longer than 2^30 bytes");
+  frame.stamp_ns = whole.stamp_ns;
+  frame.depth_stamp_ns = whole.depth_stamp_ns;
+  frame.colour = {whole.colour, whole.width, whole.height,
+                  static_cast<std::ptrdiff_t>(whole.colour_stride_bytes),
+                  static_cast<plvo::PixelFormat>(whole.colour_format)};
+  frame.depth = {whole.depth, whole.width, whole.height,
+                 static_cast<std::ptrdiff_t>(whole.depth_stride_bytes / kDepthBytes), whole.metres_per_unit};
+  return {};
+}
+
+void put(const plvo::Se3& T, double (&out)[12]) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out[4 * row + column] = T.R(row, column);
+    out[4 * row + 3] = T.t(row);
+  }
+}
+
+void put(const plvo::Matrix6& matrix, double (&out)[36]) {
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column) out[6 * row + column] = matrix(row, column);
+}
+
+plvo_counts to_c(const plvo::FeatureCounts& counts) {
+  return {counts.detected, counts.dropped, counts.with_depth, counts.matched, counts.inliers};
+}
+
+void give_result(const plvo::TrackResult& result, plvo_result* caller) {
+  plvo_result whole;
+  std::memset(&whole, 0, sizeof whole);
+  whole.state = static_cast<std::int32_t>(result.state);
+  whole.stamp_ns = result.stamp_ns;
+  whole.reference_stamp_ns = result.reference_stamp_ns;
+  put(result.T_world_camera, whole.T_world_camera);
+  put(result.pose_covariance, whole.pose_covariance);
+  put(result.T_camera_reference, whole.T_camera_reference);
+  put(result.motion_covariance, whole.motion_covariance);
+  whole.points = to_c(result.points);
+  whole.lines = to_c(result.lines);
+  whole.ransac_iterations = result.ransac_iterations;
+  whole.lm_iterations = result.lm_iterations;
+  whole.mean_brightness = result.mean_brightness;
+  static_assert(sizeof whole.stage_ns / sizeof *whole.stage_ns == plvo::kStageCount);
+  std::copy(result.stage_ns.begin(), result.stage_ns.end(), whole.stage_ns);
+  plvo::c::give_struct(whole, caller);
+}
+
+// How many there are; up to `capacity` of them are written.
+template <typename View, typename Element, typename Convert>
+std::size_t copy_views(std::span<const View> views, Element* out, std::size_t capacity, Convert convert) {
+  if (out != nullptr)
+    for (std::size_t i = 0; i < std::min(views.size(), capacity); ++i) out[i] = convert(views[i]);
+  return views.size();
+}
+
+plvo::FeatureView view_of(const plvo_odometry* odometry) {
+  return odometry == nullptr ? plvo::FeatureView() : odometry->odometry.features();
+}
+
+plvo_segment segment_to_c(const plvo::SegmentView& segment) {
+  return {{segment.a_u, segment.a_v}, {segment.b_u, segment.b_v}, segment.has_3d ? 1 : 0};
+}
+
+}  // namespace
+
+const char* plvo_version(void) { return PLVO_VERSION; }
+
+const char* plvo_status_name(std::int32_t code) {
+  // Every code of the library is one of the header's, in its order.
+  static_assert(static_cast<int>(StatusCode::kNotConverged) == PLVO_NOT_CONVERGED);
+  if (code < PLVO_OK || code > PLVO_NOT_CONVERGED) return "unknown";
+  return plvo::to_string(static_cast<StatusCode>(code));
+}
+
+const char* plvo_state_name(std::int32_t state) {
+  static_assert(static_cast<int>(plvo::TrackState::kTracking) == PLVO_TRACKING &&
+                static_cast<int>(plvo::TrackState::kLost) == PLVO_LOST);
+  if (state < PLVO_INITIALISING || state > PLVO_LOST) return "unknown";
+  return plvo::to_string(static_cast<plvo::TrackState>(state));
+}
+
+// A struct of another size is left alone but for its size, by which the next function refuses it.
+void plvo_camera_init(plvo_camera* camera, std::size_t size) {
+  camera->struct_size = static_cast<std::uint32_t>(size);
+  if (plvo::c::check_struct(camera, "camera").ok()) plvo::c::give_struct(to_c(plvo::CameraModel()), camera);
+}
+void plvo_limits_init(plvo_limits* limits, std::size_t size) {
+  limits->struct_size = static_cast<std::uint32_t>(size);
+  if (plvo::c::check_struct(limits, "limits").ok()) plvo::c::give_struct(to_c(plvo::Limits()), limits);
+}
+void plvo_config_init(plvo_config* config, std::size_t size) {
+  config->struct_size = static_cast<std::uint32_t>(size);
+  if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
+}
+
+void plvo_quaternion(const double T[12], double xyzw[4]) {
+  plvo::Matrix3 R;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) R(row, column) = T[4 * row + column];
+  const plvo::Quaternion q = plvo::to_quaternion(R);
+  const double values[4] = {q.x, q.y, q.z, q.w};
+  std::memcpy(xyzw, values, sizeof values);
+}
+
+std::size_t plvo_required_bytes(const plvo_limits* limits) {
+  plvo::Limits known;
+  if (!take_limits(limits, known).ok()) return 0;
+  return plvo::required_bytes(known) + kHandleBytes + plvo::kArenaAlignment;
+}
+
+plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera, const plvo_config* config,
+                      const plvo_limits* limits, plvo_odometry** odometry) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: nowhere to put the new one"));
+  *odometry = nullptr;
+  if (memory == nullptr) return to_c(refuse("memory is NULL"));
+  plvo::Limits known_limits;
+  if (Status status = take_limits(limits, known_limits); !status.ok()) return to_c(status);
+  plvo::Config known_config;
+  if (Status status = take_config(config, known_config); !status.ok()) return to_c(status);
+  plvo_camera known_camera = to_c(plvo::CameraModel());
+  if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
+  const std::size_t needed = plvo_required_bytes(limits);
+  if (bytes < needed)
+    return to_c(Status(StatusCode::kOutOfMemory, "init needs a block of ")
+                    .append(static_cast<std::int64_t>(needed))
+                    .append(" bytes for these limits, got ")
+                    .append(static_cast<std::int64_t>(bytes)));
+
+  const std::size_t beside = reinterpret_cast<std::uintptr_t>(memory) % plvo::kArenaAlignment;
+  const std::size_t start = beside == 0 ? 0 : plvo::kArenaAlignment - beside;
+  std::byte* block = static_cast<std::byte*>(memory) + start;
+  auto* handle = new (block) plvo_odometry;
+  const std::span<std::byte> rest(block + kHandleBytes, bytes - start - kHandleBytes);
+  const Status status =
+      handle->odometry.init(rest, plvo::c::from_c(known_camera), known_config, known_limits);
+  if (status.ok()) *odometry = handle;
+  return to_c(status);
+}
+
+plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (Status status = plvo::c::check_struct(result, "result"); !status.ok()) return to_c(status);
+  // A frame that cannot be read is tracked as one without images: refused, and the pose is the last one.
+  plvo::RgbdFrame view;
+  const Status unreadable = take_frame(frame, view);
+  const plvo::TrackResult tracked = odometry->odometry.track(unreadable.ok() ? view : plvo::RgbdFrame());
+  give_result(tracked, result);
+  return to_c(unreadable.ok() ? tracked.status : unreadable);
+}
+
+std::size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, std::size_t capacity) {
+  return copy_views(view_of(odometry).keypoints, keypoints, capacity, [](const plvo::Keypoint& keypoint) {
+    return plvo_pixel{keypoint.u, keypoint.v};
+  });
+}
+std::size_t plvo_segments(const plvo_odometry* odometry, plvo_segment* segments, std::size_t capacity) {
+  return copy_views(view_of(odometry).segments, segments, capacity, segment_to_c);
+}
+std::size_t plvo_reference_segments(const plvo_odometry* odometry, plvo_segment* segments,
+                                    std::size_t capacity) {
+  return copy_views(view_of(odometry).reference_segments, segments, capacity, segment_to_c);
+}
+std::size_t plvo_point_tracks(const plvo_odometry* odometry, plvo_point_track* tracks, std::size_t capacity) {
+  return copy_views(view_of(odometry).point_tracks, tracks, capacity, [](const plvo::PointTrackView& track) {
+    return plvo_point_track{{track.u_reference, track.v_reference}, {track.u, track.v}, track.inlier ? 1 : 0};
+  });
+}
+std::size_t plvo_line_tracks(const plvo_odometry* odometry, plvo_line_track* tracks, std::size_t capacity) {
+  return copy_views(view_of(odometry).line_tracks, tracks, capacity, [](const plvo::LineTrackView& track) {
+    return plvo_line_track{track.reference, track.current, track.inlier ? 1 : 0};
+  });
+}
+
+const std::uint8_t* plvo_image(const plvo_odometry* odometry, std::int64_t* stride_bytes) {
+  const plvo::GrayView image = view_of(odometry).image;
+  if (stride_bytes != nullptr) *stride_bytes = image.stride;
+  return image.data;
+}

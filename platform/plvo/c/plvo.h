@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The front door for C, and for every language that calls C: frames in, poses with covariances out. C99.
+ *
+ *   plvo_limits limits;
+ *   plvo_limits_init(&limits, sizeof limits);
+ *   size_t bytes = plvo_required_bytes(&limits);
+ *   void* memory = malloc(bytes);  // or a static array: the library takes no memory of its own
+ *   plvo_odometry* odometry = NULL;
+ *   plvo_status status = plvo_init(memory, bytes, &camera, NULL, &limits, &odometry);
+ *   plvo_result result = {sizeof result};
+ *   status = plvo_track(odometry, &frame, &result);
+ *
+ * Sizes: the first member of a struct is struct_size, its size as the caller was compiled. A library that is
+ * newer than the caller takes the defaults for what it lacks; one that is older refuses the struct and says
+ * so. Units: metres, radians, nanoseconds, pixels. The camera looks along z, x is right and y down. Threads:
+ * an odometry is used by one thread at a time; several odometries do not know each other. No function
+ * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. */
+#ifndef PLVO_C_PLVO_H
+#define PLVO_C_PLVO_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define PLVO_API __attribute__((visibility("default")))
+#else
+#define PLVO_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of the library, as MAJOR.MINOR.PATCH. */
+PLVO_API const char* plvo_version(void);
+
+enum {
+  PLVO_OK = 0,
+  PLVO_INVALID_ARGUMENT,
+  PLVO_OUT_OF_MEMORY, /* the block is too small; the message says how many bytes are needed */
+  PLVO_NOT_FOUND,
+  PLVO_PERMISSION,
+  PLVO_BUSY,
+  PLVO_DAMAGED, /* this item is lost; the next one may be good */
+  PLVO_END_OF_STREAM,
+  PLVO_TIMEOUT,
+  PLVO_UNPLUGGED,
+  PLVO_UNSUPPORTED,
+  PLVO_IO,
+  PLVO_TOO_FEW_FEATURES,
+  PLVO_NO_CONSENSUS,
+  PLVO_DEGENERATE,
+  PLVO_NOT_CONVERGED
+};
+
+/* What went wrong and, in words a user can act on, what to do. The message of PLVO_OK is empty. */
+typedef struct plvo_status {
+  int32_t code;
+  char message[252];
+} plvo_status;
+
+/* "ok", "invalid_argument", …; "unknown" for a number that is no code. Never NULL. */
+PLVO_API const char* plvo_status_name(int32_t code);
+
+/* A pinhole and a Brown-Conrady lens, k1 k2 p1 p2 k3 in OpenCV's and ROS's order (plumb_bob). */
+typedef struct plvo_camera {
+  uint32_t struct_size;
+  int32_t width, height;
+  int32_t depth_timing_known; /* 0: the depth's stamps are not looked at */
+  double fx, fy, cx, cy;
+  double distortion[5];
+  double readout_s;       /* rolling shutter: from the first row's exposure to the last's; 0: all at once */
+  double depth_delay_s;   /* the depth's middle row is exposed so long after the depth's stamp */
+  double depth_readout_s; /* as readout_s, of the depth image */
+} plvo_camera;
+
+/* Capacities. They decide the memory; what does not fit is dropped by a stated rule and counted. */
+typedef struct plvo_limits {
+  uint32_t struct_size;
+  int32_t width, height;       /* the largest image */
+  int32_t keypoints, segments; /* per frame */
+} plvo_limits;
+
+enum { PLVO_PRESET_DEFAULT = 0, PLVO_PRESET_PAPER = 1 };
+/* 0 leaves it to the preset. */
+enum { PLVO_FEATURES_OF_PRESET = 0, PLVO_FEATURES_POINTS, PLVO_FEATURES_LINES, PLVO_FEATURES_BOTH };
+enum {
+  PLVO_REFERENCE_OF_PRESET = 0,
+  PLVO_REFERENCE_PREVIOUS, /* the frame before */
+  PLVO_REFERENCE_KEYFRAME,
+  PLVO_REFERENCE_BOTH
+};
+
+typedef struct plvo_config {
+  uint32_t struct_size;
+  int32_t preset;    /* PLVO_PRESET_… */
+  int32_t features;  /* PLVO_FEATURES_… */
+  int32_t reference; /* PLVO_REFERENCE_… */
+  uint64_t seed;     /* of the random generator */
+  /* For plvo_result.stage_ns: a monotonic clock in nanoseconds, or NULL. */
+  int64_t (*stage_clock)(void);
+} plvo_config;
+
+/* Each sets struct_size and the defaults. `size` is sizeof of the struct. */
+PLVO_API void plvo_camera_init(plvo_camera* camera, size_t size);
+PLVO_API void plvo_limits_init(plvo_limits* limits, size_t size);
+PLVO_API void plvo_config_init(plvo_config* config, size_t size);
+
+enum { PLVO_PIXELS_GRAY8 = 0, PLVO_PIXELS_RGB8, PLVO_PIXELS_BGR8 };
+
+/* The images stay the caller's; they are read while plvo_track runs, and not afterwards. Both have the
+ * camera's size, and depth is registered to colour: 0 is no depth. */
+typedef struct plvo_frame {
+  uint32_t struct_size;
+  int32_t width, height;
+  int32_t colour_format;  /* PLVO_PIXELS_… */
+  int64_t stamp_ns;       /* of the colour image; strictly increasing */
+  int64_t depth_stamp_ns; /* equal to stamp_ns where the camera does not say */
+  const uint8_t* colour;
+  const uint16_t* depth;
+  int64_t colour_stride_bytes, depth_stride_bytes; /* from one row to the next */
+  double metres_per_unit;                          /* of the depth: 0.001 for millimetres */
+} plvo_frame;
+
+enum { PLVO_INITIALISING = 0, PLVO_TRACKING, PLVO_LOST };
+/* "initialising", "tracking", "lost"; "unknown" for another number. Never NULL. */
+PLVO_API const char* plvo_state_name(int32_t state);
+
+enum { PLVO_STAGE_IMAGE = 0, PLVO_STAGE_POINTS, PLVO_STAGE_LINES, PLVO_STAGE_MATCHING, PLVO_STAGE_MOTION };
+
+typedef struct plvo_counts {
+  int32_t detected;   /* in this frame, before the selection */
+  int32_t dropped;    /* beyond the capacity */
+  int32_t with_depth; /* lifted to 3D */
+  int32_t matched;    /* to the reference */
+  int32_t inliers;    /* of the motion */
+} plvo_counts;
+
+/* Matrices are row-major: T is the 3×4 matrix [R t]; a covariance is 6×6, position before orientation. */
+typedef struct plvo_result {
+  uint32_t struct_size;
+  int32_t state; /* PLVO_INITIALISING: the frame defines the world, or the first usable one is waited for */
+  int64_t stamp_ns, reference_stamp_ns;
+  /* Camera to world; the world is the camera of the first frame. While lost, the last good pose. The
+   * covariance is that of the position and of the orientation in the axes of the world. */
+  double T_world_camera[12];
+  double pose_covariance[36];
+  /* The motion from the reference to this frame. */
+  double T_camera_reference[12];
+  double motion_covariance[36];
+  plvo_counts points, lines;
+  int32_t ransac_iterations, lm_iterations;
+  double mean_brightness; /* 0 … 255 */
+  int64_t stage_ns[5];    /* PLVO_STAGE_…; zero without plvo_config.stage_clock */
+} plvo_result;
+
+/* The unit quaternion x y z w (Hamilton, w >= 0) of the rotation in a 3×4 matrix. */
+PLVO_API void plvo_quaternion(const double T[12], double xyzw[4]);
+
+typedef struct plvo_odometry plvo_odometry;
+
+/* Bytes of the block that plvo_init needs, wherever it starts; 0 for limits that it would refuse. NULL: the
+ * defaults, 640×480. */
+PLVO_API size_t plvo_required_bytes(const plvo_limits* limits);
+
+/* Checks everything once and makes an odometry inside `memory`; it needs no end, only the memory back. NULL
+ * for `config` or `limits`: the defaults. On failure *odometry is NULL. */
+PLVO_API plvo_status plvo_init(void* memory, size_t bytes, const plvo_camera* camera, const plvo_config* config,
+                               const plvo_limits* limits, plvo_odometry** odometry);
+
+/* One frame. The status says why there is no new pose (result->state is then not PLVO_TRACKING); the next
+ * good frame goes on. A frame of the wrong size, without images, or not later than the one before is refused
+ * with PLVO_INVALID_ARGUMENT and changes nothing. */
+PLVO_API plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
+
+/* For drawing: what the last frame was made of, in pixels of the undistorted image. Each function writes up
+ * to `capacity` elements and returns how many there are; with capacity 0 it only counts. */
+typedef struct plvo_pixel {
+  float u, v;
+} plvo_pixel;
+typedef struct plvo_segment {
+  plvo_pixel a, b;
+  int32_t has_3d;
+} plvo_segment;
+typedef struct plvo_point_track {
+  plvo_pixel reference, current;
+  int32_t inlier;
+} plvo_point_track;
+typedef struct plvo_line_track {
+  uint32_t reference, current; /* indices into the reference's segments and the frame's */
+  int32_t inlier;
+} plvo_line_track;
+
+PLVO_API size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, size_t capacity);
+PLVO_API size_t plvo_segments(const plvo_odometry* odometry, plvo_segment* segments, size_t capacity);
+PLVO_API size_t plvo_reference_segments(const plvo_odometry* odometry, plvo_segment* segments, size_t capacity);
+PLVO_API size_t plvo_point_tracks(const plvo_odometry* odometry, plvo_point_track* tracks, size_t capacity);
+PLVO_API size_t plvo_line_tracks(const plvo_odometry* odometry, plvo_line_track* tracks, size_t capacity);
+
+/* The undistorted grey image: its first pixel, or NULL before the first frame; valid until the next
+ * plvo_track. Width and height are the camera's. */
+PLVO_API const uint8_t* plvo_image(const plvo_odometry* odometry, int64_t* stride_bytes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

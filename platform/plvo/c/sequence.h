@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Recorded sequences and calibrations for C: a TUM folder as a camera. Unlike the odometry, these read files and
+ * take memory from the heap. C99. */
+#ifndef PLVO_C_SEQUENCE_H
+#define PLVO_C_SEQUENCE_H
+
+#include "plvo/c/plvo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A calibration by name (tum-fr1, tum-fr2, tum-fr3, kinect-v1-default) or from a file of any form that plvo
+ * reads. camera->struct_size must be set (plvo_camera_init). A file that names no image size leaves width and
+ * height as they are. metres_per_unit, of the depth, may be NULL. */
+PLVO_API plvo_status plvo_camera_builtin(const char* name, plvo_camera* camera, double* metres_per_unit);
+PLVO_API plvo_status plvo_camera_read(const char* file, plvo_camera* camera, double* metres_per_unit);
+
+typedef struct plvo_sequence plvo_sequence;
+
+/* Opens a folder with rgb.txt and depth.txt. `calibration`: a file, or a name as above, or NULL: the
+ * calibration.txt, calibration.yaml or camera.yaml in the folder, or the TUM camera that the folder's name
+ * speaks of. On failure *sequence is NULL. What is opened is closed by plvo_sequence_close. */
+PLVO_API plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo_sequence** sequence);
+
+/* The camera that the frames obey, and how many pairs of images there are. */
+PLVO_API plvo_status plvo_sequence_camera(const plvo_sequence* sequence, plvo_camera* camera);
+PLVO_API size_t plvo_sequence_frame_count(const plvo_sequence* sequence);
+
+/* The next frame; its images are valid until the next call. PLVO_DAMAGED: this pair cannot be decoded (the
+ * message says why), the next call goes on after it. PLVO_END_OF_STREAM: nothing more will come. */
+PLVO_API plvo_status plvo_sequence_next(plvo_sequence* sequence, plvo_frame* frame);
+
+/* NULL is allowed. */
+PLVO_API void plvo_sequence_close(plvo_sequence* sequence);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recorded sequences behind sequence.h. The room of replay uses the heap and may throw where it ends; what it
+// throws becomes a status here.
+#include "plvo/c/sequence.h"
+
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "plvo/c/boundary.hpp"
+#include "plvo/replay/sequence_calibration.hpp"
+#include "plvo/replay/tum_camera.hpp"
+
+struct plvo_sequence {
+  plvo::TumCamera camera;
+};
+
+namespace {
+
+namespace fs = std::filesystem;
+using plvo::Status;
+using plvo::StatusCode;
+using plvo::c::to_c;
+
+template <typename Work>
+plvo_status guarded(Work work) noexcept {
+  try {
+    return to_c(work());
+  } catch (const std::bad_alloc&) {
+    return to_c(Status(StatusCode::kOutOfMemory, "the machine has no memory left"));
+  } catch (const std::exception& error) {
+    return to_c(Status(StatusCode::kIo, error.what()));
+  }
+}
+
+Status missing(const char* what) { return Status(StatusCode::kInvalidArgument, what).append(" is NULL"); }
+
+Status give_calibration(const plvo::Calibration& calibration, plvo_camera* camera, double* metres_per_unit) {
+  plvo_camera whole = to_c(calibration.camera);
+  if (!calibration.has_size) {
+    whole.width = camera->width;
+    whole.height = camera->height;
+  }
+  plvo::c::give_struct(whole, camera);
+  if (metres_per_unit != nullptr) *metres_per_unit = 1 / calibration.depth_units_per_metre;
+  return {};
+}
+
+Status find_calibration(const fs::path& folder, const char* named, plvo::Calibration& calibration) {
+  std::string guess;
+  if (named == nullptr) return plvo::sequence_calibration(folder, calibration, guess);
+  for (std::string_view name : plvo::builtin_calibration_names())
+    if (name == named) return plvo::builtin_calibration(name, calibration);
+  return plvo::read_calibration(named, calibration);
+}
+
+}  // namespace
+
+plvo_status plvo_camera_builtin(const char* name, plvo_camera* camera, double* metres_per_unit) {
+  return guarded([&]() -> Status {
+    if (name == nullptr) return missing("name");
+    if (Status status = plvo::c::check_struct(camera, "camera"); !status.ok()) return status;
+    plvo::Calibration calibration;
+    if (Status status = plvo::builtin_calibration(name, calibration); !status.ok()) return status;
+    return give_calibration(calibration, camera, metres_per_unit);
+  });
+}
+
+plvo_status plvo_camera_read(const char* file, plvo_camera* camera, double* metres_per_unit) {
+  return guarded([&]() -> Status {
+    if (file == nullptr) return missing("file");
+    if (Status status = plvo::c::check_struct(camera, "camera"); !status.ok()) return status;
+    plvo::Calibration calibration;
+    if (Status status = plvo::read_calibration(file, calibration); !status.ok()) return status;
+    return give_calibration(calibration, camera, metres_per_unit);
+  });
+}
+
+plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo_sequence** sequence) {
+  return guarded([&]() -> Status {
+    if (sequence == nullptr) return missing("sequence");
+    *sequence = nullptr;
+    if (folder == nullptr) return missing("folder");
+    // A folder that is no sequence should be told so before a missing calibration is.
+    plvo::TumIndex index;
+    if (Status status = plvo::read_tum_index(folder, {}, plvo::TumOptions().tolerance_ns, index);
+        !status.ok())
+      return status;
+    plvo::Calibration found;
+    if (Status status = find_calibration(folder, calibration, found); !status.ok()) return status;
+    auto opened = std::make_unique<plvo_sequence>();
+    if (Status status = opened->camera.open(folder, found); !status.ok()) return status;
+    *sequence = opened.release();
+    return {};
+  });
+}
+
+plvo_status plvo_sequence_camera(const plvo_sequence* sequence, plvo_camera* camera) {
+  if (sequence == nullptr) return to_c(missing("sequence"));
+  const Status status = plvo::c::check_struct(camera, "camera");
+  if (status.ok()) plvo::c::give_struct(to_c(sequence->camera.model()), camera);
+  return to_c(status);
+}
+
+std::size_t plvo_sequence_frame_count(const plvo_sequence* sequence) {
+  return sequence == nullptr ? 0 : sequence->camera.frame_count();
+}
+
+plvo_status plvo_sequence_next(plvo_sequence* sequence, plvo_frame* frame) {
+  return guarded([&]() -> Status {
+    if (sequence == nullptr) return missing("sequence");
+    if (Status status = plvo::c::check_struct(frame, "frame"); !status.ok()) return status;
+    plvo::RgbdFrame view;
+    const Status status = sequence->camera.next(view);
+    plvo_frame whole;
+    std::memset(&whole, 0, sizeof whole);
+    whole.stamp_ns = view.stamp_ns;
+    whole.depth_stamp_ns = view.depth_stamp_ns;
+    whole.width = view.colour.width;
+    whole.height = view.colour.height;
+    whole.colour_format = static_cast<std::int32_t>(view.colour.format);
+    whole.colour = view.colour.data;
+    whole.colour_stride_bytes = view.colour.stride_bytes;
+    whole.depth = view.depth.data;
+    whole.depth_stride_bytes = view.depth.stride * static_cast<std::int64_t>(sizeof(std::uint16_t));
+    whole.metres_per_unit = view.depth.metres_per_unit;
+    plvo::c::give_struct(whole, frame);
+    return status;
+  });
+}
+
+void plvo_sequence_close(plvo_sequence* sequence) { delete sequence; }

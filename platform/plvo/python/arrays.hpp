@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// NumPy arrays as the library's views, and the library's memory as NumPy arrays; neither way copies.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plvo/image/frame.hpp"
+#include "plvo/math/types.hpp"
+
+namespace plvo::python {
+
+namespace py = pybind11;
+
+// A read-only array over memory that lives as long as `owner`.
+inline py::array view(const py::dtype& type, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+                      const void* data, py::handle owner) {
+  py::array array(type, std::move(shape), std::move(strides), data, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+template <int Rows, int Columns>
+py::array matrix_view(const Matrix<Rows, Columns>& matrix, py::handle owner) {
+  const py::ssize_t step = sizeof(double);
+  if constexpr (Columns == 1) return view(py::dtype::of<double>(), {Rows}, {step}, matrix.data(), owner);
+  return view(py::dtype::of<double>(), {Rows, Columns}, {step, step * Rows}, matrix.data(), owner);
+}
+
+// One row for each of `structs`: `columns` neighbouring members of a type, from `first` on; 0: an array
+// without columns.
+template <typename Member, typename Struct>
+py::array members_view(std::span<const Struct> structs, Member Struct::*first, py::ssize_t columns,
+                       py::handle owner) {
+  const auto rows = static_cast<py::ssize_t>(structs.size());
+  const void* data = structs.empty() ? nullptr : &(structs.data()->*first);
+  const py::ssize_t row_step = sizeof(Struct), step = sizeof(Member);
+  if (columns == 0) return view(py::dtype::of<Member>(), {rows}, {row_step}, data, owner);
+  return view(py::dtype::of<Member>(), {rows, columns}, {row_step, step}, data, owner);
+}
+
+inline void refuse_array(const std::string& name, const char* why) {
+  throw py::value_error(name + ": " + why);
+}
+
+// Checks that the pixels of a row lie side by side; rows may be any distance apart.
+inline void check_rows(const py::array& array, const std::string& name, py::ssize_t pixel_bytes) {
+  constexpr py::ssize_t kMostPixels = py::ssize_t{1} << 20;
+  if (array.shape(0) < 1 || array.shape(1) < 1 || array.shape(0) > kMostPixels ||
+      array.shape(1) > kMostPixels)
+    refuse_array(name, "an image has at least one pixel and at most 2^20 a side");
+  const bool packed = array.strides(1) == pixel_bytes && (array.ndim() == 2 || array.strides(2) == 1);
+  if (!packed || array.strides(0) < pixel_bytes * array.shape(1))
+    refuse_array(name, "the pixels of a row must lie side by side; pass numpy.ascontiguousarray(…)");
+}
+
+inline ColourView colour_view(const py::array& array, bool bgr) {
+  if (!array.dtype().equal(py::dtype::of<std::uint8_t>()))
+    throw py::type_error("colour: expected an array of uint8, got " + std::string(py::str(array.dtype())));
+  const bool grey = array.ndim() == 2;
+  if (!grey && !(array.ndim() == 3 && array.shape(2) == 3))
+    refuse_array("colour", "expected (height, width) or (height, width, 3)");
+  check_rows(array, "colour", grey ? 1 : 3);
+  return {static_cast<const std::uint8_t*>(array.data()), static_cast<int>(array.shape(1)),
+          static_cast<int>(array.shape(0)), array.strides(0),
+          grey ? PixelFormat::kGray8 : (bgr ? PixelFormat::kBgr8 : PixelFormat::kRgb8)};
+}
+
+inline DepthView depth_view(const py::array& array, double metres_per_unit) {
+  if (!array.dtype().equal(py::dtype::of<std::uint16_t>()))
+    throw py::type_error(
+        "depth: expected an array of uint16 (see depth_units_per_metre of the camera), got " +
+        std::string(py::str(array.dtype())));
+  if (array.ndim() != 2) refuse_array("depth", "expected (height, width)");
+  constexpr py::ssize_t kBytes = sizeof(std::uint16_t);
+  check_rows(array, "depth", kBytes);
+  if (array.strides(0) % kBytes != 0 || reinterpret_cast<std::uintptr_t>(array.data()) % kBytes != 0)
+    refuse_array("depth", "pixels must lie at even addresses; pass a copy");
+  return {static_cast<const std::uint16_t*>(array.data()), static_cast<int>(array.shape(1)),
+          static_cast<int>(array.shape(0)), array.strides(0) / kBytes, metres_per_unit};
+}
+
+}  // namespace plvo::python

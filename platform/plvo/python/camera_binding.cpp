@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras for Python: a Calibration, which is a camera model and the unit of depth.
+#include <string>
+
+#include "plvo/python/bindings.hpp"
+#include "plvo/replay/calibration.hpp"
+
+namespace plvo::python {
+
+using namespace py::literals;
+
+namespace {
+
+Calibration make_camera(int width, int height, double fx, double fy, double cx, double cy,
+                        const py::sequence& distortion, double depth_units_per_metre, double readout_s,
+                        const py::object& depth_delay_s, double depth_readout_s) {
+  Calibration camera;
+  camera.camera.width = width;
+  camera.camera.height = height;
+  camera.has_size = camera.depth_scale_given = camera.readout_given = true;
+  camera.camera.pinhole = {fx, fy, cx, cy};
+  if (distortion.size() != 0 && distortion.size() != 4 && distortion.size() != 5)
+    throw py::value_error("distortion: expected k1 k2 p1 p2 or k1 k2 p1 p2 k3 (plumb_bob)");
+  Distortion& lens = camera.camera.distortion;
+  double* const entries[] = {&lens.k1, &lens.k2, &lens.p1, &lens.p2, &lens.k3};
+  for (std::size_t i = 0; i < distortion.size(); ++i) *entries[i] = distortion[i].cast<double>();
+  camera.depth_units_per_metre = depth_units_per_metre;
+  camera.camera.readout_s = readout_s;
+  if (!depth_delay_s.is_none())
+    camera.camera.depth_timing = {true, depth_delay_s.cast<double>(), depth_readout_s};
+  throw_unless_ok(camera.validate(width, height));
+  return camera;
+}
+
+Calibration builtin_camera(const std::string& name) {
+  Calibration camera;
+  throw_unless_ok(builtin_calibration(name, camera));
+  return camera;
+}
+
+Calibration read_camera(const py::object& path) {
+  Calibration camera;
+  throw_unless_ok(read_calibration(path_text(path), camera));
+  return camera;
+}
+
+}  // namespace
+
+void bind_camera(py::module_& module) {
+  const CameraModel model;
+  py::class_<Calibration>(module, "Camera")
+      .def(py::init(&make_camera), "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a,
+           "distortion"_a = py::tuple(), "depth_units_per_metre"_a = 1000.0, "readout_s"_a = model.readout_s,
+           "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s)
+      .def_static("builtin", &builtin_camera, "name"_a)
+      .def_static("read", &read_camera, "path"_a)
+      .def_property_readonly("width", [](const Calibration& c) { return c.camera.width; })
+      .def_property_readonly("height", [](const Calibration& c) { return c.camera.height; })
+      .def_property_readonly("fx", [](const Calibration& c) { return c.camera.pinhole.fx; })
+      .def_property_readonly("fy", [](const Calibration& c) { return c.camera.pinhole.fy; })
+      .def_property_readonly("cx", [](const Calibration& c) { return c.camera.pinhole.cx; })
+      .def_property_readonly("cy", [](const Calibration& c) { return c.camera.pinhole.cy; })
+      .def_property_readonly("distortion",
+                             [](const Calibration& c) {
+                               const Distortion& lens = c.camera.distortion;
+                               return py::make_tuple(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+                             })
+      .def_property_readonly("readout_s", [](const Calibration& c) { return c.camera.readout_s; })
+      .def_readonly("depth_units_per_metre", &Calibration::depth_units_per_metre);
+}
+
+}  // namespace plvo::python

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Status that is not ok becomes the exception plvo.Error: its text is the library's, and its attribute
+// `code` the name of the code.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "plvo/base/status.hpp"
+
+namespace plvo::python {
+
+namespace py = pybind11;
+
+// In the module that has the type.
+inline void make_error_type(py::module_& module) {
+  PyObject* type = PyErr_NewExceptionWithDoc(
+      "plvo.Error", "What went wrong, and what to do; `code` names it.", PyExc_Exception, nullptr);
+  if (type == nullptr) throw py::error_already_set();
+  module.add_object("Error", py::reinterpret_steal<py::object>(type));
+}
+
+inline void throw_unless_ok(const Status& status) {
+  if (status.ok()) return;
+  const py::object type = py::module_::import("plvo._plvo").attr("Error");
+  const py::object error = type(status.message());
+  error.attr("code") = to_string(status.code());
+  PyErr_SetObject(type.ptr(), error.ptr());
+  throw py::error_already_set();
+}
+
+}  // namespace plvo::python

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo._plvo: cameras, recorded sequences and the odometry for Python. What a user sees is described in
+// plvo/__init__.pyi and docs/python.md.
+#include "plvo/python/bindings.hpp"
+
+PYBIND11_MODULE(_plvo, module) {
+  using namespace plvo::python;
+  module.attr("__version__") = PLVO_VERSION;
+  make_error_type(module);
+  bind_camera(module);
+  bind_config(module);
+  bind_result(module);
+  bind_odometry(module);
+  bind_sequence(module);
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The odometry for Python, in a block of its own; other threads run while it tracks.
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/python/arrays.hpp"
+#include "plvo/python/bindings.hpp"
+#include "plvo/replay/calibration.hpp"
+
+namespace plvo::python {
+
+using namespace py::literals;
+
+namespace {
+
+class Tracker {
+ public:
+  Tracker(const Calibration& camera, const Config& config, const std::optional<int>& keypoints,
+          const std::optional<int>& segments)
+      : metres_per_unit_(1.0 / camera.depth_units_per_metre) {
+    Limits limits;
+    limits.width = camera.camera.width;
+    limits.height = camera.camera.height;
+    limits.keypoints = keypoints.value_or(limits.keypoints);
+    limits.segments = segments.value_or(limits.segments);
+    throw_unless_ok(limits.validate());
+    memory_.resize(required_bytes(limits));
+    throw_unless_ok(odometry_.init(memory_, camera.camera, config, limits));
+  }
+
+  TrackResult track(const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
+                    const std::optional<std::int64_t>& depth_stamp_ns, bool bgr) {
+    const RgbdFrame frame{stamp_ns, depth_stamp_ns.value_or(stamp_ns), colour_view(colour, bgr),
+                          depth_view(depth, metres_per_unit_)};
+    if (busy_.test_and_set())
+      throw std::runtime_error(
+          "this Odometry is tracking a frame in another thread; give each thread its own");
+    TrackResult result;
+    {
+      const py::gil_scoped_release others_may_run;
+      result = odometry_.track(frame);
+    }
+    busy_.clear();
+    if (result.status.code() == StatusCode::kInvalidArgument) throw_unless_ok(result.status);
+    return result;
+  }
+
+  FeatureView features() {
+    if (busy_.test_and_set()) throw std::runtime_error("this Odometry is tracking a frame in another thread");
+    busy_.clear();
+    return odometry_.features();
+  }
+  std::size_t memory_bytes() const { return memory_.size(); }
+
+ private:
+  std::vector<std::byte> memory_;
+  Odometry odometry_;
+  double metres_per_unit_;
+  std::atomic_flag busy_;
+};
+
+py::object features_of(const py::object& self, const py::object& type) {
+  const FeatureView v = self.cast<Tracker&>().features();
+  const auto two_pixels = [&](std::span<const SegmentView> segments) {
+    return members_view(segments, &SegmentView::a_u, 4, self);
+  };
+  return type(view(py::dtype::of<std::uint8_t>(), {v.image.height, v.image.width}, {v.image.stride, 1},
+                   v.image.data, self),
+              members_view(v.keypoints, &Keypoint::u, 2, self), two_pixels(v.segments),
+              members_view(v.segments, &SegmentView::has_3d, 0, self), two_pixels(v.reference_segments),
+              members_view(v.point_tracks, &PointTrackView::u_reference, 4, self),
+              members_view(v.point_tracks, &PointTrackView::inlier, 0, self),
+              members_view(v.line_tracks, &LineTrackView::reference, 2, self),
+              members_view(v.line_tracks, &LineTrackView::inlier, 0, self));
+}
+
+}  // namespace
+
+void bind_odometry(py::module_& module) {
+  const py::object features = namedtuple(module, "Features",
+                                         "image keypoints segments segment_has_3d reference_segments "
+                                         "point_tracks point_inliers line_tracks line_inliers");
+  py::class_<Tracker>(module, "Odometry")
+      .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
+                       const py::object& segments) {
+             return std::make_unique<Tracker>(camera, config.is_none() ? Config() : config.cast<Config>(),
+                                              optional<int>(keypoints), optional<int>(segments));
+           }),
+           "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
+           "segments"_a = py::none())
+      .def(
+          "track",
+          [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
+             const py::object& depth_stamp_ns, bool bgr) {
+            return tracker.track(colour, depth, stamp_ns, optional<std::int64_t>(depth_stamp_ns), bgr);
+          },
+          "colour"_a, "depth"_a, "stamp_ns"_a, "depth_stamp_ns"_a = py::none(), py::kw_only(),
+          "bgr"_a = false)
+      .def("features", [features](const py::object& self) { return features_of(self, features); })
+      .def_property_readonly("memory_bytes", &Tracker::memory_bytes);
+}
+
+}  // namespace plvo::python

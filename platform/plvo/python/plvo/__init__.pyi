@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+from collections.abc import Iterable, Iterator, Sequence as _ListLike
+from os import PathLike
+from typing import Any, Literal, NamedTuple
+
+from numpy import bool_, float32, float64, uint8, uint16
+from numpy.typing import NDArray
+
+__version__: str
+
+_Path = str | bytes | PathLike[str] | PathLike[bytes]
+
+class Error(Exception):
+    """What went wrong, and what to do."""
+
+    code: str  # "not_found", "invalid_argument", …
+
+class Camera:
+    """A pinhole with a plumb_bob lens, and the unit of depth."""
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        distortion: _ListLike[float] = (),
+        depth_units_per_metre: float = 1000,
+        readout_s: float = 0,
+        depth_delay_s: float | None = None,
+        depth_readout_s: float = 0,
+    ) -> None: ...
+    @staticmethod
+    def builtin(name: str) -> Camera: ...
+    @staticmethod
+    def read(path: _Path) -> Camera: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def fx(self) -> float: ...
+    @property
+    def fy(self) -> float: ...
+    @property
+    def cx(self) -> float: ...
+    @property
+    def cy(self) -> float: ...
+    @property
+    def distortion(self) -> tuple[float, float, float, float, float]: ...
+    @property
+    def readout_s(self) -> float: ...
+    @property
+    def depth_units_per_metre(self) -> float: ...
+
+class Config:
+    """How the odometry is set; None leaves an entry to the preset."""
+
+    def __init__(
+        self,
+        *,
+        preset: Literal["default", "paper"] = "default",
+        features: Literal["points", "lines", "both"] | None = None,
+        reference: Literal["previous", "keyframe", "both"] | None = None,
+        seed: int | None = None,
+    ) -> None: ...
+    @property
+    def seed(self) -> int: ...
+
+class Counts:
+    @property
+    def detected(self) -> int: ...
+    @property
+    def dropped(self) -> int: ...
+    @property
+    def with_depth(self) -> int: ...
+    @property
+    def matched(self) -> int: ...
+    @property
+    def inliers(self) -> int: ...
+
+class Result:
+    """What the odometry says about one frame. Arrays are views and cannot be written."""
+
+    @property
+    def state(self) -> Literal["initialising", "tracking", "lost"]: ...
+    @property
+    def has_pose(self) -> bool: ...
+    @property
+    def code(self) -> str: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def stamp_ns(self) -> int: ...
+    @property
+    def stamp(self) -> float: ...
+    @property
+    def reference_stamp_ns(self) -> int: ...
+    @property
+    def T_world_camera(self) -> NDArray[float64]: ...
+    @property
+    def T_camera_reference(self) -> NDArray[float64]: ...
+    @property
+    def position(self) -> NDArray[float64]: ...
+    @property
+    def quaternion(self) -> NDArray[float64]: ...
+    @property
+    def covariance(self) -> NDArray[float64]: ...
+    @property
+    def motion_covariance(self) -> NDArray[float64]: ...
+    @property
+    def points(self) -> Counts: ...
+    @property
+    def lines(self) -> Counts: ...
+    @property
+    def ransac_iterations(self) -> int: ...
+    @property
+    def lm_iterations(self) -> int: ...
+    @property
+    def mean_brightness(self) -> float: ...
+
+class Features(NamedTuple):
+    """What the last frame was made of, in pixels of the undistorted image."""
+
+    image: NDArray[uint8]
+    keypoints: NDArray[float32]  # u v
+    segments: NDArray[float32]  # u v u v
+    segment_has_3d: NDArray[bool_]
+    reference_segments: NDArray[float32]
+    point_tracks: NDArray[float32]  # u v in the reference, u v in the frame
+    point_inliers: NDArray[bool_]
+    line_tracks: NDArray[uint16]  # indices into reference_segments and segments
+    line_inliers: NDArray[bool_]
+
+class Odometry:
+    def __init__(
+        self, camera: Camera, config: Config | None = None, *, keypoints: int | None = None, segments: int | None = None
+    ) -> None: ...
+    def track(
+        self,
+        colour: NDArray[uint8],
+        depth: NDArray[uint16],
+        stamp_ns: int,
+        depth_stamp_ns: int | None = None,
+        *,
+        bgr: bool = False,
+    ) -> Result: ...
+    def features(self) -> Features: ...
+    @property
+    def memory_bytes(self) -> int: ...
+
+class Frame(NamedTuple):
+    colour: NDArray[uint8]
+    depth: NDArray[uint16]
+    stamp_ns: int
+    depth_stamp_ns: int
+
+class Sequence:
+    """A recorded folder, frame by frame, once."""
+
+    def __init__(self, folder: _Path, camera: Camera | _Path | None = None) -> None: ...
+    @property
+    def camera(self) -> Camera: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[Frame]: ...
+    def __next__(self) -> Frame: ...
+
+def run(folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None) -> Iterator[Result]: ...
+def evaluate(
+    truth: _Path,
+    estimate: _Path | Iterable[Result],
+    *,
+    sampling: Literal["interpolated", "nearest"] = "interpolated",
+    max_difference_s: float = 0.02,
+    offset_s: float = 0.0,
+    rpe_deltas: Iterable[str] = ("1f", "1s"),
+) -> dict[str, Any]: ...

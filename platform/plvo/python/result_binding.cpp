@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results for Python.
+#include <string>
+
+#include "plvo/host/trajectory_file.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/python/arrays.hpp"
+#include "plvo/python/bindings.hpp"
+
+namespace plvo::python {
+
+namespace {
+
+py::array matrix_4x4(const Se3& T) {
+  py::array_t<double> array({4, 4});
+  auto out = array.mutable_unchecked<2>();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      out(row, column) = row == 3 ? (column == 3 ? 1.0 : 0.0) : column == 3 ? T.t(row) : T.R(row, column);
+  return array;
+}
+
+py::array quaternion(const Se3& T) {
+  const Quaternion q = to_quaternion(T.R);
+  const double values[] = {q.x, q.y, q.z, q.w};
+  return py::array_t<double>(4, values);
+}
+
+std::string describe(const TrackResult& result) {
+  std::string text = std::string("<plvo.Result ") + to_string(result.state) + " at " +
+                     std::to_string(result.stamp_ns) + " ns";
+  if (!result.status.ok()) text += std::string(": ") + result.status.message();
+  return text + ">";
+}
+
+}  // namespace
+
+void bind_result(py::module_& module) {
+  py::class_<FeatureCounts>(module, "Counts")
+      .def_readonly("detected", &FeatureCounts::detected)
+      .def_readonly("dropped", &FeatureCounts::dropped)
+      .def_readonly("with_depth", &FeatureCounts::with_depth)
+      .def_readonly("matched", &FeatureCounts::matched)
+      .def_readonly("inliers", &FeatureCounts::inliers);
+
+  const auto covariance = [](Matrix6 TrackResult::*member) {
+    return py::cpp_function([member](const py::object& self) {
+      return matrix_view<6, 6>(self.cast<const TrackResult&>().*member, self);
+    });
+  };
+  py::class_<TrackResult>(module, "Result")
+      .def_property_readonly("state", [](const TrackResult& r) { return to_string(r.state); })
+      .def_property_readonly("has_pose", &has_pose)
+      .def_property_readonly("code", [](const TrackResult& r) { return to_string(r.status.code()); })
+      .def_property_readonly("message", [](const TrackResult& r) { return r.status.message(); })
+      .def_readonly("stamp_ns", &TrackResult::stamp_ns)
+      .def_property_readonly("stamp",
+                             [](const TrackResult& r) { return static_cast<double>(r.stamp_ns) * 1e-9; })
+      .def_readonly("reference_stamp_ns", &TrackResult::reference_stamp_ns)
+      .def_property_readonly("T_world_camera",
+                             [](const TrackResult& r) { return matrix_4x4(r.T_world_camera); })
+      .def_property_readonly("T_camera_reference",
+                             [](const TrackResult& r) { return matrix_4x4(r.T_camera_reference); })
+      .def_property_readonly("position",
+                             [](const py::object& self) {
+                               return matrix_view<3, 1>(self.cast<const TrackResult&>().T_world_camera.t,
+                                                        self);
+                             })
+      .def_property_readonly("quaternion", [](const TrackResult& r) { return quaternion(r.T_world_camera); })
+      .def_property_readonly("covariance", covariance(&TrackResult::pose_covariance))
+      .def_property_readonly("motion_covariance", covariance(&TrackResult::motion_covariance))
+      .def_readonly("points", &TrackResult::points)
+      .def_readonly("lines", &TrackResult::lines)
+      .def_readonly("ransac_iterations", &TrackResult::ransac_iterations)
+      .def_readonly("lm_iterations", &TrackResult::lm_iterations)
+      .def_readonly("mean_brightness", &TrackResult::mean_brightness)
+      .def("__repr__", &describe);
+}
+
+}  // namespace plvo::python

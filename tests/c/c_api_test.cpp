@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// The front door for C gives the bits of the C++ one, takes no memory, and answers nonsense with words.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "allocation_guard.hpp"
+#include "plvo/c/boundary.hpp"
+#include "plvo/c/plvo.h"
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr Limits kLimits = Limits::qvga();
+
+plvo_camera c_camera(const CameraModel& model) { return c::to_c(model); }
+plvo_limits c_limits() {
+  return {sizeof(plvo_limits), kLimits.width, kLimits.height, kLimits.keypoints, kLimits.segments};
+}
+plvo_frame c_frame(const RgbdFrame& frame) {
+  plvo_frame result = {};
+  result.struct_size = sizeof result;
+  result.width = frame.colour.width;
+  result.height = frame.colour.height;
+  result.colour_format = PLVO_PIXELS_RGB8;
+  result.stamp_ns = frame.stamp_ns;
+  result.depth_stamp_ns = frame.depth_stamp_ns;
+  result.colour = frame.colour.data;
+  result.depth = frame.depth.data;
+  result.colour_stride_bytes = frame.colour.stride_bytes;
+  result.depth_stride_bytes = 2 * frame.depth.stride;
+  result.metres_per_unit = frame.depth.metres_per_unit;
+  return result;
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+void expect_same(const Se3& T, const double (&c)[12]) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) EXPECT_TRUE(same_bits(T.R(row, column), c[4 * row + column]));
+    EXPECT_TRUE(same_bits(T.t(row), c[4 * row + 3]));
+  }
+}
+void expect_same(const Matrix6& matrix, const double (&c)[36]) {
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column)
+      EXPECT_TRUE(same_bits(matrix(row, column), c[6 * row + column]));
+}
+void expect_same(const FeatureCounts& counts, const plvo_counts& c) {
+  EXPECT_EQ(counts.detected, c.detected);
+  EXPECT_EQ(counts.dropped, c.dropped);
+  EXPECT_EQ(counts.with_depth, c.with_depth);
+  EXPECT_EQ(counts.matched, c.matched);
+  EXPECT_EQ(counts.inliers, c.inliers);
+}
+void expect_same(const TrackResult& result, const plvo_result& c) {
+  EXPECT_EQ(static_cast<int>(result.state), c.state);
+  EXPECT_EQ(result.stamp_ns, c.stamp_ns);
+  EXPECT_EQ(result.reference_stamp_ns, c.reference_stamp_ns);
+  expect_same(result.T_world_camera, c.T_world_camera);
+  expect_same(result.pose_covariance, c.pose_covariance);
+  expect_same(result.T_camera_reference, c.T_camera_reference);
+  expect_same(result.motion_covariance, c.motion_covariance);
+  expect_same(result.points, c.points);
+  expect_same(result.lines, c.lines);
+  EXPECT_EQ(result.ransac_iterations, c.ransac_iterations);
+  EXPECT_EQ(result.lm_iterations, c.lm_iterations);
+  EXPECT_TRUE(same_bits(result.mean_brightness, c.mean_brightness));
+}
+
+// Both doors with the same settings.
+struct Doors {
+  explicit Doors(const Config& config = {}, const plvo_config* c_config = nullptr, std::size_t offset = 0) {
+    const plvo_limits limits = c_limits();
+    memory.resize(required_bytes(kLimits));
+    c_memory.resize(plvo_required_bytes(&limits) + offset);
+    const plvo_camera camera = c_camera(sequence.camera());
+    const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+    EXPECT_TRUE(status.ok()) << status.message();
+    const plvo_status c_status = plvo_init(c_memory.data() + offset, c_memory.size() - offset, &camera,
+                                           c_config, &limits, &c_odometry);
+    EXPECT_EQ(c_status.code, PLVO_OK) << c_status.message;
+  }
+  ProceduralSequence sequence{kLimits.width, kLimits.height};
+  std::vector<std::byte> memory, c_memory;
+  Odometry odometry;
+  plvo_odometry* c_odometry = nullptr;
+};
+
+int tracked_alike(Doors& doors, int frames) {
+  int tracked = 0;
+  for (int i = 0; i < frames; ++i) {
+    const RgbdFrame frame = i == 5 ? doors.sequence.render_dark(i) : doors.sequence.render(i);
+    const TrackResult result = doors.odometry.track(frame);
+    const plvo_frame c = c_frame(frame);
+    plvo_result c_result = {};
+    c_result.struct_size = sizeof c_result;
+    const plvo_status status = plvo_track(doors.c_odometry, &c, &c_result);
+    EXPECT_EQ(static_cast<int>(result.status.code()), status.code);
+    EXPECT_STREQ(result.status.message(), status.message);
+    expect_same(result, c_result);
+    tracked += c_result.state == PLVO_TRACKING ? 1 : 0;
+  }
+  return tracked;
+}
+
+TEST(CApi, GivesTheBitsOfTheFrontDoor) {
+  Doors doors;
+  EXPECT_GE(tracked_alike(doors, 10), 7);
+}
+
+TEST(CApi, PresetsAndChoicesAreThoseOfConfig) {
+  plvo_config paper;
+  plvo_config_init(&paper, sizeof paper);
+  paper.preset = PLVO_PRESET_PAPER;
+  Doors with_paper(Config::paper(), &paper);
+  EXPECT_GE(tracked_alike(with_paper, 4), 3);
+
+  plvo_config chosen;
+  plvo_config_init(&chosen, sizeof chosen);
+  chosen.features = PLVO_FEATURES_POINTS;
+  chosen.reference = PLVO_REFERENCE_PREVIOUS;
+  chosen.seed = 7;
+  Config config;
+  config.features = Features::kPoints;
+  config.references.policy = ReferencePolicy::kPreviousFrame;
+  config.seed = 7;
+  Doors with_choice(config, &chosen);
+  EXPECT_GE(tracked_alike(with_choice, 4), 3);
+}
+
+TEST(CApi, TheBlockMayStartAnywhere) {
+  Doors doors({}, nullptr, 13);
+  EXPECT_GE(tracked_alike(doors, 4), 3);
+}
+
+TEST(CApi, FeaturesAreThoseOfTheFrontDoor) {
+  Doors doors;
+  EXPECT_EQ(plvo_image(doors.c_odometry, nullptr), nullptr) << "no frame yet";
+  EXPECT_EQ(plvo_keypoints(doors.c_odometry, nullptr, 0), 0U);
+  tracked_alike(doors, 3);
+  const FeatureView view = doors.odometry.features();
+
+  std::vector<plvo_pixel> keypoints(plvo_keypoints(doors.c_odometry, nullptr, 0));
+  ASSERT_EQ(keypoints.size(), view.keypoints.size());
+  ASSERT_GT(keypoints.size(), 10U);
+  plvo_keypoints(doors.c_odometry, keypoints.data(), keypoints.size());
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    EXPECT_EQ(keypoints[i].u, view.keypoints[i].u);
+    EXPECT_EQ(keypoints[i].v, view.keypoints[i].v);
+  }
+  std::vector<plvo_point_track> tracks(plvo_point_tracks(doors.c_odometry, nullptr, 0));
+  ASSERT_EQ(tracks.size(), view.point_tracks.size());
+  ASSERT_GT(tracks.size(), 10U);
+  plvo_point_tracks(doors.c_odometry, tracks.data(), tracks.size());
+  EXPECT_EQ(tracks.back().reference.v, view.point_tracks.back().v_reference);
+  EXPECT_EQ(tracks.back().current.u, view.point_tracks.back().u);
+  std::vector<plvo_segment> segments(plvo_segments(doors.c_odometry, nullptr, 0));
+  ASSERT_EQ(segments.size(), view.segments.size());
+  ASSERT_GT(segments.size(), 2U);
+  plvo_segment first[2] = {};
+  EXPECT_EQ(plvo_segments(doors.c_odometry, first, 1), segments.size())
+      << "no more than the capacity is written";
+  EXPECT_EQ(first[0].b.v, view.segments[0].b_v);
+  EXPECT_EQ(first[1].b.v, 0);
+  EXPECT_EQ(plvo_reference_segments(doors.c_odometry, nullptr, 0), view.reference_segments.size());
+  std::vector<plvo_line_track> lines(plvo_line_tracks(doors.c_odometry, nullptr, 0));
+  ASSERT_EQ(lines.size(), view.line_tracks.size());
+  ASSERT_GT(lines.size(), 0U);
+  plvo_line_tracks(doors.c_odometry, lines.data(), lines.size());
+  EXPECT_EQ(lines.back().current, view.line_tracks.back().current);
+
+  std::int64_t stride = 0;
+  const std::uint8_t* image = plvo_image(doors.c_odometry, &stride);
+  ASSERT_NE(image, nullptr);
+  EXPECT_EQ(image[100 * stride + 7], view.image.at(7, 100));
+}
+
+TEST(CApi, TakesNoMemory) {
+  if (!AllocationGuard::available()) GTEST_SKIP() << "SKIPPED: a sanitizer owns malloc here";
+  Doors doors;
+  for (int i = 0; i < 4; ++i) {
+    const plvo_frame frame = c_frame(doors.sequence.render(i));
+    plvo_result result = {};
+    result.struct_size = sizeof result;
+    AllocationGuard guard;
+    guard.arm();
+    const plvo_status status = plvo_track(doors.c_odometry, &frame, &result);
+    guard.disarm();
+    EXPECT_EQ(status.code, PLVO_OK) << status.message;
+    EXPECT_EQ(guard.calls(), 0);
+  }
+}
+
+TEST(CApi, SaysHowManyBytesAreMissing) {
+  const plvo_limits limits = c_limits();
+  const plvo_camera camera = c_camera(ProceduralSequence(kLimits.width, kLimits.height).camera());
+  const std::size_t needed = plvo_required_bytes(&limits);
+  std::vector<std::byte> memory(needed - 1);
+  plvo_odometry* odometry = reinterpret_cast<plvo_odometry*>(&memory);
+  const plvo_status status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  EXPECT_EQ(status.code, PLVO_OUT_OF_MEMORY);
+  EXPECT_NE(std::string(status.message).find(std::to_string(needed)), std::string::npos) << status.message;
+  EXPECT_EQ(odometry, nullptr);
+}
+
+TEST(CApi, RefusesWhatItCannotUse) {
+  const plvo_limits limits = c_limits();
+  ProceduralSequence sequence(kLimits.width, kLimits.height);
+  const plvo_camera camera = c_camera(sequence.camera());
+  std::vector<std::byte> memory(plvo_required_bytes(&limits));
+  plvo_odometry* odometry = nullptr;
+  const auto init = [&](const plvo_camera* with, const plvo_config* config, const plvo_limits* within) {
+    return plvo_init(memory.data(), memory.size(), with, config, within, &odometry);
+  };
+  const auto says = [](const plvo_status& status, const char* words) {
+    EXPECT_EQ(status.code, PLVO_INVALID_ARGUMENT);
+    EXPECT_NE(std::strstr(status.message, words), nullptr) << status.message;
+  };
+  says(init(nullptr, nullptr, &limits), "camera is NULL");
+  says(plvo_init(nullptr, 0, &camera, nullptr, &limits, &odometry), "memory is NULL");
+  says(plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, nullptr), "odometry is NULL");
+  plvo_camera broken = camera;
+  broken.fx = -1;
+  says(init(&broken, nullptr, &limits), "fx");
+  plvo_config config;
+  plvo_config_init(&config, sizeof config);
+  config.features = 4;
+  says(init(&camera, &config, &limits), "features");
+  plvo_config_init(&config, sizeof config);
+  config.reference = -1;
+  says(init(&camera, &config, &limits), "reference");
+  plvo_config_init(&config, sizeof config);
+  config.preset = 2;
+  says(init(&camera, &config, &limits), "preset");
+  plvo_limits wild = limits;
+  wild.keypoints = std::numeric_limits<std::int32_t>::max();
+  says(init(&camera, nullptr, &wild), "keypoints");
+  EXPECT_EQ(plvo_required_bytes(&wild), 0U);
+
+  plvo_result result = {};
+  result.struct_size = sizeof result;
+  says(plvo_track(nullptr, nullptr, &result), "plvo_init");
+  ASSERT_EQ(init(&camera, nullptr, &limits).code, PLVO_OK);
+  says(plvo_track(odometry, nullptr, &result), "frame is NULL");
+  says(plvo_track(odometry, nullptr, nullptr), "result is NULL");
+  plvo_frame frame = c_frame(sequence.render(0));
+  frame.colour_format = 9;
+  says(plvo_track(odometry, &frame, &result), "colour_format");
+  frame = c_frame(sequence.render(0));
+  frame.depth_stride_bytes += 1;
+  says(plvo_track(odometry, &frame, &result), "multiples of 2");
+  frame = c_frame(sequence.render(0));
+  frame.colour_stride_bytes = -frame.colour_stride_bytes;
+  says(plvo_track(odometry, &frame, &result), "stride");
+  EXPECT_EQ(result.state, PLVO_LOST);
+}
+
+TEST(CApi, SizesTellHowTheProgramWasCompiled) {
+  const plvo_limits limits = c_limits();
+  plvo_camera camera = c_camera(CameraModel());
+  EXPECT_EQ(sizeof camera, c::kFirstSize<plvo_camera>)
+      << "grown since: this test wants a case that is smaller";
+  std::vector<std::byte> memory(plvo_required_bytes(&limits));
+  plvo_odometry* odometry = nullptr;
+  camera.struct_size = 0;
+  plvo_status status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  EXPECT_STREQ(status.message, "camera.struct_size is 0; set it to sizeof(plvo_camera)");
+  camera.struct_size = sizeof camera + 8;
+  status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  EXPECT_NE(std::strstr(status.message, "compiled for a newer plvo"), nullptr) << status.message;
+  plvo_config config;
+  plvo_config_init(&config, 4);
+  EXPECT_EQ(config.struct_size, 4U) << "nothing is written past what the caller says there is";
+}
+
+TEST(CApi, NamesEveryCodeAndState) {
+  EXPECT_STREQ(plvo_status_name(PLVO_OK), "ok");
+  EXPECT_STREQ(plvo_status_name(PLVO_NOT_CONVERGED), "not_converged");
+  EXPECT_STREQ(plvo_status_name(PLVO_NOT_CONVERGED + 1), "unknown");
+  EXPECT_STREQ(plvo_status_name(-1), "unknown");
+  for (int code = PLVO_OK; code <= PLVO_NOT_CONVERGED; ++code)
+    EXPECT_STRNE(plvo_status_name(code), "unknown");
+  EXPECT_STREQ(plvo_state_name(PLVO_LOST), "lost");
+  EXPECT_STREQ(plvo_state_name(3), "unknown");
+  EXPECT_STREQ(plvo_version(), PLVO_VERSION);
+}
+
+TEST(CApi, QuaternionOfARotation) {
+  const double quarter_turn_about_z[12] = {0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7};
+  double q[4];
+  plvo_quaternion(quarter_turn_about_z, q);
+  EXPECT_NEAR(q[2], 0.70710678118654752, 1e-15);
+  EXPECT_NEAR(q[3], 0.70710678118654752, 1e-15);
+  EXPECT_EQ(q[0], 0);
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""plvo.evaluate says what `plvo eval --json` says."""
+import json
+import os
+import subprocess
+
+import pytest
+
+import plvo
+
+PLVO = os.environ["PLVO_BINARY"]
+
+
+@pytest.fixture(scope="module")
+def tracked(walk, tmp_path_factory):
+    files = tmp_path_factory.mktemp("tracked")
+    outputs = ["--out", files / "t", "--covariance", files / "c", "--motions", files / "m"]
+    subprocess.run([PLVO, "run", walk, "--quiet", *outputs], check=True)
+    return files
+
+
+def command(walk, tracked, *more):
+    arguments = [PLVO, "eval", "--gt", walk / "groundtruth.txt", "--est", tracked / "t", "--json", "-", *more]
+    return json.loads(subprocess.run(arguments, check=True, capture_output=True).stdout)
+
+
+def close(a, b):
+    """Files have nine decimals, results all of them."""
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(close(a[key], b[key]) for key in a)
+    if isinstance(a, list):
+        return len(a) == len(b) and all(map(close, a, b))
+    return a == pytest.approx(b, rel=1e-3, abs=1e-7) if isinstance(a, float) else a == b
+
+
+def test_of_a_file(walk, tracked):
+    found = plvo.evaluate(walk / "groundtruth.txt", tracked / "t", rpe_deltas=["1f", "0.2s"])
+    assert found == command(walk, tracked, "--rpe-delta", "1f", "--rpe-delta", "0.2s")
+    assert 0 < found["ate_m"]["rmse"] < 0.02
+
+
+def test_of_results(walk, tracked):
+    found = plvo.evaluate(walk / "groundtruth.txt", plvo.run(walk))
+    expected = command(walk, tracked, "--rpe-delta", "1f", "--rpe-delta", "1s", "--est-covariance", tracked / "c", "--est-motions",
+                       tracked / "m")
+    assert "rpe" in found and "ate_m" in found
+    assert close(found, expected)
+
+
+def test_errors_are_the_librarys_words(walk, tracked, tmp_path):
+    with pytest.raises(plvo.Error) as error:
+        plvo.evaluate(tmp_path / "nowhere.txt", tracked / "t")
+    assert error.value.code == "not_found"
+    with pytest.raises(ValueError, match="1f, 0.5s or 2m"):
+        plvo.evaluate(walk / "groundtruth.txt", tracked / "t", rpe_deltas=["1 hour"])
+    with pytest.raises(ValueError, match="interpolated or nearest"):
+        plvo.evaluate(walk / "groundtruth.txt", tracked / "t", sampling="somehow")
+    results = list(plvo.run(walk))
+    with pytest.raises(ValueError, match="increase"):
+        plvo.evaluate(walk / "groundtruth.txt", results + results)
+    with pytest.raises(plvo.Error):
+        plvo.evaluate(walk / "groundtruth.txt", results[:1])

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+# Writes OUTPUT from INPUT with the commit that SOURCE is at, and leaves it alone when nothing has changed.
+# cmake -DSOURCE=<folder> -DGIVEN=<commit, if it is known> -DVERSION=… -DBUILD=… -DINPUT=… -DOUTPUT=… -P commit.cmake
+set(COMMIT "${GIVEN}")
+find_program(GIT git)
+if(NOT COMMIT AND GIT AND EXISTS ${SOURCE}/.git)
+  execute_process(COMMAND ${GIT} -C ${SOURCE} describe --always --abbrev=12 --exclude=* --dirty=+changes
+    OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT COMMIT)
+  set(COMMIT unknown)
+endif()
+configure_file(${INPUT} ${OUTPUT} @ONLY)

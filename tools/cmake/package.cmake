@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+# cpack: four Debian packages, one for each component of install.cmake. tools/setup/package.sh configures for it (prefix /usr),
+# builds, and tries the packages in a clean root.
+set(PLVO_PACKAGE_CONTACT "plvo maintainers <maintainers@plvo.invalid>" CACHE STRING "Whom the packages name as their maintainer")
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "${PLVO_PACKAGE_CONTACT}")
+set(CPACK_PACKAGE_NAME plvo)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_SET_DESTDIR ON)  # OpenNI2's folder of drivers is an absolute path
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL library development tools)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+if(CMAKE_CROSSCOMPILING)
+  # What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot.
+  set(needed "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libspng0, libturbojpeg0, libyaml-cpp0.7")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed}")
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
+    "${needed}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
+else()
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+endif()
+
+# plvo_package(<component> <name> <section> <text>)
+macro(plvo_package component name section text)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
+  set(CPACK_COMPONENT_${upper}_DESCRIPTION "plvo follows an RGB-D camera from point and line features and gives a pose
+with its covariance for every frame, or says why there is none.\n${text}")
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/packaging/copyright ${PROJECT_BINARY_DIR}/packaging/changelog.gz
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+endmacro()
+plvo_package(library libplvo${PLVO_ABI_VERSION} libs "The shared library, for C and for languages that call C.")
+plvo_package(development libplvo-dev libdevel
+  "Headers for C and C++, the static core for C++, files for CMake and pkg-config.")
+plvo_package(tools plvo-tools science
+  "The command line tracks recordings and live sensors, evaluates and simulates.
+With a udev rule, a driver of the Kinect v1 for OpenNI2, and a service.")
+# What depends on the library, and that the system's list of libraries is renewed.
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/shlibs "libplvo ${PLVO_ABI_VERSION} libplvo${PLVO_ABI_VERSION} (>= ${PROJECT_VERSION})\n")
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
+  ${PROJECT_BINARY_DIR}/packaging/shlibs ${PROJECT_BINARY_DIR}/packaging/triggers)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libplvo${PLVO_ABI_VERSION} (= ${PROJECT_VERSION}), libeigen3-dev")
+if(TARGET plvo_python_odometry)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  plvo_package(python python3-plvo python "Odometry, recorded sequences and evaluation for Python, with NumPy arrays.")
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+  configure_file(tools/packaging/python-postinst packaging/postinst COPYONLY)
+  configure_file(tools/packaging/python-prerm packaging/prerm COPYONLY)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/postinst ${PROJECT_BINARY_DIR}/packaging/prerm)
+endif()
+
+# The day of the last change, so that two builds of it are the same.
+find_program(GIT git)
+if(GIT)
+  execute_process(COMMAND ${GIT} -C ${PROJECT_SOURCE_DIR} log -1 --format=%cD OUTPUT_VARIABLE day
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(NOT day)
+  string(TIMESTAMP day "%a, %d %b %Y %H:%M:%S +0000" UTC)
+endif()
+file(WRITE ${PROJECT_BINARY_DIR}/packaging/changelog "plvo (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * plvo ${PROJECT_VERSION}; CHANGELOG.md of the sources says what changed.
+
+ -- ${PLVO_PACKAGE_CONTACT}  ${day}
+")
+execute_process(COMMAND gzip -9nkf ${PROJECT_BINARY_DIR}/packaging/changelog)
+install(FILES ${PROJECT_SOURCE_DIR}/tools/packaging/plvo-live.service DESTINATION lib/systemd/system COMPONENT tools)
+include(CPack)

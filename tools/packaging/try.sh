@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Run by tools/setup/package.sh in a clean root, in /try: installs the packages, uses them as docs/c.md, docs/python.md and a
+# stranger's CMake project do, purges them, and compares the files with those before.
+set -euo pipefail
+cd /try
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
+packages="libplvo0 libplvo-dev plvo-tools python3-plvo"
+files() {
+  find / -xdev \( -path /try -o -path /proc -o -path /sys -o -path /tmp -o -path /var/lib/dpkg -o -path /var/log \
+    -o -path /var/cache \) -prune -o -print | sort
+}
+step() { printf '== %s\n' "$*" >&2; }
+
+step "install, with what a program in C and C++ is made with"
+apt-get update -qq >&2
+apt-get install -y -qq --no-install-recommends gcc g++ cmake make pkg-config >/dev/null 2>&1
+apt-get install -y -qq --no-install-recommends ./*.deb >/dev/null
+dpkg-query -W $packages >&2
+ldconfig -p | grep -q libplvo.so.0
+test -s /usr/lib/*/OpenNI2/Drivers/libPlvoFreenectDriver.so.0
+test -s /usr/lib/udev/rules.d/60-plvo-rgbd.rules
+test -s /usr/lib/systemd/system/plvo-live.service
+
+step "command line"
+plvo --version >&2
+plvo simulate --out walk --frames 20 --size 320x240 --quiet
+plvo run walk --quiet --out run.txt
+grep -v '^#' run.txt | cut -d' ' -f2- >run.poses
+
+step "C, by pkg-config: the same poses"
+# shellcheck disable=SC2046  # a list of words
+gcc -std=c11 -Wall track_folder.c $(pkg-config --cflags --libs plvo) -o track_folder
+./track_folder walk | cut -d' ' -f2- | cmp - run.poses
+
+step "C++, by find_package and by pkg-config"
+cmake -S consumer -B consumer-build >/dev/null
+cmake --build consumer-build >/dev/null
+./consumer-build/consumer
+# shellcheck disable=SC2046
+g++ -std=c++20 consumer/main.cpp $(pkg-config --cflags --libs plvo-core) -o consumer-by-pkg-config
+./consumer-by-pkg-config
+
+step "Python: the page's programs that draw nothing, and the same poses"
+python3 - <<'PROGRAM'
+import pathlib, re
+programs = re.findall(r"^```python\n(.*?)^```$", pathlib.Path("python.md").read_text(), re.M | re.S)
+programs = [program for program in programs if "matplotlib" not in program]
+assert len(programs) >= 3
+for program in programs:
+    exec(compile(program, "docs/python.md", "exec"), {})
+import plvo
+poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("walk") if r.has_pose]
+assert poses == pathlib.Path("run.poses").read_text().splitlines()
+PROGRAM
+
+step "purge, install and use once more, purge: the same files before and after, and none of plvo's"
+apt-get purge -y -qq $packages >/dev/null
+files >before
+apt-get install -y -qq --no-install-recommends ./*.deb >/dev/null
+plvo --version >/dev/null
+python3 -c "import plvo"
+apt-get purge -y -qq $packages >/dev/null
+files >after
+diff before after >&2
+if grep -i plvo after >&2; then exit 1; fi
+if dpkg-query -W $packages 2>/dev/null | grep -q '[0-9]'; then exit 1; fi
+step "nothing is left"

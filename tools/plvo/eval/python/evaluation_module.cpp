@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo._evaluation: `plvo eval` for Python. plvo/__init__.py makes a dictionary of its JSON.
+#include <pybind11/pybind11.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "plvo/eval/evaluation.hpp"
+#include "plvo/host/trajectory_file.hpp"
+#include "plvo/python/error.hpp"
+
+namespace plvo::eval {
+namespace {
+
+namespace py = pybind11;
+using python::throw_unless_ok;
+
+struct Estimate {
+  Trajectory trajectory;
+  std::vector<StampedCovariance> covariances;
+  std::vector<UncertainMotion> motions;
+};
+
+Estimate estimate_of(const py::iterable& results) {
+  Estimate estimate;
+  for (const py::handle item : results) {
+    const auto& result = item.cast<const TrackResult&>();
+    if (!has_pose(result)) continue;
+    const std::vector<StampedPose>& poses = estimate.trajectory.poses;
+    if (!poses.empty() && result.stamp_ns <= poses.back().stamp_ns)
+      throw py::value_error("estimate: the stamps of the results must increase");
+    estimate.trajectory.poses.push_back({result.stamp_ns, result.T_world_camera});
+    estimate.covariances.push_back({result.stamp_ns, result.pose_covariance});
+    if (result.state == TrackState::kTracking)
+      estimate.motions.push_back(
+          {result.stamp_ns, result.reference_stamp_ns, result.T_camera_reference, result.motion_covariance});
+  }
+  return estimate;
+}
+
+EvaluationOptions options_of(const std::string& sampling, double max_difference_s, double offset_s,
+                             const py::iterable& deltas) {
+  EvaluationOptions options;
+  if (sampling == "nearest")
+    options.sampling = GroundTruthSampling::kNearest;
+  else if (sampling != "interpolated")
+    throw py::value_error("sampling: expected interpolated or nearest, got '" + sampling + "'");
+  constexpr double kDay_s = 86400;
+  if (!(max_difference_s > 0 && max_difference_s <= kDay_s) || !(offset_s >= -kDay_s && offset_s <= kDay_s))
+    throw py::value_error("max_difference_s and offset_s must be seconds within a day");
+  options.max_difference_ns = static_cast<std::int64_t>(max_difference_s * 1e9);
+  options.offset_ns = static_cast<std::int64_t>(offset_s * 1e9);
+  for (const py::handle item : deltas) {
+    RpeDelta delta;
+    const auto text = item.cast<std::string>();
+    if (!parse_rpe_delta(text, delta))
+      throw py::value_error("rpe_deltas: expected frames, seconds or metres such as 1f, 0.5s or 2m, got '" +
+                            text + "'");
+    options.deltas.push_back(delta);
+  }
+  return options;
+}
+
+std::string evaluate_json(const std::string& truth_path, const py::object& estimated,
+                          const std::string& sampling, double max_difference_s, double offset_s,
+                          const py::iterable& deltas) {
+  const EvaluationOptions options = options_of(sampling, max_difference_s, offset_s, deltas);
+  Trajectory truth;
+  throw_unless_ok(read_trajectory({truth_path, {}, {}}, truth));
+  Estimate estimate;
+  if (py::isinstance<py::str>(estimated))
+    throw_unless_ok(read_trajectory({estimated.cast<std::string>(), {}, {}}, estimate.trajectory));
+  else
+    estimate = estimate_of(estimated.cast<py::iterable>());
+  for (const StampedPose& pose : estimate.trajectory.poses)
+    if (pose.stamp_ns <= INT64_MIN / 2 || pose.stamp_ns >= INT64_MAX / 2)
+      throw py::value_error("the estimate has stamps beyond 146 years");
+  Evaluation evaluation;
+  throw_unless_ok(
+      evaluate(truth, estimate.trajectory, estimate.covariances, estimate.motions, options, evaluation));
+  return to_json(evaluation).dump();
+}
+
+}  // namespace
+}  // namespace plvo::eval
+
+PYBIND11_MODULE(_evaluation, module) { module.def("evaluate", &plvo::eval::evaluate_json); }

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo. lintian reads them. Those
+# of this machine's architecture are then tried in a clean Debian 12: installed with apt, used from C, C++ and Python, and
+# purged (as root; it fetches some 200 MB of Debian's packages).
+# usage: tools/setup/package.sh [arm64|armhf]
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+. tools/setup/packages.sh
+. tools/setup/sysroot.sh
+
+architecture=${1:-$(dpkg --print-architecture)}
+# shellcheck disable=SC2086  # lists of words
+case "${1:-}" in
+  "")
+    build=build/package
+    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_PYTHON lintian mmdebstrap
+    cmake --preset package >&2
+    ;;
+  arm64 | armhf)
+    build=build/package-$architecture
+    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_CROSS lintian
+    make_sysroot "$architecture" "$PWD/build/sysroot-$architecture"
+    if [ "$architecture" = arm64 ]; then
+      preset=raspberry-pi-64 triplet=aarch64-linux-gnu
+    else
+      preset=raspberry-pi-32 triplet=arm-linux-gnueabihf
+    fi
+    cmake --preset $preset -B "$build" -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/$triplet \
+      -DPLVO_OPENNI2_DRIVER_DIR=/usr/lib/$triplet/OpenNI2/Drivers -DPLVO_BUILD_TESTS=OFF >&2
+    ;;
+  *)
+    say "usage: tools/setup/package.sh [arm64|armhf]"
+    exit 2
+    ;;
+esac
+
+say "building $build"
+cmake --build "$build" --parallel "$(nproc)" >&2
+rm -f "$build"/*.deb
+(cd "$build" && cpack >&2)
+debs=("$build"/*_"$architecture".deb)
+lintian --fail-on error "${debs[@]}" >&2
+say "lintian has no error to tell of"
+if [ $# -gt 0 ]; then
+  say "trying what is in them under emulation"
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  for deb in "${debs[@]}"; do dpkg-deb -x "$deb" "$work"; done
+  sysroot=$PWD/build/sysroot-$architecture
+  if [ "$architecture" = arm64 ]; then emulator=qemu-aarch64; else emulator=qemu-arm; fi
+  board=("$emulator" -L "$sysroot" -E "LD_LIBRARY_PATH=$work/usr/lib/$triplet")
+  "${board[@]}" "$work/usr/bin/plvo" --version >&2
+  "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
+  sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$work/track_folder.c"
+  "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
+    -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
+  "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
+  grep -v '^#' "$work/run.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
+  say "the command line and a C program with the shared library agree on $(wc -l <"$work/c.poses") poses"
+  printf '%s\n' "${debs[@]}"
+  exit
+fi
+
+if [ "$(id -u)" -ne 0 ]; then
+  say "to try them in a clean root: sudo $0"
+  printf '%s\n' "${debs[@]}"
+  exit
+fi
+root=$(mktemp -d)
+trap 'rm -rf "$root"' EXIT
+say "making a clean Debian 12 in $root"
+sources=(/etc/apt/sources.list.d/debian.sources)
+if [ ! -e "${sources[0]}" ]; then sources=(/etc/apt/sources.list); fi
+mmdebstrap --quiet --variant=apt bookworm "$root" "${sources[@]}" >&2
+mkdir "$root/try"
+cp "${debs[@]}" "$root/try"
+cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
+sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$root/try/track_folder.c"
+env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
+say "installed, used and purged; the packages:"
+printf '%s\n' "${debs[@]}"
