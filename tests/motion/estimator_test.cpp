@@ -64,27 +64,6 @@ TEST(Estimator, NothingToWorkWith) {
   expect_finite(estimate);
 }
 
-// A motion that is known already is refined, not searched for; and searched for where the matches deny it.
-TEST(Estimator, AKnownMotionIsRefinedWithoutDraws) {
-  Gaussian gaussian(17);
-  Bench bench;
-  const SimulatedPair pair = test::simulate(gaussian, 200, 40, 0.3);
-  const MotionEstimate searched = bench.estimate(pair);
-  ASSERT_EQ(searched.status, StatusCode::kOk);
-  const Se3 near = boxplus(pair.truth, Vector6::Constant(1e-3));
-  const MotionEstimate refined = bench.estimate(pair, {}, 1, {&near, true});
-  ASSERT_EQ(refined.status, StatusCode::kOk);
-  EXPECT_EQ(refined.ransac.draws, 0);
-  EXPECT_EQ(refined.ransac.hypotheses, 0);
-  EXPECT_LT(boxminus(refined.T_current_reference, searched.T_current_reference).norm(), 1e-4);
-
-  const Se3 wrong = boxplus(pair.truth, Vector6::Constant(0.5));
-  const MotionEstimate found = bench.estimate(pair, {}, 1, {&wrong, true});
-  ASSERT_EQ(found.status, StatusCode::kOk);
-  EXPECT_GT(found.ransac.draws, 0);
-  EXPECT_LT(boxminus(found.T_current_reference, searched.T_current_reference).norm(), 1e-4);
-}
-
 TEST(Estimator, SameSeedSameBits) {
   Gaussian gaussian(11);
   const SimulatedPair pair = test::simulate(gaussian, 200, 40, 0.4);

@@ -179,7 +179,7 @@ TEST(SharedErrors, TheCovarianceKnowsOfThem) {
     MotionConfig config;
     config.robust = false;
     add(bench.estimate(pair, config), without, error_without);
-    add(bench.estimate(pair, config, 1, {nullptr, false, shared}), with, error_with);
+    add(bench.estimate(pair, config, 1, {nullptr, shared}), with, error_with);
   }
   // The mean of 200 values with six degrees of freedom lies within 5.5 … 6.5 in 19 of 20 cases; matches that
   // the gate of inliers takes away leave it a little larger.

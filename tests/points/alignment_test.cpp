@@ -285,13 +285,13 @@ TEST(Alignment, AWarpNextToNoneIsNone) {
   const Alignment plain = align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {});
   // As good as none: the same bits. Just beyond it: the same place, read pixel by pixel.
   PatchWarp warp;
-  warp.W(0, 1) = 0.024;
+  warp.W(0, 1) = 0.012;
   EXPECT_TRUE(warp.is_identity());
   const Alignment same =
       align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
   EXPECT_EQ(same.x, plain.x);
   EXPECT_EQ(same.sigma_px, plain.sigma_px);
-  warp.W(0, 1) = 0.026;
+  warp.W(0, 1) = 0.013;
   EXPECT_FALSE(warp.is_identity());
   const Alignment near =
       align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);

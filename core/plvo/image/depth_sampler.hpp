@@ -53,12 +53,13 @@ class DepthSampler {
    public:
     Window(const DepthSampler& sampler, int x, int y)
         : sampler_(sampler), map_(sampler.map_, x, y), x_(x), y_(y) {}
-    double at(int dx, int dy) const {
+    double at(int dx, int dy) const { return units_at(dx, dy) * sampler_.depth_.metres_per_unit; }
+    // The same in the depth image's own units.
+    std::uint16_t units_at(int dx, int dy) const {
       int raw_x = 0;
       int raw_y = 0;
       if (!sampler_.inside(x_ + dx, y_ + dy) || !map_.raw_pixel(dx, dy, raw_x, raw_y)) return 0;
-      const DepthView& depth = sampler_.depth_;
-      return depth.data[raw_y * depth.stride + raw_x] * depth.metres_per_unit;
+      return sampler_.depth_.data[raw_y * sampler_.depth_.stride + raw_x];
     }
 
    private:
@@ -66,7 +67,11 @@ class DepthSampler {
     UndistortionMap::Window map_;
     int x_, y_;
   };
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < depth_.width && y < depth_.height; }
+  bool inside(int x, int y) const {
+    return static_cast<unsigned>(x) < static_cast<unsigned>(depth_.width) &&
+           static_cast<unsigned>(y) < static_cast<unsigned>(depth_.height);
+  }
+  double metres_per_unit() const { return depth_.metres_per_unit; }
 
   static constexpr int kMaxRadius = 3;
   // The depth at colour pixel (u, v), inside the image, from a plane fitted to the nearer surface in the

@@ -129,8 +129,8 @@ std::ptrdiff_t UndistortionMap::locate_clamped(int x, int y, std::ptrdiff_t stri
   const std::int64_t right = c.right + j * c.twist;
   for (int i = 0; i < kCell; ++i) {
     const std::int64_t at = start + i * right + bow(i) * c.bend_right;
-    const std::int32_t at_x = std::clamp(x_of(at), 0, last_x_);
-    const std::int32_t at_y = std::clamp(y_of(at), 0, last_y_);
+    const std::int32_t at_x = std::clamp<std::int32_t>(x_of(at), 0, last_x_);
+    const std::int32_t at_y = std::clamp<std::int32_t>(y_of(at), 0, last_y_);
     constexpr std::int32_t kFraction = (1 << kFractionBits) - 1;
     constexpr int kToWeight = kFractionBits - kWeightBits;
     const auto k = static_cast<std::size_t>(first + i);

@@ -106,7 +106,8 @@ class UndistortionMap {
     const std::int32_t y = y_of(at);
     raw_x = (x + kHalf) >> kFractionBits;
     raw_y = (y + kHalf) >> kFractionBits;
-    return x > 0 && y > 0 && x < last_x_ && y < last_y_;
+    return static_cast<std::uint32_t>(x - 1) < static_cast<std::uint32_t>(last_x_ - 1) &&
+           static_cast<std::uint32_t>(y - 1) < static_cast<std::uint32_t>(last_y_ - 1);
   }
   // Does the whole of the cell lie inside the raw image, and does it fit the 16-bit lanes?
   bool is_plain(const Cell& c) const;

@@ -66,13 +66,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  bool known = start.known && start.prediction != nullptr && start.prediction->is_finite();
-  if (known) {
-    T = *start.prediction;
-    (void)ransac.judge(T, kFirstRoundScale);
-    known = consensus();
-  }
-  if (!known && !ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
   LevenbergMarquardt<6> solver;
   SharedErrors shared = start.shared;
   for (int round = 0; round <= kMaxRounds; ++round) {

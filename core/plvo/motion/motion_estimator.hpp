@@ -42,14 +42,13 @@ struct MotionEstimate {
   static constexpr double kUnknownVariance = 1e6;
 };
 
-// What is thought of the motion before anything is estimated. known: an estimate already, from fewer or worse
-// matches: then no minimal sets are drawn unless the matches do not agree with it.
+// What is thought of the motion, and of what the current frame's features share, before anything is
+// estimated.
 struct MotionStart {
-  MotionStart(const Se3* T_predicted, bool is_known = false, const SharedErrors& shared_errors = {})
-      : prediction(T_predicted), known(is_known), shared(shared_errors) {}
+  MotionStart(const Se3* T_predicted, const SharedErrors& shared_errors = {})
+      : prediction(T_predicted), shared(shared_errors) {}
   const Se3* prediction;
-  bool known;
-  SharedErrors shared;  // of the current frame
+  SharedErrors shared;
 };
 
 // sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).

@@ -106,7 +106,7 @@ TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentF
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config_.points.registered;
   const SharedErrors shared = whole ? shared_errors(features.current, current.noise) : SharedErrors{};
-  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, {&T_predicted, false, shared},
+  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, {&T_predicted, shared},
                                 whole ? kFineSolve : kRoughSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
@@ -140,7 +140,7 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
   }
   TrackedMotion tracked =
       solve(std::span(features).first(references.size()), poses,
-            {&T_current_base, true, shared_errors(exposure, current.noise)}, kFineSolve, scratch, result);
+            {&T_current_base, shared_errors(exposure, current.noise)}, kFineSolve, scratch, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);

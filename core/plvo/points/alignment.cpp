@@ -235,7 +235,7 @@ Moments correlate(const Template& t, const Window& values) {
 }  // namespace
 
 bool PatchWarp::is_identity() const {
-  constexpr double kNegligible_px = 0.1;
+  constexpr double kNegligible_px = 0.05;
   return (W - Matrix2::Identity()).cwiseAbs().maxCoeff() * kWindowReach < kNegligible_px;
 }
 

@@ -29,13 +29,17 @@ WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, doub
   const int centre_y = static_cast<int>(centre.y() + 0.5);
   if (!depth.inside(centre_x, centre_y)) return mask;
   const DepthSampler::Window readings(depth, centre_x, centre_y);
-  const double most = kSameSurface * depth_m;
+  // The depths that belong to it, in units of the image: at least one unit, for 0 means none.
+  const double nearest = (1 - kSameSurface) * depth_m / depth.metres_per_unit();
+  const double farthest = (1 + kSameSurface) * depth_m / depth.metres_per_unit();
+  const auto first = static_cast<std::uint32_t>(nearest) + 1;
+  const std::uint32_t count = static_cast<std::uint32_t>(farthest) - first + 1;
   std::array<Row, kSurfaceRows> own{};
   for (int r = 0; r < kSurfaceRows; ++r) {
     for (int c = 0; c < kSurfaceColumns; ++c) {
-      const double difference =
-          readings.at((c - kRim - kWindowReach) * step, (r - kRim - kWindowReach) * step) - depth_m;
-      if (difference < most && difference > -most)
+      const std::uint32_t units =
+          readings.units_at((c - kRim - kWindowReach) * step, (r - kRim - kWindowReach) * step);
+      if (units - first < count)  // below `first` it wraps around
         own[static_cast<std::size_t>(r)] |= static_cast<Row>(1 << c);
     }
   }
