@@ -7,8 +7,6 @@
 namespace plvo::bench {
 namespace {
 
-bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
-
 // "(12) name" gives a name a number the first time; "(12)" means it from then on.
 std::string resolve(const std::string& text, std::map<std::string, std::string>& names) {
   const std::size_t end = text.find(')');
@@ -33,7 +31,7 @@ bool read_cost(const std::string& line, std::uint64_t& cost) {
 std::uint64_t CallgrindCosts::of(const std::string& name) const {
   std::uint64_t sum = 0;
   for (const auto& [function, cost] : inclusive)
-    if (starts_with(function, name.c_str())) sum += cost;
+    if (function.starts_with(name)) sum += cost;
   return sum;
 }
 
@@ -44,11 +42,11 @@ CallgrindCosts read_callgrind(std::istream& file) {
   bool of_callee = false;  // the next line of costs is that of a call
   for (std::string line; std::getline(file, line);) {
     std::uint64_t cost = 0;
-    if (starts_with(line, "fn=")) {
+    if (line.starts_with("fn=")) {
       function = resolve(line.substr(3), names);
-    } else if (starts_with(line, "cfn=")) {
+    } else if (line.starts_with("cfn=")) {
       (void)resolve(line.substr(4), names);
-    } else if (starts_with(line, "calls=")) {
+    } else if (line.starts_with("calls=")) {
       of_callee = true;
     } else if (read_cost(line, cost)) {
       costs.inclusive[function] += cost;

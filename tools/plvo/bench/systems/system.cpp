@@ -36,7 +36,6 @@ class PlvoSystem final : public System {
   TrackResult result_;
 };
 
-bool starts_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 bool is_paper(const std::string& name) { return name.find(kPaperSuffix) != std::string::npos; }
 
 bool is_group(const std::string& word) {
@@ -46,10 +45,10 @@ bool is_group(const std::string& word) {
 
 bool in_group(const std::string& group, const std::string& name) {
   if (group == "all") return true;
-  if (group == "ours") return starts_with(name, "plvo-") && !is_paper(name);
+  if (group == "ours") return name.starts_with("plvo-") && !is_paper(name);
   if (group == "paper") return is_paper(name);
-  if (group == "peers") return !starts_with(name, "plvo-");
-  return (group == "opencv" || group == "open3d") && starts_with(name, (group + '-').c_str());
+  if (group == "peers") return !name.starts_with("plvo-");
+  return (group == "opencv" || group == "open3d") && name.starts_with(group + '-');
 }
 
 }  // namespace
@@ -91,18 +90,18 @@ Status make_system(const std::string& name, const CameraModel& camera, std::uniq
   const auto& names = system_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
     return {StatusCode::kInvalidArgument, fmt::format("no system '{}' in this build", name)};
-  if (starts_with(name, "opencv-")) {
+  if (name.starts_with("opencv-")) {
     system = make_opencv_system(name, camera);
     return {};
   }
-  if (starts_with(name, "open3d-")) {
+  if (name.starts_with("open3d-")) {
     system = make_open3d_system(camera);
     return {};
   }
   Config config = is_paper(name) ? Config::paper() : Config();
-  config.features = starts_with(name, "plvo-points")  ? Features::kPoints
-                    : starts_with(name, "plvo-lines") ? Features::kLines
-                                                      : Features::kBoth;
+  config.features = name.starts_with("plvo-points")  ? Features::kPoints
+                    : name.starts_with("plvo-lines") ? Features::kLines
+                                                     : Features::kBoth;
   auto ours = std::make_unique<PlvoSystem>();
   const Status status = ours->init(camera, config);
   if (status.ok()) system = std::move(ours);
