@@ -38,15 +38,16 @@ double share_of(const ConstraintSet& set) {
 // H ← (H⁻¹ + S)⁻¹ on the motion's part of H, S = L Lᵀ, the gradient and the cost with it: what is left when a
 // motion of covariance S between the two frames is minimised over.
 double convolve(const Matrix6& L, JointInformation& sum) {
-  const Matrix<kSize, 6> HL = sum.H.block<kSize, 6>(0, 0) * L;
-  const Matrix6 M = Matrix6::Identity() + L.transpose() * HL.block<6, 6>(0, 0);
+  const Matrix<kSize, 6> HL = sum.H.block<kSize, 6>(0, 0).lazyProduct(L);
+  const Matrix6 M = Matrix6::Identity() + L.transpose().lazyProduct(HL.block<6, 6>(0, 0));
   Cholesky<6> cholesky;
   if (!cholesky.factor(M)) return 0;
-  const Vector6 Lg = L.transpose() * sum.g.head<6>();
+  const Vector6 Lg = L.transpose().lazyProduct(sum.g.head<6>());
   const Vector6 x = cholesky.solve(Lg);
-  sum.H -= HL * (cholesky.inverse() * HL.transpose());
+  const Matrix<6, kSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
+  sum.H -= HL.lazyProduct(gain);
   sum.H = 0.5 * (sum.H + Joint(sum.H.transpose()));
-  sum.g -= HL * x;
+  sum.g -= HL.lazyProduct(x);
   return -0.5 * Lg.dot(x);
 }
 
@@ -123,11 +124,14 @@ double MotionProblem::add_reference(std::size_t r, const Se3& T, JointInformatio
   B.block<3, 3>(0, 0) = T.R;
   B.block<3, 3>(0, 3) = Q * T.R;
   B.block<3, 3>(3, 3) = T.R;
-  if (references_[r].covariance.trace() > 0) cost += convolve(B * root_[r], of_reference);
-  Joint A = Joint::Identity();
-  A.block<3, 3>(0, 3) = Q;
-  sum.H += A.transpose() * of_reference.H * A;
-  sum.g += A.transpose() * of_reference.g;
+  if (references_[r].covariance.trace() > 0) cost += convolve(B.lazyProduct(root_[r]), of_reference);
+  // Aᵀ H A with A the identity but for Q above the diagonal: a shift of columns, then of rows.
+  Joint& H = of_reference.H;
+  H.block<kSize, 3>(0, 3) += H.block<kSize, 3>(0, 0).lazyProduct(Q).eval();
+  H.block<3, kSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kSize>(0, 0)).eval();
+  of_reference.g.segment<3>(3) += Q.transpose().lazyProduct(of_reference.g.head<3>());
+  sum.H += H;
+  sum.g += of_reference.g;
   return cost;
 }
 
@@ -149,17 +153,18 @@ double MotionProblem::eliminate_shared(JointInformation& sum) {
   const SharedErrors::Vector step = cholesky.solve(g);
   candidate_shared_ = shared_.value - step;
   candidate_inverse_ = cholesky.inverse();
-  candidate_gain_ = candidate_inverse_ * sum.H.block<n, 6>(6, 0);
+  candidate_gain_ = candidate_inverse_.lazyProduct(sum.H.block<n, 6>(6, 0));
   const Matrix<6, n> coupling = sum.H.block<6, n>(0, 6);
-  const Matrix6 eliminated = coupling * candidate_gain_;
+  const Matrix6 eliminated = coupling.lazyProduct(candidate_gain_);
   sum.H.block<6, 6>(0, 0) -= 0.5 * (eliminated + Matrix6(eliminated.transpose()));
-  sum.g.head<6>() -= coupling * step;
+  sum.g.head<6>() -= coupling.lazyProduct(step);
   return cost - 0.5 * g.dot(step);
 }
 
 SharedErrorEstimate MotionProblem::shared(const Matrix6& covariance) const {
   if (!shared_.any()) return {};
-  return {shared_.value, inverse_.diagonal() + (gain_ * covariance * gain_.transpose()).diagonal()};
+  return {shared_.value,
+          inverse_.diagonal() + gain_.lazyProduct(covariance).eval().cwiseProduct(gain_).rowwise().sum()};
 }
 
 void MotionProblem::accept() {

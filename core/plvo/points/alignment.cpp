@@ -69,22 +69,22 @@ std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
 }
 
 // The window and one pixel around it, smoothed as a reading at whole pixels is.
-constexpr int kSide = 2 * kWindowReach + 3;
-using Smoothed = std::array<std::int16_t, kSide * kSide>;
+constexpr int kSmoothedSide = 2 * kWindowReach + 3;
+using Smoothed = std::array<std::int16_t, kSmoothedSide * kSmoothedSide>;
 
 Smoothed smooth(const Patch& patch) {
   constexpr const Weights& kWhole = kWeights[0];
   static_assert(kWhole[3] == 0, "the fourth tap would reach beyond the patch");
   Smoothed out;
-  std::array<std::int16_t, kSide*(kPatchSide + 1)> rows{};
+  std::array<std::int16_t, kSmoothedSide*(kPatchSide + 1)> rows{};
   for (int y = 0; y < kPatchSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kSmoothedSide; ++x) {
       const std::uint8_t* p = patch.data() + y * kPatchSide + x;
-      rows[static_cast<std::size_t>(y * kSide + x)] =
+      rows[static_cast<std::size_t>(y * kSmoothedSide + x)] =
           static_cast<std::int16_t>((p[0] * kWhole[0] + p[1] * kWhole[1] + p[2] * kWhole[2] + 4) >> 3);
     }
-  for (int i = 0; i < kSide * kSide; ++i)
-    out[static_cast<std::size_t>(i)] = blend_down(rows.data() + i, kSide, kWhole);
+  for (int i = 0; i < kSmoothedSide * kSmoothedSide; ++i)
+    out[static_cast<std::size_t>(i)] = blend_down(rows.data() + i, kSmoothedSide, kWhole);
   return out;
 }
 
@@ -94,18 +94,18 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
   // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
   std::int32_t total = 0;
   for (const std::int16_t value : smoothed) total += value;
-  const std::int32_t mean = total / (kSide * kSide);
+  const std::int32_t mean = total / (kSmoothedSide * kSmoothedSide);
   constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
   const auto load = [](const std::int16_t* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); };
   const auto store = [](const Lanes& lanes, std::int16_t* to) { std::memcpy(to, &lanes, sizeof lanes); };
   for (std::size_t y = 0; y < kRows; ++y) {
-    const std::int16_t* row = smoothed.data() + (y + 1) * kSide + 1;
+    const std::int16_t* row = smoothed.data() + (y + 1) * kSmoothedSide + 1;
     Lanes here, left, right, above, below;
     load(row, here);
     load(row - 1, left);
     load(row + 1, right);
-    load(row - kSide, above);
-    load(row + kSide, below);
+    load(row - kSmoothedSide, above);
+    load(row + kSmoothedSide, below);
     const Lanes on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
     const std::size_t first = y * kColumns;
     store(on & (right - left), &t.gx[first]);

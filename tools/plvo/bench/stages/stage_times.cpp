@@ -34,7 +34,7 @@ void fill(Replacement replacement, int index, int width, int height, std::vector
       std::uint8_t& pixel =
           grey[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
       switch (replacement) {
-        case Replacement::kNothing: break;
+        case Replacement::kRecorded: break;
         case Replacement::kNoise: pixel = static_cast<std::uint8_t>(random.below(256)); break;
         case Replacement::kStripes: pixel = stripe ? 200 : 50; break;
         case Replacement::kCheckerboard: pixel = square ? 200 : 50; break;
@@ -64,7 +64,7 @@ Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Re
     if (status.code() == StatusCode::kEndOfStream) return {};
     if (status.code() == StatusCode::kDamaged) continue;
     if (!status.ok()) return status;
-    if (replacement != Replacement::kNothing) {
+    if (replacement != Replacement::kRecorded) {
       fill(replacement, index, limits.width, limits.height, replaced);
       frame.colour = {replaced.data(), limits.width, limits.height, limits.width, PixelFormat::kGray8};
     }

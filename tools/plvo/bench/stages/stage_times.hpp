@@ -14,7 +14,7 @@ namespace plvo::bench {
 
 // What the camera sees instead of the folder's images, for the frames that are hardest on a detector. Depth
 // stays as it is.
-enum class Replacement : std::uint8_t { kNothing, kNoise, kStripes, kCheckerboard };
+enum class Replacement : std::uint8_t { kRecorded, kNoise, kStripes, kCheckerboard };
 
 struct StageTimes {
   std::array<std::vector<double>, kStageCount> stage_ms;  // of each frame but the first

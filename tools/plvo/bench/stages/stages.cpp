@@ -25,7 +25,7 @@ struct StagesOptions {
   std::string folder;
   fs::path out;
   JobOptions measuring;
-  Replacement replacement = Replacement::kNothing;
+  Replacement replacement = Replacement::kRecorded;
   bool instructions = false;
 };
 
@@ -103,7 +103,7 @@ Status run_stages(const StagesOptions& options) {
 }  // namespace
 
 void add_stages(CLI::App& app, int& exit_code) {
-  const std::map<std::string, Replacement> replacements = {{"own", Replacement::kNothing},
+  const std::map<std::string, Replacement> replacements = {{"own", Replacement::kRecorded},
                                                            {"noise", Replacement::kNoise},
                                                            {"stripes", Replacement::kStripes},
                                                            {"checkerboard", Replacement::kCheckerboard}};
