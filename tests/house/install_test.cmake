@@ -65,6 +65,11 @@ if(C_EXAMPLE)
   get_filename_component(library_dir ${pc_dir} DIRECTORY)
   run(python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
     ${include}/plvo/c/sequence.h)
+  execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
+    RESULT_VARIABLE result OUTPUT_VARIABLE said)
+  if(result EQUAL 0 OR NOT said MATCHES "no header has it: plvo_sequence_open")
+    message(FATAL_ERROR "a library that shows more than its header was not caught: ${said}")
+  endif()
   pkg_config(words plvo)
   run(${C_COMPILER} ${flags} -std=c11 ${C_EXAMPLE} ${words} -Wl,-rpath,${library_dir} -o ${WORK}/c_by_pkg_config)
   file(WRITE ${WORK}/c/CMakeLists.txt "cmake_minimum_required(VERSION 3.22)\nproject(consumer C CXX)
