@@ -58,4 +58,8 @@ std::span<const std::string_view> builtin_calibration_names();
 // The size is not written: the images beside it have it.
 std::string calibration_text(const Calibration& calibration);
 
+// The same with a key on each line, `fx: 525`, which reads as text and as YAML; the size too, where it has
+// one.
+std::string calibration_lines(const Calibration& calibration);
+
 }  // namespace plvo

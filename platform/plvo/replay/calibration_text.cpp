@@ -77,4 +77,24 @@ std::string calibration_text(const Calibration& calibration) {
   return text;
 }
 
+std::string calibration_lines(const Calibration& calibration) {
+  Numbers numbers;
+  numbers.calibration = calibration;
+  numbers.width = calibration.camera.width;
+  numbers.height = calibration.camera.height;
+  const bool lens = !calibration.camera.distortion.is_zero();
+  const bool timed = calibration.camera.depth_timing.known;
+  const auto written = [&](const Key& key) {
+    if (key.kind == KeyKind::kSize) return calibration.has_size;
+    if (key.name.starts_with("depth_") && key.name != "depth_scale") return timed;
+    if (key.name == "readout_s") return calibration.readout_given;
+    const bool of_pinhole = key.name == "fx" || key.name == "fy" || key.name == "cx" || key.name == "cy";
+    return key.kind == KeyKind::kSensor || of_pinhole || lens;
+  };
+  std::string text;
+  for (const Key& key : keys())
+    if (written(key)) text += fmt::format("{}: {}\n", key.name, key.of(numbers));
+  return text;
+}
+
 }  // namespace plvo

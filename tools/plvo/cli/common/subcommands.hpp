@@ -10,6 +10,7 @@
 namespace plvo::cli {
 
 void add_run(CLI::App& app, int& exit_code);
+void add_calibrate(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app, int& exit_code);
 void add_live(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);

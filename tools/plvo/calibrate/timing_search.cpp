@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/calibrate/timing_search.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "plvo/calibrate/quadratic_fit.hpp"
+
+namespace plvo::calibrate {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr std::size_t kLeastPairs = 40;
+constexpr double kLeastTurn_rad_per_s = 0.1;
+constexpr std::size_t kRoughPairs = 120;  // are enough for a rough look and for the curves
+constexpr int kMostPasses = 8;
+constexpr double kMost_s = 0.095;  // of any of the three, within what CameraModel::validate allows
+constexpr std::int64_t kPiece_ns = 1'000'000'000;
+
+// The unknowns as one vector: delay, depth readout, readout.
+Vector3 vector_of(const SensorTiming& t) { return {t.depth_delay_s, t.depth_readout_s, t.readout_s}; }
+SensorTiming timing_at(const Vector3& x) { return {x.x(), x.y(), x.z()}; }
+Vector3 bounded(const Vector3& x) {
+  return {std::clamp(x.x(), -kMost_s, kMost_s), std::clamp(x.y(), 0.0, kMost_s),
+          std::clamp(x.z(), 0.0, kMost_s)};
+}
+
+// Ways to change them that hardly disturb each other, with a half-width: the delay; depth's rows against
+// colour's; both readouts together.
+struct Way {
+  Vector3 step;
+};
+std::vector<Way> ways(bool readouts) {
+  std::vector<Way> all = {{Vector3(0.004, 0, 0)}};
+  if (readouts) all.insert(all.end(), {{Vector3(0, 0.008, 0)}, {Vector3(0, 0.006, 0.006)}});
+  return all;
+}
+
+class Search {
+ public:
+  Search(const TimingSearch& task, TimingResult& result) : task_(task), result_(result) {}
+
+  Status run() {
+    x_ = bounded(vector_of(task_.start));
+    for (int pass = 0; pass < kMostPasses && !result_.settled; ++pass) {
+      pass_ = pass;
+      if (Status status = look_again(); !status.ok()) return status;
+      if (pass == 0) rough_search();
+      const Vector3 before = x_;
+      fine_search();
+      if (stopped_) return {StatusCode::kEndOfStream, "interrupted"};
+      result_.passes.push_back(timing_at(x_));
+      result_.settled = pass > 0 && is_small(x_ - before);
+    }
+    result_.timing = timing_at(x_);
+    draw_curves();
+    return stopped_ ? Status(StatusCode::kEndOfStream, "interrupted") : Status();
+  }
+
+ private:
+  // Less than matters, or than the recordings can tell.
+  bool is_small(const Vector3& change) const {
+    constexpr std::array<double, 3> kMatters_s = {0.0003, 0.001, 0.001};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (std::abs(change(static_cast<int>(i))) > kMatters_s[i] + 0.5 * result_.sigma_s[i]) return false;
+    return true;
+  }
+
+  Status look_again() {
+    recordings_.clear();
+    if (Status status = task_.track(timing_at(x_), recordings_); !status.ok()) return status;
+    result_.frames = result_.pairs = 0;
+    double turn = 0;
+    std::size_t turns = 0;
+    for (const TrackedRecording& recording : recordings_) {
+      result_.frames += recording.frames.size();
+      result_.pairs += recording.pairs.size();
+      for (const FramePair& pair : recording.pairs) {
+        turn += recording.frames[pair.current].velocity.tail<3>().squaredNorm();
+        ++turns;
+      }
+    }
+    result_.turn_rad_per_s = turns > 0 ? std::sqrt(turn / static_cast<double>(turns)) : 0;
+    if (result_.pairs < kLeastPairs)
+      return Status(
+          StatusCode::kTooFewFeatures,
+          fmt::format("only {} of {} frames could be tracked, {} are the least; record 10 s or more of a "
+                      "textured scene 1 to 3 m away",
+                      result_.pairs, result_.frames, kLeastPairs));
+    if (result_.turn_rad_per_s < kLeastTurn_rad_per_s)
+      return Status(
+          StatusCode::kDegenerate,
+          fmt::format("the camera hardly turns ({:.1f} deg/s), so its timing does not show; turn the camera: "
+                      "left and right, up and down, about its axis, 20 to 60 deg/s, all the while",
+                      result_.turn_rad_per_s * 57.29578));
+    return {};
+  }
+
+  // The costs of each pair; empty once the search was stopped.
+  std::vector<double> costs_at(const Vector3& x, std::size_t step, const char* what) {
+    if (stopped_) return {};
+    stopped_ = !task_.on_progress(
+        fmt::format("pass {}: {}, delay {:+.1f} ms, depth readout {:.1f} ms, readout {:.1f} ms", pass_ + 1,
+                    what, 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z()));
+    if (stopped_) return {};
+    return disagreement(recordings_, timing_at(x), step, task_.threads);
+  }
+  double cost_at(const Vector3& x, std::size_t step, const char* what) {
+    const std::vector<double> costs = costs_at(x, step, what);
+    return std::accumulate(costs.begin(), costs.end(), 0.0);
+  }
+  std::size_t rough_step() const { return std::max<std::size_t>(1, result_.pairs / kRoughPairs); }
+
+  // The best of x_ + k step, k = −reach … reach.
+  void rough_line(const Vector3& step, int reach) {
+    const Vector3 centre = x_;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = -reach; k <= reach && !stopped_; ++k) {
+      const Vector3 x = bounded(centre + k * step);
+      const double cost = cost_at(x, rough_step(), "rough search");
+      if (cost < least) {
+        least = cost;
+        x_ = x;
+      }
+    }
+  }
+
+  void rough_search() {
+    rough_line(Vector3(0.010, 0, 0), 5);
+    if (task_.find_readouts) {
+      rough_line(Vector3(0, 0.008, 0.008), 4);
+      rough_line(Vector3(0, 0.010, 0), 3);
+    }
+    rough_line(Vector3(0.004, 0, 0), 3);
+  }
+
+  // Which second of which recording each pair belongs to, as a running number.
+  std::vector<Eigen::Index> pieces() const {
+    std::vector<Eigen::Index> piece;
+    Eigen::Index number = -1;
+    for (const TrackedRecording& recording : recordings_) {
+      std::int64_t second = -1;
+      for (const FramePair& pair : recording.pairs) {
+        const std::int64_t now =
+            (recording.frames[pair.current].stamp_ns - recording.frames.front().stamp_ns) / kPiece_ns;
+        if (now != second) ++number;
+        second = now;
+        piece.push_back(number);
+      }
+    }
+    return piece;
+  }
+
+  void fine_search() {
+    const std::vector<Way> directions = ways(task_.find_readouts);
+    const auto n = static_cast<Eigen::Index>(directions.size());
+    MatrixXd steps(3, n);
+    for (Eigen::Index i = 0; i < n; ++i) steps.col(i) = directions[static_cast<std::size_t>(i)].step;
+    const MatrixXd design = quadratic_design(static_cast<int>(n));
+    const std::vector<Eigen::Index> piece = pieces();
+    // A readout below zero would be a global shutter again: the places keep clear of it.
+    Vector3 centre = x_;
+    if (task_.find_readouts) centre.z() = std::max(centre.z(), directions.back().step.z());
+    MatrixXd costs = MatrixXd::Zero(piece.back() + 1, design.rows());
+    for (Eigen::Index place = 0; place < design.rows(); ++place) {
+      const std::vector<double> sums =
+          costs_at(centre + steps * design.row(place).transpose(), 1, "fine search");
+      if (stopped_) return;
+      for (std::size_t i = 0; i < sums.size(); ++i) costs(piece[i], place) += sums[i];
+    }
+    const QuadraticMinimum minimum = fit_quadratic(design, costs);
+    x_ = bounded(centre + steps * minimum.place);
+    const MatrixXd covariance = steps * minimum.covariance * steps.transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const bool sought = i == 0 || task_.find_readouts;
+      const double sigma = minimum.convex && minimum.covariance.allFinite()
+                               ? std::sqrt(covariance(i, i))
+                               : std::numeric_limits<double>::infinity();
+      result_.sigma_s[static_cast<std::size_t>(i)] = sought ? sigma : 0;
+    }
+  }
+
+  void draw_curves() {
+    constexpr int kReach = 5;
+    constexpr double kStep_s = 0.005;
+    std::size_t matches = 0, number = 0;
+    for (const TrackedRecording& recording : recordings_)
+      for (const FramePair& pair : recording.pairs)
+        if (number++ % rough_step() == 0) matches += pair.points.size() + pair.lines.size();
+    for (int i = 0; i < 3; ++i) {
+      for (int k = -kReach; k <= kReach && !stopped_; ++k) {
+        Vector3 x = x_;
+        x(i) += k * kStep_s;
+        if (bounded(x) != x) continue;
+        result_.curves[static_cast<std::size_t>(i)].push_back(
+            {x(i),
+             cost_at(x, rough_step(), "curves") / static_cast<double>(std::max<std::size_t>(1, matches))});
+      }
+    }
+  }
+
+  const TimingSearch& task_;
+  TimingResult& result_;
+  std::vector<TrackedRecording> recordings_;
+  Vector3 x_ = Vector3::Zero();
+  int pass_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+Status find_timing(const TimingSearch& search, TimingResult& result) {
+  result = {};
+  return Search(search, result).run();
+}
+
+}  // namespace plvo::calibrate

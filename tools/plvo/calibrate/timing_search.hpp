@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the timing of a sensor at which its recordings agree best (agreement.hpp). Which matches there are
+// depends a little on the timing that the odometry found them with, so the recordings are tracked again with
+// what was found, until it stays.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "plvo/base/status.hpp"
+#include "plvo/calibrate/agreement.hpp"
+#include "plvo/math/types.hpp"
+
+namespace plvo::calibrate {
+
+struct CurvePoint {
+  double seconds = 0;
+  double disagreement = 0;  // mean of all matches: 3 to 4 where the model is right, 30 where nothing fits
+};
+
+struct TimingResult {
+  SensorTiming timing;
+  // SD of depth_delay_s, depth_readout_s and readout_s, in this order; 0 where it was not looked for,
+  // infinite where the recordings do not tell.
+  std::array<double, 3> sigma_s{};
+  std::array<std::vector<CurvePoint>, 3> curves;  // each along one of them, the others as found
+  std::vector<SensorTiming> passes;               // what each pass over the recordings ended with
+  bool settled = false;                           // the last pass changed little
+  std::size_t frames = 0, pairs = 0;
+  double turn_rad_per_s = 0;  // RMS
+};
+
+struct TimingSearch {
+  // Tracks the recordings anew with this timing.
+  std::function<Status(const SensorTiming&, std::vector<TrackedRecording>&)> track;
+  // Called often, with what is being done; false ends the search (kEndOfStream).
+  std::function<bool(const std::string&)> on_progress;
+  SensorTiming start;
+  bool find_readouts = true;  // false: the start's are kept
+  int threads = 1;
+};
+
+// kTooFewFeatures where too little was tracked, kDegenerate where the camera hardly turns: both say what to
+// record instead.
+Status find_timing(const TimingSearch& search, TimingResult& result);
+
+}  // namespace plvo::calibrate

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo calibrate: when a sensor exposes depth and colour, from recordings made with it.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "plvo/calibrate/timing_report.hpp"
+#include "plvo/calibrate/timing_search.hpp"
+#include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/camera_options.hpp"
+#include "plvo/cli/common/console.hpp"
+#include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/common/interrupt.hpp"
+#include "plvo/cli/common/result_output.hpp"
+#include "plvo/cli/common/standard_streams.hpp"
+#include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/live/live_camera.hpp"
+#include "plvo/host/line_file.hpp"
+
+namespace plvo::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "Record about half a minute by hand, turning the camera all the while: left and right, up and down,\n"
+    "about its axis, 20 to 60 degrees per second, in a furnished room with light. No target is needed.\n"
+    "The unit of depth is not found: depths that are all 1 % too long look like a room 1 % larger.\n"
+    "Each of the frames that are used takes 0.6 MB at 640x480.\n"
+    "\n"
+    "Examples:\n"
+    "  plvo record turns && plvo calibrate turns --out camera.yaml\n"
+    "  plvo run walk --calibration camera.yaml              and so for live and record\n";
+
+struct CalibrateOptions {
+  std::vector<std::string> recordings;
+  CalibrationOptions calibration;
+  std::string out, report, json;
+  std::size_t frames = 300;
+  bool find_readouts = true;
+  int threads = 2;
+  bool quiet = false;
+};
+
+// The cameras are opened once for each pass; what they have to say is said once.
+class FirstPassLog final : public Log {
+ public:
+  explicit FirstPassLog(Log& log) : log_(log) {}
+  void write(LogLevel level, std::string_view message) override {
+    // What is not known is what is being looked for, but for the unit of depth.
+    if (said_ || message.find("readout") != std::string_view::npos) return;
+    log_.write(level, message);
+  }
+  void end_of_pass() { said_ = true; }
+
+ private:
+  Log& log_;
+  bool said_ = false;
+};
+
+class Calibrate {
+ public:
+  explicit Calibrate(const CalibrateOptions& options)
+      : options_(options), console_(options.quiet), log_(console_) {}
+
+  int execute() {
+    for (const std::string& file : {options_.out, options_.report, options_.json})
+      if (!file.empty())
+        if (Status status = LineFile::check(file); !status.ok()) return fail(status);
+    catch_interrupt();
+    if (Status status = find_start(); !status.ok()) return fail(status);
+    calibrate::TimingSearch search;
+    search.start = calibrate::timing_of(calibration_.camera);
+    search.find_readouts = options_.find_readouts;
+    search.threads = options_.threads;
+    search.on_progress = [this](const std::string& line) {
+      if (console_.wants_line()) console_.show_line(line);
+      return !interrupted();
+    };
+    search.track = [this](const calibrate::SensorTiming& timing,
+                          std::vector<calibrate::TrackedRecording>& recordings) {
+      return track(timing, recordings);
+    };
+    const Status found = calibrate::find_timing(search, result_);
+    console_.clear();
+    if (!found.ok()) return fail(found);
+    return finish();
+  }
+
+ private:
+  Status open(const std::string& recording, OpenedCamera& opened) {
+    CameraOptions camera;
+    camera.sequence = recording;
+    camera.calibration = options_.calibration;
+    return open_camera(camera, log_, opened);
+  }
+
+  // The lens, and what is known beforehand, are those of the first recording; the others must have its size.
+  Status find_start() {
+    for (const std::string& recording : options_.recordings) {
+      OpenedCamera opened;
+      if (Status status = open(recording, opened); !status.ok()) return status;
+      const CameraModel model = opened.camera->model();
+      if (names_.empty()) calibration_.camera = model;
+      if (model.width != calibration_.camera.width || model.height != calibration_.camera.height)
+        return Status(StatusCode::kInvalidArgument,
+                      fmt::format("{} has images of another size than {}; calibrate them one by one",
+                                  recording, options_.recordings.front()));
+      names_.push_back(opened.name);
+    }
+    log_.end_of_pass();
+    calibration_.has_size = true;
+    calibration_.readout_given = calibration_.depth_scale_given = true;
+    return {};
+  }
+
+  Status track(const calibrate::SensorTiming& timing, std::vector<calibrate::TrackedRecording>& recordings) {
+    const std::size_t share = std::max<std::size_t>(1, options_.frames / options_.recordings.size());
+    for (const std::string& recording : options_.recordings) {
+      OpenedCamera opened;
+      if (Status status = open(recording, opened); !status.ok()) return status;
+      recordings.emplace_back();
+      std::size_t number = 0;
+      const auto on_frame = [&] {
+        if (console_.wants_line())
+          console_.show_line(fmt::format("{}: tracking frame {}", opened.name, ++number));
+        return !interrupted();
+      };
+      const CameraModel camera = calibrate::with_timing(calibration_.camera, timing);
+      if (Status status =
+              calibrate::track_recording(*opened.camera, camera, share, on_frame, recordings.back());
+          !status.ok())
+        return status;
+      // Units a metre, as files say it; more digits than those are the division's.
+      if (recordings.back().metres_per_unit > 0)
+        calibration_.depth_units_per_metre = std::round(1e6 / recordings.back().metres_per_unit) * 1e-6;
+    }
+    return {};
+  }
+
+  int finish() {
+    if (!calibrate::is_told(result_, 0))
+      return fail(
+          "these recordings do not tell when depth is exposed; record half a minute in a furnished room with "
+          "light, "
+          "turning the camera all the while: left and right, up and down, 20 to 60 deg/s");
+    calibrate::SensorTiming timing = result_.timing;
+    const calibrate::SensorTiming start = calibrate::timing_of(calibration_.camera);
+    if (!calibrate::is_told(result_, 1)) timing.depth_readout_s = start.depth_readout_s;
+    if (!calibrate::is_told(result_, 2)) timing.readout_s = start.readout_s;
+    result_.timing = timing;
+    if (!result_.settled)
+      console_.write(LogLevel::kWarning, "the last pass still changed the result; more frames help");
+    calibration_.camera = calibrate::with_timing(calibration_.camera, timing);
+    Status status = write_calibration();
+    if (status.ok() && !options_.report.empty()) {
+      LineFile page;
+      status = page.open(options_.report, calibrate::to_html(result_, names_));
+    }
+    if (status.ok() && !(options_.quiet && options_.json.empty()))
+      status = write_result(options_.json, calibrate::to_json(result_),
+                            [this] { return options_.quiet ? std::string() : calibrate::to_text(result_); });
+    return status.ok() ? kExitSuccess : fail(status);
+  }
+
+  Status write_calibration() {
+    std::string text = "# Made by plvo calibrate from";
+    for (const std::string& name : names_) text += ' ' + name;
+    text += '\n';
+    for (std::size_t i = 0; i < 3; ++i)
+      if (calibrate::is_told(result_, i) && result_.sigma_s[i] > 0)
+        text += fmt::format("# {}: SD {:.5f} s\n", calibrate::kTimingNames[i].key, result_.sigma_s[i]);
+    // Numbers of a thousandth of a millisecond say all there is to say.
+    DepthTiming& depth = calibration_.camera.depth_timing;
+    for (double* seconds : {&depth.delay_s, &depth.readout_s, &calibration_.camera.readout_s})
+      *seconds = std::round(*seconds * 1e6) * 1e-6;
+    text += calibration_lines(calibration_);
+    text.pop_back();  // the file adds it
+    LineFile file;
+    return file.open(options_.out, text);
+  }
+
+  CalibrateOptions options_;
+  Console console_;
+  FirstPassLog log_;
+  Calibration calibration_;
+  std::vector<std::string> names_;
+  calibrate::TimingResult result_;
+};
+
+void check(const CLI::App& command, const CalibrateOptions& options) {
+  check_calibration_options(command);
+  FileRoles files;
+  files.writes("--out", options.out);
+  files.writes("--report", options.report);
+  files.writes("--json", options.json);
+  for (const std::string& recording : options.recordings) {
+    if (is_oni_file(recording))
+      refuse_options(command, {"--depth-scale"},
+                     "does not apply to an .oni file, which has units of its own");
+    CameraOptions camera;
+    camera.sequence = recording;
+    camera.calibration = options.calibration;
+    add_inputs(camera, files);
+  }
+  files.check();
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CalibrateOptions>();
+  CLI::App& command = add_command(app, "calibrate", "Find when a sensor exposes depth and colour", kHelp);
+  OptionGroup group(command);
+  CLI::Option* recordings = group.add("recordings", "DIR|FILE.oni",
+                                      "Recordings of one sensor: folders in the TUM layout, or .oni files",
+                                      [options](const std::string& text) -> std::string {
+                                        options->recordings.push_back(text);
+                                        return text.empty() ? "expected a path, not an empty word" : "";
+                                      });
+  require(recordings);
+  takes_values(recordings, 1, 64);
+  require(group.path("--out", options->out,
+                     "The calibration with what was found, for --calibration; - is standard output"));
+  group.path("--report", options->report, "A page with the curves: one HTML file, no network");
+  group.choice("--find", options->find_readouts, Choices<bool>{{"all", true}, {"delay", false}},
+               "delay: the readouts are taken from the calibration (default all)");
+  group.whole("--frames", options->frames, 60, 5000,
+              "At most so many frames of all recordings (default 300)");
+  group.whole("--threads", options->threads, 1, 256,
+              "Threads; the result does not depend on them (default 2)");
+  group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  add_calibration_options(command, options->calibration, DepthScale::kAsked, "calibration.txt in the folder");
+  add_json_option(command, options->json);
+  on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return Calibrate(*options).execute();
+  });
+}
+
+}  // namespace plvo::cli
