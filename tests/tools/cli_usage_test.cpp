@@ -77,8 +77,9 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
 }
 
 TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
-  expect_usage("",
-               "a command is needed: run, live, record, eval, simulate, doctor or tilt (see plvo --help)");
+  expect_usage(
+      "",
+      "a command is needed: run, live, record, calibrate, eval, simulate, doctor or tilt (see plvo --help)");
   expect_usage("rnu x", "there is no command 'rnu'");
   expect_usage("recrod x", "there is no command 'recrod'; did you mean record?");
   expect_usage("x --out y", "there is no command 'x'; choose run, live,");
@@ -95,6 +96,12 @@ TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
 
 TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run", "a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
+  expect_usage("calibrate", "recordings is required");
+  expect_usage("calibrate x", "--out is required");
+  expect_usage("calibrate x --out y --find scale", "--find: expected all or delay, not 'scale'");
+  expect_usage("calibrate x --out y --frames 10", "--frames: expected a whole number from 60 to 5000");
+  expect_usage("calibrate x.oni --out y --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
+  expect_usage("calibrate x --out y --report y", "--report: y is already written by --out");
   expect_usage("run x --camera sim", "exclude each other");
   expect_usage("run x --scene hall", "--scene: is for the simulated camera");
   expect_usage("run x --clean", "--clean: is for the simulated camera");

@@ -30,13 +30,12 @@ struct Features {
 class Observer {
  public:
   Observer(const TrackedRecording& recording, const TrackedFrame& frame, const CameraModel& camera,
-           const UndistortionTable& table, double depth_factor)
+           const UndistortionTable& table)
       : camera_(camera),
         exposure_(
             camera, frame.velocity,
             static_cast<double>(frame.depth_stamp_ns - frame.stamp_ns) * 1e-9 + camera.depth_timing.delay_s),
-        depth_({frame.depth.data(), camera.width, camera.height, camera.width,
-                recording.metres_per_unit * depth_factor},
+        depth_({frame.depth.data(), camera.width, camera.height, camera.width, recording.metres_per_unit},
                table, config().depth_noise, exposure_) {}
 
   bool point(const Vector2& pixel, double sigma_px, Point3d& point) const {
@@ -97,11 +96,11 @@ class PairJudge {
   }
 
   double operator()(const TrackedRecording& recording, const FramePair& pair, const CameraModel& camera,
-                    const UndistortionTable& table, double depth_factor) {
+                    const UndistortionTable& table) {
     const TrackedFrame& reference_frame = recording.frames[pair.reference];
     const TrackedFrame& current_frame = recording.frames[pair.current];
-    const Observer reference(recording, reference_frame, camera, table, depth_factor);
-    const Observer current(recording, current_frame, camera, table, depth_factor);
+    const Observer reference(recording, reference_frame, camera, table);
+    const Observer current(recording, current_frame, camera, table);
     Features from, to;
     lift(pair, reference_frame, current_frame, reference, current, from, to);
 
@@ -171,7 +170,7 @@ CameraModel with_timing(const CameraModel& camera, const SensorTiming& timing) {
 }
 
 std::vector<double> disagreement(std::span<const TrackedRecording> recordings, const SensorTiming& timing,
-                                 std::size_t step, int threads, double depth_factor) {
+                                 std::size_t step, int threads) {
   std::vector<Job> jobs;
   std::vector<CameraModel> cameras;
   std::vector<UndistortionTable> tables(recordings.size());
@@ -196,7 +195,7 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
   const auto work = [&](std::size_t first) {
     PairJudge judge(most);
     for (std::size_t i = first; i < jobs.size(); i += static_cast<std::size_t>(threads))
-      sums[i] = judge(*jobs[i].recording, *jobs[i].pair, *jobs[i].camera, *jobs[i].table, depth_factor);
+      sums[i] = judge(*jobs[i].recording, *jobs[i].pair, *jobs[i].camera, *jobs[i].table);
   };
   std::vector<std::thread> others;
   for (int t = 1; t < threads; ++t) others.emplace_back(work, static_cast<std::size_t>(t));

@@ -22,8 +22,8 @@ SensorTiming timing_of(const CameraModel& camera);
 CameraModel with_timing(const CameraModel& camera, const SensorTiming& timing);
 
 // The disagreement of every step-th pair, starting with the first, recording after recording. threads ≥ 1;
-// the sums do not depend on it. depth_factor: on all depths.
+// the sums do not depend on it.
 std::vector<double> disagreement(std::span<const TrackedRecording> recordings, const SensorTiming& timing,
-                                 std::size_t step, int threads, double depth_factor = 1);
+                                 std::size_t step, int threads);
 
 }  // namespace plvo::calibrate

@@ -51,14 +51,16 @@ MatrixXd quadratic_design(int unknowns) {
     design << -1, -0.5, 0, 0.5, 1;
     return design;
   }
-  MatrixXd design = MatrixXd::Zero(15, 3);
-  for (Eigen::Index i = 0; i < 3; ++i) {
+  const int corners = 1 << unknowns;
+  MatrixXd design = MatrixXd::Zero(1 + 2 * unknowns + corners, unknowns);
+  for (int i = 0; i < unknowns; ++i) {
     design(1 + 2 * i, i) = 1;
     design(2 + 2 * i, i) = -1;
   }
   constexpr double kCorner = 0.6;
-  for (int corner = 0; corner < 8; ++corner)
-    for (int i = 0; i < 3; ++i) design(7 + corner, i) = (corner >> i & 1) != 0 ? kCorner : -kCorner;
+  for (int corner = 0; corner < corners; ++corner)
+    for (int i = 0; i < unknowns; ++i)
+      design(1 + 2 * unknowns + corner, i) = (corner >> i & 1) != 0 ? kCorner : -kCorner;
   return design;
 }
 

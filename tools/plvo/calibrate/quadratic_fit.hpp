@@ -11,7 +11,7 @@
 
 namespace plvo::calibrate {
 
-// Where to measure, for one or for three unknowns: rows are places, in units of the half-width, within ±1.
+// Where to measure, for one, two or three unknowns: rows are places, in units of the half-width, within ±1.
 Eigen::MatrixXd quadratic_design(int unknowns);
 
 struct QuadraticMinimum {

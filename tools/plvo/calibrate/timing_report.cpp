@@ -18,6 +18,7 @@ constexpr double kWidth = 420, kHeight = 240, kLeft = 48, kRight = 12, kTop = 12
 
 std::string found_text(const TimingResult& result, std::size_t i) {
   const double value_ms = kMs * value_of(result.timing, i);
+  if (i == 2 && result.global_shutter) return "0: a global shutter agrees best";
   if (result.sigma_s[i] == 0) return fmt::format("{:.1f} ms, as given", value_ms);
   if (!is_told(result, i)) return "not told by these recordings; left as it was";
   return fmt::format("{:.2f} ms, SD {:.2f} ms", value_ms, kMs * result.sigma_s[i]);
@@ -118,6 +119,7 @@ nlohmann::ordered_json to_json(const TimingResult& result) {
   nlohmann::ordered_json json = {{"frames", result.frames},
                                  {"pairs", result.pairs},
                                  {"settled", result.settled},
+                                 {"global_shutter", result.global_shutter},
                                  {"turn_deg_per_s", kDegrees * result.turn_rad_per_s}};
   for (std::size_t i = 0; i < 3; ++i) {
     nlohmann::ordered_json entry = {{"value", value_of(result.timing, i)}, {"told", is_told(result, i)}};

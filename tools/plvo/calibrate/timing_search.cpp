@@ -30,15 +30,12 @@ Vector3 bounded(const Vector3& x) {
           std::clamp(x.z(), 0.0, kMost_s)};
 }
 
-// Ways to change them that hardly disturb each other, with a half-width: the delay; depth's rows against
-// colour's; both readouts together.
-struct Way {
-  Vector3 step;
-};
-std::vector<Way> ways(bool readouts) {
-  std::vector<Way> all = {{Vector3(0.004, 0, 0)}};
-  if (readouts) all.insert(all.end(), {{Vector3(0, 0.008, 0)}, {Vector3(0, 0.006, 0.006)}});
-  return all;
+// Ways to change them that hardly disturb each other, one a column, each a half-width: the delay; depth's
+// rows against colour's; both readouts together, unless colour has none.
+MatrixXd ways(bool readouts, bool global_shutter) {
+  MatrixXd steps(3, 3);
+  steps << 0.004, 0, 0, 0, 0.008, 0.006, 0, 0, 0.006;
+  return steps.leftCols(!readouts ? 1 : global_shutter ? 2 : 3);
 }
 
 class Search {
@@ -66,8 +63,11 @@ class Search {
   // Less than matters, or than the recordings can tell.
   bool is_small(const Vector3& change) const {
     constexpr std::array<double, 3> kMatters_s = {0.0003, 0.001, 0.001};
-    for (std::size_t i = 0; i < 3; ++i)
-      if (std::abs(change(static_cast<int>(i))) > kMatters_s[i] + 0.5 * result_.sigma_s[i]) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double sigma_s = result_.sigma_s[i];
+      if (!std::isfinite(sigma_s) || std::abs(change(static_cast<int>(i))) > kMatters_s[i] + 0.5 * sigma_s)
+        return false;
+    }
     return true;
   }
 
@@ -156,16 +156,25 @@ class Search {
     return piece;
   }
 
+  // Below a readout of 0 there is nothing to fit a surface to.
+  void look_for_global_shutter() {
+    constexpr double kLittle_s = 0.005;
+    result_.global_shutter = false;
+    if (!task_.find_readouts || x_.z() >= kLittle_s) return;
+    const Vector3 none(x_.x(), x_.y(), 0), some(x_.x(), x_.y(), kLittle_s);
+    result_.global_shutter = cost_at(none, 1, "global shutter") < cost_at(some, 1, "rolling shutter");
+    if (result_.global_shutter) x_ = none;
+  }
+
   void fine_search() {
-    const std::vector<Way> directions = ways(task_.find_readouts);
-    const auto n = static_cast<Eigen::Index>(directions.size());
-    MatrixXd steps(3, n);
-    for (Eigen::Index i = 0; i < n; ++i) steps.col(i) = directions[static_cast<std::size_t>(i)].step;
+    look_for_global_shutter();
+    const MatrixXd steps = ways(task_.find_readouts, result_.global_shutter);
+    const Eigen::Index n = steps.cols();
     const MatrixXd design = quadratic_design(static_cast<int>(n));
     const std::vector<Eigen::Index> piece = pieces();
     // A readout below zero would be a global shutter again: the places keep clear of it.
     Vector3 centre = x_;
-    if (task_.find_readouts) centre.z() = std::max(centre.z(), directions.back().step.z());
+    centre.z() = std::max(centre.z(), steps.row(2).sum());
     MatrixXd costs = MatrixXd::Zero(piece.back() + 1, design.rows());
     for (Eigen::Index place = 0; place < design.rows(); ++place) {
       const std::vector<double> sums =
@@ -177,7 +186,7 @@ class Search {
     x_ = bounded(centre + steps * minimum.place);
     const MatrixXd covariance = steps * minimum.covariance * steps.transpose();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const bool sought = i == 0 || task_.find_readouts;
+      const bool sought = i == 0 || (task_.find_readouts && !(i == 2 && result_.global_shutter));
       const double sigma = minimum.convex && minimum.covariance.allFinite()
                                ? std::sqrt(covariance(i, i))
                                : std::numeric_limits<double>::infinity();

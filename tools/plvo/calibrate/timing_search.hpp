@@ -22,8 +22,10 @@ struct CurvePoint {
 
 struct TimingResult {
   SensorTiming timing;
-  // SD of depth_delay_s, depth_readout_s and readout_s, in this order; 0 where it was not looked for,
-  // infinite where the recordings do not tell.
+  // No readout of colour above 0 agrees better: all its rows are exposed at once.
+  bool global_shutter = false;
+  // SD of depth_delay_s, depth_readout_s and readout_s, in this order; 0 where it was not looked for
+  // or has none (a global shutter), infinite where the recordings do not tell.
   std::array<double, 3> sigma_s{};
   std::array<std::vector<CurvePoint>, 3> curves;  // each along one of them, the others as found
   std::vector<SensorTiming> passes;               // what each pass over the recordings ended with

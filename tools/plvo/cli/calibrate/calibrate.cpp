@@ -135,7 +135,7 @@ class Calibrate {
         return status;
       // Units a metre, as files say it; more digits than those are the division's.
       if (recordings.back().metres_per_unit > 0)
-        calibration_.depth_units_per_metre = std::round(1e6 / recordings.back().metres_per_unit) * 1e-6;
+        calibration_.depth_units_per_metre = std::round(1e6 / recordings.back().metres_per_unit) / 1e6;
     }
     return {};
   }
@@ -175,7 +175,7 @@ class Calibrate {
     // Numbers of a thousandth of a millisecond say all there is to say.
     DepthTiming& depth = calibration_.camera.depth_timing;
     for (double* seconds : {&depth.delay_s, &depth.readout_s, &calibration_.camera.readout_s})
-      *seconds = std::round(*seconds * 1e6) * 1e-6;
+      *seconds = std::round(*seconds * 1e6) / 1e6;
     text += calibration_lines(calibration_);
     text.pop_back();  // the file adds it
     LineFile file;
