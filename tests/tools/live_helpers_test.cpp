@@ -65,6 +65,7 @@ CaptureFacts good_capture() {
   facts.counters.frames = 90;
   facts.mean_brightness = 100;
   facts.depth_share = 0.7;
+  facts.depth_time_known = true;
   return facts;
 }
 std::string code_of(const CaptureFacts& facts) {
@@ -89,6 +90,17 @@ TEST(DoctorCapture, EachTroubleHasItsName) {
   facts.opened = {StatusCode::kBusy, "busy"};
   EXPECT_EQ(code_of(facts), "not_opened");
   EXPECT_TRUE(judge(CaptureFacts()).empty()) << "nothing was tried";
+}
+
+TEST(DoctorCapture, SuggestsToCalibrateWhereTheTimeOfDepthIsNotKnown) {
+  CaptureFacts facts = good_capture();
+  facts.depth_time_known = false;
+  const auto findings = judge(facts);
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].code, "capture_good");
+  EXPECT_EQ(findings[1].code, "depth_time_unknown");
+  EXPECT_EQ(findings[1].severity, Severity::kNote);
+  EXPECT_NE(findings[1].remedy.find("plvo calibrate"), std::string::npos);
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ CaptureFacts capture(const LiveCameraOptions& options, double seconds) {
   if (!facts.opened.ok()) return facts;
   facts.name = camera->name();
   facts.registered_by_device = camera->registered_by_device();
+  facts.depth_time_known = camera->model().depth_timing.known;
   facts.mode.width = camera->model().width;
   facts.mode.height = camera->model().height;
   if (VideoMode asked; parse_video_mode(options.mode, asked)) facts.mode.fps = asked.fps;
@@ -117,8 +118,15 @@ std::vector<CaptureFinding> judge(const CaptureFacts& facts) {
     problem("no_depth", fmt::format("Only {:.0f} % of the pixels have depth.", 100 * facts.depth_share),
             "Uncover the infrared projector, keep 0.5 to 4 m of distance, and stay out of direct sunlight.");
   }
-  if (out.empty())
-    out.push_back({Severity::kGood, "capture_good", "The test capture is good: plvo live will work.", ""});
+  if (!out.empty()) return out;
+  out.push_back({Severity::kGood, "capture_good", "The test capture is good: plvo live will work.", ""});
+  if (!facts.depth_time_known) {
+    out.push_back(
+        {Severity::kNote, "depth_time_unknown",
+         "When this sensor exposes depth is not known; it is taken as exposed with colour.",
+         "plvo record turns --seconds 30, turning the camera to and fro by hand; then plvo calibrate turns "
+         "--out camera.yaml, and --calibration camera.yaml from then on."});
+  }
   return out;
 }
 

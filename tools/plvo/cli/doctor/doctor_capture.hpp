@@ -19,6 +19,7 @@ struct CaptureFacts {
   VideoMode mode;
   double seconds = 0;
   bool registered_by_device = false;
+  bool depth_time_known = false;      // the calibration in force says when depth is exposed
   std::vector<std::string> warnings;  // what the camera said itself
   double mean_brightness = 0;         // of the last colour image, 0 … 255
   double depth_share = 0;             // of the last depth image's pixels, those with depth
