@@ -115,9 +115,9 @@ class Film final : public RgbdCamera {
 SimulatorOptions small_desk() {
   SimulatorOptions options;
   options.scene = SceneName::kDesk;
-  options.camera.width = 160;
-  options.camera.height = 120;
-  options.camera.pinhole = {131.25, 131.25, 79.5, 59.5};
+  options.camera.width = 320;
+  options.camera.height = 240;
+  options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
   return options;
 }
 

@@ -30,13 +30,13 @@ struct Features {
 class Observer {
  public:
   Observer(const TrackedRecording& recording, const TrackedFrame& frame, const CameraModel& camera,
-           const UndistortionTable& table)
+           const UndistortionMap& map)
       : camera_(camera),
         exposure_(
             camera, frame.velocity,
             static_cast<double>(frame.depth_stamp_ns - frame.stamp_ns) * 1e-9 + camera.depth_timing.delay_s),
         depth_({frame.depth.data(), camera.width, camera.height, camera.width, recording.metres_per_unit},
-               table, config().depth_noise, exposure_) {}
+               map, config().depth_noise, exposure_) {}
 
   bool point(const Vector2& pixel, double sigma_px, Point3d& point) const {
     const DepthSample depth = depth_.sample(pixel.x(), pixel.y(), config().points.depth_reach_px);
@@ -96,11 +96,11 @@ class PairJudge {
   }
 
   double operator()(const TrackedRecording& recording, const FramePair& pair, const CameraModel& camera,
-                    const UndistortionTable& table) {
+                    const UndistortionMap& map) {
     const TrackedFrame& reference_frame = recording.frames[pair.reference];
     const TrackedFrame& current_frame = recording.frames[pair.current];
-    const Observer reference(recording, reference_frame, camera, table);
-    const Observer current(recording, current_frame, camera, table);
+    const Observer reference(recording, reference_frame, camera, map);
+    const Observer current(recording, current_frame, camera, map);
     Features from, to;
     lift(pair, reference_frame, current_frame, reference, current, from, to);
 
@@ -153,7 +153,7 @@ struct Job {
   const TrackedRecording* recording;
   const FramePair* pair;
   const CameraModel* camera;
-  const UndistortionTable* table;
+  const UndistortionMap* map;
 };
 
 }  // namespace
@@ -173,7 +173,7 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
                                  std::size_t step, int threads) {
   std::vector<Job> jobs;
   std::vector<CameraModel> cameras;
-  std::vector<UndistortionTable> tables(recordings.size());
+  std::vector<UndistortionMap> maps(recordings.size());
   std::vector<std::vector<std::byte>> blocks;
   cameras.reserve(recordings.size());
   std::size_t most = 0, number = 0;
@@ -184,18 +184,18 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
                             static_cast<std::size_t>(recording.camera.height) * 4 +
                         2 * kArenaAlignment);
     Arena arena(blocks.back());
-    tables[r].carve(arena, recording.camera.width, recording.camera.height);
-    tables[r].init(recording.camera);
+    maps[r].carve(arena, recording.camera.width, recording.camera.height);
+    maps[r].init(recording.camera);
     for (const FramePair& pair : recording.pairs) {
       most = std::max({most, pair.points.size(), pair.lines.size()});
-      if (number++ % step == 0) jobs.push_back({&recording, &pair, &cameras[r], &tables[r]});
+      if (number++ % step == 0) jobs.push_back({&recording, &pair, &cameras[r], &maps[r]});
     }
   }
   std::vector<double> sums(jobs.size());
   const auto work = [&](std::size_t first) {
     PairJudge judge(most);
     for (std::size_t i = first; i < jobs.size(); i += static_cast<std::size_t>(threads))
-      sums[i] = judge(*jobs[i].recording, *jobs[i].pair, *jobs[i].camera, *jobs[i].table);
+      sums[i] = judge(*jobs[i].recording, *jobs[i].pair, *jobs[i].camera, *jobs[i].map);
   };
   std::vector<std::thread> others;
   for (int t = 1; t < threads; ++t) others.emplace_back(work, static_cast<std::size_t>(t));

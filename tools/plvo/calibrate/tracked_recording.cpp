@@ -2,6 +2,8 @@
 #include "plvo/calibrate/tracked_recording.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <optional>
 
 #include "plvo/odometry/odometry.hpp"
@@ -55,22 +57,22 @@ TrackedFrame keep(const RgbdFrame& frame, const TrackResult& result, const Featu
   return kept;
 }
 
-// The derivative, at frame k, of the polynomial through it and `reach` neighbours on either side: a mean over
-// the time before alone would lag behind a hand that turns back and forth. False where neighbours are
+// The derivative, at frame k, of the polynomial through it and some neighbours, on both sides where they are:
+// a mean over the time before alone would lag behind a hand that turns to and fro. False where one is
 // missing.
-bool find_velocity(const std::vector<TrackedFrame>& frames, std::size_t k, std::size_t reach,
-                   Vector6& velocity) {
-  if (k < reach || k + reach >= frames.size()) return false;
+bool find_velocity(const std::vector<TrackedFrame>& frames, std::size_t k,
+                   std::initializer_list<int> neighbours, Vector6& velocity) {
   const TrackedFrame& here = frames[k];
   std::vector<double> seconds;
   std::vector<Vector6> moved;
-  for (std::size_t i = k - reach; i <= k + reach; ++i) {
-    if (i == k) continue;
-    if (here.stretch < 0 || frames[i].stretch != here.stretch) return false;
+  for (const int offset : neighbours) {
+    const std::size_t i =
+        k + static_cast<std::size_t>(offset);  // below 0 it wraps around, and is past the end
+    if (here.stretch < 0 || i >= frames.size() || frames[i].stretch != here.stretch) return false;
     seconds.push_back(static_cast<double>(frames[i].stamp_ns - here.stamp_ns) * 1e-9);
     moved.push_back(boxminus(frames[i].T_world_camera.inverse() * here.T_world_camera, Se3{}));
+    if (std::abs(seconds.back()) > kLongestGap_s * std::abs(offset)) return false;
   }
-  if (seconds.back() - seconds.front() > 2 * static_cast<double>(reach) * kLongestGap_s) return false;
   velocity.setZero();
   for (std::size_t j = 0; j < seconds.size(); ++j) {
     double weight = 1 / seconds[j];
@@ -84,8 +86,10 @@ bool find_velocity(const std::vector<TrackedFrame>& frames, std::size_t k, std::
 void find_velocities(TrackedRecording& recording) {
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
     TrackedFrame& frame = recording.frames[k];
-    frame.velocity_known = find_velocity(recording.frames, k, 2, frame.velocity) ||
-                           find_velocity(recording.frames, k, 1, frame.velocity);
+    for (const std::initializer_list<int> neighbours :
+         {std::initializer_list<int>{-2, -1, 1, 2}, {-1, 1}, {1, 2}, {-1, -2}})
+      if (!frame.velocity_known)
+        frame.velocity_known = find_velocity(recording.frames, k, neighbours, frame.velocity);
   }
   const auto unknown = [&](const FramePair& pair) {
     return !recording.frames[pair.reference].velocity_known || !recording.frames[pair.current].velocity_known;
