@@ -35,6 +35,8 @@ struct Rooms {
 class Pairs {
  public:
   explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
+    // The theorem is of the kinds alone: what both share belongs to neither.
+    config_.noise.turning_rad_per_s = config_.noise.shared_depth_m = 0;
     arena_ = Arena(memory_);
     rooms_.carve(arena_, Limits::vga());
     arena_.seal();

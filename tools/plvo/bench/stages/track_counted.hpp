@@ -8,6 +8,7 @@ namespace plvo::bench {
 
 inline constexpr const char* kCountedFunction = "plvo::bench::track_counted(*";
 
-TrackResult track_counted(Odometry& odometry, const RgbdFrame& frame);
+// Never inlined, where sources are joined either.
+[[gnu::noinline]] TrackResult track_counted(Odometry& odometry, const RgbdFrame& frame);
 
 }  // namespace plvo::bench
