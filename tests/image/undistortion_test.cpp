@@ -35,7 +35,8 @@ const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
 class Map {
  public:
   explicit Map(const CameraModel& camera)
-      : memory_(camera.width * camera.height + (camera.width + camera.height) * 8 + 1000) {
+      : memory_(static_cast<std::size_t>(camera.width * camera.height + (camera.width + camera.height) * 8 +
+                                         1000)) {
     Arena arena(memory_);
     map.carve(arena, camera.width, camera.height);
     map.init(camera);

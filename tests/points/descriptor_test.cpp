@@ -100,36 +100,36 @@ TEST(Descriptor, HalfOfTheBitsAreSetAndTwoPlacesShareHalf) {
   EXPECT_NEAR(differ, 0.5, 0.04);
 }
 
+// The texture turned by `roll_rad` about the middle and enlarged by `scale`, with noise (SD 2), smoothed.
+constexpr int kTurnedSide = 360;
+GrayImage turned_texture(double roll_rad, double scale, std::uint64_t noise_seed) {
+  const test::Texture texture(21);
+  Random random(noise_seed);
+  GrayImage image(kTurnedSide, kTurnedSide), smoothed(kTurnedSide, kTurnedSide);
+  const double c = std::cos(roll_rad) / scale;
+  const double s = std::sin(roll_rad) / scale;
+  image.paint([&](int x, int y) {
+    const double dx = x - kTurnedSide / 2, dy = y - kTurnedSide / 2;
+    return texture(c * dx + s * dy, -s * dx + c * dy) + test::gaussian(random) * 2;
+  });
+  std::vector<std::uint16_t> row(kTurnedSide + 16);
+  smooth_binomial7(image.view(), smoothed.view(), row);
+  return smoothed;
+}
+
 // Rate of right matches when the image is turned by `roll_rad` and enlarged by `scale`: a place of the
 // texture is matched when its own descriptor, among those of all places, is the nearest, within 64 bits, and
-// clearly nearer than any other. With fresh noise (SD 2) in both images, and up to half a pixel beside the
-// place, as a detector would be.
-double match_rate(double roll_rad, double scale) {
-  constexpr int kWidth = 480, kHeight = 360;
-  const test::Texture texture(21);
-  Random random(4711);
-  const auto render = [&](double roll, double zoom) {
-    GrayImage image(kWidth, kHeight);
-    const double c = std::cos(roll) / zoom;
-    const double s = std::sin(roll) / zoom;
-    image.paint([&](int x, int y) {
-      const double dx = x - kWidth / 2, dy = y - kHeight / 2;
-      return texture(c * dx + s * dy, -s * dx + c * dy) + test::gaussian(random) * 2;
-    });
-    GrayImage smoothed(kWidth, kHeight);
-    std::vector<std::uint16_t> row(kWidth + 16);
-    smooth_binomial7(image.view(), smoothed.view(), row);
-    return smoothed;
-  };
-  const GrayImage reference = render(0, 1);
-  const GrayImage turned = render(roll_rad, scale);
+// clearly nearer than any other. With fresh noise in both images, and up to half a pixel beside the place, as
+// a detector would be.
+double match_rate(const GrayImage& reference, double roll_rad, double scale) {
+  const GrayImage turned = turned_texture(roll_rad, scale, 4712);
   std::vector<Descriptor> before, after;
   // Places whose image stays inside at every roll and scale of the table.
   for (int y = -90; y <= 90; y += 15)
     for (int x = -100; x <= 100; x += 15) {
-      const double u = scale * (std::cos(roll_rad) * x - std::sin(roll_rad) * y) + kWidth / 2;
-      const double v = scale * (std::sin(roll_rad) * x + std::cos(roll_rad) * y) + kHeight / 2;
-      before.push_back(Describer(reference.view())(x + kWidth / 2, y + kHeight / 2));
+      const double u = scale * (std::cos(roll_rad) * x - std::sin(roll_rad) * y) + kTurnedSide / 2;
+      const double v = scale * (std::sin(roll_rad) * x + std::cos(roll_rad) * y) + kTurnedSide / 2;
+      before.push_back(Describer(reference.view())(x + kTurnedSide / 2, y + kTurnedSide / 2));
       after.push_back(Describer(turned.view())(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5)));
     }
   int right = 0;
@@ -148,11 +148,12 @@ TEST(Descriptor, MatchesOverRollAndScale) {
   std::printf("rate of right matches | roll \\ scale");
   for (double scale : kScales) std::printf(" | %.2f", scale);
   std::printf("\n");
+  const GrayImage reference = turned_texture(0, 1, 4711);
   double rate[7][5] = {};
   for (std::size_t r = 0; r < 7; ++r) {
     std::printf("%2d deg", static_cast<int>(r) * 5);
     for (std::size_t s = 0; s < 5; ++s) {
-      rate[r][s] = match_rate(static_cast<double>(r) * 5 * 3.14159265358979 / 180, kScales[s]);
+      rate[r][s] = match_rate(reference, static_cast<double>(r) * 5 * 3.14159265358979 / 180, kScales[s]);
       std::printf(" | %.2f", rate[r][s]);
     }
     std::printf("\n");

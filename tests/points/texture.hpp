@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "plvo/base/random.hpp"
@@ -36,18 +35,20 @@ class Texture {
             t * t * t / 6};
   }
   double noise(double x, double y, int salt) const {
-    const double x_floor = std::floor(x);
-    const double y_floor = std::floor(y);
-    const std::array<double, 4> wx = weights(x - x_floor);
-    const std::array<double, 4> wy = weights(y - y_floor);
-    const int x0 = static_cast<int>(x_floor) - 1 + salt + 8 * kSide;
-    const int y0 = static_cast<int>(y_floor) - 1 + 3 * salt + 8 * kSide;
+    // Whole grains are added so that the cut of the fraction rounds down: the texture repeats itself after
+    // kSide of them.
+    constexpr int kWhole = 8 * kSide;
+    const int x_floor = static_cast<int>(x + kWhole);
+    const int y_floor = static_cast<int>(y + kWhole);
+    const std::array<double, 4> wx = weights(x + kWhole - x_floor);
+    const std::array<double, 4> wy = weights(y + kWhole - y_floor);
+    const auto x0 = static_cast<unsigned>(x_floor - 1 + salt);
+    const auto y0 = static_cast<unsigned>(y_floor - 1 + 3 * salt);
     double sum = 0;
-    for (int j = 0; j < 4; ++j)
-      for (int i = 0; i < 4; ++i)
-        sum += wy[static_cast<std::size_t>(j)] * wx[static_cast<std::size_t>(i)] *
-               static_cast<double>(
-                   lattice_[static_cast<std::size_t>(((y0 + j) % kSide) * kSide + (x0 + i) % kSide)]);
+    for (unsigned j = 0; j < 4; ++j) {
+      const float* row = lattice_.data() + ((y0 + j) % kSide) * kSide;
+      for (unsigned i = 0; i < 4; ++i) sum += wy[j] * wx[i] * static_cast<double>(row[(x0 + i) % kSide]);
+    }
     return sum;
   }
 

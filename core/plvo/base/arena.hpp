@@ -66,8 +66,9 @@ class Arena {
   // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
   explicit Arena(std::span<std::byte> memory);
 
-  // An array of count zero-initialised-by-nobody elements, or an empty span (and exhausted() from then on)
-  // when the block is full. T is trivially destructible: nothing is ever destroyed here, only rewound.
+  // An array of count elements, or an empty span (and exhausted() from then on) when the block is full. They
+  // are default-initialised: members with an initialiser have its value, all others hold what happened to lie
+  // there. T is trivially destructible: nothing is ever destroyed here, only rewound.
   template <typename T>
   std::span<T> take(const char* who, std::size_t count) {
     static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);

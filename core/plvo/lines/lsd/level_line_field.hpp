@@ -14,16 +14,17 @@
 
 namespace plvo::lsd {
 
-// A pixel of the field; x and y count from 0 without the border.
+// A pixel of the field; x and y count from 0 without the border. Neither it nor Direction has initialisers:
+// a frame's scratch holds a million of them, all of which are written before they are read.
 struct Pixel {
-  std::int16_t x = 0;
-  std::int16_t y = 0;
+  std::int16_t x;
+  std::int16_t y;
 };
 
 // The direction of the gradient, towards the brighter side; length 2^14, or 0 for "none".
 struct Direction {
-  std::int16_t x = 0;
-  std::int16_t y = 0;
+  std::int16_t x;
+  std::int16_t y;
 };
 
 inline constexpr int kDirectionBits = 14;
@@ -72,7 +73,7 @@ constexpr LevelLineField carve_field(Memory& memory, int image_width, int image_
 // Unit vector and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The
 // direction is off by at most 0.03°, the magnitude (1/32 grey level) by at most 0.1 %.
 struct PolarGradient {
-  Direction direction;
+  Direction direction{};
   std::uint16_t magnitude = 0;
 };
 PolarGradient polar_gradient(int gx, int gy);
