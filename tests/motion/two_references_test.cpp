@@ -52,8 +52,9 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
     const Solution y = solve(sets_one, MotionReferences{}, start);
     ASSERT_TRUE(converged(x.summary.status));
     ASSERT_TRUE(converged(y.summary.status));
-    EXPECT_LT(boxminus(x.T, y.T).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_LT(difference(x.H, y.H), 1e-6);
+    // As near as the lines' landmarks are settled.
+    EXPECT_LT(boxminus(x.T, y.T).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_LT(difference(x.H, y.H), 1e-4);
 
     // And so in the whole estimator, consensus included.
     const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, 5, nullptr, two.arena);
@@ -61,7 +62,7 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
     ASSERT_EQ(p.status, StatusCode::kOk);
     ASSERT_EQ(q.status, StatusCode::kOk);
     EXPECT_EQ(p.inliers, q.inliers);
-    EXPECT_LT(boxminus(p.T_current_reference, q.T_current_reference).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_LT(boxminus(p.T_current_reference, q.T_current_reference).cwiseAbs().maxCoeff(), 5e-6);
   }
 }
 
