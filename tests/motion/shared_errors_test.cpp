@@ -118,7 +118,8 @@ TEST(SharedErrors, TheGradientByThemIsThatOfTheCost) {
       // In units of the gradient that one SD of the parameter makes; and of itself, for the gradient of lines
       // leaves out that their covariance depends on where along the line the ends are.
       const double scale = sum.H(6 + k, 6 + k) * at.sigma(k);
-      EXPECT_NEAR(sum.g[6 + k], numeric, 0.02 * (scale + std::fabs(numeric))) << k << (of_lines ? " of lines" : " of points");
+      EXPECT_NEAR(sum.g[6 + k], numeric, 0.02 * (scale + std::fabs(numeric)))
+          << k << (of_lines ? " of lines" : " of points");
     }
   }
 }
