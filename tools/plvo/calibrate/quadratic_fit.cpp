@@ -2,7 +2,6 @@
 #include "plvo/calibrate/quadratic_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
@@ -68,7 +67,8 @@ QuadraticMinimum fit_quadratic(const MatrixXd& design, const MatrixXd& costs) {
   const Eigen::Index n = design.cols();
   const MatrixXd A = monomials(design);
   // A row for each piece: the coefficients are linear in the costs.
-  const MatrixXd coefficients = A.colPivHouseholderQr().solve(costs.transpose()).transpose();
+  const Eigen::LLT<MatrixXd> normal(A.transpose() * A);  // the designs are orthogonal enough for it
+  const MatrixXd coefficients = normal.solve(A.transpose() * costs.transpose()).transpose();
   QuadraticMinimum result;
   result.covariance = MatrixXd::Constant(n, n, std::numeric_limits<double>::infinity());
   result.convex = minimum_of(coefficients.colwise().sum(), n, result.place);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/eval/consistency.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "plvo/eval/chi_square.hpp"
 #include "plvo/eval/motion_chain.hpp"
+#include "plvo/math/cholesky.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -41,18 +41,16 @@ class Samples {
 class Accumulator {
  public:
   void add(const Vector6& error, const Matrix6& covariance) {
-    const Eigen::Matrix<double, 6, 6> C = covariance;
-    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> llt(C);
-    if (!C.allFinite() || llt.info() != Eigen::Success || C.diagonal().minCoeff() <= 0) {
+    Cholesky<6> whole;
+    Cholesky<3> of_translation, of_rotation;
+    if (!whole.factor(covariance) || !of_translation.factor(covariance.block<3, 3>(0, 0)) ||
+        !of_rotation.factor(covariance.block<3, 3>(3, 3))) {
       ++result_.singular;
       return;
     }
-    const Eigen::Matrix<double, 6, 1> e = error;
-    const Eigen::Matrix3d C_t = C.topLeftCorner<3, 3>();
-    const Eigen::Matrix3d C_r = C.bottomRightCorner<3, 3>();
-    all_.add(e.dot(llt.solve(e)));
-    translation_.add(e.head<3>().dot(C_t.llt().solve(e.head<3>())));
-    rotation_.add(e.tail<3>().dot(C_r.llt().solve(e.tail<3>())));
+    all_.add(whole.solve_lower(error).squaredNorm());
+    translation_.add(of_translation.solve_lower(error.head<3>()).squaredNorm());
+    rotation_.add(of_rotation.solve_lower(error.tail<3>()).squaredNorm());
     ++result_.count;
   }
   void add_broken() { ++result_.broken; }

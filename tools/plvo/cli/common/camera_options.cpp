@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSimulatedFrames = 300;
 constexpr NumberRange kTolerance_s = positive(3600);
 
 bool parse_count(std::string_view text, std::size_t& value) {

@@ -22,12 +22,12 @@ namespace {
 
 constexpr const char* kSimulateHelp =
     "Examples:\n"
-    "  plvo simulate --out walk                                   300 frames; then: plvo run walk\n"
+    "  plvo simulate --out walk                                   then: plvo run walk\n"
     "  plvo simulate --out dim --scene hall --light varying       a harder one\n";
 
 struct SimulateOptions {
   SimulatorArguments simulator;
-  int frames = 300;
+  int frames = kSimulatedFrames;
   std::string folder;
   bool quiet = false;
 };
@@ -70,7 +70,7 @@ void add_simulate(CLI::App& app, int& exit_code) {
   OptionGroup group(command);
   require(group.path("--out", options->folder, "A new folder for the sequence", "DIR"));
   group.whole("--frames", options->frames, 1, kMostSimulatedFrames,
-              "Only the first so many frames (default 300)");
+              "Only the first so many frames (default " + std::to_string(kSimulatedFrames) + ")");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
   add_simulator_options(command, options->simulator);
   on_command(command, exit_code, [options] {
