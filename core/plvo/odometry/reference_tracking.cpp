@@ -11,7 +11,7 @@ namespace {
 // The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
 // The second stops far below what the sensor can tell.
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
-constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
+constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-5, .cost_tolerance = 1e-6};
 
 // Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and two such weigh as 2 / (1 + ½) independent ones.
