@@ -43,30 +43,23 @@ std::size_t SegmentDetector::search(GrayView reduced, Scratch& scratch, SegmentC
       if (!tightened) continue;
     }
     ++counts.dense;
-    const lsd::Validation validation = lsd::validate(field, false_alarms_, rectangle, scratch.samples);
-    if (validation.meaningfulness < 0) continue;
-    scratch.candidates[found++] = describe(field, region, rectangle, validation);
+    const double meaningfulness =
+        lsd::validate(field, false_alarms_, rectangle, reuse<std::int32_t>(scratch.region));
+    if (meaningfulness < 0) continue;
+    scratch.candidates[found++] = describe(rectangle, meaningfulness);
   }
   counts.meaningful = static_cast<std::int32_t>(found);
   return found;
 }
 
-SegmentDetector::Candidate SegmentDetector::describe(const lsd::LevelLineField& field,
-                                                     const lsd::Region& region,
-                                                     const lsd::Rectangle& rectangle,
-                                                     const lsd::Validation& validation) {
+SegmentDetector::Candidate SegmentDetector::describe(const lsd::Rectangle& rectangle, double meaningfulness) {
   // Entry (x, y) of the field is at (x + ½, y + ½) of the image.
   const Vector2 centre(rectangle.x_q8 / 256.0 + 0.5, rectangle.y_q8 / 256.0 + 0.5);
   const Vector2 direction(rectangle.dx / 16384.0, rectangle.dy / 16384.0);
-  std::int64_t sum = 0;
-  for (const lsd::Pixel& pixel : region.pixels) sum += field.magnitude[field.index(pixel.x, pixel.y)];
   Candidate candidate;
   candidate.a = centre + direction * (rectangle.along_min / 256.0);
   candidate.b = centre + direction * (rectangle.along_max / 256.0);
-  candidate.meaningfulness = validation.meaningfulness;
-  candidate.width_px = rectangle.width_q8() / 256.0;
-  candidate.mean_gradient = static_cast<double>(sum) / (32.0 * static_cast<double>(region.pixels.size()));
-  candidate.support = validation.aligned;
+  candidate.meaningfulness = meaningfulness;
   return candidate;
 }
 
@@ -111,10 +104,7 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
     Segment segment;
     segment.a = candidate.a * scale;
     segment.b = candidate.b * scale;
-    segment.width_px = candidate.width_px * scale;
     segment.meaningfulness = candidate.meaningfulness;
-    segment.mean_gradient = candidate.mean_gradient / scale;
-    segment.support = candidate.support;
     done.placed += lsd::localise(full, kAxisSd_px * scale, segment) ? 1 : 0;
     out.push_back(segment);
   }

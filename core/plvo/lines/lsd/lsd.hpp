@@ -55,16 +55,12 @@ class SegmentDetector {
   struct Candidate {
     Vector2 a, b;
     double meaningfulness = 0;
-    double width_px = 0;
-    double mean_gradient = 0;
-    std::int32_t support = 0;
     std::int32_t order = 0;  // in which it was found
     std::int32_t rank = 0;   // within its cell
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Pixel> region;
-    std::span<std::int32_t> samples;
+    std::span<lsd::Pixel> region;  // and, once its rectangle is known, that one's samples in its place
     std::span<Candidate> candidates;
   };
 
@@ -81,7 +77,6 @@ class SegmentDetector {
     scratch.field = lsd::carve_field(memory, width, height);
     const std::size_t pixels = scratch_pixels(width, height);
     scratch.region = memory.template take<lsd::Pixel>("lines/lsd", pixels);
-    scratch.samples = memory.template take<std::int32_t>("lines/lsd", pixels);
     // No two meaningful regions share a pixel: that bounds their number.
     scratch.candidates = memory.template take<Candidate>("lines/lsd", pixels / min_region(width, height) + 1);
     return scratch;
@@ -94,8 +89,7 @@ class SegmentDetector {
 
   // The number of candidates found; at most one per min_region pixels.
   std::size_t search(GrayView reduced, Scratch& scratch, SegmentCounts& counts) const;
-  static Candidate describe(const lsd::LevelLineField& field, const lsd::Region& region,
-                            const lsd::Rectangle& rectangle, const lsd::Validation& validation);
+  static Candidate describe(const lsd::Rectangle& rectangle, double meaningfulness);
   // Brings those to be kept to the front and returns their number.
   std::size_t select(std::span<Candidate> candidates, std::size_t capacity) const;
 
