@@ -128,7 +128,8 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     start(result);
     return result;
   }
-  const TrackedMotion tracked = estimate_motion(depth, result);
+  TrackedMotion tracked;
+  estimate_motion(depth, tracked, result);
   fill_views(tracked.motion);
   if (tracked.motion.status == StatusCode::kOk) {
     rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
@@ -190,27 +191,25 @@ std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& refer
 
 // A first motion from the latest reference, where it is predicted; failing that from each, wherever it may
 // be. Then the motion from all of them.
-TrackedMotion Odometry::estimate_motion(const DepthSampler& depth, TrackResult& result) {
+void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
-  TrackedMotion tracked;
   for (std::size_t attempt = 0; attempt <= count; ++attempt) {
     const bool wide = attempt > 0;
     Reference from = references[count - (wide ? attempt : 1)];
     if (wide) from.prior.T_current_reference = Se3{};
-    tracked = rooms_.tracking.find(from, current,
-                                   wide ? config_.references.wide_search_px : config_.points.match.radius_px,
-                                   arena_, result);
+    rooms_.tracking.find(from, current,
+                         wide ? config_.references.wide_search_px : config_.points.match.radius_px, arena_,
+                         tracked, result);
     if (tracked.motion.status != StatusCode::kOk) continue;
-    if (!config_.points.registered) return tracked;
+    if (!config_.points.registered) return;
     const Se3 T_current_base = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    tracked =
-        rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, result);
-    if (tracked.motion.status == StatusCode::kOk) return tracked;
+    rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, tracked,
+                           result);
+    if (tracked.motion.status == StatusCode::kOk) return;
   }
-  return tracked;
 }
 
 void Odometry::start(TrackResult& result) {

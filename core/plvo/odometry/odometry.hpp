@@ -134,7 +134,7 @@ class Odometry {
     return last_ != keyframe_ && config_.points.registered &&
            config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
   }
-  TrackedMotion estimate_motion(const DepthSampler& depth, TrackResult& result);
+  void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   void note_velocity(std::int64_t motion_ns);

@@ -84,19 +84,19 @@ class ReferenceTracking {
 
   // T_current_reference of one reference: features are looked for within radius_px of where its prior has
   // them. Where points are not registered this is the whole estimate.
-  TrackedMotion find(const Reference& reference, const CurrentFrame& current, double radius_px,
-                     Arena& scratch, TrackResult& result);
+  void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
+            TrackedMotion& tracked, TrackResult& result);
   // The motion from the base, from all references at once (1 … kMaxReferences), registered from
   // T_current_base.
-  TrackedMotion refine(std::span<const Reference> references, const CurrentFrame& current,
-                       const Se3& T_current_base, Arena& scratch, TrackResult& result);
+  void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
+              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
 
   // Of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  TrackedMotion solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                      const MotionStart& start, const LmOptions& lm, Arena& scratch, TrackResult& result);
+  void solve(std::span<const MidExposure> features, const MotionReferences& poses, const MotionStart& start,
+             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
   SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {
