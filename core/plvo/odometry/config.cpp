@@ -116,6 +116,14 @@ Status validate(const ReferenceConfig& references) {
   return {};
 }
 
+Status validate(const BudgetConfig& budget) {
+  if (!within(static_cast<double>(budget.frame_ns), 0, 1e12))
+    return out_of_range("budget.frame_ns", "0 to 1e12");
+  if (!within(budget.patience_frames, 1, 1000000)) return out_of_range("budget.patience_frames", "1 to 1000000");
+  if (!within(budget.spare_share, 0, 1)) return out_of_range("budget.spare_share", "0 to 1");
+  return {};
+}
+
 }  // namespace
 
 Status Limits::validate() const {
@@ -132,6 +140,7 @@ Status Config::validate() const {
   if (Status status = plvo::validate(lines); !status.ok()) return status;
   if (Status status = plvo::validate(noise); !status.ok()) return status;
   if (Status status = plvo::validate(references); !status.ok()) return status;
+  if (Status status = plvo::validate(budget); !status.ok()) return status;
   return plvo::validate(motion);
 }
 

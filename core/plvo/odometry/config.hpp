@@ -10,6 +10,7 @@
 #include "plvo/lines/line3d.hpp"
 #include "plvo/lines/line_match.hpp"
 #include "plvo/motion/motion_config.hpp"
+#include "plvo/odometry/track_result.hpp"
 #include "plvo/points/detector.hpp"
 #include "plvo/points/point_match.hpp"
 
@@ -85,6 +86,21 @@ struct ReferenceConfig {
   double unseen_rad_per_s = 0.5;
 };
 
+// What a frame may take, where somebody waits for it (feature_budget.hpp). The caller measures.
+struct BudgetConfig {
+  std::int64_t frame_ns = 0;  // 0: as long as it takes, with all the features that Limits have room for
+  // A step up again after so many frames in a row that took less than this share of it.
+  int patience_frames = 30;
+  double spare_share = 0.6;
+};
+
+// Called when a stage of a frame is over, several times a frame for matching and motion: where a watchdog is
+// fed between stages. It may not call the odometry.
+struct StageHook {
+  void (*call)(void* context, Stage stage) = nullptr;
+  void* context = nullptr;
+};
+
 struct Config {
   Features features = Features::kBoth;
   ReferenceConfig references;
@@ -93,11 +109,13 @@ struct Config {
   PointConfig points;
   LineConfig lines;
   MotionConfig motion;
+  BudgetConfig budget;
   std::uint64_t seed = 1;  // of RANSAC's random generator
 
   // For per-stage times: a monotonic clock in nanoseconds. The core reads no other clock, and never decides
   // by it.
   std::int64_t (*stage_clock)() = nullptr;
+  StageHook stage_hook;
 
   static Config paper();
   // kInvalidArgument, naming the entry and its range.

@@ -57,7 +57,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
                                 Arena& scratch, FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
-    const StageTimer timer(config_.stage_clock, result, Stage::kImage);
+    const StageTimer timer(config_, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
@@ -70,7 +70,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
 
 void FeatureExtraction::extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                        TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kPoints);
+  const StageTimer timer(config_, result, Stage::kPoints);
   const DetectionSummary summary =
       detect_keypoints(pyramid_, depth, config_.points.detector, scratch, points.keypoints);
   describe_points(scratch, points);
@@ -118,7 +118,7 @@ void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseS
 
 void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                                       LineFeatures& lines, TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kLines);
+  const StageTimer timer(config_, result, Stage::kLines);
   constexpr int kLevel = 1;
   constexpr double kScale = 1 << kLevel;
   const GrayView reduced = pyramid_.level(kLevel);

@@ -77,6 +77,7 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   rooms_.extraction.init(camera, config);
   rooms_.tracking.init(camera, config);
   noise_ = config.noise.initial;
+  budget_.init(config.budget, limits);
   ready_ = true;
   return {};
 }
@@ -121,6 +122,8 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
   const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
+  frame(current_).features.clear(budget_.room());
+  result.feature_step = budget_.step();
   rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
   segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
   if (keyframe_ == kNobody) {
@@ -291,7 +294,11 @@ void Odometry::choose_keyframe() {
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
   const double least = config_.references.keyframe_inlier_ratio * static_cast<double>(available);
-  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame &&
+  // Too full a keyframe for the budget goes on costing what it did.
+  const FeatureRoom room = budget_.room();
+  const bool affordable = features.points.keypoints.size() <= room.keypoints &&
+                          features.lines.segments.size() <= room.segments;
+  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame && affordable &&
                     rooms_.tracking.tracks(0).inliers >= least;
   if (!keep) keyframe_ = last_;
   current_ = 0;

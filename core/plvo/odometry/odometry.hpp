@@ -23,6 +23,7 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_budget.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
@@ -104,6 +105,10 @@ class Odometry {
   // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
   TrackResult track(const RgbdFrame& frame);
 
+  // For Config::budget: what the last call of track() took, by the caller's clock. How many features the next
+  // frames have depends on nothing else.
+  void frame_took(std::int64_t ns) { budget_.note(ns); }
+
   // Who took what of the block, and the high-water mark of the scratch behind it.
   std::span<const Arena::Record> memory_records() const;
   std::size_t memory_used() const;
@@ -151,6 +156,7 @@ class Odometry {
   OdometryRooms rooms_;
   CameraModel camera_;
   Config config_;
+  FeatureBudget budget_;
   bool ready_ = false;
 
   std::array<Frame, kFrames> frames_;

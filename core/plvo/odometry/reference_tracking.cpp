@@ -47,7 +47,7 @@ SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const No
 void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
                               const MotionStart& start, const LmOptions& lm, Arena& scratch,
                               TrackedMotion& tracked, TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
+  const StageTimer timer(config_, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
   const double weight = features.size() > 1 ? kWeightOfTwo : 1;
@@ -92,7 +92,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const MidExposure features =
       at_mid_exposure(camera_, reference.prior, T_predicted, *reference.features, current.features, scratch);
   {
-    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    const StageTimer timer(config_, result, Stage::kMatching);
     const DepthSampler depth = current.depth.with(features.current);
     track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
@@ -129,7 +129,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
     const Reference& reference = references[r];
     features[r] =
         at_mid_exposure(camera_, reference.prior, motions[r], *reference.features, current.features, scratch);
-    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    const StageTimer timer(config_, result, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points,
                     features[r].reference_points, motions[r], tracks_[r].points);
     LineMatchConfig gates = config_.lines.match;
