@@ -131,6 +131,8 @@ Status Limits::validate() const {
     return out_of_range("Limits width and height", "64 to 2047");
   if (!within(keypoints, 10, 60000)) return out_of_range("Limits::keypoints", "10 to 60000");
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
+  if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
+  if (!within(line_level, 1, 2)) return out_of_range("Limits::line_level", "1 or 2");
   return {};
 }
 
@@ -159,6 +161,12 @@ Config Config::paper() {
   config.points.depth_reach_px = 0;
   config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
+  return config;
+}
+
+Config Config::tiny() {
+  Config config;
+  config.references.policy = ReferencePolicy::kKeyframe;
   return config;
 }
 

@@ -17,7 +17,7 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  segment_detector_[0] = SegmentDetector((camera.width + 1) / 2, (camera.height + 1) / 2);
+  segment_detector_[0] = SegmentDetector(pyramid_.level(line_level_).width, pyramid_.level(line_level_).height);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
@@ -119,11 +119,10 @@ void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseS
 void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                                       LineFeatures& lines, TrackResult& result) {
   const StageTimer timer(config_, result, Stage::kLines);
-  constexpr int kLevel = 1;
-  constexpr double kScale = 1 << kLevel;
-  const GrayView reduced = pyramid_.level(kLevel);
+  const double scale = 1 << line_level_;
+  const GrayView reduced = pyramid_.level(line_level_);
   const Status status =
-      segment_detector_[0].detect(reduced, kScale, pyramid_.level(0), scratch, lines.segments);
+      segment_detector_[0].detect(reduced, scale, pyramid_.level(0), scratch, lines.segments);
   if (!status.ok()) lines.segments.clear();
   result.lines.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped());
   result.lines.dropped = static_cast<int>(lines.segments.dropped());
@@ -132,7 +131,7 @@ void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScal
     const Segment segment = lines.segments[i];
     if (!lift_line(depth, noise, segment, lines.lines[lines.count_3d])) continue;
     std::swap(lines.segments[i], lines.segments[lines.count_3d]);
-    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / kScale, segment);
+    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / scale, segment);
     ++lines.count_3d;
   }
   result.lines.with_depth = static_cast<int>(lines.count_3d);

@@ -26,6 +26,7 @@ class FeatureExtraction {
   constexpr void carve(Memory& memory, const Limits& limits) {
     map_.carve(memory, limits.width, limits.height);
     pyramid_.carve(memory, limits.width, limits.height);
+    line_level_ = limits.line_level;
     segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
   }
   // Scratch: the stages come one after the other, so the largest counts.
@@ -45,8 +46,8 @@ class FeatureExtraction {
     {
       const ScratchScope scope(memory);
       memory.template take<std::byte>(
-          "segment detection",
-          SegmentDetector::scratch_bytes((limits.width + 1) / 2, (limits.height + 1) / 2));
+          "segment detection", SegmentDetector::scratch_bytes(Pyramid::side(limits.width, limits.line_level),
+                                                              Pyramid::side(limits.height, limits.line_level)));
     }
   }
 
@@ -83,6 +84,7 @@ class FeatureExtraction {
   Config config_;
   UndistortionMap map_;
   Pyramid pyramid_;
+  int line_level_ = 1;
   std::span<SegmentDetector> segment_detector_;  // one
 };
 

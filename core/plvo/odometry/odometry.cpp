@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace plvo {
 namespace {
@@ -62,6 +63,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
         .append(camera.width)
         .append("x")
         .append(camera.height);
+  if (config.references.policy == ReferencePolicy::kKeyframeAndPrevious && limits.references < 2)
+    return {StatusCode::kInvalidArgument,
+            "config: references.policy with both references needs Limits::references = 2"};
   if (memory.size() < required_bytes(limits))
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
         .append(static_cast<std::int64_t>(required_bytes(limits)))
@@ -122,6 +126,7 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
   const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
+  take_feature_memory();
   frame(current_).features.clear(budget_.room());
   result.feature_step = budget_.step();
   rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
@@ -141,6 +146,17 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     lose(tracked.motion, result);
   }
   return result;
+}
+
+// Limits for one reference have memory for the features of two frames: the reference, and the current frame,
+// which takes it from the last one.
+void Odometry::take_feature_memory() {
+  FrameFeatures& mine = frame(current_).features;
+  for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
+    if (slot == keyframe_) continue;
+    std::swap(mine.points, frame(slot).features.points);
+    std::swap(mine.lines, frame(slot).features.lines);
+  }
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {

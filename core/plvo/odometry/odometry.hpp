@@ -67,7 +67,8 @@ struct OdometryRooms {
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
-    for (FrameFeatures& frame : frames) frame.carve(memory, limits);
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references); ++i)
+      frames[i].carve(memory, limits);
     point_track_views =
         memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
@@ -131,6 +132,7 @@ class Odometry {
   using References = std::array<Reference, kMaxReferences>;
 
   Status check(const RgbdFrame& frame) const;
+  void take_feature_memory();
   double depth_after_colour_s(const RgbdFrame& frame) const;
   Exposure predict_exposure(std::int64_t stamp_ns) const;
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;

@@ -64,8 +64,10 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     set.set_reference(r, config_.noise.line_correlation, weight);
     return set;
   };
-  std::array<PointConstraints, kMaxReferences> points{points_of(0), points_of(last)};
-  std::array<LineConstraints, kMaxReferences> lines{lines_of(0), lines_of(last)};
+  std::array<PointConstraints, kMaxReferences> points{
+      points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
+  std::array<LineConstraints, kMaxReferences> lines{
+      lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
   const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
 
   tracked.exposure = {};

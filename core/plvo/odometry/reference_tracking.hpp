@@ -66,17 +66,19 @@ class ReferenceTracking {
  public:
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
-    for (ReferenceTracks& tracks : tracks_) tracks.carve(memory, limits);
+    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
+      tracks_[r].carve(memory, limits);
   }
   // Scratch: the larger of the stages, which come one after the other.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
     const ScratchScope scope(memory);
-    for (std::size_t r = 0; r < kMaxReferences; ++r) take_mid_exposure(memory, limits);
+    const auto references = static_cast<std::size_t>(limits.references);
+    for (std::size_t r = 0; r < references; ++r) take_mid_exposure(memory, limits);
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
     reserve_line_tracking(memory, limits.segments);
     reserve_noise_learning(memory, limits);
-    size_motion(memory, kMaxReferences, static_cast<std::size_t>(limits.keypoints),
+    size_motion(memory, references, static_cast<std::size_t>(limits.keypoints),
                 static_cast<std::size_t>(limits.segments));
   }
 
@@ -86,7 +88,7 @@ class ReferenceTracking {
   // them. Where points are not registered this is the whole estimate.
   void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
             TrackedMotion& tracked, TrackResult& result);
-  // The motion from the base, from all references at once (1 … kMaxReferences), registered from
+  // The motion from the base, from all references at once (1 … Limits::references), registered from
   // T_current_base.
   void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
               Arena& scratch, TrackedMotion& tracked, TrackResult& result);
