@@ -177,10 +177,9 @@ TEST_F(BudgetedOdometry, ABudgetOutOfRangeIsRefused) {
 TEST_F(BudgetedOdometry, TheHookIsCalledAfterEachStage) {
   std::vector<Stage> stages;
   Config config;
-  config.stage_hook = {[](void* context, Stage stage) {
-                         static_cast<std::vector<Stage>*>(context)->push_back(stage);
-                       },
-                       &stages};
+  config.stage_hook = {
+      [](void* context, Stage stage) { static_cast<std::vector<Stage>*>(context)->push_back(stage); },
+      &stages};
   init(config);
   (void)odometry_.track(sequence_.render(0));
   EXPECT_EQ(stages, (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines}));

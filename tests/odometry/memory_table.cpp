@@ -29,7 +29,8 @@ std::string row(const std::string& who, const Bytes& bytes) {
 std::string capacities(const char* name, const Limits& limits) {
   return std::string("- ") + name + ": " + std::to_string(limits.width) + "x" +
          std::to_string(limits.height) + " px, " + std::to_string(limits.keypoints) + " keypoints, " +
-         std::to_string(limits.segments) + " segments, matched with " + (limits.references == 1 ? "one frame" : "two frames") + "\n";
+         std::to_string(limits.segments) + " segments, matched with " +
+         (limits.references == 1 ? "one frame" : "two frames") + "\n";
 }
 
 }  // namespace

@@ -88,14 +88,12 @@ Config budgeted() {
   return config;
 }
 
-INSTANTIATE_TEST_SUITE_P(Configs, NoAllocation,
-                         testing::Values([] { return Settings{.config = {}}; },
-                                         [] { return Settings{.config = Config::paper()}; },
-                                         [] { return Settings{.config = keyframe_alone()}; },
-                                         [] { return Settings{.config = budgeted()}; },
-                                         [] {
-                                           return Settings{.config = Config::tiny(), .limits = Limits::tiny()};
-                                         }));
+INSTANTIATE_TEST_SUITE_P(
+    Configs, NoAllocation,
+    testing::Values([] { return Settings{.config = {}}; }, [] { return Settings{.config = Config::paper()}; },
+                    [] { return Settings{.config = keyframe_alone()}; },
+                    [] { return Settings{.config = budgeted()}; },
+                    [] { return Settings{.config = Config::tiny(), .limits = Limits::tiny()}; }));
 
 TEST(NoAllocationWhenLostForGood, GivesUpTheReferenceAndStartsAnew) {
   if (!AllocationGuard::available()) GTEST_SKIP() << "SKIPPED: a sanitizer owns malloc here";

@@ -61,7 +61,8 @@ TEST(OneReference, TheSameBitsInLessMemory) {
   static_assert(kOne.references == 1);
   const Limits two = with_references(kOne, 2);
   EXPECT_LT(required_bytes(kOne), required_bytes(two));
-  for (const Config& config : {keyframe_only(), Config::paper()}) EXPECT_EQ(walk(config, kOne), walk(config, two));
+  for (const Config& config : {keyframe_only(), Config::paper()})
+    EXPECT_EQ(walk(config, kOne), walk(config, two));
 }
 
 TEST(OneReference, AKeyframeThatChangesWithEveryFrame) {

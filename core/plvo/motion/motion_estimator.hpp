@@ -51,13 +51,13 @@ struct MotionStart {
   SharedErrors shared;
 };
 
-// Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
-// references: the frames that they match with; the motion is that from the base, reference 0.
-// start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
+// Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all
+// zero unless kOk). references: the frames that they match with; the motion is that from the base, reference
+// 0. start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
 // perpendicular lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch,
-// take_solver) is taken from the arena and given back; an arena without room for it is kOutOfMemory. kDegenerate also when
-// the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or when no minimal set of
-// the consensus is free of degeneracy: all lines parallel, all points on a line, …
+// take_solver) is taken from the arena and given back; an arena without room for it is kOutOfMemory.
+// kDegenerate also when the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or
+// when no minimal set of the consensus is free of degeneracy: all lines parallel, all points on a line, …
 void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                      const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
                      const MotionStart& start, Arena& arena, MotionEstimate& estimate);

@@ -119,7 +119,8 @@ Status validate(const ReferenceConfig& references) {
 Status validate(const BudgetConfig& budget) {
   if (!within(static_cast<double>(budget.frame_ns), 0, 1e12))
     return out_of_range("budget.frame_ns", "0 to 1e12");
-  if (!within(budget.patience_frames, 1, 1000000)) return out_of_range("budget.patience_frames", "1 to 1000000");
+  if (!within(budget.patience_frames, 1, 1000000))
+    return out_of_range("budget.patience_frames", "1 to 1000000");
   if (!within(budget.spare_share, 0, 1)) return out_of_range("budget.spare_share", "0 to 1");
   return {};
 }

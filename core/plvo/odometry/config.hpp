@@ -22,11 +22,11 @@ struct Limits {
   int height = 480;     // px
   int keypoints = 400;  // per frame
   int segments = 256;   // per frame
-  // Frames that one is matched with, 1 … 2. 1 saves a third of the features' memory, half of the matches', and
-  // allows the policies with one reference alone.
+  // Frames that one is matched with, 1 … 2. 1 saves a third of the features' memory, half of the matches',
+  // and allows the policies with one reference alone.
   int references = 2;
-  // Level of the pyramid that segments are searched on, 1 … 2, before they are placed on level 0. Each takes a
-  // quarter of the memory of the one before, and misses what is short.
+  // Level of the pyramid that segments are searched on, 1 … 2, before they are placed on level 0. Each takes
+  // a quarter of the memory of the one before, and misses what is short.
   int line_level = 1;
   static constexpr Limits vga() { return {}; }
   static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1}; }

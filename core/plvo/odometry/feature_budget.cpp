@@ -38,7 +38,8 @@ void FeatureBudget::note(std::int64_t took_ns) {
     move_to(step_ + 1);
     return;
   }
-  const bool quick = static_cast<double>(took_ns) < config_.spare_share * static_cast<double>(config_.frame_ns);
+  const bool quick =
+      static_cast<double>(took_ns) < config_.spare_share * static_cast<double>(config_.frame_ns);
   quick_frames_ = quick ? quick_frames_ + 1 : 0;
   if (quick_frames_ >= config_.patience_frames) move_to(step_ - 1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time that keeps its promise: after a frame that took too long the next ones have fewer features, in steps of
-// a fixed order, and after many frames with time to spare one step more again. No clock is read here: the
+// Time that keeps its promise: after a frame that took too long the next ones have fewer features, in steps
+// of a fixed order, and after many frames with time to spare one step more again. No clock is read here: the
 // caller says what a frame took (Odometry::frame_took), and the same words give the same steps.
 #pragma once
 
@@ -19,8 +19,8 @@ struct FeatureRoom {
 
 class FeatureBudget {
  public:
-  // Each takes a quarter: of the keypoints, of the segments, of the keypoints, … After the last of them a third
-  // of either is left.
+  // Each takes a quarter: of the keypoints, of the segments, of the keypoints, … After the last of them a
+  // third of either is left.
   static constexpr int kSteps = 8;
   // After a step so many frames are not judged: they are matched with references that are as full as before.
   static constexpr int kSettlingFrames = 2;

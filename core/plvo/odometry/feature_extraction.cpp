@@ -17,7 +17,8 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  segment_detector_[0] = SegmentDetector(pyramid_.level(line_level_).width, pyramid_.level(line_level_).height);
+  segment_detector_[0] =
+      SegmentDetector(pyramid_.level(line_level_).width, pyramid_.level(line_level_).height);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {

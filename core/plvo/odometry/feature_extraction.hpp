@@ -46,8 +46,9 @@ class FeatureExtraction {
     {
       const ScratchScope scope(memory);
       memory.template take<std::byte>(
-          "segment detection", SegmentDetector::scratch_bytes(Pyramid::side(limits.width, limits.line_level),
-                                                              Pyramid::side(limits.height, limits.line_level)));
+          "segment detection",
+          SegmentDetector::scratch_bytes(Pyramid::side(limits.width, limits.line_level),
+                                         Pyramid::side(limits.height, limits.line_level)));
     }
   }
 

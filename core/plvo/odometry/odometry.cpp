@@ -312,8 +312,8 @@ void Odometry::choose_keyframe() {
   const double least = config_.references.keyframe_inlier_ratio * static_cast<double>(available);
   // Too full a keyframe for the budget goes on costing what it did.
   const FeatureRoom room = budget_.room();
-  const bool affordable = features.points.keypoints.size() <= room.keypoints &&
-                          features.lines.segments.size() <= room.segments;
+  const bool affordable =
+      features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
   const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame && affordable &&
                     rooms_.tracking.tracks(0).inliers >= least;
   if (!keep) keyframe_ = last_;

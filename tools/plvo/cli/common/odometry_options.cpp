@@ -7,11 +7,11 @@ namespace plvo::cli {
 
 void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   OptionGroup group(command, "Odometry");
-  group.choice("--preset", options.preset,
-               Choices<Preset>{
-                   {"default", Preset::kDefault}, {"paper", Preset::kPaper}, {"tiny", Preset::kTiny}},
-               "paper: the settings of Lu & Song (2015); docs/maths.md has the differences. tiny: as in half a "
-               "MiB, with the last keyframe alone as a reference; docs/memory.md");
+  group.choice(
+      "--preset", options.preset,
+      Choices<Preset>{{"default", Preset::kDefault}, {"paper", Preset::kPaper}, {"tiny", Preset::kTiny}},
+      "paper: the settings of Lu & Song (2015); docs/maths.md has the differences. tiny: as in half a "
+      "MiB, with the last keyframe alone as a reference; docs/memory.md");
   group.choice("--features", options.features,
                Choices<Features>{
                    {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}},

@@ -67,19 +67,20 @@ SummaryRows TrackSummary::frame_rows() const {
 
 SummaryRows TrackSummary::cost_rows() const {
   const DurationHistogram& total = stages_[kStageCount];
-  SummaryRows rows = {{"path", fmt::format("{:.3f} m", path_m_)},
-          {"inliers, median",
-           fmt::format("{} points, {} lines", point_inliers_.median(), line_inliers_.median())},
-          {"CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.quantile_ms(0.5),
-                                        total.quantile_ms(0.95), total.max_ms())},
-          {"arena",
-           fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak))},
-          {"resident memory", fmt::format("{:.2f} MiB after the start, {:.2f} at the end",
-                                          mebibytes(resident_start.total), mebibytes(resident_end.total))}};
+  SummaryRows rows = {
+      {"path", fmt::format("{:.3f} m", path_m_)},
+      {"inliers, median",
+       fmt::format("{} points, {} lines", point_inliers_.median(), line_inliers_.median())},
+      {"CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.quantile_ms(0.5),
+                                    total.quantile_ms(0.95), total.max_ms())},
+      {"arena",
+       fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak))},
+      {"resident memory", fmt::format("{:.2f} MiB after the start, {:.2f} at the end",
+                                      mebibytes(resident_start.total), mebibytes(resident_end.total))}};
   if (lowest_step_ > 0)
-    rows.emplace_back("frame budget", fmt::format("{} frames with fewer features, down to step {} of {}",
-                                                  frames_with_fewer_features_, lowest_step_,
-                                                  FeatureBudget::kSteps));
+    rows.emplace_back("frame budget",
+                      fmt::format("{} frames with fewer features, down to step {} of {}",
+                                  frames_with_fewer_features_, lowest_step_, FeatureBudget::kSteps));
   return rows;
 }
 
