@@ -98,8 +98,8 @@ int main() {
     if (lent.feature_step != (i > 0 ? 1 : 0)) return fail("the budget was not kept");
     for (Odometry& one : odometry) one.frame_took(2);
   }
-  // Image, points, lines; and twice matching and motion.
-  if (watchdog.fed != 2 * (4 * 3 + 3 * 4)) return fail("the watchdog was not fed between the stages");
+  // Image, points, lines; and at least twice matching and motion.
+  if (watchdog.fed < 2 * (4 * 3 + 3 * 4)) return fail("the watchdog was not fed between the stages");
   if (invalidated != 8) return fail("the cache was not told of every image");
   write_text("the camera's frames and the renderer's give the same results\n");
   return 0;
