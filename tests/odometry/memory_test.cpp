@@ -3,6 +3,7 @@
 // docs/memory.md true.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -45,6 +46,36 @@ TEST(Memory, EveryByteOfInitHasAName) {
       sum += row.bytes;
     }
     EXPECT_EQ(sum, use->used);
+  }
+}
+
+// Bytes, VGA, QVGA, tiny: a little more than a room takes today. The whole has ceilings of its own.
+struct Ceiling {
+  const char* who;
+  std::size_t bytes[3];
+};
+constexpr Ceiling kCeilings[] = {
+    {"point features", {400'000, 250'000, 135'000}},
+    {"line features", {360'000, 180'000, 60'000}},
+    {"feature view", {20'000, 11'000, 7'000}},
+    {"undistortion map", {231'000, 58'000, 58'000}},
+    {"smoothing row", {1'400, 800, 800}},
+    {"pyramid", {410'000, 103'000, 103'000}},
+    {"segment detector", {2'200, 2'200, 2'200}},
+    {"point tracks", {95'000, 60'000, 24'000}},
+    {"line tracks", {2'600, 1'300, 400}},
+};
+
+TEST(Memory, NoRoomTakesMoreThanItsCeiling) {
+  const MemoryUse* const uses[] = {&vga(), &qvga(), &tiny()};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(uses[i]->rows.size(), std::size(kCeilings)) << "a room without a ceiling";
+    for (const MemoryUse::Row& row : uses[i]->rows) {
+      const auto* ceiling = std::find_if(std::begin(kCeilings), std::end(kCeilings),
+                                         [&](const Ceiling& c) { return row.who == c.who; });
+      ASSERT_NE(ceiling, std::end(kCeilings)) << row.who << " has no ceiling";
+      EXPECT_LE(row.bytes, ceiling->bytes[i]) << row.who;
+    }
   }
 }
 

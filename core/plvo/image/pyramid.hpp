@@ -16,12 +16,6 @@ class Pyramid {
  public:
   static constexpr int kMaxLevels = 4;
 
-  // Of a level, of an image whose side has so many pixels.
-  static constexpr int side(int pixels, int level) {
-    for (int i = 0; i < level; ++i) pixels = (pixels + 1) / 2;
-    return pixels;
-  }
-
   // Takes ≤ 4/3 × width × height bytes.
   template <typename Memory>
   constexpr void carve(Memory& memory, int width, int height) {

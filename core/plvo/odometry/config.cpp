@@ -133,7 +133,7 @@ Status Limits::validate() const {
   if (!within(keypoints, 10, 60000)) return out_of_range("Limits::keypoints", "10 to 60000");
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
   if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
-  if (!within(line_level, 1, 2)) return out_of_range("Limits::line_level", "1 or 2");
+  if (!within(line_bands, 1, 8)) return out_of_range("Limits::line_bands", "1 to 8");
   return {};
 }
 

@@ -25,12 +25,12 @@ struct Limits {
   // Frames that one is matched with, 1 … 2. 1 saves a third of the features' memory, half of the matches',
   // and allows the policies with one reference alone.
   int references = 2;
-  // Level of the pyramid that segments are searched on, 1 … 2, before they are placed on level 0. Each takes
-  // a quarter of the memory of the one before, and misses what is short.
-  int line_level = 1;
+  // Bands of the image, one below the other, that segments are searched in, 1 … 8, each in the memory of the
+  // one before. A segment that crosses from one into the next comes out as two.
+  int line_bands = 1;
   static constexpr Limits vga() { return {}; }
   static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1}; }
-  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 2}; }  // within 512 KiB, with Config::tiny()
+  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3}; }  // within 512 KiB, with Config::tiny()
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };

@@ -11,14 +11,20 @@
 #include "plvo/points/own_surface.hpp"
 
 namespace plvo {
+namespace {
+
+constexpr int kLineLevel = 1;
+
+}  // namespace
 
 void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   camera_ = camera;
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  segment_detector_[0] =
-      SegmentDetector(pyramid_.level(line_level_).width, pyramid_.level(line_level_).height);
+  segment_search_.width = pyramid_.level(kLineLevel).width;
+  segment_search_.height = pyramid_.level(kLineLevel).height;
+  segment_detector_[0] = SegmentDetector(segment_search_);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
@@ -120,10 +126,10 @@ void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseS
 void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                                       LineFeatures& lines, TrackResult& result) {
   const StageTimer timer(config_, result, Stage::kLines);
-  const double scale = 1 << line_level_;
-  const GrayView reduced = pyramid_.level(line_level_);
+  constexpr double kScale = 1 << kLineLevel;
+  const GrayView reduced = pyramid_.level(kLineLevel);
   const Status status =
-      segment_detector_[0].detect(reduced, scale, pyramid_.level(0), scratch, lines.segments);
+      segment_detector_[0].detect(reduced, kScale, pyramid_.level(0), scratch, lines.segments);
   if (!status.ok()) lines.segments.clear();
   result.lines.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped());
   result.lines.dropped = static_cast<int>(lines.segments.dropped());
@@ -132,7 +138,7 @@ void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScal
     const Segment segment = lines.segments[i];
     if (!lift_line(depth, noise, segment, lines.lines[lines.count_3d])) continue;
     std::swap(lines.segments[i], lines.segments[lines.count_3d]);
-    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / scale, segment);
+    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / kScale, segment);
     ++lines.count_3d;
   }
   result.lines.with_depth = static_cast<int>(lines.count_3d);
