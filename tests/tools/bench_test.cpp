@@ -256,10 +256,11 @@ std::vector<std::string> cells_of(const std::string& row) {
 // The page's bounds, on the images that are hardest on a detector.
 TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
   std::map<std::string, double> bounds;
-  for (const std::string& row : rows_with(read_file(PLVO_PERFORMANCE_PAGE), "| at most ")) {
+  const std::string page = read_file(PLVO_PERFORMANCE_PAGE);
+  for (const std::string& row : lines_of(page.substr(page.find("| | at most |")))) {
     const auto cells = cells_of(row);
-    ASSERT_GE(cells.size(), 2U) << row;
-    bounds[cells[0].substr(std::string("at most ").size())] = std::stod(cells[1]);
+    if (cells.size() == 7 && cells[1].find_first_not_of("0123456789") == std::string::npos)
+      bounds[cells[0]] = std::stod(cells[1]);
   }
   ASSERT_EQ(bounds.size(), 6U);
   for (const std::string image : {"own", "noise", "stripes", "checkerboard"}) {
