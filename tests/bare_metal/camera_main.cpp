@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The example of a board's own camera at work: frames that a made-up DMA engine writes into padded rows give
 // the same results as the same frames row by row; a sensor that stops is a time-out; of two frames the newer
-// one counts.
+// one counts. A watchdog is fed between the stages, and frames that took too long have fewer features.
 #include <cstring>
 
 #include "fingerprint.hpp"
@@ -49,6 +49,12 @@ std::uint64_t print_of(const TrackResult& result) {
   return print.value();
 }
 
+// A real one's register would be written here.
+struct Watchdog {
+  int fed = 0;
+  static void feed(void* self, Stage) { ++static_cast<Watchdog*>(self)->fed; }
+};
+
 int fail(const char* what) {
   write_text(TextLine().text(what).text("\n").view());
   return 1;
@@ -65,8 +71,12 @@ int main() {
                      {transfers[1].colour, transfers[1].depth},
                      {transfers[2].colour, transfers[2].depth}}},
                    clock, [](const void*, std::size_t) { ++invalidated; });
+  Watchdog watchdog;
+  Config config;
+  config.stage_hook = {Watchdog::feed, &watchdog};
+  config.budget.frame_ns = 1;  // every frame takes longer: down with each that is judged
   for (int k = 0; k < 2; ++k)
-    if (!odometry[k].init(arena[k], camera.model(), Config{}, kLimits).ok()) return fail("init");
+    if (!odometry[k].init(arena[k], camera.model(), config, kLimits).ok()) return fail("init");
 
   RgbdFrame frame;
   const std::int64_t start_ns = clock.monotonic_ns();
@@ -85,7 +95,11 @@ int main() {
     const TrackResult lent = odometry[0].track(frame), direct = odometry[1].track(rendered);
     if (lent.state != direct.state || print_of(lent) != print_of(direct)) return fail("the results differ");
     if (i > 0 && lent.state != TrackState::kTracking) return fail("the frames were not tracked");
+    if (lent.feature_step != (i > 0 ? 1 : 0)) return fail("the budget was not kept");
+    for (Odometry& one : odometry) one.frame_took(2);
   }
+  // Image, points, lines; and at least twice matching and motion.
+  if (watchdog.fed < 2 * (4 * 3 + 3 * 4)) return fail("the watchdog was not fed between the stages");
   if (invalidated != 8) return fail("the cache was not told of every image");
   write_text("the camera's frames and the renderer's give the same results\n");
   return 0;

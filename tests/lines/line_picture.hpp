@@ -85,9 +85,10 @@ inline std::vector<std::uint8_t> expose(const Picture& picture, double noise_sd,
 class DetectorRig {
  public:
   DetectorRig(int width, int height, std::size_t capacity = 256)
-      : detector_((width + 1) / 2, (height + 1) / 2),
-        memory_(pyramid_bytes(width, height) +
-                SegmentDetector::scratch_bytes((width + 1) / 2, (height + 1) / 2) + kArenaAlignment),
+      : DetectorRig(width, height, capacity, {(width + 1) / 2, (height + 1) / 2}) {}
+  DetectorRig(int width, int height, std::size_t capacity, const SegmentSearch& search)
+      : detector_(search),
+        memory_(pyramid_bytes(width, height) + SegmentDetector::scratch_bytes(search) + kArenaAlignment),
         arena_(memory_),
         storage_(capacity),
         segments_(storage_) {

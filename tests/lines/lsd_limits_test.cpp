@@ -3,6 +3,7 @@
 // and whether the uncertainty that it reports is the one it has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -119,6 +120,65 @@ TEST(SegmentDetectorLimits, KeepsTheBestAndBestSpread) {
   EXPECT_EQ(faint, 8);
   // Half of the room is for the most meaningful, whatever their place.
   for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(kept[i].meaningfulness, all[i].meaningfulness);
+}
+
+// Three bands of a picture of 240 rows meet at rows 80 and 160.
+Picture shapes_between_the_borders() {
+  Picture picture(320, 240, 100);
+  for (int band = 0; band < 3; ++band) {
+    for (int i = 0; i < 4; ++i) {
+      const Vector2 centre(40 + 65 * i, 40 + 80 * band);
+      test::fill_polygon(picture, test::regular_polygon(centre, 3 + i, 24, 0.3 * i), i % 2 == 0 ? 160 : 50);
+    }
+  }
+  return picture;
+}
+
+TEST(SegmentDetectorLimits, BandsCutOnlyWhatCrossesThem) {
+  Random random(11);
+  Picture picture = shapes_between_the_borders();
+  const auto detect = [](const std::vector<std::uint8_t>& pixels, const SegmentSearch& search) {
+    DetectorRig rig(320, 240, 256, search);
+    const auto& found = rig.detect(pixels);
+    std::vector<Segment> sorted(found.begin(), found.end());
+    // Alike in two bands, they are as meaningful as each other: by place.
+    std::sort(sorted.begin(), sorted.end(), [](const Segment& p, const Segment& q) {
+      return p.a.y() != q.a.y() ? p.a.y() < q.a.y() : p.a.x() < q.a.x();
+    });
+    return sorted;
+  };
+  const SegmentSearch whole{160, 120}, bands{160, 120, 3};
+  EXPECT_LT(SegmentDetector::scratch_bytes(bands), SegmentDetector::scratch_bytes(whole) / 2);
+  const auto apart = test::expose(picture, 0.5, random);
+  const auto all = detect(apart, whole);
+  const auto in_bands = detect(apart, bands);
+  EXPECT_GT(all.size(), 40U);
+  ASSERT_EQ(in_bands.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(in_bands[i].a, all[i].a);
+    EXPECT_EQ(in_bands[i].b, all[i].b);
+  }
+  // A bar from top to bottom: two edges, or three times two.
+  test::fill_polygon(picture, {{295, 10}, {305, 10}, {305, 230}, {295, 230}}, 220);
+  const auto crossed = test::expose(picture, 0.5, random);
+  const auto upright = [](const std::vector<Segment>& segments) {
+    return std::count_if(segments.begin(), segments.end(), [](const Segment& s) {
+      return s.middle().x() > 285 && std::abs(s.direction().y()) > 0.99 && s.length_px() > 40;
+    });
+  };
+  EXPECT_EQ(upright(detect(crossed, whole)), 2);
+  EXPECT_EQ(upright(detect(crossed, bands)), 6);
+}
+
+TEST(SegmentDetectorLimits, CandidatesBeyondTheirNumberAreCounted) {
+  Random random(12);
+  const auto pixels = test::expose(shapes_between_the_borders(), 0.5, random);
+  DetectorRig roomy(320, 240);
+  const std::size_t all = roomy.detect(pixels).size();
+  DetectorRig tight(320, 240, 256, {160, 120, 1, 20});
+  const auto& kept = tight.detect(pixels);
+  EXPECT_EQ(kept.size(), 20U);
+  EXPECT_EQ(kept.dropped(), all - 20);
 }
 
 TEST(SegmentDetectorLimits, TheSameEveryTime) {

@@ -2,6 +2,7 @@
 // docs/memory.md, written from what an Odometry says of its own block.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -23,11 +24,15 @@ struct MemoryUse {
   std::size_t required = 0;  // what required_bytes asks of the caller
 };
 
+// What each choice may take at most, in all.
+inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 1024 * 1024,
+                             kTinyCeiling = 512 * 1024;
+
 // Tracks a few frames of the procedural sequence and reads the records.
-MemoryUse measure_memory(const Limits& limits, int frames);
+MemoryUse measure_memory(const Limits& limits, const Config& config, int frames);
 
 // The page, in Markdown, up to the heading of what is not written by a test.
 inline constexpr const char* kMemoryPageEnd = "\n## Stack\n";
-std::string memory_page(const MemoryUse& vga, const MemoryUse& qvga);
+std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny);
 
 }  // namespace plvo

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "allocation_guard.hpp"
@@ -14,7 +15,12 @@
 namespace plvo {
 namespace {
 
-class NoAllocation : public testing::TestWithParam<std::function<Config()>> {
+struct Settings {
+  Config config;
+  Limits limits = Limits::qvga();
+};
+
+class NoAllocation : public testing::TestWithParam<std::function<Settings()>> {
  protected:
   void SetUp() override {
     if (!AllocationGuard::available())
@@ -24,14 +30,13 @@ class NoAllocation : public testing::TestWithParam<std::function<Config()>> {
 };
 
 TEST_P(NoAllocation, OverASequenceWithLostFrames) {
-  constexpr Limits kLimits = Limits::qvga();
-  ProceduralSequence sequence(kLimits.width, kLimits.height);
-  std::vector<std::byte> memory(required_bytes(kLimits));
-  const Config config = GetParam()();
+  const auto [config, limits] = GetParam()();
+  ProceduralSequence sequence(limits.width, limits.height);
+  std::vector<std::byte> memory(required_bytes(limits));
 
   AllocationGuard guard;
   Odometry odometry;
-  const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+  const Status status = odometry.init(memory, sequence.camera(), config, limits);
   guard.disarm();
   ASSERT_TRUE(status.ok()) << status.message();
 
@@ -39,6 +44,8 @@ TEST_P(NoAllocation, OverASequenceWithLostFrames) {
   const auto track = [&](const RgbdFrame& frame) {
     guard.arm();
     const TrackResult result = odometry.track(frame);
+    // For those who have a budget: down, and up again.
+    odometry.frame_took(result.stamp_ns < sequence.stamp_ns(9) ? 2 : 0);
     guard.disarm();
     return result;
   };
@@ -69,13 +76,24 @@ TEST_P(NoAllocation, OverASequenceWithLostFrames) {
   EXPECT_GE(tracked_after_loss, 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Configs, NoAllocation,
-                         testing::Values([] { return Config{}; }, [] { return Config::paper(); },
-                                         [] {
-                                           Config config;
-                                           config.references.policy = ReferencePolicy::kKeyframe;
-                                           return config;
-                                         }));
+Config keyframe_alone() {
+  Config config;
+  config.references.policy = ReferencePolicy::kKeyframe;
+  return config;
+}
+
+Config budgeted() {
+  Config config;
+  config.budget = {.frame_ns = 1, .patience_frames = 2, .spare_share = 0.5};
+  return config;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Configs, NoAllocation,
+    testing::Values([] { return Settings{.config = {}}; }, [] { return Settings{.config = Config::paper()}; },
+                    [] { return Settings{.config = keyframe_alone()}; },
+                    [] { return Settings{.config = budgeted()}; },
+                    [] { return Settings{.config = Config::tiny(), .limits = Limits::tiny()}; }));
 
 TEST(NoAllocationWhenLostForGood, GivesUpTheReferenceAndStartsAnew) {
   if (!AllocationGuard::available()) GTEST_SKIP() << "SKIPPED: a sanitizer owns malloc here";

@@ -51,14 +51,15 @@ class Pairs {
     FrameFeatures& current = rooms_.frames[slot_];
     const NoiseScales noise = config_.noise.initial;
     rooms_.extraction.extract(frame, depth, noise, arena_, current, result);
-    MotionEstimate motion;
+    TrackedMotion tracked;
+    const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
       const Reference reference{&rooms_.frames[1 - slot_], prior_, {}};
       const CurrentFrame now{current, rooms_.extraction, depth, noise};
-      motion = rooms_.tracking.find(reference, now, config_.points.match.radius_px, arena_, result).motion;
+      rooms_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
+      const Se3 T_found = motion.T_current_reference;
       if (motion.status == StatusCode::kOk)
-        motion =
-            rooms_.tracking.refine({&reference, 1}, now, motion.T_current_reference, arena_, result).motion;
+        rooms_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
     }
     rooms_.extraction.lift_points(depth, noise, current.points);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -236,6 +237,47 @@ TEST_F(Bench, StagesCountTimeAndInstructions) {
   EXPECT_TRUE(rows_with(run.out, "| 0.00 | 0.0 |").empty()) << run.out;
   EXPECT_EQ(rows_with(run.out, "| 100.0 |").size(), 1U) << run.out;
   EXPECT_EQ(run_command(kBench + " stages --image moon --out " + results.string()).exit_code, 2);
+}
+
+// The cells of a row of a table, without what is around them.
+std::vector<std::string> cells_of(const std::string& row) {
+  std::vector<std::string> cells;
+  std::stringstream stream(row);
+  std::string cell;
+  std::getline(stream, cell, '|');
+  while (std::getline(stream, cell, '|')) {
+    const std::size_t first = cell.find_first_not_of(' ');
+    cells.push_back(first == std::string::npos ? ""
+                                               : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
+  }
+  return cells;
+}
+
+// The page's bounds, on the images that are hardest on a detector.
+TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
+  std::map<std::string, double> bounds;
+  const std::string page = read_file(PLVO_PERFORMANCE_PAGE);
+  for (const std::string& row : lines_of(page.substr(page.find("| | at most |")))) {
+    const auto cells = cells_of(row);
+    if (cells.size() == 7 && cells[1].find_first_not_of("0123456789") == std::string::npos)
+      bounds[cells[0]] = std::stod(cells[1]);
+  }
+  ASSERT_EQ(bounds.size(), 6U);
+  for (const std::string image : {"own", "noise", "stripes", "checkerboard"}) {
+    SCOPED_TRACE(image);
+    const CommandResult run =
+        run_command(kBench + " stages " + walk("constant") + " --instructions --image " + image + " --out " +
+                    (*folder_ / image).string());
+    if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    std::map<std::string, double> sums;
+    for (const std::string& row : lines_of(run.out.substr(run.out.find("| stage | step |")))) {
+      const auto cells = cells_of(row);
+      if (cells.size() == 4 && bounds.count(cells[0]) > 0) sums[cells[0]] += std::stod(cells[2]);
+    }
+    EXPECT_EQ(sums.size(), bounds.size());
+    for (const auto& [stage, sum] : sums) EXPECT_LE(sum, bounds[stage]) << stage;
+  }
 }
 
 TEST_F(Bench, SaysWhatIsWrong) {

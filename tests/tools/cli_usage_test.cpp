@@ -30,7 +30,7 @@ void expect_usage(const std::string& arguments, const std::string& words) {
 
 TEST(CliUsage, AllowedValuesAreNamedInWords) {
   expect_usage("run x --features circles", "--features: expected points, lines or both, not 'circles'");
-  expect_usage("run x --preset fast", "--preset: expected default or paper, not 'fast'");
+  expect_usage("run x --preset fast", "--preset: expected default, paper or tiny, not 'fast'");
   expect_usage("run x --reference next", "--reference: expected previous, keyframe or both, not 'next'");
   expect_usage("run x --pace slow", "--pace: expected fast, realtime or step, not 'slow'");
   expect_usage("run --camera film", "--camera: expected sim, not 'film'");

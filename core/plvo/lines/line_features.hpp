@@ -19,6 +19,12 @@ struct LineFeatures {
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
 
+  // No segments, and room for at most so many.
+  void clear(std::size_t room) {
+    segments = FixedVector<Segment>({segments.begin(), room < lines.size() ? room : lines.size()});
+    count_3d = 0;
+  }
+
   template <typename Memory>
   constexpr void carve(Memory& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);

@@ -3,8 +3,6 @@
 // the 3D line. Full-resolution pixels; (0, 0) is the centre of the top-left pixel, x right, y down.
 #pragma once
 
-#include <cstdint>
-
 #include "plvo/math/types.hpp"
 
 namespace plvo {
@@ -15,12 +13,9 @@ namespace plvo {
 struct Segment {
   Vector2 a = Vector2::Zero();
   Vector2 b = Vector2::Zero();
-  double width_px = 0;         // of the rectangle that holds the support pixels
   double meaningfulness = 0;   // −log10 of the number of false alarms: ≥ 0, the larger the less by chance
-  double mean_gradient = 0;    // over the support, grey levels per full-resolution pixel
   double sigma_px = 0;         // SD of the line's position across itself, at its middle
   double sigma_angle_rad = 0;  // SD of the line's direction; independent of the one above
-  std::int32_t support = 0;    // aligned pixels inside the rectangle, at the scale that was searched
 
   Vector2 middle() const { return 0.5 * (a + b); }
   double length_px() const { return (b - a).norm(); }

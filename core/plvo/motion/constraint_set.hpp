@@ -35,6 +35,10 @@ struct JointInformation {
   static constexpr int kSize = 6 + SharedErrors::kCount;
   Matrix<kSize, kSize> H = Matrix<kSize, kSize>::Zero();
   Vector<kSize> g = Vector<kSize>::Zero();
+  void set_zero() {
+    H.setZero();
+    g.setZero();
+  }
 };
 
 class ConstraintSet {

@@ -42,6 +42,21 @@ bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C
          largest_eigenvalue(C_rotation) <= config.max_sigma_rad * config.max_sigma_rad;
 }
 
+// These two are apart, for an estimate on the stack would else be there while the next one is made.
+[[gnu::noinline]] void reset(MotionEstimate& estimate) { estimate = MotionEstimate(); }
+
+// What a failure leaves of an estimate: how it came to it.
+[[gnu::noinline]] void forget_motion(MotionEstimate& estimate) {
+  const StatusCode status = estimate.status;
+  const RansacSummary ransac = estimate.ransac;
+  const LmSummary lm = estimate.lm;
+  estimate = MotionEstimate();
+  estimate.status = status;
+  estimate.ransac = ransac;
+  estimate.lm = lm;
+  if (estimate.lm.status == LmStatus::kNotFinite) estimate.lm.initial_cost = estimate.lm.final_cost = 0;
+}
+
 void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
   for (std::size_t kind = 0; kind < sets.size(); ++kind) {
     const ConstraintSet& set = *sets[kind];
@@ -54,10 +69,11 @@ void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
 
 StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                  const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                 const MotionStart& start, std::span<RansacCandidate> scratch, MotionEstimate& estimate) {
+                 const MotionStart& start, std::span<RansacCandidate> scratch, MotionSolver& solving,
+                 MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
       MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
-  Ransac ransac(sets, references, config, kernels, scratch);
+  Ransac ransac(sets, references, config, kernels, scratch, solving);
   if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
   const double least_share = config.min_inlier_ratio * static_cast<double>(ransac.usable());
@@ -67,13 +83,14 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 
   Se3 T;
   if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-  LevenbergMarquardt<6> solver;
+  MotionProblem& problem = solving.problem;
+  LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
   for (int round = 0; round <= kMaxRounds; ++round) {
     const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
     if (!consensus()) return StatusCode::kNoConsensus;
     if (round > 0 && !changed) break;
-    MotionProblem problem(sets, references, shared, kernels, T);
+    problem.start(sets, references, shared, kernels, T);
     estimate.lm = solver.solve(problem, lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
@@ -97,9 +114,9 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 
 }  // namespace
 
-MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                               const MotionStart& start, Arena& arena) {
+void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                     const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                     const MotionStart& start, Arena& arena, MotionEstimate& estimate) {
   if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
   std::size_t matches = 0;
   for (ConstraintSet* set : sets) {
@@ -108,23 +125,17 @@ MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const Motio
   }
   const ScratchScope<Arena> scope(arena);
   const std::span<RansacCandidate> scratch = take_ransac_scratch(arena, matches);
-  MotionEstimate estimate;
-  estimate.status = scratch.size() < matches
+  const std::span<MotionSolver> solver = take_solver(arena);
+  reset(estimate);
+  estimate.status = scratch.size() < matches || solver.empty()
                         ? StatusCode::kOutOfMemory
-                        : solve(sets, references, config, lm, seed, start, scratch, estimate);
-  if (estimate.status == StatusCode::kOk) {
-    count(sets, estimate);
-    return estimate;
+                        : solve(sets, references, config, lm, seed, start, scratch, solver[0], estimate);
+  if (estimate.status != StatusCode::kOk) {
+    for (ConstraintSet* set : sets)
+      for (std::uint8_t& flag : set->inliers()) flag = 0;
+    forget_motion(estimate);
   }
-  for (ConstraintSet* set : sets)
-    for (std::uint8_t& flag : set->inliers()) flag = 0;
-  MotionEstimate failed;
-  failed.status = estimate.status;
-  failed.ransac = estimate.ransac;
-  failed.lm = estimate.lm;
-  if (failed.lm.status == LmStatus::kNotFinite) failed.lm.initial_cost = failed.lm.final_cost = 0;
-  count(sets, failed);
-  return failed;
+  count(sets, estimate);
 }
 
 }  // namespace plvo

@@ -51,16 +51,31 @@ struct MotionStart {
   SharedErrors shared;
 };
 
-// sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all zero unless kOk).
-// references: the frames that they match with; the motion is that from the base, reference 0.
-// start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
-// perpendicular lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch)
-// is taken from the arena and given back; an arena without room for it is kOutOfMemory. kDegenerate also when
-// the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or when no minimal set of
-// the consensus is free of degeneracy: all lines parallel, all points on a line, …
-MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                               const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                               const MotionStart& start, Arena& arena);
+// Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all
+// zero unless kOk). references: the frames that they match with; the motion is that from the base, reference
+// 0. start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
+// perpendicular lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch,
+// take_solver) is taken from the arena and given back; an arena without room for it is kOutOfMemory.
+// kDegenerate also when the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or
+// when no minimal set of the consensus is free of degeneracy: all lines parallel, all points on a line, …
+void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                     const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
+                     const MotionStart& start, Arena& arena, MotionEstimate& estimate);
+
+// The same where there is stack enough for what it returns.
+inline MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets,
+                                      const MotionReferences& references, const MotionConfig& config,
+                                      const LmOptions& lm, std::uint64_t seed, const MotionStart& start,
+                                      Arena& arena) {
+  MotionEstimate estimate;
+  estimate_motion(sets, references, config, lm, seed, start, arena, estimate);
+  return estimate;
+}
+
+template <typename Memory>
+constexpr std::span<MotionSolver> take_solver(Memory& memory) {
+  return memory.template take<MotionSolver>("motion: solver", 1);
+}
 
 // What points, lines (of each reference) and estimate_motion take between mark and rewind, for sizing.
 template <typename Memory>
@@ -72,6 +87,7 @@ constexpr void size_motion(Memory& memory, std::size_t references, std::size_t m
     (void)LineConstraints::Workspace::take(memory, max_lines);
   }
   (void)take_ransac_scratch(memory, references * (max_points + max_lines));
+  (void)take_solver(memory);
 }
 
 }  // namespace plvo

@@ -46,7 +46,8 @@ double convolve(const Matrix6& L, JointInformation& sum) {
   const Vector6 x = cholesky.solve(Lg);
   const Matrix<6, kSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
   sum.H -= HL.lazyProduct(gain);
-  sum.H = 0.5 * (sum.H + Joint(sum.H.transpose()));
+  for (int c = 0; c < kSize; ++c)
+    for (int r = c + 1; r < kSize; ++r) sum.H(r, c) = sum.H(c, r) = 0.5 * (sum.H(r, c) + sum.H(c, r));
   sum.g -= HL.lazyProduct(x);
   return -0.5 * Lg.dot(x);
 }
@@ -70,15 +71,18 @@ Matrix6 root(const Matrix6& S) {
 
 }  // namespace
 
-MotionProblem::MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                             const SharedErrors& shared, const Kernels& kernels, const Se3& T)
-    : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
-      references_(references),
-      kernels_(kernels),
-      T_(T),
-      candidate_(T),
-      shared_(shared),
-      candidate_shared_(shared.value) {
+void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                          const SharedErrors& shared, const Kernels& kernels, const Se3& T) {
+  sets_ = sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds);
+  references_ = references;
+  kernels_ = kernels;
+  T_ = candidate_ = T;
+  shared_ = shared;
+  candidate_shared_ = shared.value;
+  inverse_.setZero();
+  candidate_inverse_.setZero();
+  gain_.setZero();
+  candidate_gain_.setZero();
   for (Matrix6& information : information_) information.setZero();
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
     sets_[kind]->begin();
@@ -90,74 +94,82 @@ MotionProblem::MotionProblem(std::span<ConstraintSet* const> sets, const MotionR
 double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   candidate_ = boxplus(T_, step);
   const MotionsToCurrent motions = motions_to_current(candidate_, references_);
-  JointInformation sum;
+  sum_.set_zero();
   double cost = 0;
-  for (std::size_t r = 0; r < kMaxReferences; ++r) cost += add_reference(r, motions[r], sum);
-  if (shared_.any()) cost += eliminate_shared(sum);
-  H = sum.H.block<6, 6>(0, 0);
-  g = sum.g.head<6>();
+  for (std::size_t r = 0; r < kMaxReferences; ++r) cost += add_reference(r, motions[r]);
+  if (shared_.any()) cost += eliminate_shared();
+  H = sum_.H.block<6, 6>(0, 0);
+  g = sum_.g.head<6>();
   return cost;
 }
 
-double MotionProblem::add_reference(std::size_t r, const Se3& T, JointInformation& sum) {
-  JointInformation of_reference;
-  double cost = 0;
+double MotionProblem::add_reference(std::size_t r, const Se3& T) {
   bool any = false;
+  double cost = add_kinds(r, T, any);
+  if (!any) return 0;
+  if (r > 0) cost += bring_to_base(r, T);
+  sum_.H += of_reference_.H;
+  sum_.g += of_reference_.g;
+  return cost;
+}
+
+double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
+  of_reference_.set_zero();
+  double cost = 0;
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
     ConstraintSet& set = *sets_[kind];
     if (set.reference() != r) continue;
     any = true;
-    JointInformation of_kind;
-    cost += share_[kind] * set.linearize(T, shared_, kernels_[kind], of_kind);
-    candidate_information_[kind] = share_[kind] * of_kind.H.block<6, 6>(0, 0);
-    of_reference.H += share_[kind] * of_kind.H;
-    of_reference.g += share_[kind] * of_kind.g;
+    of_kind_.set_zero();
+    cost += share_[kind] * set.linearize(T, shared_, kernels_[kind], of_kind_);
+    candidate_information_[kind] = share_[kind] * of_kind_.H.block<6, 6>(0, 0);
+    of_reference_.H += share_[kind] * of_kind_.H;
+    of_reference_.g += share_[kind] * of_kind_.g;
   }
-  if (!any) return 0;
-  if (r == 0) {
-    sum.H += of_reference.H;
-    sum.g += of_reference.g;
-    return cost;
-  }
+  return cost;
+}
+
+// What a reference says of its own motion, as what it says of the base's. Apart from add_kinds: its matrices
+// and those of a set's linearisation would otherwise be on the stack at the same time.
+[[gnu::noinline]] double MotionProblem::bring_to_base(std::size_t r, const Se3& T) {
   const Matrix3 Q = skew(T.R * references_[r].T_reference_base.t);
   Matrix6 B = Matrix6::Zero();
   B.block<3, 3>(0, 0) = T.R;
   B.block<3, 3>(0, 3) = Q * T.R;
   B.block<3, 3>(3, 3) = T.R;
-  if (references_[r].covariance.trace() > 0) cost += convolve(B.lazyProduct(root_[r]), of_reference);
+  double cost = 0;
+  if (references_[r].covariance.trace() > 0) cost = convolve(B.lazyProduct(root_[r]), of_reference_);
   // Aᵀ H A with A the identity but for Q above the diagonal: a shift of columns, then of rows.
-  Joint& H = of_reference.H;
+  Joint& H = of_reference_.H;
   H.block<kSize, 3>(0, 3) += H.block<kSize, 3>(0, 0).lazyProduct(Q).eval();
   H.block<3, kSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kSize>(0, 0)).eval();
-  of_reference.g.segment<3>(3) += Q.transpose().lazyProduct(of_reference.g.head<3>());
-  sum.H += H;
-  sum.g += of_reference.g;
+  of_reference_.g.segment<3>(3) += Q.transpose().lazyProduct(of_reference_.g.head<3>());
   return cost;
 }
 
 // With the prior, at the shared errors' best value for this motion.
-double MotionProblem::eliminate_shared(JointInformation& sum) {
+[[gnu::noinline]] double MotionProblem::eliminate_shared() {
   constexpr int n = SharedErrors::kCount;
   double cost = 0;
   for (int k = 0; k < n; ++k) {
     const double sigma = shared_.sigma(k);
     // A kind that there is not has no derivative either: any information holds it where it is.
     const double information = sigma > 0 ? 1 / (sigma * sigma) : 1;
-    sum.H(6 + k, 6 + k) += information;
-    sum.g[6 + k] += information * shared_.value[k];
+    sum_.H(6 + k, 6 + k) += information;
+    sum_.g[6 + k] += information * shared_.value[k];
     cost += 0.5 * information * shared_.value[k] * shared_.value[k];
   }
   Cholesky<n> cholesky;
-  if (!cholesky.factor(sum.H.block<n, n>(6, 6))) return std::numeric_limits<double>::infinity();
-  const SharedErrors::Vector g = sum.g.tail<n>();
+  if (!cholesky.factor(sum_.H.block<n, n>(6, 6))) return std::numeric_limits<double>::infinity();
+  const SharedErrors::Vector g = sum_.g.tail<n>();
   const SharedErrors::Vector step = cholesky.solve(g);
   candidate_shared_ = shared_.value - step;
   candidate_inverse_ = cholesky.inverse();
-  candidate_gain_ = candidate_inverse_.lazyProduct(sum.H.block<n, 6>(6, 0));
-  const Matrix<6, n> coupling = sum.H.block<6, n>(0, 6);
+  candidate_gain_ = candidate_inverse_.lazyProduct(sum_.H.block<n, 6>(6, 0));
+  const Matrix<6, n> coupling = sum_.H.block<6, n>(0, 6);
   const Matrix6 eliminated = coupling.lazyProduct(candidate_gain_);
-  sum.H.block<6, 6>(0, 0) -= 0.5 * (eliminated + Matrix6(eliminated.transpose()));
-  sum.g.head<6>() -= coupling.lazyProduct(step);
+  sum_.H.block<6, 6>(0, 0) -= 0.5 * (eliminated + Matrix6(eliminated.transpose()));
+  sum_.g.head<6>() -= coupling.lazyProduct(step);
   return cost - 0.5 * g.dot(step);
 }
 

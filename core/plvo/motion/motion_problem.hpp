@@ -35,10 +35,16 @@ class MotionProblem {
   // One kernel per set; made once, for the quantile in it takes longer than a residual.
   static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
 
+  // For start(): it takes 11 kB, so the core has one in the arena for one estimate after the other.
+  MotionProblem() = default;
+  MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                const SharedErrors& shared, const Kernels& kernels, const Se3& T) {
+    start(sets, references, shared, kernels, T);
+  }
   // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T and at the shared
   // errors' value.
-  MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                const SharedErrors& shared, const Kernels& kernels, const Se3& T);
+  void start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+             const SharedErrors& shared, const Kernels& kernels, const Se3& T);
 
   // The shared errors are eliminated like landmarks: moved to their optimum for the candidate, H and g their
   // Schur complement.
@@ -56,8 +62,10 @@ class MotionProblem {
   using SharedMatrix = Matrix<SharedErrors::kCount, SharedErrors::kCount>;
   using SharedGain = Matrix<SharedErrors::kCount, 6>;
 
-  double add_reference(std::size_t r, const Se3& T, JointInformation& sum);
-  double eliminate_shared(JointInformation& sum);
+  double add_reference(std::size_t r, const Se3& T);
+  double add_kinds(std::size_t r, const Se3& T, bool& any);
+  double bring_to_base(std::size_t r, const Se3& T);
+  double eliminate_shared();
 
   std::span<ConstraintSet* const> sets_;
   MotionReferences references_;
@@ -69,9 +77,17 @@ class MotionProblem {
   SharedErrors shared_;
   SharedErrors::Vector candidate_shared_;
   // Of the shared errors given the motion: their covariance, and how they follow the motion.
-  SharedMatrix inverse_ = SharedMatrix::Zero(), candidate_inverse_ = SharedMatrix::Zero();
-  SharedGain gain_ = SharedGain::Zero(), candidate_gain_ = SharedGain::Zero();
+  SharedMatrix inverse_, candidate_inverse_;
+  SharedGain gain_, candidate_gain_;
   std::array<Matrix6, kMaxConstraintKinds> information_, candidate_information_;
+  // What a linearisation sums up: of all references, of one, of one kind of it.
+  JointInformation sum_, of_reference_, of_kind_;
+};
+
+// What RANSAC's refinements and the estimate after them use in turns.
+struct MotionSolver {
+  MotionProblem problem;
+  LevenbergMarquardt<6> solver;
 };
 
 }  // namespace plvo

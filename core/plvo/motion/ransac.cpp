@@ -30,11 +30,12 @@ bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
 
 Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                const MotionConfig& config, const MotionProblem::Kernels& kernels,
-               std::span<RansacCandidate> scratch)
+               std::span<RansacCandidate> scratch, MotionSolver& solver)
     : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
       references_(references),
       config_(config),
-      kernels_(kernels) {
+      kernels_(kernels),
+      solver_(solver) {
   // A hypothesis needs no honest weights: the references' poses are taken for exact.
   for (MotionReference& reference : references_) reference.covariance.setZero();
   for (const bool samplable : {true, false})
@@ -170,13 +171,12 @@ void Ransac::refine(Se3& T) {
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
-    MotionProblem problem(sets_, references_, {}, kernels_, T);
-    LevenbergMarquardt<6> solver;
+    solver_.problem.start(sets_, references_, {}, kernels_, T);
     LmOptions options;
     options.max_iterations = kRefinementSteps;
     options.step_tolerance = 1e-4;
-    (void)solver.solve(problem, options);
-    T = problem.T_current_reference();
+    (void)solver_.solver.solve(solver_.problem, options);
+    T = solver_.problem.T_current_reference();
   }
   inliers_ = kept_inliers;
 }

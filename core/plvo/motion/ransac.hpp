@@ -45,10 +45,10 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Memory& memory, std::si
 
 class Ransac {
  public:
-  // scratch holds a RansacCandidate for every match of all sets; what does not fit
-  // is not looked at.
+  // scratch holds a RansacCandidate for every match of all sets; what does not fit is not looked at. solver:
+  // for the refinements, between which it may be used otherwise.
   Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
-         const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch);
+         const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch, MotionSolver& solver);
 
   // Usable matches, all of them, and those that may form minimal sets.
   std::size_t usable() const { return usable_; }
@@ -78,6 +78,7 @@ class Ransac {
   MotionReferences references_;
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
+  MotionSolver& solver_;
   std::span<RansacCandidate> candidates_;  // those that may form minimal sets first
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;

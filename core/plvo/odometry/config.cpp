@@ -116,6 +116,15 @@ Status validate(const ReferenceConfig& references) {
   return {};
 }
 
+Status validate(const BudgetConfig& budget) {
+  if (!within(static_cast<double>(budget.frame_ns), 0, 1e12))
+    return out_of_range("budget.frame_ns", "0 to 1e12");
+  if (!within(budget.patience_frames, 1, 1000000))
+    return out_of_range("budget.patience_frames", "1 to 1000000");
+  if (!within(budget.spare_share, 0, 1)) return out_of_range("budget.spare_share", "0 to 1");
+  return {};
+}
+
 }  // namespace
 
 Status Limits::validate() const {
@@ -123,6 +132,8 @@ Status Limits::validate() const {
     return out_of_range("Limits width and height", "64 to 2047");
   if (!within(keypoints, 10, 60000)) return out_of_range("Limits::keypoints", "10 to 60000");
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
+  if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
+  if (!within(line_bands, 1, 8)) return out_of_range("Limits::line_bands", "1 to 8");
   return {};
 }
 
@@ -132,6 +143,7 @@ Status Config::validate() const {
   if (Status status = plvo::validate(lines); !status.ok()) return status;
   if (Status status = plvo::validate(noise); !status.ok()) return status;
   if (Status status = plvo::validate(references); !status.ok()) return status;
+  if (Status status = plvo::validate(budget); !status.ok()) return status;
   return plvo::validate(motion);
 }
 
@@ -150,6 +162,12 @@ Config Config::paper() {
   config.points.depth_reach_px = 0;
   config.lines.fit = Line3dConfig::paper();
   config.motion.robust = false;
+  return config;
+}
+
+Config Config::tiny() {
+  Config config;
+  config.references.policy = ReferencePolicy::kKeyframe;
   return config;
 }
 

@@ -10,6 +10,7 @@
 #include "plvo/lines/line3d.hpp"
 #include "plvo/lines/line_match.hpp"
 #include "plvo/motion/motion_config.hpp"
+#include "plvo/odometry/track_result.hpp"
 #include "plvo/points/detector.hpp"
 #include "plvo/points/point_match.hpp"
 
@@ -21,8 +22,15 @@ struct Limits {
   int height = 480;     // px
   int keypoints = 400;  // per frame
   int segments = 256;   // per frame
+  // Frames that one is matched with, 1 … 2. 1 saves a third of the features' memory, half of the matches',
+  // and allows the policies with one reference alone.
+  int references = 2;
+  // Bands of the image, one below the other, that segments are searched in, 1 … 8, each in the memory of the
+  // one before. A segment that crosses from one into the next comes out as two.
+  int line_bands = 1;
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 250, 128}; }
+  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1}; }
+  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3}; }  // within 512 KiB, with Config::tiny()
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
@@ -85,6 +93,21 @@ struct ReferenceConfig {
   double unseen_rad_per_s = 0.5;
 };
 
+// What a frame may take, where somebody waits for it (feature_budget.hpp). The caller measures.
+struct BudgetConfig {
+  std::int64_t frame_ns = 0;  // 0: as long as it takes, with all the features that Limits have room for
+  // A step up again after so many frames in a row that took less than this share of it.
+  int patience_frames = 30;
+  double spare_share = 0.6;
+};
+
+// Called when a stage of a frame is over, several times a frame for matching and motion: where a watchdog is
+// fed between stages. It may not call the odometry.
+struct StageHook {
+  void (*call)(void* context, Stage stage) = nullptr;
+  void* context = nullptr;
+};
+
 struct Config {
   Features features = Features::kBoth;
   ReferenceConfig references;
@@ -93,13 +116,17 @@ struct Config {
   PointConfig points;
   LineConfig lines;
   MotionConfig motion;
+  BudgetConfig budget;
   std::uint64_t seed = 1;  // of RANSAC's random generator
 
   // For per-stage times: a monotonic clock in nanoseconds. The core reads no other clock, and never decides
   // by it.
   std::int64_t (*stage_clock)() = nullptr;
+  StageHook stage_hook;
 
   static Config paper();
+  // Settings that Limits::tiny() has the room for.
+  static Config tiny();
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };

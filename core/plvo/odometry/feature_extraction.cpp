@@ -11,13 +11,20 @@
 #include "plvo/points/own_surface.hpp"
 
 namespace plvo {
+namespace {
+
+constexpr int kLineLevel = 1;
+
+}  // namespace
 
 void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   camera_ = camera;
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  segment_detector_[0] = SegmentDetector((camera.width + 1) / 2, (camera.height + 1) / 2);
+  segment_search_.width = pyramid_.level(kLineLevel).width;
+  segment_search_.height = pyramid_.level(kLineLevel).height;
+  segment_detector_[0] = SegmentDetector(segment_search_);
 }
 
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
@@ -57,7 +64,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
                                 Arena& scratch, FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
-    const StageTimer timer(config_.stage_clock, result, Stage::kImage);
+    const StageTimer timer(config_, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
@@ -70,7 +77,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
 
 void FeatureExtraction::extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                        TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kPoints);
+  const StageTimer timer(config_, result, Stage::kPoints);
   const DetectionSummary summary =
       detect_keypoints(pyramid_, depth, config_.points.detector, scratch, points.keypoints);
   describe_points(scratch, points);
@@ -118,10 +125,9 @@ void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseS
 
 void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                                       LineFeatures& lines, TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kLines);
-  constexpr int kLevel = 1;
-  constexpr double kScale = 1 << kLevel;
-  const GrayView reduced = pyramid_.level(kLevel);
+  const StageTimer timer(config_, result, Stage::kLines);
+  constexpr double kScale = 1 << kLineLevel;
+  const GrayView reduced = pyramid_.level(kLineLevel);
   const Status status =
       segment_detector_[0].detect(reduced, kScale, pyramid_.level(0), scratch, lines.segments);
   if (!status.ok()) lines.segments.clear();

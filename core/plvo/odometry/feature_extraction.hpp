@@ -26,6 +26,7 @@ class FeatureExtraction {
   constexpr void carve(Memory& memory, const Limits& limits) {
     map_.carve(memory, limits.width, limits.height);
     pyramid_.carve(memory, limits.width, limits.height);
+    segment_search_ = segment_search(limits);
     segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
   }
   // Scratch: the stages come one after the other, so the largest counts.
@@ -44,9 +45,8 @@ class FeatureExtraction {
     reserve_detection(memory, limits.width, limits.height);
     {
       const ScratchScope scope(memory);
-      memory.template take<std::byte>(
-          "segment detection",
-          SegmentDetector::scratch_bytes((limits.width + 1) / 2, (limits.height + 1) / 2));
+      memory.template take<std::byte>("segment detection",
+                                      SegmentDetector::scratch_bytes(segment_search(limits)));
     }
   }
 
@@ -71,6 +71,12 @@ class FeatureExtraction {
   const Pyramid& pyramid() const { return pyramid_; }
 
  private:
+  // On half the resolution. In bands, what is found is bounded as well.
+  static constexpr SegmentSearch segment_search(const Limits& limits) {
+    SegmentSearch search{(limits.width + 1) / 2, (limits.height + 1) / 2, limits.line_bands};
+    if (limits.line_bands > 1) search.most_candidates = 8 * static_cast<std::size_t>(limits.segments);
+    return search;
+  }
   void prepare_image(const ColourView& colour, Arena& scratch);
   void extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points, TrackResult& result);
   void extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
@@ -83,6 +89,7 @@ class FeatureExtraction {
   Config config_;
   UndistortionMap map_;
   Pyramid pyramid_;
+  SegmentSearch segment_search_;
   std::span<SegmentDetector> segment_detector_;  // one
 };
 

@@ -7,6 +7,7 @@
 
 #include "plvo/lines/line_features.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_budget.hpp"
 #include "plvo/points/keypoint.hpp"
 
 namespace plvo {
@@ -15,6 +16,12 @@ struct FrameFeatures {
   std::int64_t stamp_ns = 0;
   PointFeatures points;
   LineFeatures lines;
+
+  // Empty, with room for so many of what was carved.
+  void clear(const FeatureRoom& room) {
+    points.clear(room.keypoints);
+    lines.clear(room.segments);
+  }
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {

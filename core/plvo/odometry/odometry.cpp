@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace plvo {
 namespace {
@@ -62,6 +63,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
         .append(camera.width)
         .append("x")
         .append(camera.height);
+  if (config.references.policy == ReferencePolicy::kKeyframeAndPrevious && limits.references < 2)
+    return {StatusCode::kInvalidArgument,
+            "config: references.policy with both references needs Limits::references = 2"};
   if (memory.size() < required_bytes(limits))
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
         .append(static_cast<std::int64_t>(required_bytes(limits)))
@@ -77,6 +81,7 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   rooms_.extraction.init(camera, config);
   rooms_.tracking.init(camera, config);
   noise_ = config.noise.initial;
+  budget_.init(config.budget, limits);
   ready_ = true;
   return {};
 }
@@ -121,6 +126,9 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
   const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
+  take_feature_memory();
+  frame(current_).features.clear(budget_.room());
+  result.feature_step = budget_.step();
   rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
   segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
   if (keyframe_ == kNobody) {
@@ -128,7 +136,8 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     start(result);
     return result;
   }
-  const TrackedMotion tracked = estimate_motion(depth, result);
+  TrackedMotion tracked;
+  estimate_motion(depth, tracked, result);
   fill_views(tracked.motion);
   if (tracked.motion.status == StatusCode::kOk) {
     rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
@@ -137,6 +146,17 @@ TrackResult Odometry::track(const RgbdFrame& input) {
     lose(tracked.motion, result);
   }
   return result;
+}
+
+// Limits for one reference have memory for the features of two frames: the reference, and the current frame,
+// which takes it from the last one.
+void Odometry::take_feature_memory() {
+  FrameFeatures& mine = frame(current_).features;
+  for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
+    if (slot == keyframe_) continue;
+    std::swap(mine.points, frame(slot).features.points);
+    std::swap(mine.lines, frame(slot).features.lines);
+  }
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
@@ -190,27 +210,25 @@ std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& refer
 
 // A first motion from the latest reference, where it is predicted; failing that from each, wherever it may
 // be. Then the motion from all of them.
-TrackedMotion Odometry::estimate_motion(const DepthSampler& depth, TrackResult& result) {
+void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
-  TrackedMotion tracked;
   for (std::size_t attempt = 0; attempt <= count; ++attempt) {
     const bool wide = attempt > 0;
     Reference from = references[count - (wide ? attempt : 1)];
     if (wide) from.prior.T_current_reference = Se3{};
-    tracked = rooms_.tracking.find(from, current,
-                                   wide ? config_.references.wide_search_px : config_.points.match.radius_px,
-                                   arena_, result);
+    rooms_.tracking.find(from, current,
+                         wide ? config_.references.wide_search_px : config_.points.match.radius_px, arena_,
+                         tracked, result);
     if (tracked.motion.status != StatusCode::kOk) continue;
-    if (!config_.points.registered) return tracked;
+    if (!config_.points.registered) return;
     const Se3 T_current_base = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    tracked =
-        rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, result);
-    if (tracked.motion.status == StatusCode::kOk) return tracked;
+    rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, tracked,
+                           result);
+    if (tracked.motion.status == StatusCode::kOk) return;
   }
-  return tracked;
 }
 
 void Odometry::start(TrackResult& result) {
@@ -292,7 +310,11 @@ void Odometry::choose_keyframe() {
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
   const double least = config_.references.keyframe_inlier_ratio * static_cast<double>(available);
-  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame &&
+  // Too full a keyframe for the budget goes on costing what it did.
+  const FeatureRoom room = budget_.room();
+  const bool affordable =
+      features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
+  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame && affordable &&
                     rooms_.tracking.tracks(0).inliers >= least;
   if (!keep) keyframe_ = last_;
   current_ = 0;

@@ -23,6 +23,7 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_budget.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
@@ -66,7 +67,8 @@ struct OdometryRooms {
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
-    for (FrameFeatures& frame : frames) frame.carve(memory, limits);
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references); ++i)
+      frames[i].carve(memory, limits);
     point_track_views =
         memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
@@ -104,6 +106,10 @@ class Odometry {
   // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
   TrackResult track(const RgbdFrame& frame);
 
+  // For Config::budget: what the last call of track() took, by the caller's clock. How many features the next
+  // frames have depends on nothing else.
+  void frame_took(std::int64_t ns) { budget_.note(ns); }
+
   // Who took what of the block, and the high-water mark of the scratch behind it.
   std::span<const Arena::Record> memory_records() const;
   std::size_t memory_used() const;
@@ -126,6 +132,7 @@ class Odometry {
   using References = std::array<Reference, kMaxReferences>;
 
   Status check(const RgbdFrame& frame) const;
+  void take_feature_memory();
   double depth_after_colour_s(const RgbdFrame& frame) const;
   Exposure predict_exposure(std::int64_t stamp_ns) const;
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
@@ -134,7 +141,7 @@ class Odometry {
     return last_ != keyframe_ && config_.points.registered &&
            config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
   }
-  TrackedMotion estimate_motion(const DepthSampler& depth, TrackResult& result);
+  void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   void note_velocity(std::int64_t motion_ns);
@@ -151,6 +158,7 @@ class Odometry {
   OdometryRooms rooms_;
   CameraModel camera_;
   Config config_;
+  FeatureBudget budget_;
   bool ready_ = false;
 
   std::array<Frame, kFrames> frames_;

@@ -44,10 +44,10 @@ SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const No
           config_.noise.shared_depth_m * sqrt(noise.shared_depth)};
 }
 
-TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                                       const MotionStart& start, const LmOptions& lm, Arena& scratch,
-                                       TrackResult& result) {
-  const StageTimer timer(config_.stage_clock, result, Stage::kMotion);
+void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
+                              const MotionStart& start, const LmOptions& lm, Arena& scratch,
+                              TrackedMotion& tracked, TrackResult& result) {
+  const StageTimer timer(config_, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
   const double weight = features.size() > 1 ? kWeightOfTwo : 1;
@@ -64,13 +64,16 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
     set.set_reference(r, config_.noise.line_correlation, weight);
     return set;
   };
-  std::array<PointConstraints, kMaxReferences> points{points_of(0), points_of(last)};
-  std::array<LineConstraints, kMaxReferences> lines{lines_of(0), lines_of(last)};
+  std::array<PointConstraints, kMaxReferences> points{
+      points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
+  std::array<LineConstraints, kMaxReferences> lines{
+      lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
   const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
 
-  TrackedMotion tracked;
-  tracked.motion = estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm,
-                                   config_.seed, start, scratch);
+  tracked.exposure = {};
+  tracked.shown = {};
+  estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm, config_.seed, start,
+                  scratch, tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
@@ -82,17 +85,16 @@ TrackedMotion ReferenceTracking::solve(std::span<const MidExposure> features, co
                         motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
-  return tracked;
 }
 
-TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentFrame& current,
-                                      double radius_px, Arena& scratch, TrackResult& result) {
+void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, double radius_px,
+                             Arena& scratch, TrackedMotion& tracked, TrackResult& result) {
   const ScratchScope scope(scratch);
   const Se3& T_predicted = reference.prior.T_current_reference;
   const MidExposure features =
       at_mid_exposure(camera_, reference.prior, T_predicted, *reference.features, current.features, scratch);
   {
-    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    const StageTimer timer(config_, result, Stage::kMatching);
     const DepthSampler depth = current.depth.with(features.current);
     track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
@@ -106,15 +108,15 @@ TrackedMotion ReferenceTracking::find(const Reference& reference, const CurrentF
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config_.points.registered;
   const SharedErrors shared = whole ? shared_errors(features.current, current.noise) : SharedErrors{};
-  TrackedMotion tracked = solve({&features, 1}, MotionReferences{}, {&T_predicted, shared},
-                                whole ? kFineSolve : kRoughSolve, scratch, result);
+  solve({&features, 1}, MotionReferences{}, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
+        tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
-  return tracked;
 }
 
-TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
-                                        const Se3& T_current_base, Arena& scratch, TrackResult& result) {
+void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
+                               const Se3& T_current_base, Arena& scratch, TrackedMotion& tracked,
+                               TrackResult& result) {
   const ScratchScope scope(scratch);
   MotionReferences poses;
   for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
@@ -129,7 +131,7 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
     const Reference& reference = references[r];
     features[r] =
         at_mid_exposure(camera_, reference.prior, motions[r], *reference.features, current.features, scratch);
-    const StageTimer timer(config_.stage_clock, result, Stage::kMatching);
+    const StageTimer timer(config_, result, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points,
                     features[r].reference_points, motions[r], tracks_[r].points);
     LineMatchConfig gates = config_.lines.match;
@@ -138,13 +140,11 @@ TrackedMotion ReferenceTracking::refine(std::span<const Reference> references, c
     match_predicted_lines(camera_.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
-  TrackedMotion tracked =
-      solve(std::span(features).first(references.size()), poses,
-            {&T_current_base, shared_errors(exposure, current.noise)}, kFineSolve, scratch, result);
+  solve(std::span(features).first(references.size()), poses,
+        {&T_current_base, shared_errors(exposure, current.noise)}, kFineSolve, scratch, tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);
-  return tracked;
 }
 
 }  // namespace plvo

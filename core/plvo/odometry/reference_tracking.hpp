@@ -66,17 +66,19 @@ class ReferenceTracking {
  public:
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
-    for (ReferenceTracks& tracks : tracks_) tracks.carve(memory, limits);
+    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
+      tracks_[r].carve(memory, limits);
   }
   // Scratch: the larger of the stages, which come one after the other.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
     const ScratchScope scope(memory);
-    for (std::size_t r = 0; r < kMaxReferences; ++r) take_mid_exposure(memory, limits);
+    const auto references = static_cast<std::size_t>(limits.references);
+    for (std::size_t r = 0; r < references; ++r) take_mid_exposure(memory, limits);
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
     reserve_line_tracking(memory, limits.segments);
     reserve_noise_learning(memory, limits);
-    size_motion(memory, kMaxReferences, static_cast<std::size_t>(limits.keypoints),
+    size_motion(memory, references, static_cast<std::size_t>(limits.keypoints),
                 static_cast<std::size_t>(limits.segments));
   }
 
@@ -84,19 +86,19 @@ class ReferenceTracking {
 
   // T_current_reference of one reference: features are looked for within radius_px of where its prior has
   // them. Where points are not registered this is the whole estimate.
-  TrackedMotion find(const Reference& reference, const CurrentFrame& current, double radius_px,
-                     Arena& scratch, TrackResult& result);
-  // The motion from the base, from all references at once (1 … kMaxReferences), registered from
+  void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
+            TrackedMotion& tracked, TrackResult& result);
+  // The motion from the base, from all references at once (1 … Limits::references), registered from
   // T_current_base.
-  TrackedMotion refine(std::span<const Reference> references, const CurrentFrame& current,
-                       const Se3& T_current_base, Arena& scratch, TrackResult& result);
+  void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
+              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
 
   // Of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  TrackedMotion solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                      const MotionStart& start, const LmOptions& lm, Arena& scratch, TrackResult& result);
+  void solve(std::span<const MidExposure> features, const MotionReferences& poses, const MotionStart& start,
+             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
   SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {

@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the time that a scope takes to one stage's account, by the clock of Config; without one it does
-// nothing.
+// Adds the time that a scope takes to one stage's account, by the clock of Config, and calls Config's hook at
+// its end; without them it does nothing.
 #pragma once
 
 #include <cstdint>
 
+#include "plvo/odometry/config.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
 
 class StageTimer {
  public:
-  using Clock = std::int64_t (*)();
-
-  StageTimer(Clock clock, TrackResult& result, Stage stage)
-      : clock_(clock), account_(result.stage_ns[static_cast<std::size_t>(stage)]) {
-    if (clock_ != nullptr) start_ns_ = clock_();
+  StageTimer(const Config& config, TrackResult& result, Stage stage)
+      : config_(config), result_(result), stage_(stage) {
+    if (config_.stage_clock != nullptr) start_ns_ = config_.stage_clock();
   }
   ~StageTimer() {
-    if (clock_ != nullptr) account_ += clock_() - start_ns_;
+    if (config_.stage_clock != nullptr)
+      result_.stage_ns[static_cast<std::size_t>(stage_)] += config_.stage_clock() - start_ns_;
+    if (config_.stage_hook.call != nullptr) config_.stage_hook.call(config_.stage_hook.context, stage_);
   }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
-  Clock clock_;
-  std::int64_t& account_;
+  const Config& config_;
+  TrackResult& result_;
+  Stage stage_;
   std::int64_t start_ns_ = 0;
 };
 

@@ -50,6 +50,7 @@ struct TrackResult {
   FeatureCounts lines;
   int ransac_iterations = 0;
   int lm_iterations = 0;
+  int feature_step = 0;                              // of Config::budget; 0: all the features that fit
   double mean_brightness = 0;                        // of the grey image, 0 … 255
   std::array<std::int64_t, kStageCount> stage_ns{};  // zero without Config::stage_clock
 };

@@ -44,6 +44,11 @@ struct PointFeatures {
   std::span<WindowMask> masks;
   std::span<Point3d> points;  // camera frame
 
+  // No keypoints, and room for at most so many.
+  void clear(std::size_t room) {
+    keypoints = FixedVector<Keypoint>({keypoints.begin(), room < points.size() ? room : points.size()});
+  }
+
   template <typename Memory>
   constexpr void carve(Memory& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);

@@ -15,8 +15,9 @@
 namespace plvo::lsd {
 
 // A pixel of the field; x and y count from 0 without the border. Neither it nor Direction has initialisers:
-// a frame's scratch holds a million of them, all of which are written before they are read.
-struct Pixel {
+// a frame's scratch holds a million of them, all of which are written before they are read. Aligned as the
+// numbers that take a region's place (lsd.hpp).
+struct alignas(std::int32_t) Pixel {
   std::int16_t x;
   std::int16_t y;
 };

@@ -90,7 +90,7 @@ struct Variant {
 
 struct Best {
   Variant variant;
-  Validation validation;
+  double meaningfulness = 0;
 };
 
 // Counts the variant's pixels; keeps it if it beats the best.
@@ -106,7 +106,7 @@ void consider(std::span<const std::int32_t> samples, const FalseAlarms& false_al
     k += inside && aligned ? 1 : 0;
   }
   const double meaningfulness = false_alarms.meaningfulness(n, k, variant.level);
-  if (meaningfulness > best.validation.meaningfulness) best = {variant, {meaningfulness, k}};
+  if (meaningfulness > best.meaningfulness) best = {variant, meaningfulness};
 }
 
 }  // namespace
@@ -135,8 +135,8 @@ bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::s
   return is_dense(rectangle, region.pixels.size());
 }
 
-Validation validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
-                    std::span<std::int32_t> samples) {
+double validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
+                std::span<std::int32_t> samples) {
   std::size_t count = 0;
   int aligned = 0;
   for_each_pixel(field, rectangle, [&](int x, int y, std::int32_t across) {
@@ -146,12 +146,12 @@ Validation validate(const LevelLineField& field, const FalseAlarms& false_alarms
   });
   const std::span<const std::int32_t> inside = samples.first(count);
   const Variant whole{rectangle.across_min, rectangle.across_max, 0};
-  Best best{whole, {false_alarms.meaningfulness(static_cast<int>(count), aligned, 0), aligned}};
+  Best best{whole, false_alarms.meaningfulness(static_cast<int>(count), aligned, 0)};
   constexpr std::int32_t kHalfPixel = 128;
   constexpr std::int32_t kQuarterPixel = 64;
   constexpr int kTries = 5;
   // Each step starts from the best so far; the first step that finds a meaningful variant is the last.
-  for (int step = 0; step < 5 && best.validation.meaningfulness < 0; ++step) {
+  for (int step = 0; step < 5 && best.meaningfulness < 0; ++step) {
     Variant variant = best.variant;
     for (int i = 0; i < kTries; ++i) {
       if (step == 0 || step == 4) {
@@ -172,7 +172,7 @@ Validation validate(const LevelLineField& field, const FalseAlarms& false_alarms
   }
   rectangle.across_min = best.variant.across_min;
   rectangle.across_max = best.variant.across_max;
-  return best.validation;
+  return best.meaningfulness;
 }
 
 }  // namespace plvo::lsd

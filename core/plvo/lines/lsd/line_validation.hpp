@@ -21,16 +21,11 @@ namespace plvo::lsd {
 bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
              std::span<Pixel> storage);
 
-struct Validation {
-  double meaningfulness = 0;  // −log10 NFA; a segment when ≥ 0
-  std::int32_t aligned = 0;   // pixels
-};
-
-// Tests rectangle, and when it is not meaningful its variants: precision halved up to 5 times; width less by
-// ½ pixel up to 5 times; either side moved in by ½ pixel up to 5 times; precision halved 5 times more.
-// rectangle becomes the variant that is returned. samples: scratch for as many pixels as the rectangle may
-// hold.
-Validation validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
-                    std::span<std::int32_t> samples);
+// −log10 of the number of false alarms, a segment when ≥ 0. Tests rectangle, and when it is not meaningful
+// its variants: precision halved up to 5 times; width less by ½ pixel up to 5 times; either side moved in by
+// ½ pixel up to 5 times; precision halved 5 times more. rectangle becomes the variant that it is the number
+// of. samples: scratch for as many pixels as the rectangle may hold.
+double validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
+                std::span<std::int32_t> samples);
 
 }  // namespace plvo::lsd

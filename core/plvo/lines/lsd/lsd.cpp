@@ -24,12 +24,12 @@ std::size_t cell_of(const Vector2& middle, int width, int height) {
 
 }  // namespace
 
-std::size_t SegmentDetector::search(GrayView reduced, Scratch& scratch, SegmentCounts& counts) const {
+void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, SegmentCounts& counts) const {
   lsd::LevelLineField& field = scratch.field;
-  lsd::compute_field(reduced, field, scratch.region);
-  counts.directed_pixels = static_cast<std::int32_t>(field.seed_count);
-  const std::size_t min_size = min_region(width_, height_);
-  std::size_t found = 0;
+  field.height = band.height - 1;
+  lsd::compute_field(band, field, scratch.region);
+  counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
+  const std::size_t min_size = min_region(search_.width, search_.height);
   for (const lsd::Pixel seed : field.seeds.first(field.seed_count)) {
     if ((field.state[field.index(seed.x, seed.y)] & lsd::kUsed) != 0) continue;
     lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
@@ -43,30 +43,24 @@ std::size_t SegmentDetector::search(GrayView reduced, Scratch& scratch, SegmentC
       if (!tightened) continue;
     }
     ++counts.dense;
-    const lsd::Validation validation = lsd::validate(field, false_alarms_, rectangle, scratch.samples);
-    if (validation.meaningfulness < 0) continue;
-    scratch.candidates[found++] = describe(field, region, rectangle, validation);
+    const double meaningfulness =
+        lsd::validate(field, false_alarms_, rectangle, reuse<std::int32_t>(scratch.region));
+    if (meaningfulness < 0) continue;
+    const auto found = static_cast<std::size_t>(counts.meaningful++);
+    if (found < scratch.candidates.size())
+      scratch.candidates[found] = describe(rectangle, row_0, meaningfulness);
   }
-  counts.meaningful = static_cast<std::int32_t>(found);
-  return found;
 }
 
-SegmentDetector::Candidate SegmentDetector::describe(const lsd::LevelLineField& field,
-                                                     const lsd::Region& region,
-                                                     const lsd::Rectangle& rectangle,
-                                                     const lsd::Validation& validation) {
+SegmentDetector::Candidate SegmentDetector::describe(const lsd::Rectangle& rectangle, int row_0,
+                                                     double meaningfulness) {
   // Entry (x, y) of the field is at (x + ½, y + ½) of the image.
-  const Vector2 centre(rectangle.x_q8 / 256.0 + 0.5, rectangle.y_q8 / 256.0 + 0.5);
+  const Vector2 centre(rectangle.x_q8 / 256.0 + 0.5, rectangle.y_q8 / 256.0 + 0.5 + row_0);
   const Vector2 direction(rectangle.dx / 16384.0, rectangle.dy / 16384.0);
-  std::int64_t sum = 0;
-  for (const lsd::Pixel& pixel : region.pixels) sum += field.magnitude[field.index(pixel.x, pixel.y)];
   Candidate candidate;
   candidate.a = centre + direction * (rectangle.along_min / 256.0);
   candidate.b = centre + direction * (rectangle.along_max / 256.0);
-  candidate.meaningfulness = validation.meaningfulness;
-  candidate.width_px = rectangle.width_q8() / 256.0;
-  candidate.mean_gradient = static_cast<double>(sum) / (32.0 * static_cast<double>(region.pixels.size()));
-  candidate.support = validation.aligned;
+  candidate.meaningfulness = meaningfulness;
   return candidate;
 }
 
@@ -80,7 +74,7 @@ std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t
   if (candidates.size() <= capacity) return candidates.size();
   std::array<std::int32_t, kCellColumns * kCellRows> in_cell{};
   for (Candidate& candidate : candidates) {
-    candidate.rank = in_cell[cell_of(0.5 * (candidate.a + candidate.b), width_, height_)]++;
+    candidate.rank = in_cell[cell_of(0.5 * (candidate.a + candidate.b), search_.width, search_.height)]++;
   }
   const std::span<Candidate> rest = candidates.subspan(capacity / 2);
   heap_sort(rest.data(), rest.data() + rest.size(), [&](const Candidate& p, const Candidate& q) {
@@ -93,28 +87,31 @@ std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t
 Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Arena& scratch_memory,
                                FixedVector<Segment>& out, SegmentCounts* counts) const {
   out.clear();
-  if (reduced.data == nullptr || full.data == nullptr || reduced.width != width_ ||
-      reduced.height != height_) {
+  if (reduced.data == nullptr || full.data == nullptr || reduced.width != search_.width ||
+      reduced.height != search_.height) {
     return {StatusCode::kInvalidArgument,
             "lines: the image is missing or not of the size that was announced"};
   }
   const ScratchScope scope(scratch_memory);
-  Scratch scratch = carve(scratch_memory, width_, height_);
+  Scratch scratch = carve(scratch_memory, search_);
   if (scratch.candidates.empty()) {
     return {StatusCode::kOutOfMemory, "lines: the scratch memory is too small for this image size"};
   }
   SegmentCounts done;
-  const std::span<Candidate> candidates = scratch.candidates.first(search(reduced, scratch, done));
+  const int rows = band_rows(search_);
+  for (int row = 0; row + 1 < reduced.height; row += rows)
+    search({reduced.row(row), reduced.width, std::min(rows + 1, reduced.height - row), reduced.stride}, row,
+           scratch, done);
+  const auto meaningful = static_cast<std::size_t>(done.meaningful);
+  const std::span<Candidate> candidates =
+      scratch.candidates.first(std::min(meaningful, scratch.candidates.size()));
   const std::size_t kept = select(candidates, out.capacity());
-  out.add_dropped(candidates.size() - kept);
+  out.add_dropped(meaningful - kept);
   for (const Candidate& candidate : candidates.first(kept)) {
     Segment segment;
     segment.a = candidate.a * scale;
     segment.b = candidate.b * scale;
-    segment.width_px = candidate.width_px * scale;
     segment.meaningfulness = candidate.meaningfulness;
-    segment.mean_gradient = candidate.mean_gradient / scale;
-    segment.support = candidate.support;
     done.placed += lsd::localise(full, kAxisSd_px * scale, segment) ? 1 : 0;
     out.push_back(segment);
   }

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "plvo/base/arena.hpp"
@@ -33,14 +34,27 @@ struct SegmentCounts {
   std::int64_t grown_pixels = 0;     // pixels added to regions, repeats included
 };
 
+struct SegmentSearch {
+  int width = 1, height = 1;  // of the image that is searched (the reduced one)
+  // Bands of rows that are searched one after the other, each in the memory of the one before: regions end at
+  // their borders.
+  int bands = 1;
+  // What is found beyond this is dropped. Strong gradients are looked at first.
+  std::size_t most_candidates = std::numeric_limits<std::size_t>::max();
+};
+
 class SegmentDetector {
  public:
-  // The size of the image that detect searches (the reduced one).
-  SegmentDetector(int width, int height) : width_(width), height_(height), false_alarms_(width, height) {}
-  SegmentDetector() : SegmentDetector(1, 1) {}
+  explicit SegmentDetector(const SegmentSearch& search)
+      : search_(search), false_alarms_(search.width, search.height) {}
+  SegmentDetector(int width, int height) : SegmentDetector(SegmentSearch{width, height}) {}
+  SegmentDetector() : SegmentDetector(SegmentSearch{}) {}
 
   // The most memory that detect takes for a moment from its scratch.
-  static constexpr std::size_t scratch_bytes(int width, int height);
+  static constexpr std::size_t scratch_bytes(const SegmentSearch& search);
+  static constexpr std::size_t scratch_bytes(int width, int height) {
+    return scratch_bytes(SegmentSearch{width, height});
+  }
 
   // reduced: 8-bit, smoothed against aliasing; its pixel (x, y) lies at (scale x, scale y) of full. out:
   // cleared, then filled with the segments, most meaningful first. Where more are found than fit, half of the
@@ -55,16 +69,12 @@ class SegmentDetector {
   struct Candidate {
     Vector2 a, b;
     double meaningfulness = 0;
-    double width_px = 0;
-    double mean_gradient = 0;
-    std::int32_t support = 0;
     std::int32_t order = 0;  // in which it was found
     std::int32_t rank = 0;   // within its cell
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Pixel> region;
-    std::span<std::int32_t> samples;
+    std::span<lsd::Pixel> region;  // and, once its rectangle is known, that one's samples in its place
     std::span<Candidate> candidates;
   };
 
@@ -75,15 +85,22 @@ class SegmentDetector {
     return log2_area > 2 ? (5 * (log2_area - 1) / 2 + 3 + 2) / 3 : 2;
   }
 
+  // Rows of the field in a band; the last one may have fewer.
+  static constexpr int band_rows(const SegmentSearch& search) {
+    return search.height > 1 ? (search.height - 1 + search.bands - 1) / search.bands : 0;
+  }
+
   template <typename Memory>
-  static constexpr Scratch carve(Memory& memory, int width, int height) {
+  static constexpr Scratch carve(Memory& memory, const SegmentSearch& search) {
     Scratch scratch;
-    scratch.field = lsd::carve_field(memory, width, height);
-    const std::size_t pixels = scratch_pixels(width, height);
-    scratch.region = memory.template take<lsd::Pixel>("lines/lsd", pixels);
-    scratch.samples = memory.template take<std::int32_t>("lines/lsd", pixels);
+    const int band_height = band_rows(search) + 1;
+    scratch.field = lsd::carve_field(memory, search.width, band_height);
+    scratch.region = memory.template take<lsd::Pixel>("lines/lsd", scratch_pixels(search.width, band_height));
     // No two meaningful regions share a pixel: that bounds their number.
-    scratch.candidates = memory.template take<Candidate>("lines/lsd", pixels / min_region(width, height) + 1);
+    const std::size_t bound =
+        scratch_pixels(search.width, search.height) / min_region(search.width, search.height) + 1;
+    scratch.candidates = memory.template take<Candidate>(
+        "lines/lsd", bound < search.most_candidates ? bound : search.most_candidates);
     return scratch;
   }
   static constexpr std::size_t scratch_pixels(int width, int height) {
@@ -92,22 +109,21 @@ class SegmentDetector {
                : 0;
   }
 
-  // The number of candidates found; at most one per min_region pixels.
-  std::size_t search(GrayView reduced, Scratch& scratch, SegmentCounts& counts) const;
-  static Candidate describe(const lsd::LevelLineField& field, const lsd::Region& region,
-                            const lsd::Rectangle& rectangle, const lsd::Validation& validation);
+  // Of the band whose first row is the image's row row_0. Adds to the counts, and to the candidates as long
+  // as there is room.
+  void search(GrayView band, int row_0, Scratch& scratch, SegmentCounts& counts) const;
+  static Candidate describe(const lsd::Rectangle& rectangle, int row_0, double meaningfulness);
   // Brings those to be kept to the front and returns their number.
   std::size_t select(std::span<Candidate> candidates, std::size_t capacity) const;
 
-  int width_ = 1;
-  int height_ = 1;
+  SegmentSearch search_;
   lsd::FalseAlarms false_alarms_;
 };
 
 // Behind the class: Clang evaluates at compile time only what it has seen the whole of.
-constexpr std::size_t SegmentDetector::scratch_bytes(int width, int height) {
+constexpr std::size_t SegmentDetector::scratch_bytes(const SegmentSearch& search) {
   ArenaSizer sizer;
-  carve(sizer, width, height);
+  carve(sizer, search);
   return sizer.peak();
 }
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "plvo/odometry/feature_budget.hpp"
+
 namespace plvo::cli {
 namespace {
 
@@ -25,6 +27,8 @@ void TrackSummary::add(const FrameRecord& record) {
   for (std::size_t i = 0; i < kStageCount; ++i)
     stages_[i].add(static_cast<double>(result.stage_ns[i]) * 1e-6);
   stages_[kStageCount].add(static_cast<double>(record.cpu_ns) * 1e-6);
+  frames_with_fewer_features_ += result.feature_step > 0 ? 1 : 0;
+  lowest_step_ = std::max(lowest_step_, result.feature_step);
   if (!record.has_pose()) {
     ++lost_;
     const auto kind = static_cast<std::size_t>(result.status.code());
@@ -63,15 +67,21 @@ SummaryRows TrackSummary::frame_rows() const {
 
 SummaryRows TrackSummary::cost_rows() const {
   const DurationHistogram& total = stages_[kStageCount];
-  return {{"path", fmt::format("{:.3f} m", path_m_)},
-          {"inliers, median",
-           fmt::format("{} points, {} lines", point_inliers_.median(), line_inliers_.median())},
-          {"CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.quantile_ms(0.5),
-                                        total.quantile_ms(0.95), total.max_ms())},
-          {"arena",
-           fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak))},
-          {"resident memory", fmt::format("{:.2f} MiB after the start, {:.2f} at the end",
-                                          mebibytes(resident_start.total), mebibytes(resident_end.total))}};
+  SummaryRows rows = {
+      {"path", fmt::format("{:.3f} m", path_m_)},
+      {"inliers, median",
+       fmt::format("{} points, {} lines", point_inliers_.median(), line_inliers_.median())},
+      {"CPU per frame", fmt::format("{:.2f} ms median, {:.2f} p95, {:.2f} max", total.quantile_ms(0.5),
+                                    total.quantile_ms(0.95), total.max_ms())},
+      {"arena",
+       fmt::format("{:.2f} MiB, with scratch {:.2f}", mebibytes(arena_bytes), mebibytes(arena_peak))},
+      {"resident memory", fmt::format("{:.2f} MiB after the start, {:.2f} at the end",
+                                      mebibytes(resident_start.total), mebibytes(resident_end.total))}};
+  if (lowest_step_ > 0)
+    rows.emplace_back("frame budget",
+                      fmt::format("{} frames with fewer features, down to step {} of {}",
+                                  frames_with_fewer_features_, lowest_step_, FeatureBudget::kSteps));
+  return rows;
 }
 
 std::string TrackSummary::stage_table() const {
@@ -91,6 +101,7 @@ nlohmann::ordered_json TrackSummary::to_json() const {
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];
+  json["fewer_features"] = {{"frames", frames_with_fewer_features_}, {"lowest_step", lowest_step_}};
   json["inliers_median"] = {{"points", point_inliers_.median()}, {"lines", line_inliers_.median()}};
   for (std::size_t i = 0; i <= kStageCount; ++i) json["cpu_ms"][stage_name(i)] = cli::to_json(stages_[i]);
   json["memory_bytes"] = {{"arena", arena_bytes},

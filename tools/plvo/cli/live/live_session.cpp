@@ -43,7 +43,8 @@ Status LiveSession::open() {
   const CameraModel model = camera_->model();
   Config config = make_config(options_.odometry);
   config.stage_clock = posix_thread_cpu_ns;
-  if (Status status = block_.init(model, config); !status.ok()) return status;
+  if (Status status = block_.init(model, config, make_limits(options_.odometry, model)); !status.ok())
+    return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
   if (!options_.summary.empty())
@@ -104,6 +105,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   const std::int64_t start = posix_thread_cpu_ns();
   record_.result = block_.odometry().track(frame);
   record_.cpu_ns = posix_thread_cpu_ns() - start;
+  block_.odometry().frame_took(record_.cpu_ns);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;

@@ -76,7 +76,9 @@ class Run {
     if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
     Config config = make_config(options_.odometry);
     config.stage_clock = posix_thread_cpu_ns;
-    if (Status status = block_.init(opened_.camera->model(), config); !status.ok()) return status;
+    const CameraModel& model = opened_.camera->model();
+    if (Status status = block_.init(model, config, make_limits(options_.odometry, model)); !status.ok())
+      return status;
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
@@ -110,6 +112,7 @@ class Run {
         const std::int64_t start = posix_thread_cpu_ns();
         record.result = block_.odometry().track(frame);
         record.cpu_ns = posix_thread_cpu_ns() - start;
+        block_.odometry().frame_took(record.cpu_ns);
       }
       summary_->add(record);
       history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());
