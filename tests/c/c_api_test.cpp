@@ -279,6 +279,80 @@ TEST(CApi, SizesTellHowTheProgramWasCompiled) {
   EXPECT_EQ(config.struct_size, 4U) << "nothing is written past what the caller says there is";
 }
 
+TEST(CApi, APriorAndSetPoseGiveTheBitsOfCpp) {
+  ProceduralSequence sequence(kLimits.width, kLimits.height);
+  std::vector<std::byte> cpp_memory(required_bytes(kLimits));
+  Odometry odometry;
+  ASSERT_TRUE(odometry.init(cpp_memory, sequence.camera(), {}, kLimits).ok());
+  const plvo_camera camera = c_camera(sequence.camera());
+  const plvo_limits limits = c_limits();
+  std::vector<std::byte> memory(plvo_required_bytes(&limits));
+  plvo_odometry* c = nullptr;
+  ASSERT_EQ(plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &c).code, PLVO_OK);
+  const auto same = [&](const TrackResult& expected, const plvo_result& result) {
+    EXPECT_EQ(static_cast<int>(expected.state), result.state);
+    expect_same(expected.T_world_camera, result.T_world_camera);
+    expect_same(expected.pose_covariance, result.pose_covariance);
+    expect_same(expected.motion_covariance, result.motion_covariance);
+  };
+  const Se3 start{rotation_exp({0.1, 0.2, 0.3}), {1, 2, 3}};
+  const Matrix6 covariance = 1e-4 * Matrix6::Identity();
+  double T[12], C[36];
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      T[4 * row + column] = column < 3 ? start.R(row, column) : start.t(row);
+  for (int i = 0; i < 36; ++i) C[i] = covariance(i / 6, i % 6);
+  ASSERT_TRUE(odometry.set_pose(start, covariance).ok());
+  ASSERT_EQ(plvo_set_pose(c, T, C).code, PLVO_OK);
+  plvo_result result = {};
+  result.struct_size = sizeof result;
+  for (int i = 0; i < 7; ++i) {
+    MotionPrior prior;
+    plvo_prior c_prior;
+    plvo_prior_init(&c_prior, sizeof c_prior);
+    const Se3 T_now_before =
+        i == 0 ? Se3()
+               : ProceduralSequence::T_world_camera(i).inverse() * ProceduralSequence::T_world_camera(i - 1);
+    prior.rotation = {T_now_before.R, 1e-6 * Matrix3::Identity()};
+    prior.translation = {T_now_before.t, 1e-4 * Matrix3::Identity()};
+    prior.gravity = {{0.1, 1, 0.2}, 1e-2 * Matrix3::Identity(), 0.01};
+    c_prior.has_rotation = c_prior.has_translation = c_prior.has_gravity = 1;
+    for (int k = 0; k < 9; ++k) {
+      c_prior.R_now_before[k] = T_now_before.R(k / 3, k % 3);
+      c_prior.rotation_covariance[k] = prior.rotation->covariance(k / 3, k % 3);
+      c_prior.translation_covariance[k] = prior.translation->covariance(k / 3, k % 3);
+      c_prior.gravity_covariance[k] = prior.gravity->covariance(k / 3, k % 3);
+    }
+    for (int k = 0; k < 3; ++k) {
+      c_prior.t_now_before[k] = T_now_before.t(k);
+      c_prior.down[k] = prior.gravity->down(k);
+    }
+    c_prior.gravity_offset_sigma = 0.01;
+    const RgbdFrame frame = i == 5 ? sequence.render_dark(i) : sequence.render(i);
+    const plvo_frame view = c_frame(frame);
+    const plvo_status status = plvo_track_with_prior(c, &view, &c_prior, &result);
+    EXPECT_EQ(result.state, i == 0 ? PLVO_INITIALISING : (i == 5 ? PLVO_PREDICTED : PLVO_TRACKING)) << i;
+    EXPECT_EQ(status.code, i == 5 ? PLVO_TOO_FEW_FEATURES : PLVO_OK) << status.message;
+    same(odometry.track(frame, prior), result);
+    // A bad one is refused, and changes nothing.
+    c_prior.down[1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(plvo_track_with_prior(c, &view, &c_prior, &result).code, PLVO_INVALID_ARGUMENT);
+  }
+  ASSERT_EQ(plvo_reset(c).code, PLVO_OK);
+  odometry.reset();
+  for (int i = 0; i < 3; ++i) {
+    const RgbdFrame frame = sequence.render(i);
+    const plvo_frame view = c_frame(frame);
+    EXPECT_EQ(plvo_track(c, &view, &result).code, PLVO_OK);
+    same(odometry.track(frame), result);
+  }
+  T[0] = 7;
+  EXPECT_EQ(plvo_set_pose(c, T, C).code, PLVO_INVALID_ARGUMENT);
+  EXPECT_EQ(plvo_set_pose(c, nullptr, C).code, PLVO_INVALID_ARGUMENT);
+  EXPECT_EQ(plvo_set_pose(nullptr, T, C).code, PLVO_INVALID_ARGUMENT);
+  EXPECT_EQ(plvo_reset(nullptr).code, PLVO_INVALID_ARGUMENT);
+}
+
 TEST(CApi, NamesEveryCodeAndState) {
   EXPECT_STREQ(plvo_status_name(PLVO_OK), "ok");
   EXPECT_STREQ(plvo_status_name(PLVO_NOT_CONVERGED), "not_converged");
@@ -287,7 +361,8 @@ TEST(CApi, NamesEveryCodeAndState) {
   for (int code = PLVO_OK; code <= PLVO_NOT_CONVERGED; ++code)
     EXPECT_STRNE(plvo_status_name(code), "unknown");
   EXPECT_STREQ(plvo_state_name(PLVO_LOST), "lost");
-  EXPECT_STREQ(plvo_state_name(3), "unknown");
+  EXPECT_STREQ(plvo_state_name(PLVO_PREDICTED), "predicted");
+  EXPECT_STREQ(plvo_state_name(4), "unknown");
   EXPECT_STREQ(plvo_version(), PLVO_VERSION);
 }
 

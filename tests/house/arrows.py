@@ -18,6 +18,7 @@ BELOW["image"] = ["base", "math", "camera"]
 for _middle in ("points", "lines", "surfaces", "motion"):
     BELOW[_middle] = ["base", "math", "camera", "image"]
 BELOW["odometry"] = ["base", "math", "camera", "image", "points", "lines", "surfaces", "motion"]
+BELOW["inertial"] = [*BELOW["odometry"], "odometry"]
 
 # Made by CMake from a page of HTML.
 GENERATED = {"plvo/view/page.hpp"}

@@ -116,6 +116,50 @@ TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {
   EXPECT_EQ(read_file(file("recorded.txt")), read_file(file("live.txt")));
 }
 
+TEST_F(CliRun, GyroAndAccelerometerBridgeACoveredLens) {
+  const std::string simulated = " --scene desk --size 160x120 --seed 3 --covered 6:9 --quiet";
+  const CommandResult made =
+      run_command(kPlvo + " simulate --frames 12 --out " + file("covered") + simulated);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string command = kPlvo + " run " + file("covered");
+  const CommandResult lost = run_command(command + " --json " + file("lost.json"));
+  ASSERT_EQ(lost.exit_code, 0) << lost.err;
+  EXPECT_EQ(nlohmann::json::parse(read_file(file("lost.json")))["lost"], 3);
+  const CommandResult helped = run_command(command + " --imu --json " + file("helped.json") + " --stats " +
+                                           file("s.csv") + " --out " + file("t.txt"));
+  ASSERT_EQ(helped.exit_code, 0) << helped.err;
+  const auto json = nlohmann::json::parse(read_file(file("helped.json")));
+  EXPECT_EQ(json["lost"], 0);
+  EXPECT_EQ(json["predicted"], 3);
+  EXPECT_TRUE(contains(helped.out, "predicted")) << helped.out;
+  EXPECT_TRUE(contains(read_file(file("s.csv")), "predicted,\"predicted: hardly anything")) << helped.out;
+  EXPECT_EQ(lines_of(file("t.txt")), 1 + 12);
+  // The simulator's own readings are those of its files, but for their last digit.
+  ASSERT_EQ(run_command(kPlvo + " run --camera sim --frames 12 --imu --out " + file("live.txt") + simulated)
+                .exit_code,
+            0);
+  EXPECT_EQ(lines_of(file("live.txt")), 1 + 12);
+  // One of the two files is enough, none is not.
+  fs::remove(file("covered") + "/gyroscope.txt");
+  const CommandResult level = run_command(command + " --imu");
+  EXPECT_EQ(level.exit_code, 0) << level.err;
+  EXPECT_TRUE(contains(level.err, "no gyro")) << level.err;
+  fs::remove(file("covered") + "/accelerometer.txt");
+  expect_refused(run_command(command + " --imu"), "gyroscope.txt");
+}
+
+TEST_F(CliRun, ImuAxesAreThreeDifferentOnes) {
+  EXPECT_EQ(run("--imu --imu-axes x,-y,z --quiet").exit_code, 0);
+  for (const char* wrong : {"x,y", "x,x,z", "x,y,z,x", "a,b,c", "x,y,-"}) {
+    const CommandResult r = run(std::string("--imu --imu-axes ") + wrong);
+    EXPECT_EQ(r.exit_code, 2) << wrong;
+    EXPECT_TRUE(contains(r.err, "x,-y,z")) << r.err;
+  }
+  EXPECT_EQ(run("--imu-axes x,y,z").exit_code, 2) << "without --imu";
+  EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --imu --imu-axes x,y,z").exit_code, 2);
+  EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --covered 3:2").exit_code, 2);
+}
+
 TEST_F(CliRun, QuietSaysNothing) {
   const CommandResult r = run("--quiet");
   EXPECT_EQ(r.exit_code, 0);

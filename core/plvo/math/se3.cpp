@@ -46,6 +46,13 @@ Matrix3 renormalise(const Matrix3& R) {
   return 0.5 * (R + Matrix3(R.inverse()).transpose());
 }
 
+bool is_rotation(const Matrix3& R) {
+  constexpr double kTolerance = 1e-6;
+  const Matrix3 product = R * R.transpose();
+  return R.allFinite() && (product - Matrix3::Identity()).cwiseAbs().maxCoeff() <= kTolerance &&
+         R.determinant() > 0;
+}
+
 Quaternion to_quaternion(const Matrix3& R) {
   // Shepperd's method: divide by the largest of the four components.
   const double trace = R.trace();

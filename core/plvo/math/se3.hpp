@@ -17,6 +17,8 @@ Matrix3 rotation_exp(const Vector3& omega);
 Vector3 rotation_log(const Matrix3& R);
 // The nearest rotation to a matrix that is a rotation but for rounding (one Newton step of the polar factor).
 Matrix3 renormalise(const Matrix3& R);
+// To 1e-6 in every entry of R Rᵀ; false for a reflection, and for what is not finite.
+bool is_rotation(const Matrix3& R);
 
 struct Quaternion {  // Hamilton, unit
   double x = 0, y = 0, z = 0, w = 1;

@@ -32,7 +32,7 @@ struct MotionEstimate {
   // Per kind, in the order of the sets: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹ (26). Zero for an empty
   // kind.
   std::array<Matrix6, kMaxConstraintKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
-                                                          Matrix6::Zero()};
+                                                          Matrix6::Zero(), Matrix6::Zero()};
   SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
@@ -77,7 +77,8 @@ constexpr std::span<MotionSolver> take_solver(Memory& memory) {
   return memory.template take<MotionSolver>("motion: solver", 1);
 }
 
-// What points, lines (of each reference) and estimate_motion take between mark and rewind, for sizing.
+// What points, lines (of each reference), a sensed motion and estimate_motion take between mark and rewind,
+// for sizing.
 template <typename Memory>
 constexpr void size_motion(Memory& memory, std::size_t references, std::size_t max_points,
                            std::size_t max_lines) {
@@ -86,7 +87,7 @@ constexpr void size_motion(Memory& memory, std::size_t references, std::size_t m
     (void)PointConstraints::Workspace::take(memory, max_points);
     (void)LineConstraints::Workspace::take(memory, max_lines);
   }
-  (void)take_ransac_scratch(memory, references * (max_points + max_lines));
+  (void)take_ransac_scratch(memory, references * (max_points + max_lines) + 1);
   (void)take_solver(memory);
 }
 

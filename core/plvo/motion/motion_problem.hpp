@@ -12,8 +12,9 @@
 
 namespace plvo {
 
-inline constexpr std::size_t kMaxConstraintKinds = 4;  // sets: kinds times references
 inline constexpr std::size_t kMaxReferences = 2;
+// Sets: points and lines of each reference, and a motion that other sensors tell.
+inline constexpr std::size_t kMaxConstraintKinds = 2 * kMaxReferences + 1;
 
 // A frame that matches are with. The motion is solved against the base, reference 0; the pose of any other
 // relative to it is known with a covariance (of the ⊞-perturbation of T_reference_base), and marginalised:

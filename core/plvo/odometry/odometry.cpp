@@ -5,12 +5,18 @@
 #include <limits>
 #include <utility>
 
+#include "plvo/math/symmetric_eigen.hpp"
+
 namespace plvo {
 namespace {
 
 constexpr int kNobody = -1;
 // A frame with fewer 3D points than this cannot start a trajectory.
 constexpr int kMinStartFeatures = 20;
+// Beyond so many times the last motion's own time a prediction is worse than none.
+constexpr int kLongestPrediction = 3;
+// What a prior leaves out of the motion goes on as it did for so long, then stands still.
+constexpr std::int64_t kLongestCoast_ns = 300'000'000;
 
 // From an earlier stamp to a later one. Stamps may lie anywhere: a difference that does not fit saturates.
 std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
@@ -28,9 +34,16 @@ std::size_t view_segments(const LineFeatures& lines, std::span<SegmentView> view
   return lines.segments.size();
 }
 
+bool is_covariance(const Matrix6& C) {
+  if (!C.allFinite()) return false;
+  const double largest = C.cwiseAbs().maxCoeff();
+  return largest <= 1e6 && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
+         symmetric_eigen<6>(C).values.minCoeff() >= -1e-9 * largest;
+}
+
 // Why no motion was found, and what would help.
-Status explain_loss(const MotionEstimate& motion, const TrackResult& result) {
-  Status status(motion.status, "lost: ");
+Status explain_loss(const MotionEstimate& motion, const TrackResult& result, const char* first_word) {
+  Status status(motion.status, first_word);
   if (result.points.with_depth + result.lines.with_depth < kMinStartFeatures)
     return status.append("hardly anything to see (dark, blurred, bare, or no depth); keypoints: ")
         .append(result.points.detected);
@@ -107,19 +120,62 @@ Status Odometry::check(const RgbdFrame& frame) const {
   return {};
 }
 
-TrackResult Odometry::track(const RgbdFrame& input) {
+void Odometry::reset() {
+  if (!ready_) return;
+  for (Frame& frame : frames_) {
+    const FrameFeatures features = frame.features;
+    frame = Frame();
+    frame.features = features;
+  }
+  keyframe_ = last_ = kNobody;
+  current_ = view_slot_ = 0;
+  start_ = HeldPose();
+  sensed_ = SensedMotion();
+  gravity_.forget();
+  noise_ = config_.noise.initial;
+  last_stamp_ns_ = 0;
+  has_stamp_ = false;
+  lost_frames_ = 0;
+  point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
+}
+
+Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) {
+  if (!ready_) return {StatusCode::kInvalidArgument, "set_pose() before a successful init()"};
+  if (!T_world_camera.is_finite() || !is_rotation(T_world_camera.R))
+    return {StatusCode::kInvalidArgument, "set_pose: the pose must be finite, and its R a rotation matrix"};
+  if (!is_covariance(covariance))
+    return {StatusCode::kInvalidArgument,
+            "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
+  gravity_.forget();
+  start_ = HeldPose();
+  start_.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
+  start_.covariance = covariance;
+  if (last_ == kNobody) return {};
+  // The keyframe moves with the last frame: the motion between them stays what it is.
+  const MotionReference last = last_from_keyframe();
+  if (keyframe_ != kNobody && keyframe_ != last_)
+    hold(keyframe_, advance(start_, last.T_reference_base.inverse(), Matrix6::Zero()));
+  hold(last_, start_);
+  return {};
+}
+
+TrackResult Odometry::track(const RgbdFrame& input) { return track(input, MotionPrior()); }
+
+TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
-  if (last_ != kNobody) {
-    result.T_world_camera = frame(last_).T_world_camera;
-    result.pose_covariance = frame(last_).covariance;
-  }
+  const bool has_pose = last_ != kNobody;
+  result.T_world_camera = has_pose ? frame(last_).T_world_camera : start_.T_world_camera;
+  result.pose_covariance = has_pose ? frame(last_).covariance : start_.covariance;
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
-  if (Status status = check(input); !status.ok()) {
+  Status status = check(input);
+  if (status.ok()) status = prior.validate();
+  if (!status.ok()) {
     result.state = TrackState::kLost;
     result.status = status;
     return result;
   }
+  sense(prior, input.stamp_ns);
   last_stamp_ns_ = input.stamp_ns;
   view_slot_ = current_;
   has_stamp_ = true;
@@ -133,7 +189,7 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
   if (keyframe_ == kNobody) {
     rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).features.points);
-    start(result);
+    start(prior, result);
     return result;
   }
   TrackedMotion tracked;
@@ -141,9 +197,9 @@ TrackResult Odometry::track(const RgbdFrame& input) {
   fill_views(tracked.motion);
   if (tracked.motion.status == StatusCode::kOk) {
     rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
-    accept(tracked, result);
+    accept(tracked, prior, result);
   } else {
-    lose(tracked.motion, result);
+    lose(tracked.motion, prior, result);
   }
   return result;
 }
@@ -174,13 +230,41 @@ Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
   return current_exposure(camera_, prior, prior.T_current_reference);
 }
 
-// The motion from the reference to now, if the camera goes on as it did between the last two good frames.
+HeldPose Odometry::held(int slot) const {
+  return {frame(slot).T_world_camera, frame(slot).covariance, frame(slot).covariance_with_gravity};
+}
+
+void Odometry::hold(int slot, const HeldPose& pose) {
+  frame(slot).T_world_camera = pose.T_world_camera;
+  frame(slot).covariance = pose.covariance;
+  frame(slot).covariance_with_gravity = pose.covariance_with_gravity;
+}
+
+// The last good frame as a reference whose pose relative to the keyframe is known.
+MotionReference Odometry::last_from_keyframe() const {
+  if (keyframe_ == kNobody || keyframe_ == last_) return {};
+  return {frame(last_).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
+          frame(last_).motion_covariance};
+}
+
+// Takes in what the prior says of the motion since the frame before.
+void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
+  if (last_ == kNobody) return;
+  const Frame& last = frame(last_);
+  const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
+                       elapsed_ns(last.features.stamp_ns, stamp_ns) <= kLongestCoast_ns;
+  const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, stamp_ns)) * 1e-9;
+  sensed_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config_.references);
+}
+
+// The motion from the reference to now: as other sensors tell it, or if the camera goes on as it did between
+// the last two good frames.
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   const Frame& last = frame(last_);
   const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
+  if (sensed_.known()) return sensed_.T_current_last() * T_last_reference;
   const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
-  // Beyond a few frames a prediction is worse than none.
-  if (!(last.motion_ns > 0 && elapsed / last.motion_ns < 3)) return T_last_reference;
+  if (!(last.motion_ns > 0 && elapsed / last.motion_ns < kLongestPrediction)) return T_last_reference;
   return boxplus(Se3{}, static_cast<double>(elapsed) * 1e-9 * last.velocity) * T_last_reference;
 }
 
@@ -200,25 +284,24 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 
 // The keyframe, which is the base, and the last good frame, as far as the policy wants both.
 std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
-  references[0] = {&frame(keyframe_).features, prior_of(keyframe_, stamp_ns), {}};
+  const MotionReference last = last_from_keyframe();
+  references[0] = {&frame(keyframe_).features, prior_of(keyframe_, stamp_ns), {}, last};
   if (!uses_both_references()) return 1;
-  const Se3 T_last_keyframe = frame(last_).T_world_camera.inverse() * frame(keyframe_).T_world_camera;
-  references[1] = {
-      &frame(last_).features, prior_of(last_, stamp_ns), {T_last_keyframe, frame(last_).motion_covariance}};
+  references[1] = {&frame(last_).features, prior_of(last_, stamp_ns), last, {}};
   return 2;
 }
 
 // A first motion from the latest reference, where it is predicted; failing that from each, wherever it may
-// be. Then the motion from all of them.
+// be, unless other sensors say where. Then the motion from all of them.
 void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
-  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_};
+  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   for (std::size_t attempt = 0; attempt <= count; ++attempt) {
     const bool wide = attempt > 0;
     Reference from = references[count - (wide ? attempt : 1)];
-    if (wide) from.prior.T_current_reference = Se3{};
+    if (wide && !sensed_.known()) from.prior.T_current_reference = Se3{};
     rooms_.tracking.find(from, current,
                          wide ? config_.references.wide_search_px : config_.points.match.radius_px, arena_,
                          tracked, result);
@@ -231,61 +314,80 @@ void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked
   }
 }
 
-void Odometry::start(TrackResult& result) {
+void Odometry::start(const MotionPrior& prior, TrackResult& result) {
+  const bool at_start = last_ == kNobody;
   if (result.points.with_depth + result.lines.with_depth < kMinStartFeatures) {
-    const bool at_start = last_ == kNobody;
     result.state = at_start ? TrackState::kInitialising : TrackState::kLost;
     result.status =
         Status(StatusCode::kTooFewFeatures,
                at_start
                    ? "waiting for a first frame with texture and depth; 3D points and lines in this one: "
-                   : "lost: hardly anything to see (dark, blurred, bare, or no depth); 3D points and lines: ")
+                   : (sensed_.known() ? "predicted: " : "lost: "))
+            .append(at_start
+                        ? ""
+                        : "hardly anything to see (dark, blurred, bare, or no depth); 3D points and lines: ")
             .append(result.points.with_depth + result.lines.with_depth);
+    if (sensed_.known()) (void)predicted_pose(prior, result);
     return;
   }
-  // At the very start the anchor is the world's origin; after a loss the last good pose, whose covariance
-  // grows by all the time that nobody saw.
-  if (last_ != kNobody) {
-    const double seconds =
-        static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns)) * 1e-9;
-    const double sigma_m = config_.references.unseen_m_per_s * seconds;
-    const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
-    for (int i = 0; i < 3; ++i) {
-      result.pose_covariance(i, i) += sigma_m * sigma_m;
-      result.pose_covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+  // At the very start the anchor is the world's origin; after a loss what the priors make of the last good
+  // pose, or itself, whose covariance grows by all the time that nobody saw.
+  HeldPose pose = start_;
+  if (!at_start && sensed_.known()) {
+    pose = predicted_pose(prior, result);
+    result.status = {};
+  } else {
+    if (!at_start) {
+      pose = held(last_);
+      const double seconds =
+          static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns)) * 1e-9;
+      const double sigma_m = config_.references.unseen_m_per_s * seconds;
+      const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
+      for (int i = 0; i < 3; ++i) {
+        pose.covariance(i, i) += sigma_m * sigma_m;
+        pose.covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+      }
     }
+    HeldPose itself = pose;
+    if (prior.gravity) gravity_.read(*prior.gravity, itself, pose);
+    result.T_world_camera = pose.T_world_camera;
+    result.pose_covariance = pose.covariance;
   }
+  hold(current_, pose);
   Frame& current = frame(current_);
-  current.T_world_camera = result.T_world_camera;
-  current.covariance = result.pose_covariance;
   current.motion_covariance.setZero();
   current.motion_ns = 0;
+  result.T_camera_reference = Se3();
+  result.motion_covariance.setZero();
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = last_ = current_;
   current_ = (current_ + 1) % static_cast<int>(kFrames);
   lost_frames_ = 0;
+  sensed_.restart();
 }
 
-void Odometry::accept(const TrackedMotion& tracked, TrackResult& result) {
+void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result) {
   const MotionEstimate& motion = tracked.motion;
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
   result.motion_covariance = motion.C_H;
-  const Frame& from = frame(keyframe_);
-  const Se3 T_reference_current = motion.T_current_reference.inverse();
-  Se3 T_world_camera = from.T_world_camera * T_reference_current;
-  T_world_camera.R = renormalise(T_world_camera.R);
-  const Matrix6 covariance = compose_covariance(from.T_world_camera, from.covariance, T_reference_current,
-                                                inverse_covariance(motion.T_current_reference, motion.C_H));
-  result.T_world_camera = T_world_camera;
-  result.pose_covariance = covariance;
-  Frame& current = frame(current_);
-  current.T_world_camera = T_world_camera;
-  current.covariance = covariance;
-  current.motion_covariance = motion.C_H;
+  HeldPose from = held(keyframe_);
+  HeldPose pose = advance(from, motion.T_current_reference, motion.C_H);
+  if (prior.gravity) {
+    // The last frame's pose is not needed again but for the velocity: it moves with the keyframe's.
+    const Se3 T_last_keyframe = last_from_keyframe().T_reference_base;
+    gravity_.read(*prior.gravity, from, pose);
+    hold(keyframe_, from);
+    if (keyframe_ != last_) frame(last_).T_world_camera = from.T_world_camera * T_last_keyframe.inverse();
+  }
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  hold(current_, pose);
+  frame(current_).motion_covariance = motion.C_H;
   note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
   lost_frames_ = 0;
+  sensed_.restart();
   learn(config_.noise, tracked.shown, noise_);
   choose_keyframe();
 }
@@ -321,9 +423,29 @@ void Odometry::choose_keyframe() {
   while (current_ == keyframe_ || current_ == last_) ++current_;
 }
 
-void Odometry::lose(const MotionEstimate& motion, TrackResult& result) {
+// Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
+// gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
+HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
+  const int anchor = keyframe_ != kNobody ? keyframe_ : last_;
+  const MotionReference last = last_from_keyframe();
+  result.T_camera_reference = sensed_.T_current_last() * last.T_reference_base;
+  result.motion_covariance = compose_covariance(sensed_.T_current_last(), sensed_.covariance(),
+                                                last.T_reference_base, last.covariance);
+  result.reference_stamp_ns = frame(anchor).features.stamp_ns;
+  HeldPose from = held(anchor);
+  HeldPose pose = advance(from, result.T_camera_reference, result.motion_covariance);
+  GravityHold gravity = gravity_;
+  if (prior.gravity && gravity.known()) gravity.read(*prior.gravity, from, pose);
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  result.state = TrackState::kPredicted;
+  return pose;
+}
+
+void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result) {
   result.state = TrackState::kLost;
-  result.status = explain_loss(motion, result);
+  result.status = explain_loss(motion, result, sensed_.known() ? "predicted: " : "lost: ");
+  if (sensed_.known()) (void)predicted_pose(prior, result);
   ++lost_frames_;
   if (lost_frames_ < config_.references.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. The next usable frame starts anew at the last good

@@ -5,7 +5,7 @@
 //   alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
 //   plvo::Odometry odometry;
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
-//   plvo::TrackResult result = odometry.track(frame);
+//   plvo::TrackResult result = odometry.track(frame);  // or track(frame, prior), with a gyro's help
 //
 // Memory: init carves the caller's block once; nothing is taken or returned afterwards. Threads: an Odometry
 // is used by one thread at a time. Determinism: the same frames and config give the same bits on every
@@ -22,11 +22,14 @@
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/feature_budget.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/gravity_hold.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
+#include "plvo/odometry/sensed_motion.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
@@ -105,6 +108,20 @@ class Odometry {
   // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
   // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
   TrackResult track(const RgbdFrame& frame);
+  // With what other sensors say of the frame. Their motion leads the search for features and joins the
+  // estimate as one more constraint: what vision leaves open then has a large covariance and is no loss, and
+  // a frame that shows nothing is kPredicted. Gravity holds roll and pitch of the pose. A prior that says
+  // nothing changes nothing; one that does not pass MotionPrior::validate() is refused with the frame.
+  TrackResult track(const RgbdFrame& frame, const MotionPrior& prior);
+
+  // As after init: the next usable frame defines the world, and what was learnt of the noise is forgotten.
+  // The budget of time stays: it is about the machine.
+  void reset();
+  // The pose of the last frame that has one, in a world of the caller's, with the covariance of its
+  // ⊞-perturbation; before the first frame, that of the first usable one. Where down is, is learnt anew.
+  // kInvalidArgument, and nothing changes: before init, for a rotation that is none (to 1e-6), for a
+  // covariance that is not symmetric or has a negative eigenvalue, for numbers that are not finite.
+  Status set_pose(const Se3& T_world_camera, const Matrix6& covariance);
 
   // For Config::budget: what the last call of track() took, by the caller's clock. How many features the next
   // frames have depends on nothing else.
@@ -122,7 +139,8 @@ class Odometry {
   struct Frame {
     FrameFeatures features;
     Se3 T_world_camera;
-    Matrix6 covariance = Matrix6::Zero();         // of T_world_camera
+    Matrix6 covariance = Matrix6::Zero();               // of T_world_camera
+    Matrix6 covariance_with_gravity = Matrix6::Zero();  // of its error with those of gravity_
     Matrix6 motion_covariance = Matrix6::Zero();  // of T_camera_keyframe, the keyframe being the present one
     // Per second (exposure.hpp): since the good frame before it, which was motion_ns earlier (0: there is
     // none and the velocity is not known); once the next one is tracked, the mean of both.
@@ -141,13 +159,18 @@ class Odometry {
     return last_ != keyframe_ && config_.points.registered &&
            config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
   }
+  void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   void note_velocity(std::int64_t motion_ns);
-  void accept(const TrackedMotion& tracked, TrackResult& result);
-  void start(TrackResult& result);
-  void lose(const MotionEstimate& motion, TrackResult& result);
+  void accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result);
+  void start(const MotionPrior& prior, TrackResult& result);
+  void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
+  MotionReference last_from_keyframe() const;
+  HeldPose held(int slot) const;
+  void hold(int slot, const HeldPose& pose);
+  HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
   void choose_keyframe();
   void fill_views(const MotionEstimate& motion);
 
@@ -166,6 +189,9 @@ class Odometry {
   int keyframe_ = -1;
   int last_ = -1;
   int current_ = 0;
+  HeldPose start_;       // of the first usable frame
+  SensedMotion sensed_;  // since the last good frame
+  GravityHold gravity_;
   NoiseScales noise_;                // learnt so far
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/stage_timer.hpp"
 
 namespace plvo {
@@ -16,6 +17,9 @@ constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-5, .co
 // Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and two such weigh as 2 / (1 + ½) independent ones.
 constexpr double kWeightOfTwo = 2.0 / 3;
+
+// What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
+constexpr double kHeld = 1e6;
 
 void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
   result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
@@ -45,8 +49,9 @@ SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const No
 }
 
 void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                              const MotionStart& start, const LmOptions& lm, Arena& scratch,
-                              TrackedMotion& tracked, TrackResult& result) {
+                              const SensedMotion& sensed, std::size_t last_index, const MotionStart& start,
+                              const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
+                              TrackResult& result) {
   const StageTimer timer(config_, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
@@ -68,12 +73,21 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
       points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
   std::array<LineConstraints, kMaxReferences> lines{
       lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
-  const std::array<ConstraintSet*, 2 * kMaxReferences> sets{&points[0], &lines[0], &points[1], &lines[1]};
+  std::array<ConstraintSet*, kMaxConstraintKinds> sets{&points[0], &lines[0], &points[1], &lines[1]};
+  std::size_t set_count = 2 * features.size();
+  MotionConfig config = config_.motion;
+  std::uint8_t sensed_flag = 0;
+  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&sensed_flag, 1});
+  if (sensed.known()) {
+    prior.set_reference(last_index, 0);
+    sets[set_count++] = &prior;
+    config.max_sigma_m = config.max_sigma_rad = kHeld;
+  }
 
   tracked.exposure = {};
   tracked.shown = {};
-  estimate_motion(std::span(sets).first(2 * features.size()), poses, config_.motion, lm, config_.seed, start,
-                  scratch, tracked.motion);
+  estimate_motion(std::span(sets).first(set_count), poses, config, lm, config_.seed, start, scratch,
+                  tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
@@ -108,8 +122,11 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config_.points.registered;
   const SharedErrors shared = whole ? shared_errors(features.current, current.noise) : SharedErrors{};
-  solve({&features, 1}, MotionReferences{}, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
-        tracked, result);
+  const bool is_last = reference.prior.reference_is_last;
+  MotionReferences poses;
+  if (!is_last) poses[1] = reference.last;
+  solve({&features, 1}, poses, current.sensed, is_last ? 0 : 1, {&T_predicted, shared},
+        whole ? kFineSolve : kRoughSolve, scratch, tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
 }
@@ -120,6 +137,8 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const ScratchScope scope(scratch);
   MotionReferences poses;
   for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
+  const bool base_is_last = references[0].prior.reference_is_last;
+  if (!base_is_last) poses[1] = references[0].last;
   const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
   const std::size_t last = references.size() - 1;
   const Exposure exposure = current_exposure(camera_, references[last].prior, motions[last]);
@@ -140,7 +159,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
     match_predicted_lines(camera_.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
-  solve(std::span(features).first(references.size()), poses,
+  solve(std::span(features).first(references.size()), poses, current.sensed, base_is_last ? 0 : 1,
         {&T_current_base, shared_errors(exposure, current.noise)}, kFineSolve, scratch, tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,

@@ -17,6 +17,7 @@
 #include "plvo/odometry/mid_exposure.hpp"
 #include "plvo/odometry/noise_learning.hpp"
 #include "plvo/odometry/point_tracking.hpp"
+#include "plvo/odometry/sensed_motion.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
@@ -27,6 +28,7 @@ struct Reference {
   const FrameFeatures* features = nullptr;
   PairPrior prior;
   MotionReference pose;
+  MotionReference last;  // pose of the last good frame relative to this one
 };
 
 // What was found of one reference in the current frame.
@@ -54,6 +56,7 @@ struct CurrentFrame {
   const FeatureExtraction& extraction;
   const DepthSampler& depth;
   const NoiseScales& noise;
+  const SensedMotion& sensed;
 };
 
 struct TrackedMotion {
@@ -97,8 +100,10 @@ class ReferenceTracking {
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  void solve(std::span<const MidExposure> features, const MotionReferences& poses, const MotionStart& start,
-             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+  // sensed: may say nothing; last_index: of the last good frame among the poses.
+  void solve(std::span<const MidExposure> features, const MotionReferences& poses, const SensedMotion& sensed,
+             std::size_t last_index, const MotionStart& start, const LmOptions& lm, Arena& scratch,
+             TrackedMotion& tracked, TrackResult& result);
   SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {

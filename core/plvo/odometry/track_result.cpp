@@ -8,6 +8,7 @@ const char* to_string(TrackState state) {
     case TrackState::kInitialising: return "initialising";
     case TrackState::kTracking: return "tracking";
     case TrackState::kLost: return "lost";
+    case TrackState::kPredicted: return "predicted";
   }
   return "unknown";
 }

@@ -14,6 +14,7 @@ enum class TrackState : std::uint8_t {
   kInitialising,  // the first usable frame: it defines the world
   kTracking,      // the pose is new
   kLost,          // status says why; the pose is the last good one; the next good frame goes on from there
+  kPredicted,     // nothing could be seen, status says why; the pose is new, from the priors alone
 };
 const char* to_string(TrackState state);
 
@@ -37,7 +38,7 @@ struct TrackResult {
 
   // Camera to world; the world is the camera frame of the first frame. Covariance of the ⊞-perturbation
   // (position, then orientation; m and rad) in the axes of the world, accumulated from the motions. While
-  // lost, it is that of the last good pose.
+  // lost, it is that of the last good pose; of a predicted pose it has grown by what the priors leave open.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
 

@@ -33,6 +33,9 @@ template <>
 inline constexpr std::size_t kFirstSize<plvo_frame> = end_of(offsetof(plvo_frame, metres_per_unit),
                                                              &plvo_frame::metres_per_unit);
 template <>
+inline constexpr std::size_t kFirstSize<plvo_prior> = end_of(offsetof(plvo_prior, gravity_offset_sigma),
+                                                             &plvo_prior::gravity_offset_sigma);
+template <>
 inline constexpr std::size_t kFirstSize<plvo_result> = end_of(offsetof(plvo_result, stage_ns),
                                                               &plvo_result::stage_ns);
 

@@ -95,6 +95,28 @@ Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {
   return {};
 }
 
+plvo::Matrix3 matrix3(const double (&values)[9]) {
+  plvo::Matrix3 matrix;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) matrix(row, column) = values[3 * row + column];
+  return matrix;
+}
+
+plvo::Vector3 vector3(const double (&values)[3]) { return {values[0], values[1], values[2]}; }
+
+Status take_prior(const plvo_prior* given, plvo::MotionPrior& prior) {
+  if (given == nullptr) return {};
+  plvo_prior whole;
+  if (Status status = plvo::c::take_struct(given, whole, "prior"); !status.ok()) return status;
+  if (whole.has_rotation != 0)
+    prior.rotation = {matrix3(whole.R_now_before), matrix3(whole.rotation_covariance)};
+  if (whole.has_translation != 0)
+    prior.translation = {vector3(whole.t_now_before), matrix3(whole.translation_covariance)};
+  if (whole.has_gravity != 0)
+    prior.gravity = {vector3(whole.down), matrix3(whole.gravity_covariance), whole.gravity_offset_sigma};
+  return prior.validate();
+}
+
 void put(const plvo::Se3& T, double (&out)[12]) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) out[4 * row + column] = T.R(row, column);
@@ -160,8 +182,8 @@ const char* plvo_status_name(std::int32_t code) {
 
 const char* plvo_state_name(std::int32_t state) {
   static_assert(static_cast<int>(plvo::TrackState::kTracking) == PLVO_TRACKING &&
-                static_cast<int>(plvo::TrackState::kLost) == PLVO_LOST);
-  if (state < PLVO_INITIALISING || state > PLVO_LOST) return "unknown";
+                static_cast<int>(plvo::TrackState::kPredicted) == PLVO_PREDICTED);
+  if (state < PLVO_INITIALISING || state > PLVO_PREDICTED) return "unknown";
   return plvo::to_string(static_cast<plvo::TrackState>(state));
 }
 
@@ -177,6 +199,13 @@ void plvo_limits_init(plvo_limits* limits, std::size_t size) {
 void plvo_config_init(plvo_config* config, std::size_t size) {
   config->struct_size = static_cast<std::uint32_t>(size);
   if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
+}
+
+void plvo_prior_init(plvo_prior* prior, std::size_t size) {
+  plvo_prior nothing;
+  std::memset(&nothing, 0, sizeof nothing);
+  prior->struct_size = static_cast<std::uint32_t>(size);
+  if (plvo::c::check_struct(prior, "prior").ok()) plvo::c::give_struct(nothing, prior);
 }
 
 void plvo_quaternion(const double T[12], double xyzw[4]) {
@@ -224,14 +253,42 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
 }
 
 plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result) {
+  return plvo_track_with_prior(odometry, frame, nullptr, result);
+}
+
+plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* frame, const plvo_prior* given,
+                                  plvo_result* result) {
   if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
   if (Status status = plvo::c::check_struct(result, "result"); !status.ok()) return to_c(status);
   // A frame that cannot be read is tracked as one without images: refused, and the pose is the last one.
   plvo::RgbdFrame view;
-  const Status unreadable = take_frame(frame, view);
-  const plvo::TrackResult tracked = odometry->odometry.track(unreadable.ok() ? view : plvo::RgbdFrame());
+  plvo::MotionPrior prior;
+  Status unreadable = take_frame(frame, view);
+  if (unreadable.ok()) unreadable = take_prior(given, prior);
+  const plvo::TrackResult tracked =
+      unreadable.ok() ? odometry->odometry.track(view, prior) : odometry->odometry.track(plvo::RgbdFrame());
   give_result(tracked, result);
   return to_c(unreadable.ok() ? tracked.status : unreadable);
+}
+
+plvo_status plvo_reset(plvo_odometry* odometry) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  odometry->odometry.reset();
+  return to_c(Status());
+}
+
+plvo_status plvo_set_pose(plvo_odometry* odometry, const double T[12], const double values[36]) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (T == nullptr || values == nullptr) return to_c(refuse("the pose or its covariance is NULL"));
+  plvo::Se3 pose;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) pose.R(row, column) = T[4 * row + column];
+    pose.t(row) = T[4 * row + 3];
+  }
+  plvo::Matrix6 covariance;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column) covariance(row, column) = values[6 * row + column];
+  return to_c(odometry->odometry.set_pose(pose, covariance));
 }
 
 std::size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, std::size_t capacity) {

@@ -122,8 +122,9 @@ typedef struct plvo_frame {
   double metres_per_unit;                          /* of the depth: 0.001 for millimetres */
 } plvo_frame;
 
-enum { PLVO_INITIALISING = 0, PLVO_TRACKING, PLVO_LOST };
-/* "initialising", "tracking", "lost"; "unknown" for another number. Never NULL. */
+/* PLVO_PREDICTED: nothing could be seen; the pose is new, from plvo_prior alone. */
+enum { PLVO_INITIALISING = 0, PLVO_TRACKING, PLVO_LOST, PLVO_PREDICTED };
+/* "initialising", "tracking", "lost", "predicted"; "unknown" for another number. Never NULL. */
 PLVO_API const char* plvo_state_name(int32_t state);
 
 enum { PLVO_STAGE_IMAGE = 0, PLVO_STAGE_POINTS, PLVO_STAGE_LINES, PLVO_STAGE_MATCHING, PLVO_STAGE_MOTION };
@@ -165,13 +166,47 @@ PLVO_API size_t plvo_required_bytes(const plvo_limits* limits);
 
 /* Checks everything once and makes an odometry inside `memory`; it needs no end, only the memory back. NULL
  * for `config` or `limits`: the defaults. On failure *odometry is NULL. */
-PLVO_API plvo_status plvo_init(void* memory, size_t bytes, const plvo_camera* camera, const plvo_config* config,
-                               const plvo_limits* limits, plvo_odometry** odometry);
+PLVO_API plvo_status plvo_init(void* memory, size_t bytes, const plvo_camera* camera,
+                               const plvo_config* config, const plvo_limits* limits,
+                               plvo_odometry** odometry);
 
 /* One frame. The status says why there is no new pose (result->state is then not PLVO_TRACKING); the next
  * good frame goes on. A frame of the wrong size, without images, or not later than the one before is refused
  * with PLVO_INVALID_ARGUMENT and changes nothing. */
 PLVO_API plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
+
+/* What sensors other than the camera say of a frame: how the camera moved since the frame before (a gyro,
+ * wheel odometry), and where down is (an accelerometer). "Now" is this frame, "before" the one before it that
+ * plvo_track did not refuse. Axes are the camera's now; matrices are row-major, 3×3. A part whose has_… is 0
+ * is not looked at. Covariances are symmetric and positive definite, variances between 1e-16 and 1e6. */
+typedef struct plvo_prior {
+  uint32_t struct_size;
+  int32_t has_rotation, has_translation, has_gravity;
+  double R_now_before[9];        /* X_now = R_now_before X_before for a camera that only turns */
+  double rotation_covariance[9]; /* rad^2 */
+  double t_now_before[3];        /* where the camera before stands, seen from now, m */
+  double translation_covariance[9];
+  double down[3];               /* in which things fall, of any length */
+  double gravity_covariance[9]; /* of the unit vector, rad^2, of what is new in each frame */
+  double gravity_offset_sigma;  /* SD of what stays the same from frame to frame, rad; 0: nothing does */
+} plvo_prior;
+
+/* Sets struct_size and says nothing. */
+PLVO_API void plvo_prior_init(plvo_prior* prior, size_t size);
+
+/* plvo_track with a prior: it leads the search for features and joins the estimate. What vision leaves open
+ * then has a large covariance and is no loss; a frame that shows nothing is PLVO_PREDICTED, and the status
+ * says why. A prior that is no good is refused with its frame. NULL is a prior that says nothing. */
+PLVO_API plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* frame,
+                                           const plvo_prior* prior, plvo_result* result);
+
+/* As after plvo_init: the next usable frame defines the world. */
+PLVO_API plvo_status plvo_reset(plvo_odometry* odometry);
+
+/* The pose of the last frame that has one, in a world of the caller's, with the covariance of position and
+ * orientation; before the first frame, that of the first usable one. T: 3×4, row-major. */
+PLVO_API plvo_status plvo_set_pose(plvo_odometry* odometry, const double T_world_camera[12],
+                                   const double covariance[36]);
 
 /* For drawing: what the last frame was made of, in pixels of the undistorted image. Each function writes up
  * to `capacity` elements and returns how many there are; with capacity 0 it only counts. */
@@ -193,7 +228,8 @@ typedef struct plvo_line_track {
 
 PLVO_API size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, size_t capacity);
 PLVO_API size_t plvo_segments(const plvo_odometry* odometry, plvo_segment* segments, size_t capacity);
-PLVO_API size_t plvo_reference_segments(const plvo_odometry* odometry, plvo_segment* segments, size_t capacity);
+PLVO_API size_t plvo_reference_segments(const plvo_odometry* odometry, plvo_segment* segments,
+                                        size_t capacity);
 PLVO_API size_t plvo_point_tracks(const plvo_odometry* odometry, plvo_point_track* tracks, size_t capacity);
 PLVO_API size_t plvo_line_tracks(const plvo_odometry* odometry, plvo_line_track* tracks, size_t capacity);
 

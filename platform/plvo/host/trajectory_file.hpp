@@ -25,7 +25,7 @@ inline constexpr const char* kMotionsHeader =
 
 // A frame that still waits for the first usable one is initialising, too, but says why in its status.
 inline bool has_pose(const TrackResult& result) {
-  return result.state == TrackState::kTracking ||
+  return result.state == TrackState::kTracking || result.state == TrackState::kPredicted ||
          (result.state == TrackState::kInitialising && result.status.ok());
 }
 

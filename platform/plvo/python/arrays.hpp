@@ -42,6 +42,24 @@ py::array members_view(std::span<const Struct> structs, Member Struct::*first, p
   return view(py::dtype::of<Member>(), {rows, columns}, {row_step, step}, data, owner);
 }
 
+// Of anything that NumPy makes an array of doubles of; a column may be one-dimensional. Copies.
+template <int Rows, int Columns>
+Matrix<Rows, Columns> matrix_of(const py::handle& object, const std::string& name) {
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error(name + ": expected an array of numbers");
+  }
+  const bool column = Columns == 1 && array.ndim() == 1 && array.shape(0) == Rows;
+  if (!column && !(array.ndim() == 2 && array.shape(0) == Rows && array.shape(1) == Columns))
+    throw py::value_error(name + ": expected the shape (" + std::to_string(Rows) +
+                          (Columns == 1 ? "" : ", " + std::to_string(Columns)) + ")");
+  Matrix<Rows, Columns> matrix;
+  for (int r = 0; r < Rows; ++r)
+    for (int c = 0; c < Columns; ++c) matrix(r, c) = array.data()[r * Columns + c];
+  return matrix;
+}
+
 inline void refuse_array(const std::string& name, const char* why) {
   throw py::value_error(name + ": " + why);
 }

@@ -14,6 +14,7 @@ namespace plvo::python {
 void bind_camera(py::module_& module);
 void bind_config(py::module_& module);
 void bind_result(py::module_& module);
+void bind_prior(py::module_& module);
 void bind_odometry(py::module_& module);
 void bind_sequence(py::module_& module);
 

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_plvo, module) {
   bind_camera(module);
   bind_config(module);
   bind_result(module);
+  bind_prior(module);
   bind_odometry(module);
   bind_sequence(module);
 }

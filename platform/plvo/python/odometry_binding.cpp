@@ -33,7 +33,7 @@ class Tracker {
   }
 
   TrackResult track(const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
-                    const std::optional<std::int64_t>& depth_stamp_ns, bool bgr) {
+                    const std::optional<std::int64_t>& depth_stamp_ns, bool bgr, const MotionPrior& prior) {
     const RgbdFrame frame{stamp_ns, depth_stamp_ns.value_or(stamp_ns), colour_view(colour, bgr),
                           depth_view(depth, metres_per_unit_)};
     if (busy_.test_and_set())
@@ -42,7 +42,7 @@ class Tracker {
     TrackResult result;
     {
       const py::gil_scoped_release others_may_run;
-      result = odometry_.track(frame);
+      result = odometry_.track(frame, prior);
     }
     busy_.clear();
     if (result.status.code() == StatusCode::kInvalidArgument) throw_unless_ok(result.status);
@@ -50,13 +50,29 @@ class Tracker {
   }
 
   FeatureView features() {
-    if (busy_.test_and_set()) throw std::runtime_error("this Odometry is tracking a frame in another thread");
-    busy_.clear();
+    refuse_if_busy();
     return odometry_.features();
+  }
+  void reset() {
+    refuse_if_busy();
+    odometry_.reset();
+  }
+  void set_pose(const py::object& T_world_camera, const py::object& covariance) {
+    refuse_if_busy();
+    const Matrix4 T = matrix_of<4, 4>(T_world_camera, "T_world_camera");
+    if (T.row(3) != Vector4(0, 0, 0, 1).transpose())
+      refuse_array("T_world_camera", "the last row must be 0 0 0 1");
+    const Matrix6 C = covariance.is_none() ? Matrix6::Zero() : matrix_of<6, 6>(covariance, "covariance");
+    throw_unless_ok(odometry_.set_pose({T.block<3, 3>(0, 0), T.block<3, 1>(0, 3)}, C));
   }
   std::size_t memory_bytes() const { return memory_.size(); }
 
  private:
+  void refuse_if_busy() {
+    if (busy_.test_and_set()) throw std::runtime_error("this Odometry is tracking a frame in another thread");
+    busy_.clear();
+  }
+
   std::vector<std::byte> memory_;
   Odometry odometry_;
   double metres_per_unit_;
@@ -95,11 +111,14 @@ void bind_odometry(py::module_& module) {
       .def(
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
-             const py::object& depth_stamp_ns, bool bgr) {
-            return tracker.track(colour, depth, stamp_ns, optional<std::int64_t>(depth_stamp_ns), bgr);
+             const py::object& depth_stamp_ns, bool bgr, const py::object& prior) {
+            return tracker.track(colour, depth, stamp_ns, optional<std::int64_t>(depth_stamp_ns), bgr,
+                                 prior.is_none() ? MotionPrior() : prior.cast<MotionPrior>());
           },
           "colour"_a, "depth"_a, "stamp_ns"_a, "depth_stamp_ns"_a = py::none(), py::kw_only(),
-          "bgr"_a = false)
+          "bgr"_a = false, "prior"_a = py::none())
+      .def("reset", &Tracker::reset)
+      .def("set_pose", &Tracker::set_pose, "T_world_camera"_a, "covariance"_a = py::none())
       .def("features", [features](const py::object& self) { return features_of(self, features); })
       .def_property_readonly("memory_bytes", &Tracker::memory_bytes);
 }

@@ -11,6 +11,7 @@
 #include "plvo/simulator/scene/scene.hpp"
 #include "plvo/simulator/sensor/depth_clock.hpp"
 #include "plvo/simulator/sensor/film.hpp"
+#include "plvo/simulator/sensor/inertial_sensor.hpp"
 #include "plvo/simulator/sensor/kinect_depth.hpp"
 
 namespace plvo {
@@ -67,6 +68,16 @@ struct SimulatedCamera::Parts {
     return depth_caster->hits();
   }
 
+  // What a covered lens sees; made when it is first.
+  const std::uint8_t* black() {
+    black_pixels.resize(exact.size() * 3);
+    return black_pixels.data();
+  }
+  const std::uint16_t* no_depth() {
+    depth_holes.resize(exact.size());
+    return depth_holes.data();
+  }
+
   SimulatorOptions options;
   std::unique_ptr<sim::Scene> scene;
   sim::Trajectory trajectory;
@@ -77,6 +88,8 @@ struct SimulatedCamera::Parts {
   std::optional<sim::RayCaster> depth_caster;  // none: depth is taken with the colour
   sim::KinectDepth sensor;
   std::vector<float> exact;
+  std::vector<std::uint8_t> black_pixels;
+  std::vector<std::uint16_t> depth_holes;
   int frames = 0;
   int next = 0;
 };
@@ -140,6 +153,25 @@ Se3 SimulatedCamera::pose(int frame) const {
   return ground_truth(stamp_ns(frame));
 }
 
+void SimulatedCamera::inertial_samples(std::vector<ImuSample>& gyro,
+                                       std::vector<ImuSample>& accelerometer) const {
+  const SimulatorOptions& options = parts_->options;
+  const sim::InertialSensor sensor(options.inertial, options.seed, options.noise);
+  gyro.clear();
+  accelerometer.clear();
+  const double last_s = static_cast<double>(stamp_ns(parts_->frames - 1) - stamp_ns(0)) * 1e-9;
+  const double first_s = -0.1;
+  const auto count = static_cast<std::uint32_t>((last_s + 0.01 - first_s) * options.inertial.rate_hz) + 1;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    // Files keep whole microseconds.
+    const auto since_start_us = static_cast<std::int64_t>((first_s + k / options.inertial.rate_hz) * 1e6);
+    const std::int64_t stamp = (kFirstStamp_us + since_start_us) * 1000;
+    const double t_s = static_cast<double>(since_start_us) * 1e-6;
+    gyro.push_back({stamp, sensor.rate(parts_->trajectory, t_s, k)});
+    accelerometer.push_back({stamp, sensor.force(parts_->trajectory, t_s, k)});
+  }
+}
+
 ImageView<const float> SimulatedCamera::exact_depth() const {
   const CameraModel& camera = parts_->options.camera;
   return {parts_->exact.data(), camera.width, camera.height, camera.width};
@@ -172,9 +204,11 @@ Status SimulatedCamera::next(RgbdFrame& frame) {
 
   frame.stamp_ns = stamp;
   frame.depth_stamp_ns = depth_stamp_ns(k);
-  frame.colour = {parts.film.pixels(), camera.width, camera.height,
+  const bool covered = k >= parts.options.covered_first && k < parts.options.covered_end;
+  frame.colour = {covered ? parts.black() : parts.film.pixels(), camera.width, camera.height,
                   static_cast<std::ptrdiff_t>(camera.width) * 3, PixelFormat::kRgb8};
   frame.depth = parts.sensor.view();
+  if (covered) frame.depth.data = parts.no_depth();
   return {};
 }
 

@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/image/image_view.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/simulator/simulator_options.hpp"
 
@@ -36,6 +38,9 @@ class SimulatedCamera final : public RgbdCamera {
   // frames).
   Se3 pose(int frame) const;
   Se3 ground_truth(std::int64_t stamp_ns) const;
+  // What the gyro and the accelerometer beside the camera read, from a tenth of a second before the first
+  // frame to after the last one; stamps are those of the frames' clock, axes those of the camera.
+  void inertial_samples(std::vector<ImuSample>& gyro, std::vector<ImuSample>& accelerometer) const;
   // Exact depth (metres along the optical axis, 0: nothing) of the last frame's pixels at the moment of their
   // colour, whatever the depth sensor made of it, and when.
   ImageView<const float> exact_depth() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/simulator/simulator_options.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -85,6 +86,16 @@ Status SimulatorOptions::validate() const {
     return invalid("steps per pixel must lie in 0 ... 10000");
   if (!(depth.scale_error >= 0.5 && depth.scale_error <= 2))
     return invalid("the depth scale error is a factor: it must lie in 0.5 ... 2");
+  if (covered_first < 0 || covered_end < covered_first)
+    return invalid("the covered frames must be a range that starts at 0 or later");
+  if (!(inertial.rate_hz >= 10 && inertial.rate_hz <= 10000))
+    return invalid("the rate of gyro and accelerometer must lie in 10 ... 10000 Hz");
+  const double largest = std::max({inertial.gyro_noise, inertial.gyro_offset_sigma,
+                                   inertial.accelerometer_noise, inertial.accelerometer_offset_sigma});
+  const double smallest = std::min({inertial.gyro_noise, inertial.gyro_offset_sigma,
+                                    inertial.accelerometer_noise, inertial.accelerometer_offset_sigma});
+  if (!(smallest >= 0 && largest <= 10))
+    return invalid("noise and offsets of gyro and accelerometer must lie in 0 ... 10");
   return validate_timing(depth_schedule, fps);
 }
 

@@ -49,6 +49,17 @@ struct DepthSchedule {
   double stamp_jitter_s = 0;  // standard deviation of the stamp; the exposure keeps its moment
 };
 
+// A gyro and an accelerometer beside the camera, sampled together: an MPU-6050. The noise is that of its data
+// sheet (0.005 °/s/√Hz, 400 µg/√Hz); so is half the tolerance of its accelerometer's offset (±50 mg). Of the
+// gyro's, ±20 °/s, a calibration at rest leaves about 1 °/s as the part warms up.
+struct InertialOptions {
+  double rate_hz = 200;
+  double gyro_noise = 8.7e-5;                // rad/s/√Hz
+  double gyro_offset_sigma = 0.0175;         // rad/s, of each axis; drawn once from the seed
+  double accelerometer_noise = 3.9e-3;       // m/s²/√Hz
+  double accelerometer_offset_sigma = 0.25;  // m/s², of each axis; drawn once from the seed
+};
+
 struct SimulatorOptions {
   SceneName scene = SceneName::kCorridor;
   LightName light = LightName::kConstant;
@@ -61,6 +72,9 @@ struct SimulatorOptions {
   bool noise = true;
   DepthSensorOptions depth;
   DepthSchedule depth_schedule;
+  InertialOptions inertial;
+  // Frames covered_first … covered_end − 1 are black and without depth: a hand over the lens.
+  int covered_first = 0, covered_end = 0;
   // A TUM ground-truth file that moves the camera instead of the seeded hand; empty: none.
   std::string trajectory_file;
   int threads = 2;  // the pictures do not depend on it

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/tum_writer.hpp"
 
 namespace plvo {
@@ -21,6 +22,9 @@ Status write_tum_folder(SimulatedCamera& camera, const std::string& name, const 
       calibration.depth_units_per_metre = std::round(1 / frame.depth.metres_per_unit);
       calibration.depth_scale_given = calibration.readout_given = true;
       if (status = folder.open(name, calibration); !status.ok()) return status;
+      ImuRecording imu;
+      camera.inertial_samples(imu.gyro, imu.accelerometer);
+      if (status = write_imu_files(name, imu); !status.ok()) return status;
     }
     const Se3 T_world_camera = camera.ground_truth(frame.stamp_ns);
     if (status = folder.write(frame, &T_world_camera); !status.ok()) return status;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes what a simulated camera sees as a folder in the layout of the TUM RGB-D benchmark, by replay's
-// TumWriter, with the exact poses in groundtruth.txt.
+// TumWriter, with the exact poses in groundtruth.txt, and what a gyro and an accelerometer beside the camera
+// read in gyroscope.txt and accelerometer.txt.
 #pragma once
 
 #include <functional>

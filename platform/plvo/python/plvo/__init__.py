@@ -4,17 +4,24 @@ import json as _json
 import os as _os
 
 from . import _evaluation, _plvo
-from ._plvo import Camera, Config, Counts, Error, Features, Frame, Odometry, Result, Sequence, __version__
+from ._plvo import Camera, Config, Counts, Error, Features, Frame, Imu, MotionPrior, Odometry, RecordedImu, Result, Sequence, __version__
 
-__all__ = ["Camera", "Config", "Counts", "Error", "Features", "Frame", "Odometry", "Result", "Sequence", "evaluate", "run"]
+__all__ = [
+    "Camera", "Config", "Counts", "Error", "Features", "Frame", "Imu", "MotionPrior", "Odometry", "RecordedImu", "Result",
+    "Sequence", "evaluate", "run",
+]
 
 
-def run(folder, camera=None, config=None):
-    """Tracks a recorded folder: a Result for each frame."""
+def run(folder, camera=None, config=None, *, imu=False):
+    """Tracks a recorded folder: a Result for each frame. imu: with the folder's gyroscope.txt and accelerometer.txt."""
     sequence = Sequence(folder, camera)
     odometry = Odometry(sequence.camera, config)
+    readings = RecordedImu(folder) if imu else None
     for frame in sequence:
-        yield odometry.track(*frame)
+        result = odometry.track(*frame, prior=readings and readings.prior(frame.stamp_ns))
+        if readings:
+            readings.learn(result)
+        yield result
 
 
 def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02, offset_s=0.0, rpe_deltas=("1f", "1s")):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 __version__: str
 
+_Array = NDArray[Any] | _ListLike[Any]
 _Path = str | bytes | PathLike[str] | PathLike[bytes]
 
 class Error(Exception):
@@ -85,7 +86,7 @@ class Result:
     """What the odometry says about one frame. Arrays are views and cannot be written."""
 
     @property
-    def state(self) -> Literal["initialising", "tracking", "lost"]: ...
+    def state(self) -> Literal["initialising", "tracking", "lost", "predicted"]: ...
     @property
     def has_pose(self) -> bool: ...
     @property
@@ -134,6 +135,54 @@ class Features(NamedTuple):
     line_tracks: NDArray[uint16]  # indices into reference_segments and segments
     line_inliers: NDArray[bool_]
 
+class MotionPrior:
+    """What other sensors say of a frame: pairs of a value and its 3x3 covariance, in the camera's axes now."""
+
+    def __init__(
+        self,
+        *,
+        rotation: tuple[_Array, _Array] | None = None,
+        translation: tuple[_Array, _Array] | None = None,
+        gravity: tuple[_Array, _Array] | None = None,
+        gravity_offset_sigma: float = 0.0,
+    ) -> None: ...
+    @property
+    def R_now_before(self) -> NDArray[float64] | None: ...
+    @property
+    def rotation_covariance(self) -> NDArray[float64] | None: ...
+    @property
+    def t_now_before(self) -> NDArray[float64] | None: ...
+    @property
+    def translation_covariance(self) -> NDArray[float64] | None: ...
+    @property
+    def down(self) -> NDArray[float64] | None: ...
+    @property
+    def gravity_covariance(self) -> NDArray[float64] | None: ...
+
+class Imu:
+    """A gyro (rad/s) and an accelerometer (m/s^2): samples in, a prior for each frame out."""
+
+    def __init__(
+        self,
+        *,
+        R_camera_imu: _Array | None = None,
+        gyro_noise: float = ...,
+        gyro_offset_sigma: float = ...,
+        accelerometer_noise: float = ...,
+        accelerometer_offset_sigma: float = ...,
+    ) -> None: ...
+    def add_gyro(self, stamp_ns: int, rate: _Array) -> bool: ...
+    def add_acceleration(self, stamp_ns: int, force: _Array) -> bool: ...
+    def prior(self, stamp_ns: int) -> MotionPrior: ...
+    def learn(self, result: Result) -> None: ...
+
+class RecordedImu:
+    """gyroscope.txt and accelerometer.txt of a folder."""
+
+    def __init__(self, folder: _Path) -> None: ...
+    def prior(self, stamp_ns: int) -> MotionPrior: ...
+    def learn(self, result: Result) -> None: ...
+
 class Odometry:
     def __init__(
         self, camera: Camera, config: Config | None = None, *, keypoints: int | None = None, segments: int | None = None
@@ -146,7 +195,10 @@ class Odometry:
         depth_stamp_ns: int | None = None,
         *,
         bgr: bool = False,
+        prior: MotionPrior | None = None,
     ) -> Result: ...
+    def reset(self) -> None: ...
+    def set_pose(self, T_world_camera: _Array, covariance: _Array | None = None) -> None: ...
     def features(self) -> Features: ...
     @property
     def memory_bytes(self) -> int: ...
@@ -167,7 +219,9 @@ class Sequence:
     def __iter__(self) -> Iterator[Frame]: ...
     def __next__(self) -> Frame: ...
 
-def run(folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None) -> Iterator[Result]: ...
+def run(
+    folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None, *, imu: bool = False
+) -> Iterator[Result]: ...
 def evaluate(
     truth: _Path,
     estimate: _Path | Iterable[Result],

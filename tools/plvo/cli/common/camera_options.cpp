@@ -60,6 +60,7 @@ Status open_tum(const CameraOptions& options, Log& log, OpenedCamera& opened) {
       return eval::read_trajectory({truth_file, {}, {}}, truth);
     };
   }
+  opened.inertial = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
   opened.camera = std::move(camera);
   return {};
 }
@@ -78,6 +79,10 @@ Status open_simulator(const CameraOptions& options, OpenedCamera& opened) {
   opened.ground_truth = [simulated = camera.get()](const std::vector<std::int64_t>& stamps,
                                                    eval::Trajectory& truth) {
     for (std::int64_t stamp : stamps) truth.poses.push_back({stamp, simulated->ground_truth(stamp)});
+    return Status();
+  };
+  opened.inertial = [simulated = camera.get()](ImuRecording& recording) {
+    simulated->inertial_samples(recording.gyro, recording.accelerometer);
     return Status();
   };
   opened.camera = std::move(camera);
@@ -182,7 +187,8 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   if (options.simulated) return;
   if (is_oni_file(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
-  for (const char* name : {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt"})
+  for (const char* name :
+       {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
     files.reads(folder / name);
   files.reads(calibration_file_in(folder).value_or(fs::path()));
   TumIndex index;

@@ -19,6 +19,7 @@
 #include "plvo/hal/log.hpp"
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/replay/calibration.hpp"
+#include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
 
@@ -71,6 +72,8 @@ struct OpenedCamera {
   // The true poses, where there are any: from a file beside the images, or from the simulator
   // at these stamps.
   std::function<Status(const std::vector<std::int64_t>& stamps_ns, eval::Trajectory& truth)> ground_truth;
+  // What a gyro and an accelerometer beside the camera read; empty where there can be none.
+  std::function<Status(ImuRecording& recording)> inertial;
 };
 // log: for what the camera has to say; it must outlive the camera.
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened);

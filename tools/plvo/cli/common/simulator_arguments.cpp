@@ -19,6 +19,14 @@ bool parse_size(std::string_view text, int& width, int& height) {
          width <= kMost_px && height <= kMost_px;
 }
 
+bool parse_range(std::string_view text, int& first, int& end) {
+  const char* stop = text.data() + text.size();
+  const auto [colon, first_error] = std::from_chars(text.data(), stop, first);
+  if (first_error != std::errc() || colon == stop || *colon != ':') return false;
+  const auto [rest, end_error] = std::from_chars(colon + 1, stop, end);
+  return end_error == std::errc() && rest == stop && first >= 0 && first < end && end <= kMostSimulatedFrames;
+}
+
 // Names as the simulator writes them.
 template <typename Name, std::size_t N>
 std::vector<std::pair<std::string, Name>> names_of(const Name (&values)[N]) {
@@ -60,6 +68,11 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
                "Standard deviation of depth's stamps; the exposures keep their time (default 0)");
   group.number("--depth-scale-error", arguments.depth_scale_error, {0.5, 2}, "FACTOR",
                "Reported depth over true depth (default 1)");
+  group.add("--covered", "FIRST:END", "A hand over the lens from frame FIRST to before END: black, no depth",
+            [&arguments](const std::string& text) -> std::string {
+              if (parse_range(text, arguments.covered_first, arguments.covered_end)) return {};
+              return expected("a range of frames such as 100:115", text);
+            });
   group.path("--trajectory", arguments.trajectory,
              "TUM trajectory along which the camera moves, instead of the seeded walk");
   group.whole("--threads", arguments.threads, 1, 256,
@@ -80,6 +93,8 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   camera.readout_s = arguments.readout_s;
   options.depth_schedule = arguments.depth_schedule;
   options.depth.scale_error = arguments.depth_scale_error;
+  options.covered_first = arguments.covered_first;
+  options.covered_end = arguments.covered_end;
   if (arguments.width > 0) {
     const double scale = static_cast<double>(arguments.width) / camera.width;
     camera.pinhole.fx *= scale;

@@ -23,6 +23,7 @@ struct SimulatorArguments {
   int width = 0, height = 0;  // 0: the simulator's own size
   DepthSchedule depth_schedule;
   double depth_scale_error = 1;
+  int covered_first = 0, covered_end = 0;
   std::string trajectory;
   bool clean = false;
   int threads = 2;

@@ -43,6 +43,10 @@ void TrackSummary::add(const FrameRecord& record) {
     ++started_;
     return;
   }
+  if (result.state == TrackState::kPredicted) {
+    ++predicted_;
+    return;
+  }
   ++tracked_;
   point_inliers_.add(result.points.inliers);
   line_inliers_.add(result.lines.inliers);
@@ -58,8 +62,10 @@ std::string TrackSummary::why_failed() const {
 
 SummaryRows TrackSummary::frame_rows() const {
   SummaryRows rows = {{"started", fmt::format("{} (the first frame, or after a long loss)", started_)},
-                      {"tracked", fmt::format("{}", tracked_)},
-                      {"lost", fmt::format("{}", lost_)}};
+                      {"tracked", fmt::format("{}", tracked_)}};
+  if (predicted_ > 0)
+    rows.emplace_back("predicted", fmt::format("{} (nothing seen; from gyro and accelerometer)", predicted_));
+  rows.emplace_back("lost", fmt::format("{}", lost_));
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) rows.emplace_back(fmt::format("  {} times", losses_[i]), last_loss_[i].message());
   return rows;
@@ -95,9 +101,10 @@ std::string TrackSummary::stage_table() const {
 }
 
 nlohmann::ordered_json TrackSummary::to_json() const {
-  nlohmann::ordered_json json = {{"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
-                                 {"initialised", started_}, {"tracked", tracked_},        {"lost", lost_},
-                                 {"damaged", damaged_},     {"path_m", path_m_}};
+  nlohmann::ordered_json json = {
+      {"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
+      {"initialised", started_}, {"tracked", tracked_},        {"predicted", predicted_},
+      {"lost", lost_},           {"damaged", damaged_},        {"path_m", path_m_}};
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "plvo/cli/common/arguments.hpp"
@@ -15,6 +16,7 @@
 #include "plvo/cli/common/odometry_options.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/run/imu_options.hpp"
 #include "plvo/cli/run/overlay.hpp"
 #include "plvo/cli/run/run_history.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
@@ -32,6 +34,7 @@ constexpr const char* kRunHelp =
     "  plvo run --camera sim --frames 100                   no sensor and no recording needed\n"
     "  plvo run DIR --camera-model tum-fr1 --out t.txt      a TUM recording of the fr1 series\n"
     "  plvo run walk --report run.html                      what plvo record or plvo simulate made\n"
+    "  plvo run walk --imu                                  with the help of a gyro and an accelerometer\n"
     "  plvo run walk --quiet --out - | your_program         the trajectory into a pipe\n";
 
 struct RunOptions {
@@ -42,6 +45,7 @@ struct RunOptions {
   std::size_t report_frames = 60;
   Pace pace = Pace::kFast;
   bool quiet = false;
+  ImuOptions imu;
 };
 
 // One key a frame: the next line of standard input.
@@ -79,6 +83,7 @@ class Run {
     const CameraModel& model = opened_.camera->model();
     if (Status status = block_.init(model, config, make_limits(options_.odometry, model)); !status.ok())
       return status;
+    if (Status status = open_imu(options_.imu, opened_, console_, imu_); !status.ok()) return status;
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
@@ -109,10 +114,12 @@ class Run {
           console_.write(LogLevel::kWarning,
                          fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
+        const MotionPrior prior = imu_ ? imu_->prior(frame.stamp_ns) : MotionPrior();
         const std::int64_t start = posix_thread_cpu_ns();
-        record.result = block_.odometry().track(frame);
+        record.result = block_.odometry().track(frame, prior);
         record.cpu_ns = posix_thread_cpu_ns() - start;
         block_.odometry().frame_took(record.cpu_ns);
+        if (imu_) imu_->learn(record.result);
       }
       summary_->add(record);
       history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());
@@ -162,6 +169,7 @@ class Run {
   Console console_;
   OpenedCamera opened_;
   OdometryBlock block_;
+  std::optional<RecordedImu> imu_;
   RunOutputs outputs_;
   Overlay overlay_;
   std::unique_ptr<RunSummary> summary_;
@@ -171,6 +179,7 @@ class Run {
 
 void check(const CLI::App& command, const RunOptions& options) {
   check_camera_options(command, options.camera);
+  check_imu_options(command, options.imu, options.camera);
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
   FileRoles files;
@@ -192,6 +201,7 @@ void add_run(CLI::App& app, int& exit_code) {
       "--pace", options->pace,
       Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}},
       "As fast as it goes (default), as the stamps say, or a frame for each Enter");
+  add_imu_options(command, options->imu);
   add_output_options(command, options->outputs);
   OptionGroup outputs(command, kOutputGroup);
   outputs.path("--json", options->summary, "The summary as JSON");

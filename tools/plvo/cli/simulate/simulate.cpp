@@ -14,6 +14,7 @@
 #include "plvo/cli/common/simulator_arguments.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/replay/imu_files.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"
 
@@ -55,7 +56,8 @@ int simulate_command(const SimulateOptions& options) {
 
 void check(const SimulateOptions& options) {
   FileRoles files;
-  for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", "groundtruth.txt"})
+  for (const char* name :
+       {"rgb.txt", "depth.txt", "calibration.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
     files.writes("--out", std::filesystem::path(options.folder) / name);
   files.reads(options.simulator.trajectory);
   files.check();

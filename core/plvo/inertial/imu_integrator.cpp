@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/inertial/imu_integrator.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr double kGravity = 9.80665;  // m/s²
+// Nobody shakes or turns a camera like this: what is beyond is no reading of a gyro or an accelerometer.
+constexpr double kMostReading = 1e4;
+constexpr double kLeastSeconds = 1e-4;
+// Of the accelerometer, as a share of g.
+constexpr double kMostOffset = 0.5;
+// What a frame teaches at most, in standard deviations of the prior.
+constexpr double kMostSigmas = 5;
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  return static_cast<double>(to_ns - from_ns) * 1e-9;
+}
+
+// Linear between two samples.
+Vector3 value_at(const ImuSample& a, const ImuSample& b, std::int64_t stamp_ns) {
+  const double u = seconds_between(a.stamp_ns, stamp_ns) / seconds_between(a.stamp_ns, b.stamp_ns);
+  return a.value + u * (b.value - a.value);
+}
+
+}  // namespace
+
+bool SampleRing::push(const ImuSample& sample) {
+  constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
+  if (memory_.empty() || !(sample.value.cwiseAbs().maxCoeff() <= kMostReading) || !sample.value.allFinite())
+    return false;
+  if (sample.stamp_ns > kFarthest_ns || sample.stamp_ns < -kFarthest_ns) return false;
+  if (count_ > 0 && sample.stamp_ns <= (*this)[count_ - 1].stamp_ns) return false;
+  if (count_ == memory_.size()) pop();
+  memory_[(first_ + count_) % memory_.size()] = sample;
+  ++count_;
+  return true;
+}
+
+Status ImuIntegrator::init(std::span<ImuSample> gyro, std::span<ImuSample> accelerometer,
+                           const ImuConfig& config) {
+  if (Status status = config.validate(); !status.ok()) return status;
+  if (gyro.size() == 1 || accelerometer.size() == 1)
+    return {StatusCode::kInvalidArgument,
+            "imu: the memory must hold at least two samples of a sensor, or none"};
+  *this = ImuIntegrator();
+  config_ = config;
+  turn_ = config.R_camera_imu.determinant() < 0 ? Matrix3(-config.R_camera_imu) : config.R_camera_imu;
+  gyro_ = SampleRing(gyro);
+  accelerometer_ = SampleRing(accelerometer);
+  variance_.setConstant(config.gyro_offset_sigma * config.gyro_offset_sigma);
+  return {};
+}
+
+// R_now_before_ and, for the scale's error, the angle turned about each axis. Keeps the last sample at or
+// before `to`, from which the next interval goes on. False where samples are missing.
+bool ImuIntegrator::integrate(std::int64_t from_ns, std::int64_t to_ns, Vector3& angle) {
+  Matrix3 R_before_now = Matrix3::Identity();
+  angle.setZero();
+  std::int64_t done_ns = from_ns;
+  bool whole = gyro_.size() > 0 && gyro_[0].stamp_ns <= from_ns;
+  while (gyro_.size() > 1 && gyro_[0].stamp_ns <= to_ns) {
+    const ImuSample& a = gyro_[0];
+    const ImuSample& b = gyro_[1];
+    whole = whole && seconds_between(a.stamp_ns, b.stamp_ns) <= config_.longest_gap_s;
+    const std::int64_t begin_ns = std::max(a.stamp_ns, done_ns), end_ns = std::min(b.stamp_ns, to_ns);
+    if (begin_ns < end_ns) {
+      const Vector3 rate = 0.5 * (value_at(a, b, begin_ns) + value_at(a, b, end_ns)) - offset_;
+      const Vector3 step = seconds_between(begin_ns, end_ns) * rate;
+      R_before_now = R_before_now * rotation_exp(turn_ * step);
+      angle += step.cwiseAbs();
+      done_ns = end_ns;
+    }
+    if (b.stamp_ns > to_ns) break;
+    gyro_.pop();
+  }
+  // The last samples may still be on their way: the rate goes on as it was.
+  if (done_ns < to_ns && gyro_.size() > 0 && gyro_[0].stamp_ns <= done_ns) {
+    const double seconds = seconds_between(done_ns, to_ns);
+    whole = whole && seconds_between(gyro_[0].stamp_ns, to_ns) <= config_.longest_gap_s;
+    const Vector3 step = seconds * (gyro_[0].value - offset_);
+    R_before_now = R_before_now * rotation_exp(turn_ * step);
+    angle += step.cwiseAbs();
+    done_ns = to_ns;
+  }
+  R_now_before_ = R_before_now.transpose();
+  return whole && done_ns == to_ns;
+}
+
+// Of the samples after `from` up to `to`, which are used up.
+bool ImuIntegrator::mean_force(std::int64_t from_ns, std::int64_t to_ns, Vector3& force, int& count) {
+  force.setZero();
+  count = 0;
+  while (accelerometer_.size() > 0 && accelerometer_[0].stamp_ns <= to_ns) {
+    if (accelerometer_[0].stamp_ns > from_ns) {
+      force += accelerometer_[0].value;
+      ++count;
+    }
+    accelerometer_.pop();
+  }
+  if (count > 0) force /= count;
+  return count > 0;
+}
+
+RotationPrior ImuIntegrator::rotation(double seconds, const Vector3& angle) {
+  RotationPrior prior;
+  prior.R_now_before = renormalise(R_now_before_);
+  Vector3 variance;
+  for (int i = 0; i < 3; ++i) {
+    const double scale = config_.gyro_scale_sigma * angle[i];
+    variance[i] = config_.gyro_noise * config_.gyro_noise * seconds + variance_[i] * seconds * seconds +
+                  scale * scale + 1e-14;
+  }
+  const Matrix3& R = turn_;
+  prior.covariance = R * variance.asDiagonal() * R.transpose();
+  prior.covariance = Matrix3(0.5 * (prior.covariance + Matrix3(prior.covariance.transpose())));
+  return prior;
+}
+
+MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
+  MotionPrior prior;
+  const bool first = !started_;
+  const std::int64_t before_ns = last_ns_;
+  open_ = false;
+  if (!first && stamp_ns <= before_ns) return prior;
+  started_ = true;
+  before_ns_ = before_ns;
+  last_ns_ = stamp_ns;
+  seconds_ = first ? 0 : seconds_between(before_ns, stamp_ns);
+  for (int i = 0; i < 3; ++i) variance_[i] += config_.gyro_offset_walk * config_.gyro_offset_walk * seconds_;
+  Vector3 angle;
+  // Without a frame before, the samples of a moment before this one still say where down is.
+  constexpr std::int64_t kMoment_ns = 100'000'000;
+  const std::int64_t from_ns = first ? stamp_ns - kMoment_ns : before_ns;
+  const bool whole = integrate(from_ns, stamp_ns, angle);
+  if (whole && !first && seconds_ > kLeastSeconds) {
+    last_rotation_ = rotation(seconds_, angle);
+    prior.rotation = last_rotation_;
+    open_ = true;
+  }
+  Vector3 force;
+  int count = 0;
+  if (!mean_force(from_ns, stamp_ns, force, count)) return prior;
+  const double force_squared = force.squaredNorm();
+  // Far from g it is thrown or dropped, and says nothing of where down is.
+  if (!(force_squared > 0.25 * kGravity * kGravity && force_squared < 4 * kGravity * kGravity)) return prior;
+  const double interval = first ? 0.1 : std::max(seconds_, kLeastSeconds);
+  // Accelerations of one go that last longer than the interval fall into several readings, as if each were so
+  // much less sure.
+  const double go = std::max(1.0, 2 * config_.acceleration_s / interval);
+  const double variance = (config_.accelerometer_noise * config_.accelerometer_noise / interval +
+                           config_.acceleration * config_.acceleration * go) /
+                          (kGravity * kGravity);
+  GravityPrior gravity;
+  gravity.down = -(config_.R_camera_imu * force);
+  gravity.covariance = Matrix3::Identity() * std::max(variance, 1e-12);
+  gravity.offset_sigma = std::min(config_.accelerometer_offset_sigma / kGravity, kMostOffset);
+  prior.gravity = gravity;
+  return prior;
+}
+
+// The estimate moved the prior's rotation by e, and left a covariance C' < C, C the prior's. Of the prior's
+// error the offset's is Δt b, in the sensor's axes: given e, b moves by P Δt C⁻¹ e, and its variance P by
+// that gain on C − C'. The estimate has used the prior; nothing is used twice.
+void ImuIntegrator::learn(const TrackResult& result) {
+  const bool seen = result.state == TrackState::kTracking ||
+                    (result.state == TrackState::kInitialising && result.status.ok());
+  if (!seen) return;
+  const Matrix3& R_now_reference = result.T_camera_reference.R;
+  Matrix3 R_now_before = R_now_reference;
+  bool known = has_seen_ && seen_ns_ == before_ns_ && result.stamp_ns == last_ns_ && open_ &&
+               result.state == TrackState::kTracking;
+  if (result.reference_stamp_ns == reference_ns_)
+    R_now_before = R_now_reference * R_seen_reference_.transpose();
+  else
+    known = known && result.reference_stamp_ns == seen_ns_;
+  seen_ns_ = result.stamp_ns;
+  reference_ns_ = result.reference_stamp_ns;
+  R_seen_reference_ = R_now_reference;
+  has_seen_ = true;
+  open_ = false;
+  if (!known) return;
+  const Matrix3 R_imu_camera = turn_.transpose();
+  const Vector3 e = R_imu_camera * rotation_log(R_now_before * last_rotation_.R_now_before.transpose());
+  const Matrix3 prior = R_imu_camera * last_rotation_.covariance * turn_;
+  const Matrix3 left = R_imu_camera * result.motion_covariance.block<3, 3>(3, 3) * turn_;
+  for (int i = 0; i < 3; ++i) {
+    const double C = prior(i, i);
+    const double gain = variance_[i] * seconds_ / C;
+    const double bound = kMostSigmas * sqrt(C);
+    offset_[i] += gain * std::clamp(e[i], -bound, bound);
+    variance_[i] -= gain * gain * (C - std::clamp(left(i, i), 0.0, C));
+  }
+}
+
+}  // namespace plvo

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/motion/prior_constraint.hpp"
+
+namespace plvo {
+
+PriorConstraint::PriorConstraint(const Se3& T_sensed, const Matrix6& covariance, std::span<std::uint8_t> flag)
+    : ConstraintSet(flag), T_sensed_(T_sensed) {
+  Cholesky<6> cholesky;
+  usable_ = T_sensed.is_finite() && covariance.allFinite() && cholesky.factor(covariance);
+  if (usable_) information_ = cholesky.inverse();
+}
+
+double PriorConstraint::linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
+                                  JointInformation& sum) {
+  if (inliers_[0] == 0) return 0;
+  const Vector6 r = boxminus(T, T_sensed_);
+  // ∂ log(Exp(ω) Exp(φ)) / ∂ω at 0, to the fourth order in φ.
+  const Matrix3 Phi = skew(r.tail<3>());
+  Matrix6 J = Matrix6::Identity();
+  J.block<3, 3>(3, 3) += -0.5 * Phi + (1.0 / 12) * Phi.lazyProduct(Phi);
+  const Vector6 weighted = information_.lazyProduct(r);
+  double weight = 1;
+  const double cost = 0.5 * kernel(r.dot(weighted), weight);
+  const Matrix6 information_J = information_.lazyProduct(J);
+  sum.H.block<6, 6>(0, 0) += weight * Matrix6(J.transpose().lazyProduct(information_J));
+  sum.g.head<6>() += weight * Vector6(J.transpose().lazyProduct(weighted));
+  return cost;
+}
+
+}  // namespace plvo

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/gravity_hold.hpp"
+
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
+
+// ∂δ_current / ∂δ_from of advance().
+Matrix6 carry(const HeldPose& from, const HeldPose& current) {
+  Matrix6 A = Matrix6::Identity();
+  A.block<3, 3>(0, 3) = -skew(current.T_world_camera.t - from.T_world_camera.t);
+  return A;
+}
+
+// Two unit vectors across a unit vector.
+Matrix<3, 2> across(const Vector3& d) {
+  int smallest = 0;
+  for (int i = 1; i < 3; ++i)
+    if (d[i] * d[i] < d[smallest] * d[smallest]) smallest = i;
+  Vector3 axis = Vector3::Zero();
+  axis[smallest] = 1;
+  const Vector3 first = axis - d.dot(axis) * d;
+  Matrix<3, 2> U;
+  U.col(0) = first / sqrt(first.squaredNorm());
+  U.col(1) = skew(d) * U.col(0);
+  return U;
+}
+
+template <int N>
+Matrix<N, N> symmetric(const Matrix<N, N>& M) {
+  return 0.5 * (M + Matrix<N, N>(M.transpose()));
+}
+
+Matrix3 turned(const Matrix3& J, const Matrix3& C) {
+  return symmetric<3>(J.lazyProduct(C).eval().lazyProduct(J.transpose()));
+}
+
+}  // namespace
+
+HeldPose advance(const HeldPose& from, const Se3& T_current_from, const Matrix6& motion_covariance) {
+  const Se3 T_from_current = T_current_from.inverse();
+  HeldPose current;
+  current.T_world_camera = from.T_world_camera * T_from_current;
+  current.T_world_camera.R = renormalise(current.T_world_camera.R);
+  current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
+                                          inverse_covariance(T_current_from, motion_covariance));
+  current.covariance_with_gravity = carry(from, current).lazyProduct(from.covariance_with_gravity);
+  return current;
+}
+
+// g = R (z − β − noise), R being off by ω: ε = −[g]× ω − R (β + noise).
+void GravityHold::start(const Vector3& z, const GravityPrior& reading, const Matrix<6, 3>& from_omega,
+                        HeldPose& from, HeldPose& current) {
+  const Matrix3& R = current.T_world_camera.R;
+  known_ = true;
+  down_ = R * z;
+  const Matrix3 G = skew(down_);
+  from.covariance_with_gravity.setZero();
+  current.covariance_with_gravity.setZero();
+  from.covariance_with_gravity.block<6, 3>(0, 0) = from_omega.lazyProduct(G);
+  current.covariance_with_gravity.block<6, 3>(0, 0) = current.covariance.block<6, 3>(0, 3).lazyProduct(G);
+  const Matrix3 offset = Matrix3::Identity() * (reading.offset_sigma * reading.offset_sigma);
+  covariance_.block<3, 3>(0, 0) =
+      turned(G, current.covariance.block<3, 3>(3, 3)) + turned(R, reading.covariance) + offset;
+  covariance_.block<3, 3>(0, 3) = -R.lazyProduct(offset);
+  covariance_.block<3, 3>(3, 0) = -offset.lazyProduct(R.transpose());
+  covariance_.block<3, 3>(3, 3) = offset;
+}
+
+void GravityHold::read(const GravityPrior& reading, HeldPose& from, HeldPose& current) {
+  const Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
+  // Covariances of the errors of `from` and `current` with the orientation's of `current`.
+  const Matrix<6, 3> from_omega =
+      from.covariance.lazyProduct(carry(from, current).transpose()).eval().block<6, 3>(0, 3);
+  const Matrix<6, 3> current_omega = current.covariance.block<6, 3>(0, 3);
+  if (!known_) return start(z, reading, from_omega, from, current);
+
+  const Matrix3 R_camera_world = current.T_world_camera.R.transpose();
+  const Vector3 expected = R_camera_world * down_;
+  const Matrix<3, 2> U = across(expected);
+  const Matrix<2, 3> J_omega = U.transpose().lazyProduct(R_camera_world).eval().lazyProduct(skew(down_));
+  Matrix<2, 6> J_gravity;
+  J_gravity.block<2, 3>(0, 0) = U.transpose().lazyProduct(R_camera_world);
+  J_gravity.block<2, 3>(0, 3) = U.transpose();
+  // Covariances of each error with the residual.
+  const Matrix<6, 2> P_from = from_omega.lazyProduct(J_omega.transpose()) +
+                              from.covariance_with_gravity.lazyProduct(J_gravity.transpose());
+  const Matrix<6, 2> P_current = current_omega.lazyProduct(J_omega.transpose()) +
+                                 current.covariance_with_gravity.lazyProduct(J_gravity.transpose());
+  const Matrix<6, 3> gravity_omega = current.covariance_with_gravity.block<3, 6>(3, 0).transpose();
+  const Matrix<6, 2> P_gravity =
+      gravity_omega.lazyProduct(J_omega.transpose()) + covariance_.lazyProduct(J_gravity.transpose());
+  const Matrix2 S =
+      symmetric<2>(J_omega.lazyProduct(P_current.block<3, 2>(3, 0)) + J_gravity.lazyProduct(P_gravity) +
+                   U.transpose().lazyProduct(reading.covariance).eval().lazyProduct(U));
+  const double determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(0, 1);
+  if (!(determinant > 0)) return;
+  Matrix2 S_inverse;
+  S_inverse << S(1, 1), -S(0, 1), -S(0, 1), S(0, 0);
+  S_inverse /= determinant;
+  const Vector2 residual = U.transpose() * (z - expected - offset_);
+  const Vector2 weighted = S_inverse * residual;
+  if (!(residual.dot(weighted) <= kJolt) || expected.dot(z) < 0) return;
+
+  const Matrix<2, 6> gain_gravity = S_inverse.lazyProduct(P_gravity.transpose());
+  const auto correct = [&](HeldPose& pose, const Matrix<6, 2>& P) {
+    pose.T_world_camera = boxplus(pose.T_world_camera, P.lazyProduct(weighted));
+    pose.T_world_camera.R = renormalise(pose.T_world_camera.R);
+    const Matrix<2, 6> gain = S_inverse.lazyProduct(P.transpose());
+    pose.covariance = symmetric<6>(pose.covariance - P.lazyProduct(gain));
+    pose.covariance_with_gravity -= P.lazyProduct(gain_gravity);
+  };
+  correct(from, P_from);
+  correct(current, P_current);
+  const Vector6 correction = P_gravity.lazyProduct(weighted);
+  down_ += correction.head<3>();
+  down_ /= sqrt(down_.squaredNorm());
+  offset_ += correction.tail<3>();
+  covariance_ = symmetric<6>(covariance_ - P_gravity.lazyProduct(gain_gravity));
+}
+
+}  // namespace plvo

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// What other sensors say of a frame, for Python: priors, and gyros and accelerometers that make them.
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plvo/inertial/imu_integrator.hpp"
+#include "plvo/python/arrays.hpp"
+#include "plvo/python/bindings.hpp"
+#include "plvo/replay/recorded_imu.hpp"
+
+namespace plvo::python {
+
+using namespace py::literals;
+
+namespace {
+
+constexpr std::size_t kWaiting = 4096;  // samples of a sensor between two frames
+
+// None, or a pair of a value and its 3×3 covariance.
+template <int Columns>
+std::optional<std::pair<Matrix<3, Columns>, Matrix3>> with_covariance(const py::object& given,
+                                                                      const std::string& name) {
+  if (given.is_none()) return std::nullopt;
+  if (!py::isinstance<py::sequence>(given) || py::len(given) != 2)
+    throw py::value_error(name + ": expected a pair of the value and its covariance");
+  const auto pair = py::reinterpret_borrow<py::sequence>(given);
+  return std::pair{matrix_of<3, Columns>(pair[0], name), matrix_of<3, 3>(pair[1], name + ", covariance")};
+}
+
+MotionPrior make_prior(const py::object& rotation, const py::object& translation, const py::object& gravity,
+                       double gravity_offset_sigma) {
+  MotionPrior prior;
+  if (const auto given = with_covariance<3>(rotation, "rotation"))
+    prior.rotation = {given->first, given->second};
+  if (const auto given = with_covariance<1>(translation, "translation"))
+    prior.translation = {given->first, given->second};
+  if (const auto given = with_covariance<1>(gravity, "gravity"))
+    prior.gravity = {given->first, given->second, gravity_offset_sigma};
+  throw_unless_ok(prior.validate());
+  return prior;
+}
+
+class Imu {
+ public:
+  explicit Imu(const ImuConfig& config) : gyro_(kWaiting), accelerometer_(kWaiting) {
+    throw_unless_ok(integrator_.init(gyro_, accelerometer_, config));
+  }
+  ImuIntegrator& integrator() { return integrator_; }
+
+ private:
+  std::vector<ImuSample> gyro_, accelerometer_;
+  ImuIntegrator integrator_;
+};
+
+std::unique_ptr<RecordedImu> read_imu(const py::object& folder) {
+  ImuRecording recording;
+  throw_unless_ok(read_imu_files(path_text(folder), recording));
+  auto imu = std::make_unique<RecordedImu>();
+  throw_unless_ok(imu->init(std::move(recording), ImuConfig()));
+  return imu;
+}
+
+template <int Rows, int Columns, typename Of>
+py::object copy_or_none(const Of* part, Matrix<Rows, Columns> Of::*member) {
+  if (part == nullptr) return py::none();
+  const Matrix<Rows, Columns>& matrix = part->*member;
+  std::vector<py::ssize_t> shape{Rows};
+  if (Columns > 1) shape.push_back(Columns);
+  py::array_t<double> array(shape);
+  for (int row = 0; row < Rows; ++row)
+    for (int column = 0; column < Columns; ++column)
+      array.mutable_data()[row * Columns + column] = matrix(row, column);
+  return array;
+}
+
+template <typename Part>
+const Part* pointer(const std::optional<Part>& part) {
+  return part ? &*part : nullptr;
+}
+
+}  // namespace
+
+void bind_prior(py::module_& module) {
+  using Prior = const MotionPrior&;
+  py::class_<MotionPrior>(module, "MotionPrior")
+      .def(py::init(&make_prior), py::kw_only(), "rotation"_a = py::none(), "translation"_a = py::none(),
+           "gravity"_a = py::none(), "gravity_offset_sigma"_a = 0.0)
+      .def_property_readonly(
+          "R_now_before",
+          [](Prior p) { return copy_or_none(pointer(p.rotation), &RotationPrior::R_now_before); })
+      .def_property_readonly(
+          "rotation_covariance",
+          [](Prior p) { return copy_or_none(pointer(p.rotation), &RotationPrior::covariance); })
+      .def_property_readonly(
+          "t_now_before",
+          [](Prior p) { return copy_or_none(pointer(p.translation), &TranslationPrior::t_now_before); })
+      .def_property_readonly(
+          "translation_covariance",
+          [](Prior p) { return copy_or_none(pointer(p.translation), &TranslationPrior::covariance); })
+      .def_property_readonly("down",
+                             [](Prior p) { return copy_or_none(pointer(p.gravity), &GravityPrior::down); })
+      .def_property_readonly("gravity_covariance", [](Prior p) {
+        return copy_or_none(pointer(p.gravity), &GravityPrior::covariance);
+      });
+
+  py::class_<Imu>(module, "Imu")
+      .def(py::init([](const py::object& R_camera_imu, double gyro_noise, double gyro_offset_sigma,
+                       double accelerometer_noise, double accelerometer_offset_sigma) {
+             ImuConfig config;
+             if (!R_camera_imu.is_none()) config.R_camera_imu = matrix_of<3, 3>(R_camera_imu, "R_camera_imu");
+             config.gyro_noise = gyro_noise;
+             config.gyro_offset_sigma = gyro_offset_sigma;
+             config.accelerometer_noise = accelerometer_noise;
+             config.accelerometer_offset_sigma = accelerometer_offset_sigma;
+             return std::make_unique<Imu>(config);
+           }),
+           py::kw_only(), "R_camera_imu"_a = py::none(), "gyro_noise"_a = ImuConfig().gyro_noise,
+           "gyro_offset_sigma"_a = ImuConfig().gyro_offset_sigma,
+           "accelerometer_noise"_a = ImuConfig().accelerometer_noise,
+           "accelerometer_offset_sigma"_a = ImuConfig().accelerometer_offset_sigma)
+      .def(
+          "add_gyro",
+          [](Imu& imu, std::int64_t stamp_ns, const py::object& rate) {
+            return imu.integrator().add_gyro({stamp_ns, matrix_of<3, 1>(rate, "rate")});
+          },
+          "stamp_ns"_a, "rate"_a)
+      .def(
+          "add_acceleration",
+          [](Imu& imu, std::int64_t stamp_ns, const py::object& force) {
+            return imu.integrator().add_acceleration({stamp_ns, matrix_of<3, 1>(force, "force")});
+          },
+          "stamp_ns"_a, "force"_a)
+      .def(
+          "prior", [](Imu& imu, std::int64_t stamp_ns) { return imu.integrator().prior(stamp_ns); },
+          "stamp_ns"_a)
+      .def(
+          "learn", [](Imu& imu, const TrackResult& result) { imu.integrator().learn(result); }, "result"_a);
+
+  py::class_<RecordedImu>(module, "RecordedImu")
+      .def(py::init(&read_imu), "folder"_a)
+      .def("prior", &RecordedImu::prior, "stamp_ns"_a)
+      .def("learn", &RecordedImu::learn, "result"_a);
+}
+
+}  // namespace plvo::python

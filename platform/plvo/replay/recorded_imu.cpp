@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/recorded_imu.hpp"
+
+#include <utility>
+
+namespace plvo {
+namespace {
+
+// Ten seconds of 400 Hz between two frames: over more a gyro alone says little.
+constexpr std::size_t kWaiting = 4096;
+
+}  // namespace
+
+Status RecordedImu::init(ImuRecording recording, const ImuConfig& config) {
+  recording_ = std::move(recording);
+  next_gyro_ = next_acceleration_ = 0;
+  gyro_memory_.assign(kWaiting, {});
+  accelerometer_memory_.assign(kWaiting, {});
+  return integrator_.init(gyro_memory_, accelerometer_memory_, config);
+}
+
+// Up to the first sample after the frame, between which and the one before the rate is interpolated.
+MotionPrior RecordedImu::prior(std::int64_t stamp_ns) {
+  const auto until_after = [&](const std::vector<ImuSample>& samples, std::size_t& next, auto add) {
+    while (next < samples.size()) {
+      const bool after = samples[next].stamp_ns > stamp_ns;
+      if (after && next > 0 && samples[next - 1].stamp_ns > stamp_ns) return;
+      add(samples[next++]);
+      if (after) return;
+    }
+  };
+  until_after(recording_.gyro, next_gyro_, [&](const ImuSample& s) { (void)integrator_.add_gyro(s); });
+  until_after(recording_.accelerometer, next_acceleration_,
+              [&](const ImuSample& s) { (void)integrator_.add_acceleration(s); });
+  return integrator_.prior(stamp_ns);
+}
+
+}  // namespace plvo

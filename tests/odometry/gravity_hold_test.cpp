@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gravity against a dense filter that knows nothing of blocks, and over a long chain of poses that drift.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "plvo/odometry/gravity_hold.hpp"
+#include "simulated_pair.hpp"
+
+namespace plvo {
+namespace {
+
+using test::Gaussian;
+
+Vector3 normal3(Gaussian& gaussian, double sigma) { return sigma * gaussian.vector<3>(); }
+
+Matrix6 diagonal(double sigma_m, double sigma_rad) {
+  Matrix6 C = Matrix6::Zero();
+  for (int i = 0; i < 3; ++i) {
+    C(i, i) = sigma_m * sigma_m;
+    C(3 + i, 3 + i) = sigma_rad * sigma_rad;
+  }
+  return C;
+}
+
+// δ of `from` and `current`, ε, β: one Gaussian of 18 dimensions, its Jacobian by differences.
+TEST(GravityHold, IsADenseKalmanStep) {
+  Gaussian random(4);
+  const Vector3 g = Vector3(0.1, 0.9, 0.2).normalized();
+  HeldPose from;
+  from.T_world_camera = {rotation_exp({0.3, -0.2, 0.5}), {1, 2, 3}};
+  from.covariance = diagonal(0.02, 0.03);
+  GravityHold hold;
+  const Se3 T_current_from{rotation_exp({-0.1, 0.2, 0.1}), {0.3, 0.1, -0.2}};
+  const Matrix6 C_motion = diagonal(0.004, 0.006);
+  HeldPose current = advance(from, T_current_from, C_motion);
+  GravityPrior reading;
+  reading.covariance = Matrix3::Identity() * 4e-4;
+  reading.offset_sigma = 0.02;
+  reading.down = current.T_world_camera.R.transpose() * g + normal3(random, 0.02);
+  hold.read(reading, from, current);
+  ASSERT_TRUE(hold.known());
+
+  using Joint = Matrix<18, 18>;
+  const auto joint = [](const HeldPose& a, const HeldPose& c, const GravityHold& h) {
+    Joint P = Joint::Zero();
+    Matrix6 A = Matrix6::Identity();
+    A.block<3, 3>(0, 3) = -skew(c.T_world_camera.t - a.T_world_camera.t);
+    P.block<6, 6>(0, 0) = a.covariance;
+    P.block<6, 6>(6, 6) = c.covariance;
+    P.block<6, 6>(6, 0) = A * a.covariance;
+    P.block<6, 6>(0, 12) = a.covariance_with_gravity;
+    P.block<6, 6>(6, 12) = c.covariance_with_gravity;
+    P.block<6, 6>(12, 12) = h.covariance();
+    P.block<6, 6>(0, 6) = P.block<6, 6>(6, 0).transpose();
+    P.block<6, 6>(12, 0) = P.block<6, 6>(0, 12).transpose();
+    P.block<6, 6>(12, 6) = P.block<6, 6>(6, 12).transpose();
+    return P;
+  };
+  // Two frames on, where the last keyframe has drifted as well.
+  from = advance(current, {rotation_exp({0.1, 0.3, 0.2}), {0.2, -0.1, 0.3}}, diagonal(0.01, 0.02));
+  current = advance(from, {rotation_exp({0.2, 0.1, -0.3}), {0.1, 0.4, 0.2}}, C_motion);
+  reading.down = current.T_world_camera.R.transpose() * g + normal3(random, 0.03);
+  const Joint P = joint(from, current, hold);
+  EXPECT_GT(test::symmetric_eigenvalues(P)[0], -1e-12) << "a covariance";
+  const auto predicted = [&](const Vector<18>& x) {
+    const Matrix3 R = rotation_exp(x.segment<3>(9)) * current.T_world_camera.R;
+    return Vector3(R.transpose() * (hold.down_in_world() + x.segment<3>(12)) + hold.offset() + x.tail<3>());
+  };
+  Matrix<3, 18> J;
+  for (int i = 0; i < 18; ++i) {
+    Vector<18> x = Vector<18>::Zero();
+    x[i] = 1e-6;
+    J.col(i) = (predicted(x) - predicted(Vector<18>(-x))) / 2e-6;
+  }
+  // Only what lies across the direction counts.
+  const Vector3 d = current.T_world_camera.R.transpose() * hold.down_in_world();
+  const Vector3 u = d.cross(Vector3(1, 0, 0)).normalized();
+  Matrix<2, 3> U;
+  U.row(0) = u.transpose();
+  U.row(1) = d.cross(u).transpose();
+  const Matrix<2, 18> H = U * J;
+  const Matrix2 S = H * P * H.transpose() + U * reading.covariance * U.transpose();
+  const Matrix<18, 2> K = P * H.transpose() * S.inverse();
+  const Vector<18> x = K * (U * (reading.down.normalized() - predicted(Vector<18>::Zero())));
+  const Joint after = P - K * H * P;
+
+  HeldPose from_after = from, current_after = current;
+  GravityHold hold_after = hold;
+  hold_after.read(reading, from_after, current_after);
+  EXPECT_LT((boxminus(from_after.T_world_camera, from.T_world_camera) - x.head<6>()).norm(), 1e-6);
+  EXPECT_LT((boxminus(current_after.T_world_camera, current.T_world_camera) - x.segment<6>(6)).norm(), 1e-6);
+  EXPECT_LT((hold_after.down_in_world() - (hold.down_in_world() + x.segment<3>(12)).normalized()).norm(),
+            1e-6);
+  EXPECT_LT((hold_after.offset() - hold.offset() - x.tail<3>()).norm(), 1e-6);
+  EXPECT_GT(x.head<6>().norm(), 1e-3) << "there was something to correct";
+  EXPECT_LT((from_after.covariance - after.block<6, 6>(0, 0)).norm(), 1e-6 * P.norm());
+  EXPECT_LT((current_after.covariance - after.block<6, 6>(6, 6)).norm(), 1e-6 * P.norm());
+  EXPECT_LT((current_after.covariance_with_gravity - after.block<6, 6>(6, 12)).norm(), 1e-6 * P.norm());
+  EXPECT_LT((from_after.covariance_with_gravity - after.block<6, 6>(0, 12)).norm(), 1e-6 * P.norm());
+  EXPECT_LT((hold_after.covariance() - after.block<6, 6>(12, 12)).norm(), 1e-6 * P.norm());
+}
+
+TEST(GravityHold, AJoltIsLeftOut) {
+  HeldPose pose;
+  pose.covariance = diagonal(0.01, 0.001);
+  GravityHold hold;
+  GravityPrior reading;
+  reading.covariance = Matrix3::Identity() * 1e-4;
+  HeldPose from = pose;
+  hold.read(reading, from, pose);
+  const HeldPose before = pose;
+  for (const Vector3& down : {Vector3(1, 1, 0), Vector3(0, -1, 0), Vector3(0, 0, 1)}) {
+    reading.down = down;
+    from = pose;
+    hold.read(reading, from, pose);
+    EXPECT_EQ(pose.T_world_camera.R, before.T_world_camera.R);
+    EXPECT_EQ(pose.covariance, before.covariance);
+  }
+}
+
+struct Drift {
+  double tilt_rad = 0, heading_rad = 0;  // at the end
+  double nees = 0;                       // of the orientation about the two level axes, per dimension
+};
+
+// A camera that looks about, from keyframe to keyframe with errors of the stated covariance; its
+// accelerometer has an offset.
+Drift walk(std::uint64_t seed, bool gravity) {
+  Gaussian random(seed);
+  constexpr int kSteps = 1500;
+  constexpr double kStep_rad = 0.004, kReading = 0.05, kOffset = 0.03;
+  const Vector3 g = Vector3(0.05, 1, -0.1).normalized();
+  const Vector3 offset = normal3(random, kOffset);
+  Se3 truth;
+  HeldPose pose;
+  GravityHold hold;
+  const Matrix6 C = diagonal(0.002, kStep_rad);
+  for (int k = 0; k < kSteps; ++k) {
+    const Se3 T_current_from{rotation_exp({0.02 * std::sin(0.07 * k), 0.03, 0.02 * std::sin(0.05 * k)}),
+                             {0.01, 0, 0.02}};
+    truth = truth * T_current_from.inverse();
+    Vector6 error;
+    error << normal3(random, 0.002), normal3(random, kStep_rad);
+    HeldPose from = pose;
+    pose = advance(from, boxplus(T_current_from, error), C);
+    const Vector3 reading = truth.R.transpose() * g + offset + normal3(random, kReading);
+    if (!gravity) continue;
+    GravityPrior prior;
+    prior.down = reading;
+    prior.covariance = Matrix3::Identity() * (kReading * kReading);
+    prior.offset_sigma = kOffset;
+    hold.read(prior, from, pose);
+  }
+  const Vector3 e = rotation_log(truth.R * pose.T_world_camera.R.transpose());
+  const Vector3 level = e - g.dot(e) * g;
+  const Vector3 u = g.cross(Vector3(1, 0, 0)).normalized();
+  Matrix<2, 3> U;
+  U.row(0) = u.transpose();
+  U.row(1) = g.cross(u).transpose();
+  const Matrix2 C_level = U * pose.covariance.block<3, 3>(3, 3) * U.transpose();
+  const Vector2 x = U * e;
+  return {level.norm(), std::fabs(g.dot(e)), 0.5 * x.dot(Vector2(C_level.inverse() * x))};
+}
+
+TEST(GravityHold, StopsTheDriftOfRollAndPitch) {
+  double held = 0, free = 0, heading = 0, nees = 0;
+  constexpr int kWalks = 30;
+  for (int seed = 1; seed <= kWalks; ++seed) {
+    const Drift with = walk(static_cast<std::uint64_t>(seed), true);
+    const Drift without = walk(static_cast<std::uint64_t>(seed), false);
+    held += with.tilt_rad * with.tilt_rad / kWalks;
+    free += without.tilt_rad * without.tilt_rad / kWalks;
+    heading += with.heading_rad * with.heading_rad / kWalks;
+    nees += with.nees / kWalks;
+  }
+  // 0.004 rad √1500 about each of two axes: 0.22 rad.
+  EXPECT_GT(std::sqrt(free), 0.15);
+  EXPECT_LT(std::sqrt(held), 0.05);
+  EXPECT_GT(std::sqrt(heading), 0.08) << "gravity says nothing of the heading";
+  EXPECT_GT(nees, 0.5);
+  EXPECT_LT(nees, 2.0);
+}
+
+}  // namespace
+}  // namespace plvo

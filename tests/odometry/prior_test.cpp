@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// track() with a prior, on frames whose true poses are known: what is refused, that a prior which says
+// nothing changes no bit, a covered lens, and what gravity holds. And reset() and set_pose().
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "fingerprint.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr Limits kLimits{160, 120, 250, 64};
+constexpr int kFrames = 24;
+
+ProceduralSequence& sequence() {
+  static ProceduralSequence instance(kLimits.width, kLimits.height);
+  return instance;
+}
+
+Se3 truth(int i) {
+  return ProceduralSequence::T_world_camera(0).inverse() * ProceduralSequence::T_world_camera(i);
+}
+
+RotationPrior gyro(int before, int now, double sigma_rad = 1e-4) {
+  const Se3 T_now_before = truth(now).inverse() * truth(before);
+  return {T_now_before.R, sigma_rad * sigma_rad * Matrix3::Identity()};
+}
+TranslationPrior wheels(int before, int now, double sigma_m = 1e-3) {
+  const Se3 T_now_before = truth(now).inverse() * truth(before);
+  return {T_now_before.t, sigma_m * sigma_m * Matrix3::Identity()};
+}
+GravityPrior level(int now, double sigma_rad = 0.01) {
+  const Vector3 down_in_world(0, 1, 0);
+  return {truth(now).R.transpose() * down_in_world, sigma_rad * sigma_rad * Matrix3::Identity(), 0};
+}
+
+double angle_between(const Matrix3& A, const Matrix3& B) { return rotation_log(A * B.transpose()).norm(); }
+double worst(const Matrix6& C, int first) { return C.diagonal().segment<3>(first).maxCoeff(); }
+
+std::uint64_t fingerprint(const TrackResult& result) {
+  Fingerprint print;
+  print.add(static_cast<int>(result.state));
+  print.add(result.T_world_camera.R);
+  print.add(result.T_world_camera.t);
+  print.add(result.pose_covariance);
+  print.add(result.T_camera_reference.R);
+  print.add(result.T_camera_reference.t);
+  print.add(result.motion_covariance);
+  print.add(result.points.inliers);
+  print.add(result.lines.inliers);
+  print.add(result.ransac_iterations);
+  return print.value();
+}
+
+struct Instance {
+  explicit Instance(const Config& config = {}) : memory(required_bytes(kLimits)) {
+    const Status status = odometry.init(memory, sequence().camera(), config, kLimits);
+    EXPECT_TRUE(status.ok()) << status.message();
+  }
+  TrackResult track(int i, const MotionPrior& prior = {}) {
+    return odometry.track(sequence().render(i), prior);
+  }
+  TrackResult cover(int i, const MotionPrior& prior = {}) {
+    return odometry.track(sequence().render_dark(i), prior);
+  }
+  std::vector<std::byte> memory;
+  Odometry odometry;
+};
+
+TEST(OdometryPrior, OneThatSaysNothingChangesNoBit) {
+  for (const bool paper : {false, true}) {
+    const Config config = paper ? Config::paper() : Config();
+    Instance without(config), with(config);
+    for (int i = 0; i < 10; ++i) {
+      const TrackResult expected = without.odometry.track(sequence().render(i));
+      EXPECT_EQ(fingerprint(with.track(i, MotionPrior())), fingerprint(expected)) << i;
+    }
+  }
+}
+
+TEST(OdometryPrior, ABadOneIsRefusedWithItsFrameAndChangesNothing) {
+  Instance without, with;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 6; ++i) {
+    for (int kind = 0; kind < 3; ++kind) {
+      MotionPrior bad;
+      if (kind == 0) bad.rotation = {nan * Matrix3::Identity(), Matrix3::Identity()};
+      if (kind == 1) bad.translation = {{0, 0, 0}, -Matrix3::Identity()};
+      if (kind == 2) bad.gravity = {{0, nan, 0}, Matrix3::Identity(), 0};
+      const TrackResult refused = with.track(i, bad);
+      EXPECT_EQ(refused.state, TrackState::kLost);
+      EXPECT_EQ(refused.status.code(), StatusCode::kInvalidArgument);
+      EXPECT_NE(std::string(refused.status.message()).find("prior: "), std::string::npos);
+      EXPECT_TRUE(refused.T_world_camera.is_finite());
+    }
+    EXPECT_EQ(fingerprint(with.track(i)), fingerprint(without.track(i)));
+  }
+}
+
+TEST(OdometryPrior, AGoodOneIsOneMoreMeasurement) {
+  Instance without, with;
+  double alone = 0, helped = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    MotionPrior prior;
+    if (i > 0) prior.rotation = gyro(i - 1, i, 2e-5);
+    const TrackResult a = without.track(i), b = with.track(i, prior);
+    ASSERT_NE(b.state, TrackState::kLost) << b.status.message();
+    if (i == 0) continue;
+    EXPECT_EQ(b.state, TrackState::kTracking);
+    EXPECT_LT(worst(b.motion_covariance, 3), worst(a.motion_covariance, 3)) << i;
+    alone += angle_between(a.T_world_camera.R, truth(i).R);
+    helped += angle_between(b.T_world_camera.R, truth(i).R);
+  }
+  EXPECT_LT(helped, 0.6 * alone);
+}
+
+TEST(OdometryPrior, AFrameThatShowsNothingGoesOnByIt) {
+  for (const bool with_wheels : {false, true}) {
+    Instance instance;
+    for (int i = 0; i < 8; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
+    double variance_m = 0, variance_rad = 0;
+    for (int i = 8; i < 14; ++i) {
+      MotionPrior prior;
+      prior.rotation = gyro(i - 1, i);
+      if (with_wheels) prior.translation = wheels(i - 1, i);
+      const TrackResult result = instance.cover(i, prior);
+      EXPECT_EQ(result.state, TrackState::kPredicted);
+      EXPECT_EQ(result.status.code(), StatusCode::kTooFewFeatures);
+      EXPECT_EQ(std::string(result.status.message()).rfind("predicted: ", 0), 0U) << result.status.message();
+      EXPECT_LT(angle_between(result.T_world_camera.R, truth(i).R), 3e-3);
+      const double off = (result.T_world_camera.t - truth(i).t).norm();
+      if (with_wheels) {
+        EXPECT_LT(off, 0.01);
+      }
+      EXPECT_LT(off * off, 20 * 3 * worst(result.pose_covariance, 0)) << "as the covariance says";
+      EXPECT_GT(worst(result.pose_covariance, 0), variance_m);
+      EXPECT_GT(worst(result.pose_covariance, 3), variance_rad);
+      variance_m = worst(result.pose_covariance, 0);
+      variance_rad = worst(result.pose_covariance, 3);
+    }
+    MotionPrior prior;
+    prior.rotation = gyro(13, 14);
+    if (with_wheels) prior.translation = wheels(13, 14);
+    const TrackResult again = instance.track(14, prior);
+    EXPECT_EQ(again.state, TrackState::kTracking) << again.status.message();
+    EXPECT_LT((again.T_world_camera.t - truth(14).t).norm(), 0.02);
+    EXPECT_LT(worst(again.pose_covariance, 0), (with_wheels ? 0.7 : 0.01) * variance_m)
+        << "what was seen before is found again";
+  }
+}
+
+TEST(OdometryPrior, WithoutOneInBetweenTheChainEnds) {
+  Instance instance;
+  for (int i = 0; i < 4; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
+  MotionPrior prior;
+  prior.rotation = gyro(3, 4);
+  EXPECT_EQ(instance.cover(4, prior).state, TrackState::kPredicted);
+  EXPECT_EQ(instance.cover(5).state, TrackState::kLost);
+  prior.rotation = gyro(5, 6);
+  EXPECT_EQ(instance.cover(6, prior).state, TrackState::kLost) << "of frame 5 nobody knows";
+  EXPECT_EQ(instance.track(7, prior).state, TrackState::kTracking) << "found where it was, as ever";
+}
+
+// With the lens covered for so long that the references are given up, it starts anew where the priors led.
+TEST(OdometryPrior, ALongCoverIsBridged) {
+  Config config;
+  config.references.max_lost_frames = 4;
+  Instance instance(config);
+  for (int i = 0; i < 6; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
+  for (int i = 6; i < 16; ++i) {
+    MotionPrior prior;
+    prior.rotation = gyro(i - 1, i);
+    prior.translation = wheels(i - 1, i);
+    EXPECT_EQ(instance.cover(i, prior).state, TrackState::kPredicted) << i;
+  }
+  MotionPrior prior;
+  prior.rotation = gyro(15, 16);
+  prior.translation = wheels(15, 16);
+  const TrackResult anew = instance.track(16, prior);
+  EXPECT_EQ(anew.state, TrackState::kInitialising);
+  EXPECT_TRUE(anew.status.ok()) << anew.status.message();
+  EXPECT_LT((anew.T_world_camera.t - truth(16).t).norm(), 0.02);
+  EXPECT_LT(angle_between(anew.T_world_camera.R, truth(16).R), 5e-3);
+  EXPECT_GT(worst(anew.pose_covariance, 0), 9e-6) << "ten unseen millimetres, each of its own";
+  EXPECT_EQ(instance.track(17).state, TrackState::kTracking);
+}
+
+TEST(OdometryPrior, GravityUprightsATiltedPose) {
+  Instance instance;
+  MotionPrior prior;
+  prior.gravity = level(0);
+  ASSERT_EQ(instance.track(0, prior).state, TrackState::kInitialising);
+  // Where down is, is known from here on; the pose is then tilted by hand, as drift would.
+  TrackResult result;
+  for (int i = 1; i < kFrames; ++i) {
+    prior.gravity = level(i);
+    result = instance.track(i, prior);
+    ASSERT_EQ(result.state, TrackState::kTracking);
+  }
+  EXPECT_LT(angle_between(result.T_world_camera.R, truth(kFrames - 1).R), 0.01);
+  EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
+}
+
+// A frame without light tells nothing of gravity's direction in the world but its own.
+TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
+  Instance instance;
+  MotionPrior prior;
+  for (int i = 0; i < 6; ++i) {
+    prior.gravity = level(i, 1e-3);
+    if (i > 0) prior.rotation = gyro(i - 1, i);
+    ASSERT_NE(instance.track(i, prior).state, TrackState::kLost);
+  }
+  RotationPrior wrong = gyro(5, 6, 0.05);
+  wrong.R_now_before = rotation_exp({0.05, 0, 0.05}) * wrong.R_now_before;
+  MotionPrior only_gyro, both;
+  only_gyro.rotation = both.rotation = wrong;
+  both.gravity = level(6, 1e-3);
+  Instance other;
+  for (int i = 0; i < 6; ++i) {
+    prior = {};
+    prior.gravity = level(i, 1e-3);
+    if (i > 0) prior.rotation = gyro(i - 1, i);
+    (void)other.track(i, prior);
+  }
+  const TrackResult off = other.cover(6, only_gyro), upright = instance.cover(6, both);
+  EXPECT_EQ(off.state, TrackState::kPredicted);
+  EXPECT_EQ(upright.state, TrackState::kPredicted);
+  EXPECT_GT(angle_between(off.T_world_camera.R, truth(6).R), 0.05);
+  EXPECT_LT(angle_between(upright.T_world_camera.R, truth(6).R), 0.02);
+}
+
+TEST(OdometryReset, IsAsAfterInit) {
+  Instance fresh, used;
+  for (int i = 0; i < 8; ++i) (void)used.track(i);
+  used.odometry.reset();
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(fingerprint(used.track(i)), fingerprint(fresh.track(i))) << i;
+}
+
+TEST(OdometrySetPose, MovesTheWorldUnderneath) {
+  Instance plain, moved;
+  const Se3 T_new{rotation_exp({0.3, -0.4, 0.5}), {10, -20, 30}};
+  Matrix6 C = Matrix6::Identity() * 1e-4;
+  TrackResult a, b;
+  for (int i = 0; i < 12; ++i) {
+    a = plain.track(i);
+    b = moved.track(i);
+  }
+  ASSERT_TRUE(moved.odometry.set_pose(T_new, C).ok());
+  const Se3 W = T_new * b.T_world_camera.inverse();
+  for (int i = 12; i < kFrames; ++i) {
+    a = plain.track(i);
+    b = moved.track(i);
+    ASSERT_EQ(b.state, TrackState::kTracking);
+    const Vector6 apart = boxminus(b.T_world_camera, W * a.T_world_camera);
+    EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6) << i;
+    EXPECT_GT(worst(b.pose_covariance, 3), 0.9e-4);
+  }
+  // Before the first frame.
+  Instance early;
+  ASSERT_TRUE(early.odometry.set_pose(T_new, C).ok());
+  const TrackResult first = early.track(0);
+  EXPECT_EQ(first.T_world_camera.t, T_new.t);
+  EXPECT_EQ(first.pose_covariance, C);
+}
+
+TEST(OdometrySetPose, RefusesNonsense) {
+  Odometry closed;
+  EXPECT_EQ(closed.set_pose({}, Matrix6::Zero()).code(), StatusCode::kInvalidArgument);
+  Instance instance;
+  (void)instance.track(0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](const Se3& T, const Matrix6& C) {
+    EXPECT_EQ(instance.odometry.set_pose(T, C).code(), StatusCode::kInvalidArgument);
+  };
+  refused({nan * Matrix3::Identity(), Vector3::Zero()}, Matrix6::Zero());
+  refused({2 * Matrix3::Identity(), Vector3::Zero()}, Matrix6::Zero());
+  refused({Matrix3::Identity(), {0, nan, 0}}, Matrix6::Zero());
+  refused({}, Matrix6(-Matrix6::Identity()));
+  refused({}, Matrix6(nan * Matrix6::Identity()));
+  Matrix6 skewed = Matrix6::Identity();
+  skewed(0, 1) = 0.1;
+  refused({}, skewed);
+  Instance other;
+  (void)other.track(0);
+  EXPECT_EQ(fingerprint(instance.track(1)), fingerprint(other.track(1))) << "nothing has changed";
+}
+
+}  // namespace
+}  // namespace plvo
