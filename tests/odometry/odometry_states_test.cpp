@@ -16,7 +16,7 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kLimits{160, 120, 250, 64};
+constexpr Limits kLimits{160, 120, 250, 64, 2, 1, 0};  // no keyframe is kept: recovery_test.cpp
 static_assert(required_bytes(Limits::vga()) <= 8 * 1024 * 1024);
 
 bool contains(const Status& status, const std::string& text) {

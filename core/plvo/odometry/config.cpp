@@ -2,6 +2,7 @@
 #include "plvo/odometry/config.hpp"
 
 #include "plvo/image/depth_sampler.hpp"
+#include "plvo/odometry/kept_keyframes.hpp"
 
 namespace plvo {
 namespace {
@@ -113,6 +114,8 @@ Status validate(const ReferenceConfig& references) {
     return out_of_range("references.max_lost_frames", "1 to 1000000");
   if (!within(references.unseen_m_per_s, 0, 100) || !within(references.unseen_rad_per_s, 0, 100))
     return out_of_range("references.unseen_m_per_s, unseen_rad_per_s", "0 to 100");
+  if (!within(references.look_back_frames, 1, 1000000))
+    return out_of_range("references.look_back_frames", "1 to 1000000");
   return {};
 }
 
@@ -132,6 +135,7 @@ Status Limits::validate() const {
     return out_of_range("Limits width and height", "64 to 2047");
   if (!within(keypoints, 10, 60000)) return out_of_range("Limits::keypoints", "10 to 60000");
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
+  if (!within(kept_keyframes, 0, kMostKeptKeyframes)) return out_of_range("Limits::kept_keyframes", "0 to 4");
   if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
   if (!within(line_bands, 1, 8)) return out_of_range("Limits::line_bands", "1 to 8");
   return {};

@@ -28,9 +28,13 @@ struct Limits {
   // Bands of the image, one below the other, that segments are searched in, 1 … 8, each in the memory of the
   // one before. A segment that crosses from one into the next comes out as two.
   int line_bands = 1;
+  // Keyframes that are kept after a loss, 0 … 4, each as large as a reference (kept_keyframes.hpp).
+  int kept_keyframes = 1;
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1}; }
-  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3}; }  // within 512 KiB, with Config::tiny()
+  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0}; }
+  static constexpr Limits tiny() {
+    return {320, 240, 200, 64, 1, 3, 0};
+  }  // within 512 KiB, with Config::tiny()
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
@@ -91,6 +95,8 @@ struct ReferenceConfig {
   int max_lost_frames = 15;
   double unseen_m_per_s = 0.5;
   double unseen_rad_per_s = 0.5;
+  // Once it tracks again, every so many frames it looks whether it is back at a kept keyframe.
+  int look_back_frames = 5;
 };
 
 // What a frame may take, where somebody waits for it (feature_budget.hpp). The caller measures.

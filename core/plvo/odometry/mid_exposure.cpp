@@ -9,6 +9,7 @@ constexpr double kLongestInterval_s = 0.2;
 
 // Since the last good frame, if this is the motion from the reference.
 Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
+  if (prior.velocity_known) return prior.velocity;
   if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s))
     return Vector6::Zero();
   return boxminus(T_current_reference * prior.T_reference_last, Se3{}) / prior.seconds_since_last;

@@ -25,6 +25,9 @@ struct PairPrior {
   bool reference_velocity_known = false;
   bool reference_is_last = true;
   double depth_after_colour_s = 0;  // of the current frame, as of exposure.hpp
+  // Of the current frame, where it is known without the motion from the reference.
+  Vector6 velocity = Vector6::Zero();
+  bool velocity_known = false;
 };
 
 struct MidExposure {

@@ -95,6 +95,7 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   rooms_.tracking.init(camera, config);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
+  kept_.init(limits.kept_keyframes);
   ready_ = true;
   return {};
 }
@@ -128,6 +129,7 @@ void Odometry::reset() {
     frame.features = features;
   }
   keyframe_ = last_ = kNobody;
+  kept_.clear();
   current_ = view_slot_ = 0;
   start_ = HeldPose();
   sensed_ = SensedMotion();
@@ -150,6 +152,7 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   start_ = HeldPose();
   start_.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
   start_.covariance = covariance;
+  kept_.clear();  // their poses are in the world that was
   if (last_ == kNobody) return {};
   // The keyframe moves with the last frame: the motion between them stays what it is.
   const MotionReference last = last_from_keyframe();
@@ -188,6 +191,7 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
   segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
   if (keyframe_ == kNobody) {
+    if (resume(depth, prior, result)) return result;
     rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).features.points);
     start(prior, result);
     return result;
@@ -198,6 +202,7 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   if (tracked.motion.status == StatusCode::kOk) {
     rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
     accept(tracked, prior, result);
+    look_back(depth, result);
   } else {
     lose(tracked.motion, prior, result);
   }
@@ -209,7 +214,7 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
 void Odometry::take_feature_memory() {
   FrameFeatures& mine = frame(current_).features;
   for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
-    if (slot == keyframe_) continue;
+    if (slot == keyframe_ || kept_.holds(slot)) continue;
     std::swap(mine.points, frame(slot).features.points);
     std::swap(mine.lines, frame(slot).features.lines);
   }
@@ -339,14 +344,7 @@ void Odometry::start(const MotionPrior& prior, TrackResult& result) {
   } else {
     if (!at_start) {
       pose = held(last_);
-      const double seconds =
-          static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns)) * 1e-9;
-      const double sigma_m = config_.references.unseen_m_per_s * seconds;
-      const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
-      for (int i = 0; i < 3; ++i) {
-        pose.covariance(i, i) += sigma_m * sigma_m;
-        pose.covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
-      }
+      grow_unseen(result.stamp_ns, pose.covariance);
     }
     HeldPose itself = pose;
     if (prior.gravity) gravity_.read(*prior.gravity, itself, pose);
@@ -362,9 +360,20 @@ void Odometry::start(const MotionPrior& prior, TrackResult& result) {
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = last_ = current_;
-  current_ = (current_ + 1) % static_cast<int>(kFrames);
+  current_ = free_slot();
   lost_frames_ = 0;
   sensed_.restart();
+}
+
+// The last good pose's covariance by now, when nobody saw the motion since.
+void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
+  const double seconds = static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, stamp_ns)) * 1e-9;
+  const double sigma_m = config_.references.unseen_m_per_s * seconds;
+  const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
+  for (int i = 0; i < 3; ++i) {
+    covariance(i, i) += sigma_m * sigma_m;
+    covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+  }
 }
 
 void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result) {
@@ -408,19 +417,30 @@ void Odometry::note_velocity(std::int64_t motion_ns) {
 void Odometry::choose_keyframe() {
   last_ = current_;
   const FrameFeatures& features = frame(keyframe_).features;
-  std::size_t available = features.lines.count_3d;
-  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
-    available += point.p.z() > 0 ? 1 : 0;
-  const double least = config_.references.keyframe_inlier_ratio * static_cast<double>(available);
   // Too full a keyframe for the budget goes on costing what it did.
   const FeatureRoom room = budget_.room();
   const bool affordable =
       features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
-  const bool keep = config_.references.policy != ReferencePolicy::kPreviousFrame && affordable &&
-                    rooms_.tracking.tracks(0).inliers >= least;
+  const bool keep =
+      config_.references.policy != ReferencePolicy::kPreviousFrame && affordable && still_seen(keyframe_);
   if (!keep) keyframe_ = last_;
-  current_ = 0;
-  while (current_ == keyframe_ || current_ == last_) ++current_;
+  current_ = free_slot();
+}
+
+// Whether the last estimate, whose base was that frame, found enough of its features.
+bool Odometry::still_seen(int slot) const {
+  const FrameFeatures& features = frame(slot).features;
+  std::size_t available = features.lines.count_3d;
+  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
+    available += point.p.z() > 0 ? 1 : 0;
+  return rooms_.tracking.tracks(0).inliers >=
+         config_.references.keyframe_inlier_ratio * static_cast<double>(available);
+}
+
+int Odometry::free_slot() const {
+  int slot = 0;
+  while (slot == keyframe_ || slot == last_ || kept_.holds(slot)) ++slot;
+  return slot;
 }
 
 // Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
@@ -448,10 +468,11 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   if (sensed_.known()) (void)predicted_pose(prior, result);
   ++lost_frames_;
   if (lost_frames_ < config_.references.max_lost_frames) return;
-  // Nothing is seen any more of what the reference saw. The next usable frame starts anew at the last good
-  // pose.
+  // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
+  // starts anew at the last good pose.
+  kept_.keep(keyframe_);
   keyframe_ = kNobody;
-  current_ = (last_ + 1) % static_cast<int>(kFrames);
+  current_ = free_slot();
 }
 
 // Of the latest reference; without a motion there is nothing to show.

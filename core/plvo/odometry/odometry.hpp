@@ -28,6 +28,7 @@
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/frame_features.hpp"
 #include "plvo/odometry/gravity_hold.hpp"
+#include "plvo/odometry/kept_keyframes.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
 #include "plvo/odometry/sensed_motion.hpp"
 #include "plvo/odometry/track_result.hpp"
@@ -57,8 +58,8 @@ struct FeatureView {
   std::span<const LineTrackView> line_tracks;
 };
 
-// The keyframe, the last good frame, the frame being tracked.
-inline constexpr std::size_t kFrames = 3;
+// The keyframe, the last good frame, the frame being tracked; and those that are kept.
+inline constexpr std::size_t kFrames = 3 + kMostKeptKeyframes;
 
 // What init carves, in order; on an ArenaSizer the same code counts it.
 struct OdometryRooms {
@@ -70,7 +71,7 @@ struct OdometryRooms {
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references); ++i)
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
       frames[i].carve(memory, limits);
     point_track_views =
         memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
@@ -172,6 +173,13 @@ class Odometry {
   void hold(int slot, const HeldPose& pose);
   HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
   void choose_keyframe();
+  bool still_seen(int slot) const;
+  int free_slot() const;
+  void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
+  bool recognise(int slot, FrameFeatures& features, const PairPrior& prior, const DepthSampler& depth,
+                 const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
+  bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackResult& result);
+  void look_back(const DepthSampler& depth, TrackResult& result);
   void fill_views(const MotionEstimate& motion);
 
   Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }
@@ -189,6 +197,8 @@ class Odometry {
   int keyframe_ = -1;
   int last_ = -1;
   int current_ = 0;
+  KeptKeyframes kept_;
+  int frames_since_look_back_ = 0;
   HeldPose start_;       // of the first usable frame
   SensedMotion sensed_;  // since the last good frame
   GravityHold gravity_;

@@ -49,6 +49,8 @@ struct TrackResult {
 
   FeatureCounts points;
   FeatureCounts lines;
+  // The pose was put right: the view of a keyframe was recognised that is older than a loss.
+  bool returned = false;
   int ransac_iterations = 0;
   int lm_iterations = 0;
   int feature_step = 0;                              // of Config::budget; 0: all the features that fit

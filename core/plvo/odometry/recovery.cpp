@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Part of the odometry: what happens after a loss, when the view of a kept keyframe comes back. Descriptors
+// are matched over the whole image, whatever the pose is believed to be; the motion is then registered and
+// judged as always. It counts if it finds as much of the keyframe as a keyframe must show to stay one, and if
+// the pose that follows lies within what the unseen motion may have been: a room that looks alike is
+// elsewhere.
+#include <algorithm>
+
+#include "plvo/math/chi_square.hpp"
+#include "plvo/math/cholesky.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+namespace {
+
+// Of poses that belong together, so many pass.
+constexpr double kPlausible = 0.9999;
+
+bool agree(const HeldPose& a, const HeldPose& b) {
+  Cholesky<6> cholesky;
+  if (!cholesky.factor(a.covariance + b.covariance)) return false;
+  const Vector6 apart = boxminus(a.T_world_camera, b.T_world_camera);
+  return cholesky.solve_lower(apart).squaredNorm() <= chi_square_quantile(6, kPlausible);
+}
+
+}  // namespace
+
+// features: of the current frame, whose velocity the prior knows; believed: its pose otherwise.
+bool Odometry::recognise(int slot, FrameFeatures& features, const PairPrior& prior, const DepthSampler& depth,
+                         const HeldPose& believed, TrackedMotion& tracked, TrackResult& result) {
+  const SensedMotion nothing;
+  const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing};
+  const Reference reference{&frame(slot).features, prior, {}, {}};
+  const double anywhere_px = std::max(camera_.width, camera_.height);
+  rooms_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
+  if (tracked.motion.status == StatusCode::kOk && config_.points.registered) {
+    const Se3 T_current_reference = tracked.motion.T_current_reference;
+    rooms_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
+  }
+  return tracked.motion.status == StatusCode::kOk && still_seen(slot) &&
+         agree(advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H), believed);
+}
+
+// Where tracking would start anew: the kept keyframe is taken up again if the camera looks where it did.
+bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackResult& result) {
+  if (kept_.empty()) return false;
+  const int slot = kept_.latest();
+  PairPrior pair;
+  pair.velocity_known = true;  // it stands still: what it did before says nothing any more
+  pair.reference_velocity = frame(slot).velocity;
+  pair.reference_velocity_known = frame(slot).motion_ns > 0;
+  pair.reference_is_last = false;
+  pair.depth_after_colour_s = depth_after_colour_s_;
+  HeldPose believed = held(last_);
+  grow_unseen(result.stamp_ns, believed.covariance);
+  TrackedMotion tracked;
+  TrackResult trial = result;
+  if (!recognise(slot, frame(current_).features, pair, depth, believed, tracked, trial)) return false;
+  result = trial;
+  kept_.drop(slot);
+  keyframe_ = slot;
+  result.reference_stamp_ns = frame(slot).features.stamp_ns;
+  rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
+  accept(tracked, prior, result);
+  result.returned = true;
+  return true;
+}
+
+// Tracking goes on since a new start, whose pose nobody saw: if the camera is back at the view of a kept
+// keyframe, all poses are moved so that this frame's is the one that follows from there.
+void Odometry::look_back(const DepthSampler& depth, TrackResult& result) {
+  if (kept_.empty() || ++frames_since_look_back_ < config_.references.look_back_frames) return;
+  frames_since_look_back_ = 0;
+  const int slot = kept_.next();
+  Frame& last = frame(last_);  // the frame just tracked
+  PairPrior pair;
+  pair.velocity = last.velocity;
+  pair.velocity_known = true;
+  pair.reference_velocity = frame(slot).velocity;
+  pair.reference_velocity_known = frame(slot).motion_ns > 0;
+  pair.reference_is_last = false;
+  pair.depth_after_colour_s = depth_after_colour_s_;
+  TrackedMotion tracked;
+  TrackResult trial;  // the counts of the frame are those of its own tracking
+  if (!recognise(slot, last.features, pair, depth, held(last_), tracked, trial)) return;
+  const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
+  if (keyframe_ != last_) {
+    const Se3 T_last_keyframe = last.T_world_camera.inverse() * frame(keyframe_).T_world_camera;
+    const Se3 T_keyframe_last = T_last_keyframe.inverse();
+    hold(keyframe_,
+         advance(pose, T_keyframe_last, inverse_covariance(T_last_keyframe, last.motion_covariance)));
+  }
+  hold(last_, pose);
+  kept_.drop(slot);
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  result.returned = true;
+}
+
+}  // namespace plvo

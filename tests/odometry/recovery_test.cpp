@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Back at a view from before a loss, the pose is known again: at once where the lens is uncovered at the same
+// view, later where tracking had started anew elsewhere. And a place that only looks alike is not taken for
+// it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kDark = -1;
+
+class Walk {
+ public:
+  explicit Walk(int kept_keyframes, const Config& config = quick_to_give_up()) {
+    limits_.kept_keyframes = kept_keyframes;
+    memory_.resize(required_bytes(limits_));
+    const Status status = odometry.init(memory_, sequence_.camera(), config, limits_);
+    EXPECT_TRUE(status.ok()) << status.message();
+  }
+  static Config quick_to_give_up() {
+    Config config;
+    config.references.max_lost_frames = 3;
+    return config;
+  }
+  // Frame `view` of the sequence (kDark: nothing to see), taken now.
+  TrackResult see(int view) {
+    RgbdFrame frame = view == kDark ? sequence_.render_dark(0) : sequence_.render(view);
+    frame.stamp_ns = frame.depth_stamp_ns = ProceduralSequence::stamp_ns(taken_++);
+    return odometry.track(frame);
+  }
+  Odometry odometry;
+
+ private:
+  Limits limits_{160, 120, 250, 64};
+  std::vector<std::byte> memory_;
+  ProceduralSequence sequence_{160, 120};
+  int taken_ = 0;
+};
+
+Vector6 pose_error(const TrackResult& result, int view) {
+  const Se3 first = ProceduralSequence::T_world_camera(0);
+  return boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));
+}
+
+double position_error(const TrackResult& result, int view) {
+  return pose_error(result, view).head<3>().norm();
+}
+
+constexpr int kOut = 6;    // the last view before the loss
+constexpr int kAway = 50;  // where the camera has gone meanwhile
+
+TEST(Recovery, ALensThatWasCoveredGoesOnWhereItWas) {
+  for (const int kept : {0, 1}) {
+    Walk walk(kept);
+    TrackResult before;
+    for (int view = 0; view <= kOut; ++view) before = walk.see(view);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(walk.see(kDark).state, TrackState::kLost);
+    // Uncovered, five views on.
+    const TrackResult after = walk.see(kOut + 5);
+    EXPECT_EQ(after.returned, kept > 0);
+    EXPECT_EQ(after.state, kept > 0 ? TrackState::kTracking : TrackState::kInitialising);
+    const double error = position_error(after, kOut + 5);
+    std::printf("%d kept: %.1f mm beside the truth\n", kept, 1e3 * error);
+    if (kept > 0) {
+      EXPECT_LT(error, 0.015);
+      EXPECT_LT(after.pose_covariance(0, 0), 1e-4) << "not that of a motion nobody saw";
+    } else {
+      EXPECT_GT(error, 0.03) << "the test would not tell";
+    }
+    const TrackResult next = walk.see(kOut + 6);
+    EXPECT_EQ(next.state, TrackState::kTracking) << next.status.message();
+    EXPECT_FALSE(next.returned);
+  }
+}
+
+TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
+  for (const int kept : {0, 1, 2}) {
+    Walk walk(kept);
+    for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
+    for (int i = 0; i < 12; ++i) (void)walk.see(kDark);
+    // Elsewhere: a new start, at a pose that is wrong by the unseen way.
+    TrackResult result = walk.see(kAway);
+    EXPECT_EQ(result.state, TrackState::kInitialising);
+    EXPECT_FALSE(result.returned);
+    EXPECT_GT(position_error(result, kAway), 0.2);
+    int returns = 0;
+    for (int view = kAway - 1; view >= 0; --view) {
+      const double sigma = std::sqrt(result.pose_covariance(0, 0));
+      result = walk.see(view);
+      ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
+      if (result.returned) {
+        ++returns;
+        std::printf("%d kept: back at view %d, SD %.0f mm before, %.2f mm after\n", kept, view, 1e3 * sigma,
+                    1e3 * std::sqrt(result.pose_covariance(0, 0)));
+        const double sigma_now = std::sqrt(result.pose_covariance.block<3, 3>(0, 0).trace());
+        EXPECT_LT(position_error(result, view), 3 * sigma_now);
+        EXPECT_LT(sigma_now, 0.02);
+        EXPECT_GT(sigma, 0.1);
+      }
+    }
+    EXPECT_EQ(returns, kept > 0 ? 1 : 0) << "once known again, there is nothing to return to";
+    std::printf("%d kept: %.1f mm beside the truth at the end\n", kept, 1e3 * position_error(result, 0));
+    if (kept > 0)
+      EXPECT_LT(position_error(result, 0), 0.05);
+    else
+      EXPECT_GT(position_error(result, 0), 0.4);
+  }
+}
+
+TEST(Recovery, AViewThatCannotBeTheOldOneIsNotTakenForIt) {
+  // The camera is said to move by at most a millimetre a second while nobody sees: what looks like the old
+  // view from a hand's breadth beside must be another place.
+  Config config = Walk::quick_to_give_up();
+  config.references.unseen_m_per_s = config.references.unseen_rad_per_s = 1e-3;
+  Walk walk(1, config);
+  TrackResult before;
+  for (int view = 0; view <= kOut; ++view) before = walk.see(view);
+  for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
+  const TrackResult after = walk.see(kOut + 5);
+  EXPECT_FALSE(after.returned);
+  EXPECT_EQ(after.state, TrackState::kInitialising);
+  EXPECT_EQ(after.T_world_camera.t, before.T_world_camera.t);
+}
+
+TEST(Recovery, APoseThatTheCallerSetsForgetsWhatWasKept) {
+  Walk walk(1);
+  for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
+  for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
+  ASSERT_TRUE(walk.odometry.set_pose(Se3(), Matrix6::Identity()).ok());
+  EXPECT_FALSE(walk.see(kOut).returned);
+}
+
+TEST(KeptKeyframes, TheOldestMakesWay) {
+  KeptKeyframes kept;
+  kept.init(2);
+  kept.keep(4);
+  kept.keep(1);
+  kept.keep(1);
+  EXPECT_TRUE(kept.holds(4));
+  kept.keep(3);
+  EXPECT_FALSE(kept.holds(4));
+  EXPECT_TRUE(kept.holds(1));
+  EXPECT_EQ(kept.latest(), 3);
+  const int first = kept.next();
+  EXPECT_NE(kept.next(), first);
+  EXPECT_EQ(kept.next(), first);
+  kept.drop(1);
+  EXPECT_EQ(kept.next(), 3);
+  kept.drop(3);
+  EXPECT_TRUE(kept.empty());
+  kept.init(0);
+  kept.keep(7);
+  EXPECT_TRUE(kept.empty()) << "no room was asked for";
+}
+
+}  // namespace
+}  // namespace plvo
