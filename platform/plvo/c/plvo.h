@@ -153,6 +153,7 @@ typedef struct plvo_result {
   int32_t ransac_iterations, lm_iterations;
   double mean_brightness; /* 0 … 255 */
   int64_t stage_ns[5];    /* PLVO_STAGE_…; zero without plvo_config.stage_clock */
+  int32_t returned;       /* 1: the pose was put right at a view from before a loss */
 } plvo_result;
 
 /* The unit quaternion x y z w (Hamilton, w >= 0) of the rotation in a 3×4 matrix. */

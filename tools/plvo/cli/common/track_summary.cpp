@@ -48,6 +48,7 @@ void TrackSummary::add(const FrameRecord& record) {
     return;
   }
   ++tracked_;
+  returned_ += result.returned ? 1 : 0;
   point_inliers_.add(result.points.inliers);
   line_inliers_.add(result.lines.inliers);
 }
@@ -65,6 +66,8 @@ SummaryRows TrackSummary::frame_rows() const {
                       {"tracked", fmt::format("{}", tracked_)}};
   if (predicted_ > 0)
     rows.emplace_back("predicted", fmt::format("{} (nothing seen; from gyro and accelerometer)", predicted_));
+  if (returned_ > 0)
+    rows.emplace_back("returned", fmt::format("{} (back at a view from before a loss)", returned_));
   rows.emplace_back("lost", fmt::format("{}", lost_));
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) rows.emplace_back(fmt::format("  {} times", losses_[i]), last_loss_[i].message());
@@ -101,10 +104,11 @@ std::string TrackSummary::stage_table() const {
 }
 
 nlohmann::ordered_json TrackSummary::to_json() const {
-  nlohmann::ordered_json json = {
-      {"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
-      {"initialised", started_}, {"tracked", tracked_},        {"predicted", predicted_},
-      {"lost", lost_},           {"damaged", damaged_},        {"path_m", path_m_}};
+  nlohmann::ordered_json json = {{"camera", camera_name}, {"interrupted", interrupted},
+                                 {"frames", frames_},     {"initialised", started_},
+                                 {"tracked", tracked_},   {"predicted", predicted_},
+                                 {"returned", returned_}, {"lost", lost_},
+                                 {"damaged", damaged_},   {"path_m", path_m_}};
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];
