@@ -158,6 +158,8 @@ TEST_F(CliRun, ImuAxesAreThreeDifferentOnes) {
   EXPECT_EQ(run("--imu-axes x,y,z").exit_code, 2) << "without --imu";
   EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --imu --imu-axes x,y,z").exit_code, 2);
   EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --covered 3:2").exit_code, 2);
+}
+
 TEST_F(CliRun, ABudgetThatNoFrameMeetsTakesFeaturesAway) {
   const CommandResult free = run("--json " + file("free.json"));
   EXPECT_FALSE(contains(free.out, "frame budget"));
