@@ -11,7 +11,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "budget"))
 import budget
 from call_graph import CallGraph
 
-ROOTS = {"init": r"^_ZN4plvo8Odometry4initE", "track": r"^_ZN4plvo8Odometry5trackE"}
+# Of the two forms of track the one without a prior, which calls the other.
+ROOTS = {"init": r"^_ZN4plvo8Odometry4initE", "track": r"^_ZN4plvo8Odometry5trackERKNS_9RgbdFrameE$"}
 
 
 def show(graph, depths):

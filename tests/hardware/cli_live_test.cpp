@@ -91,6 +91,12 @@ TEST_F(CliLive, EndsWhenItsOnlyReaderLeaves) {
   EXPECT_FALSE(contains(r.err, "time                   30")) << "long before its time: " << r.err;
 }
 
+TEST_F(CliLive, KeepsABudget) {
+  const CommandResult r = plvo("live --frames 8 --every-frame --frame-budget 0.001 --json " + path("j"));
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("j")))["fewer_features"]["frames"], 7);
+}
+
 TEST_F(CliLive, ChosenRateDropsOldFramesAndCountsThem) {
   const CommandResult r = plvo("live --rate 5 --frames 8 " + kSmall + "--json " + path("j"));
   ASSERT_EQ(r.exit_code, 0) << r.err;

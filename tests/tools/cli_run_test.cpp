@@ -160,6 +160,30 @@ TEST_F(CliRun, ImuAxesAreThreeDifferentOnes) {
   EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --covered 3:2").exit_code, 2);
 }
 
+TEST_F(CliRun, ABudgetThatNoFrameMeetsTakesFeaturesAway) {
+  const CommandResult free = run("--json " + file("free.json"));
+  EXPECT_FALSE(contains(free.out, "frame budget"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(file("free.json")))["fewer_features"]["frames"], 0);
+  const CommandResult tight = run("--frame-budget 0.001 --json " + file("tight.json"));
+  EXPECT_EQ(tight.exit_code, 0) << tight.err;
+  EXPECT_TRUE(contains(tight.out, "frame budget")) << tight.out;
+  const auto fewer = nlohmann::json::parse(read_file(file("tight.json")))["fewer_features"];
+  EXPECT_EQ(fewer["frames"], kFrames - 1) << "the first came before anything was known";
+  EXPECT_GE(fewer["lowest_step"], 1);
+  EXPECT_EQ(run("--frame-budget 0").exit_code, 2);
+}
+
+TEST_F(CliRun, TheTinyPresetTakesLessMemory) {
+  const CommandResult tiny = run("--preset tiny --json " + file("tiny.json"));
+  EXPECT_EQ(tiny.exit_code, 0) << tiny.err;
+  (void)run("--json " + file("all.json"));
+  const auto bytes = [this](const char* name) {
+    return nlohmann::json::parse(read_file(file(name)))["memory_bytes"]["arena_peak"].get<long>();
+  };
+  EXPECT_LT(bytes("tiny.json"), bytes("all.json") / 2);
+  expect_refused(run("--preset tiny --reference both"), "Limits::references");
+}
+
 TEST_F(CliRun, QuietSaysNothing) {
   const CommandResult r = run("--quiet");
   EXPECT_EQ(r.exit_code, 0);
