@@ -13,7 +13,7 @@ SPDX = "SPDX-License-Identifier: Apache-2.0"
 # Headers that need neither an operating system nor a heap.
 STANDARD_HEADERS = {
     "algorithm", "array", "bit", "cassert", "compare", "concepts", "cstddef", "cstdint", "cstring", "initializer_list",
-    "iterator", "limits", "new", "numeric", "span", "string_view", "tuple", "type_traits", "utility",
+    "iterator", "limits", "new", "numeric", "optional", "span", "string_view", "tuple", "type_traits", "utility",
 }
 EIGEN_HEADERS = {"Eigen/Core", "Eigen/LU", "Eigen/Cholesky", "Eigen/Geometry", "Eigen/SVD", "Eigen/Eigenvalues", "Eigen/QR"}
 # The one file that may call the C library's mathematics (sqrt alone, which IEEE 754 rounds exactly).

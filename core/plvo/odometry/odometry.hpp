@@ -149,6 +149,7 @@ class Odometry {
     std::int64_t motion_ns = 0;
   };
   using References = std::array<Reference, kMaxReferences>;
+  static constexpr int kNobody = -1;
 
   Status check(const RgbdFrame& frame) const;
   void take_feature_memory();
@@ -193,9 +194,9 @@ class Odometry {
   bool ready_ = false;
 
   std::array<Frame, kFrames> frames_;
-  // Slots of frames_. Until the first usable frame there is no keyframe (−1).
-  int keyframe_ = -1;
-  int last_ = -1;
+  // Slots of frames_. Until the first usable frame there is no keyframe.
+  int keyframe_ = kNobody;
+  int last_ = kNobody;
   int current_ = 0;
   KeptKeyframes kept_;
   int frames_since_look_back_ = 0;

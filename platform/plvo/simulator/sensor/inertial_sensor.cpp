@@ -38,7 +38,8 @@ Vector3 InertialSensor::noise(std::uint32_t sample, std::uint32_t sensor, double
 }
 
 Vector3 InertialSensor::rate(const Trajectory& trajectory, double t_s, std::uint32_t sample) const {
-  const Matrix3 R_before_after = trajectory.at(t_s - kDifference_s).R.transpose() * trajectory.at(t_s + kDifference_s).R;
+  const Matrix3 R_before_after =
+      trajectory.at(t_s - kDifference_s).R.transpose() * trajectory.at(t_s + kDifference_s).R;
   return rotation_log(R_before_after) / (2 * kDifference_s) + gyro_offset_ +
          noise(sample, kGyro, options_.gyro_noise);
 }
@@ -46,7 +47,8 @@ Vector3 InertialSensor::rate(const Trajectory& trajectory, double t_s, std::uint
 Vector3 InertialSensor::force(const Trajectory& trajectory, double t_s, std::uint32_t sample) const {
   const Se3 now = trajectory.at(t_s);
   const Vector3 acceleration =
-      (trajectory.at(t_s + kDifference_s).t - 2 * now.t + trajectory.at(t_s - kDifference_s).t) / (kDifference_s * kDifference_s);
+      (trajectory.at(t_s + kDifference_s).t - 2 * now.t + trajectory.at(t_s - kDifference_s).t) /
+      (kDifference_s * kDifference_s);
   return now.R.transpose() * (acceleration + Vector3(0, 0, kGravity)) + accelerometer_offset_ +
          noise(sample, kAccelerometer, options_.accelerometer_noise);
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the frames that are kept stand in the world: set, forgotten, and gone on from by the priors alone.
+#include "plvo/math/symmetric_eigen.hpp"
+#include "plvo/odometry/elapsed.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+namespace {
+
+// What a prior leaves out of the motion goes on as it did for so long, then stands still.
+constexpr std::int64_t kLongestCoast_ns = 300'000'000;
+
+bool is_covariance(const Matrix6& C) {
+  if (!C.allFinite()) return false;
+  const double largest = C.cwiseAbs().maxCoeff();
+  return largest <= 1e6 && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
+         symmetric_eigen<6>(C).values.minCoeff() >= -1e-9 * largest;
+}
+
+}  // namespace
+
+void Odometry::reset() {
+  if (!ready_) return;
+  for (Frame& frame : frames_) {
+    const FrameFeatures features = frame.features;
+    frame = Frame();
+    frame.features = features;
+  }
+  keyframe_ = last_ = kNobody;
+  kept_.clear();
+  frames_since_look_back_ = 0;
+  current_ = view_slot_ = 0;
+  start_ = HeldPose();
+  sensed_ = SensedMotion();
+  gravity_.forget();
+  noise_ = config_.noise.initial;
+  last_stamp_ns_ = 0;
+  has_stamp_ = false;
+  lost_frames_ = 0;
+  point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
+}
+
+Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) {
+  if (!ready_) return {StatusCode::kInvalidArgument, "set_pose() before a successful init()"};
+  if (!T_world_camera.is_finite() || !is_rotation(T_world_camera.R))
+    return {StatusCode::kInvalidArgument, "set_pose: the pose must be finite, and its R a rotation matrix"};
+  if (!is_covariance(covariance))
+    return {StatusCode::kInvalidArgument,
+            "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
+  gravity_.forget();
+  start_ = HeldPose();
+  start_.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
+  start_.covariance = covariance;
+  kept_.clear();  // their poses are in the world that was
+  if (last_ == kNobody) return {};
+  // The keyframe moves with the last frame: the motion between them stays what it is.
+  const MotionReference last = last_from_keyframe();
+  if (keyframe_ != kNobody && keyframe_ != last_)
+    hold(keyframe_, advance(start_, last.T_reference_base.inverse(), Matrix6::Zero()));
+  hold(last_, start_);
+  return {};
+}
+
+HeldPose Odometry::held(int slot) const {
+  return {frame(slot).T_world_camera, frame(slot).covariance, frame(slot).covariance_with_gravity};
+}
+
+void Odometry::hold(int slot, const HeldPose& pose) {
+  frame(slot).T_world_camera = pose.T_world_camera;
+  frame(slot).covariance = pose.covariance;
+  frame(slot).covariance_with_gravity = pose.covariance_with_gravity;
+}
+
+// The last good frame as a reference whose pose relative to the keyframe is known.
+MotionReference Odometry::last_from_keyframe() const {
+  if (keyframe_ == kNobody || keyframe_ == last_) return {};
+  return {frame(last_).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
+          frame(last_).motion_covariance};
+}
+
+// Takes in what the prior says of the motion since the frame before.
+void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
+  if (last_ == kNobody) return;
+  const Frame& last = frame(last_);
+  const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
+                       elapsed_ns(last.features.stamp_ns, stamp_ns) <= kLongestCoast_ns;
+  const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, stamp_ns)) * 1e-9;
+  sensed_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config_.references);
+}
+
+// Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
+// gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
+HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
+  const int anchor = keyframe_ != kNobody ? keyframe_ : last_;
+  const MotionReference last = last_from_keyframe();
+  result.T_camera_reference = sensed_.T_current_last() * last.T_reference_base;
+  result.motion_covariance = compose_covariance(sensed_.T_current_last(), sensed_.covariance(),
+                                                last.T_reference_base, last.covariance);
+  result.reference_stamp_ns = frame(anchor).features.stamp_ns;
+  HeldPose from = held(anchor);
+  HeldPose pose = advance(from, result.T_camera_reference, result.motion_covariance);
+  GravityHold gravity = gravity_;
+  if (prior.gravity && gravity.known()) gravity.read(*prior.gravity, from, pose);
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  result.state = TrackState::kPredicted;
+  return pose;
+}
+
+}  // namespace plvo
