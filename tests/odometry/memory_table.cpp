@@ -30,7 +30,8 @@ std::string capacities(const char* name, const Limits& limits) {
   return std::string("- ") + name + ": " + std::to_string(limits.width) + "x" +
          std::to_string(limits.height) + " px, " + std::to_string(limits.keypoints) + " keypoints, " +
          std::to_string(limits.segments) + " segments, matched with " +
-         (limits.references == 1 ? "one frame" : "two frames") + "\n";
+         (limits.references == 1 ? "one frame, " : "two frames, ") + std::to_string(limits.kept_keyframes) +
+         " kept after a loss\n";
 }
 
 }  // namespace

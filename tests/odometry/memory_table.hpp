@@ -32,7 +32,7 @@ inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 1024 *
 MemoryUse measure_memory(const Limits& limits, const Config& config, int frames);
 
 // The page, in Markdown, up to the heading of what is not written by a test.
-inline constexpr const char* kMemoryPageEnd = "\n## Stack\n";
+inline constexpr const char* kMemoryPageEnd = "\n## Tiny\n";
 std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny);
 
 }  // namespace plvo

@@ -2,6 +2,7 @@
 #include "plvo/odometry/odometry.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "plvo/odometry/elapsed.hpp"
@@ -49,7 +50,8 @@ Status explain_loss(const MotionEstimate& motion, const TrackResult& result, con
 
 Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
                       const Limits& limits) {
-  *this = Odometry();
+  // In place: another one on the stack, to be copied from, would be all that the stack of a board holds.
+  ::new (static_cast<void*>(this)) Odometry;
   if (Status status = camera.validate(); !status.ok()) return status;
   if (Status status = config.validate(); !status.ok()) return status;
   if (Status status = limits.validate(); !status.ok()) return status;
@@ -131,19 +133,19 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   result.feature_step = budget_.step();
   rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
   segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
+  TrackedMotion tracked;
   if (keyframe_ == kNobody) {
-    if (resume(depth, prior, result)) return result;
+    if (resume(depth, prior, tracked, result)) return result;
     rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).features.points);
     start(prior, result);
     return result;
   }
-  TrackedMotion tracked;
   estimate_motion(depth, tracked, result);
   fill_views(tracked.motion);
   if (tracked.motion.status == StatusCode::kOk) {
     rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
     accept(tracked, prior, result);
-    look_back(depth, result);
+    look_back(depth, tracked, result);
   } else {
     lose(tracked.motion, prior, result);
   }

@@ -179,8 +179,9 @@ class Odometry {
   void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
   bool recognise(int slot, FrameFeatures& features, const PairPrior& prior, const DepthSampler& depth,
                  const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
-  bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackResult& result);
-  void look_back(const DepthSampler& depth, TrackResult& result);
+  bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
+              TrackResult& result);
+  void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   void fill_views(const MotionEstimate& motion);
 
   Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }

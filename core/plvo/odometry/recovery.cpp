@@ -16,7 +16,9 @@ namespace {
 // Of poses that belong together, so many pass.
 constexpr double kPlausible = 0.9999;
 
-bool agree(const HeldPose& a, const HeldPose& b) {
+// Apart, for its matrices would else be on the stack while the motion is solved for.
+[[gnu::noinline]] bool agree(const HeldPose& reference, const MotionEstimate& motion, const HeldPose& b) {
+  const HeldPose a = advance(reference, motion.T_current_reference, motion.C_H);
   Cholesky<6> cholesky;
   if (!cholesky.factor(a.covariance + b.covariance)) return false;
   const Vector6 apart = boxminus(a.T_world_camera, b.T_world_camera);
@@ -38,11 +40,12 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const PairPrior& pri
     rooms_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
   }
   return tracked.motion.status == StatusCode::kOk && still_seen(slot) &&
-         agree(advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H), believed);
+         agree(held(slot), tracked.motion, believed);
 }
 
 // Where tracking would start anew: the kept keyframe is taken up again if the camera looks where it did.
-bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackResult& result) {
+bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
+                      TrackResult& result) {
   if (kept_.empty()) return false;
   const int slot = kept_.latest();
   PairPrior pair;
@@ -53,7 +56,6 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
   pair.depth_after_colour_s = depth_after_colour_s_;
   HeldPose believed = held(last_);
   grow_unseen(result.stamp_ns, believed.covariance);
-  TrackedMotion tracked;
   TrackResult trial = result;
   if (!recognise(slot, frame(current_).features, pair, depth, believed, tracked, trial)) return false;
   result = trial;
@@ -68,7 +70,8 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 
 // Tracking goes on since a new start, whose pose nobody saw: if the camera is back at the view of a kept
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
-void Odometry::look_back(const DepthSampler& depth, TrackResult& result) {
+// tracked: whose memory is free by now.
+void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   if (kept_.empty() || ++frames_since_look_back_ < config_.references.look_back_frames) return;
   frames_since_look_back_ = 0;
   const int slot = kept_.next();
@@ -80,7 +83,6 @@ void Odometry::look_back(const DepthSampler& depth, TrackResult& result) {
   pair.reference_velocity_known = frame(slot).motion_ns > 0;
   pair.reference_is_last = false;
   pair.depth_after_colour_s = depth_after_colour_s_;
-  TrackedMotion tracked;
   TrackResult trial;  // the counts of the frame are those of its own tracking
   if (!recognise(slot, last.features, pair, depth, held(last_), tracked, trial)) return;
   const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
