@@ -25,8 +25,9 @@ set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-mat
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 
-# plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target. Where ccache launches the
-# compiler they are left out: it would keep nothing then, and files that forget an include are found.
+# plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target.
+# Where ccache launches the compiler they are left out: it would keep nothing then, and files that forget an include are
+# found.
 function(plvo_precompile target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
     target_precompile_headers(${target} ${ARGN})
@@ -34,7 +35,8 @@ function(plvo_precompile target)
 endfunction()
 
 # plvo_public_headers(<header>…): what this room of core or hal gives to those who install plvo. The lists together must
-# hold what odometry/odometry.hpp and hal/ include, and nothing else; house_install says what is missing or too much.
+# hold what odometry/odometry.hpp, inertial/imu_integrator.hpp and hal/ include, and nothing else; house_install says what
+# is missing or too much.
 function(plvo_public_headers)
   foreach(header ${ARGN})
     set_property(GLOBAL APPEND PROPERTY PLVO_PUBLIC_HEADERS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
