@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "fingerprint.hpp"
+#include "result_fingerprint.hpp"
 #include "text_line.hpp"
 
 namespace plvo {
@@ -22,25 +23,6 @@ struct GoldenCase {
   double readout_s = 0;
   DepthTiming depth_timing = {};
 };
-
-Fingerprint fingerprint_of(const TrackResult& result) {
-  Fingerprint print;
-  print.add(static_cast<int>(result.state));
-  print.add(static_cast<int>(result.status.code()));
-  print.add(result.T_world_camera.R);
-  print.add(result.T_world_camera.t);
-  print.add(result.pose_covariance);
-  print.add(result.T_camera_reference.R);
-  print.add(result.T_camera_reference.t);
-  print.add(result.motion_covariance);
-  for (const FeatureCounts& counts : {result.points, result.lines})
-    for (int n : {counts.detected, counts.dropped, counts.with_depth, counts.matched, counts.inliers})
-      print.add(n);
-  print.add(result.ransac_iterations);
-  print.add(result.lm_iterations);
-  print.add(result.mean_brightness);
-  return print;
-}
 
 // Stage by stage what the odometry lets one see of a frame, so that a difference has a place: the prepared
 // image, keypoints, segments, tracks as found, tracks that agree.

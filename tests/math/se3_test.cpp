@@ -81,6 +81,17 @@ TEST(Rotation, LogKeepsTinyAngles) {
   EXPECT_LT((rotation_log(rotation_exp(omega)) - omega).norm(), 1e-24);
 }
 
+TEST(Rotation, AFrameAlongADirectionIsOne) {
+  for (const Vector3& direction :
+       {Vector3(0, 0, 1), Vector3(-1, 0, 0), Vector3(1, 1, 1), Vector3(3, -2, 0.1)}) {
+    const Vector3 d = direction / direction.norm();
+    const Matrix3 frame = frame_along(d);
+    EXPECT_EQ(frame.col(2), d);
+    EXPECT_LT((frame.transpose() * frame - Matrix3::Identity()).norm(), 1e-15 * 4);
+    EXPECT_GT(frame.determinant(), 0);
+  }
+}
+
 TEST(Rotation, HalfTurnsAboutEachAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     Matrix3 R = -Matrix3::Identity();

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "fingerprint.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
+#include "result_fingerprint.hpp"
 
 namespace plvo {
 namespace {
@@ -34,17 +34,7 @@ bool same_pose(const TrackResult& a, const TrackResult& b) {
   return a.T_world_camera.R == b.T_world_camera.R && a.T_world_camera.t == b.T_world_camera.t;
 }
 
-std::uint64_t fingerprint(const TrackResult& result) {
-  Fingerprint print;
-  print.add(static_cast<int>(result.state));
-  print.add(result.T_world_camera.R);
-  print.add(result.T_world_camera.t);
-  print.add(result.pose_covariance);
-  print.add(result.motion_covariance);
-  print.add(result.points.inliers);
-  print.add(result.lines.inliers);
-  return print.value();
-}
+std::uint64_t fingerprint(const TrackResult& result) { return fingerprint_of(result).value(); }
 
 // Frames are rendered once for the whole program; a copy owns its pixels, so that a test may spoil it.
 class Recorded {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fingerprint.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
+#include "result_fingerprint.hpp"
 
 namespace plvo {
 namespace {
@@ -42,20 +42,7 @@ GravityPrior level(int now, double sigma_rad = 0.01) {
 double angle_between(const Matrix3& A, const Matrix3& B) { return rotation_log(A * B.transpose()).norm(); }
 double worst(const Matrix6& C, int first) { return C.diagonal().segment<3>(first).maxCoeff(); }
 
-std::uint64_t fingerprint(const TrackResult& result) {
-  Fingerprint print;
-  print.add(static_cast<int>(result.state));
-  print.add(result.T_world_camera.R);
-  print.add(result.T_world_camera.t);
-  print.add(result.pose_covariance);
-  print.add(result.T_camera_reference.R);
-  print.add(result.T_camera_reference.t);
-  print.add(result.motion_covariance);
-  print.add(result.points.inliers);
-  print.add(result.lines.inliers);
-  print.add(result.ransac_iterations);
-  return print.value();
-}
+std::uint64_t fingerprint(const TrackResult& result) { return fingerprint_of(result).value(); }
 
 struct Instance {
   explicit Instance(const Config& config = {}, const Limits& limits = kLimits)

@@ -8,6 +8,8 @@
 
 namespace plvo {
 
+inline constexpr double kStandardGravity = 9.80665;  // m/s²
+
 struct ImuConfig {
   // Turns the sensor's axes into the camera's (x right, y down, z forward). A reflection where the sensor's
   // are of the other hand, as a Kinect's accelerometer's: x right, y up, z forward.

@@ -9,7 +9,6 @@
 namespace plvo {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s²
 // Nobody shakes or turns a camera like this: what is beyond is no reading of a gyro or an accelerometer.
 constexpr double kMostReading = 1e4;
 constexpr double kLeastSeconds = 1e-4;
@@ -148,18 +147,20 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   if (!mean_force(from_ns, stamp_ns, force, count)) return prior;
   const double force_squared = force.squaredNorm();
   // Far from g it is thrown or dropped, and says nothing of where down is.
-  if (!(force_squared > 0.25 * kGravity * kGravity && force_squared < 4 * kGravity * kGravity)) return prior;
+  if (!(force_squared > 0.25 * kStandardGravity * kStandardGravity &&
+        force_squared < 4 * kStandardGravity * kStandardGravity))
+    return prior;
   const double interval = first ? 0.1 : std::max(seconds_, kLeastSeconds);
   // Accelerations of one go that last longer than the interval fall into several readings, as if each were so
   // much less sure.
   const double go = std::max(1.0, 2 * config_.acceleration_s / interval);
   const double variance = (config_.accelerometer_noise * config_.accelerometer_noise / interval +
                            config_.acceleration * config_.acceleration * go) /
-                          (kGravity * kGravity);
+                          (kStandardGravity * kStandardGravity);
   GravityPrior gravity;
   gravity.down = -(config_.R_camera_imu * force);
   gravity.covariance = Matrix3::Identity() * std::max(variance, 1e-12);
-  gravity.offset_sigma = std::min(config_.accelerometer_offset_sigma / kGravity, kMostOffset);
+  gravity.offset_sigma = std::min(config_.accelerometer_offset_sigma / kStandardGravity, kMostOffset);
   prior.gravity = gravity;
   return prior;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/math/se3.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "plvo/math/trigonometry.hpp"
@@ -118,6 +119,21 @@ Matrix6 inverse_covariance(const Se3& T_a, const Matrix6& C_a) {
   J.block<3, 3>(0, 3) = -R_transposed * skew(T_a.t);
   J.block<3, 3>(3, 3) = -R_transposed;
   return (J.lazyProduct(C_a)).eval().lazyProduct(J.transpose());
+}
+
+Matrix3 frame_along(const Vector3& d) {
+  int least = 0;
+  for (int k = 1; k < 3; ++k)
+    if (d[k] * d[k] < d[least] * d[least]) least = k;
+  Vector3 axis = Vector3::Zero();
+  axis[least] = 1;
+  Matrix3 frame;
+  Vector3 u = axis - d * d[least];
+  u *= 1 / sqrt(u.squaredNorm());
+  frame.col(0) = u;
+  frame.col(1) = d.cross(u);
+  frame.col(2) = d;
+  return frame;
 }
 
 }  // namespace plvo

@@ -11,6 +11,8 @@ namespace plvo {
 
 // [v]×: the matrix with [v]× w = v × w.
 Matrix3 skew(const Vector3& v);
+// A right-handed orthonormal frame whose third column is the unit vector d.
+Matrix3 frame_along(const Vector3& d);
 // Rodrigues' formula; exact to rounding for every angle, Taylor near zero.
 Matrix3 rotation_exp(const Vector3& omega);
 // Inverse of rotation_exp, |ω| in [0, π].

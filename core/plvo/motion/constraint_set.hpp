@@ -18,6 +18,9 @@
 
 namespace plvo {
 
+// A point, or an end of a line, more uncertain than this tells nothing, and would pass any χ² test.
+inline constexpr double kMaxVarianceM2 = 1.0;
+
 // What one match offers to a minimal set: a pair of points, or of lines (a point on it, and its direction,
 // unit length, sign unknown). The sigmas only serve to reject degenerate or inconsistent sets.
 struct Primitive {

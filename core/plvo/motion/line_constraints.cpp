@@ -12,8 +12,6 @@
 namespace plvo {
 namespace {
 
-// As for points: an end more uncertain than this tells nothing.
-constexpr double kMaxVarianceM2 = 1.0;
 // A segment must be longer than this many SDs of its ends, or its direction is not known well enough to
 // linearise.
 constexpr double kMinLengthSigmas = 4;
@@ -28,22 +26,6 @@ bool is_measurement(const Line3d& line) {
   const double trace = line.Sigma.trace();
   return trace <= 2 * kMaxVarianceM2 && cholesky.factor(line.Sigma) &&
          (line.b - line.a).squaredNorm() > kMinLengthSigmas * kMinLengthSigmas * trace / 6;
-}
-
-// A right-handed orthonormal frame whose third column is the unit vector d.
-Matrix3 frame_along(const Vector3& d) {
-  int least = 0;
-  for (int k = 1; k < 3; ++k)
-    if (d[k] * d[k] < d[least] * d[least]) least = k;
-  Vector3 axis = Vector3::Zero();
-  axis[least] = 1;
-  Matrix3 frame;
-  Vector3 u = axis - d * d[least];
-  u *= 1 / sqrt(u.squaredNorm());
-  frame.col(0) = u;
-  frame.col(1) = d.cross(u);
-  frame.col(2) = d;
-  return frame;
 }
 
 // A measured segment as seen from an infinite line through q with the frame G = [U d].

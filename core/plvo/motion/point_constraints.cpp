@@ -9,12 +9,9 @@
 namespace plvo {
 namespace {
 
-// A point more uncertain than this tells nothing, and would pass any χ² test.
-constexpr double kMaxPointVarianceM2 = 1.0;
-
 bool is_measurement(const Point3d& point) {
   Cholesky<3> cholesky;
-  return point.p.allFinite() && point.Sigma.allFinite() && point.Sigma.trace() <= kMaxPointVarianceM2 &&
+  return point.p.allFinite() && point.Sigma.allFinite() && point.Sigma.trace() <= kMaxVarianceM2 &&
          cholesky.factor(point.Sigma);
 }
 

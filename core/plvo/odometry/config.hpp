@@ -32,9 +32,8 @@ struct Limits {
   int kept_keyframes = 1;
   static constexpr Limits vga() { return {}; }
   static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0}; }
-  static constexpr Limits tiny() {
-    return {320, 240, 200, 64, 1, 3, 0};
-  }  // within 512 KiB, with Config::tiny()
+  // Within 512 KiB, with Config::tiny().
+  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0}; }
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };

@@ -15,20 +15,6 @@ Matrix6 carry(const HeldPose& from, const HeldPose& current) {
   return A;
 }
 
-// Two unit vectors across a unit vector.
-Matrix<3, 2> across(const Vector3& d) {
-  int smallest = 0;
-  for (int i = 1; i < 3; ++i)
-    if (d[i] * d[i] < d[smallest] * d[smallest]) smallest = i;
-  Vector3 axis = Vector3::Zero();
-  axis[smallest] = 1;
-  const Vector3 first = axis - d.dot(axis) * d;
-  Matrix<3, 2> U;
-  U.col(0) = first / sqrt(first.squaredNorm());
-  U.col(1) = skew(d) * U.col(0);
-  return U;
-}
-
 template <int N>
 Matrix<N, N> symmetric(const Matrix<N, N>& M) {
   return 0.5 * (M + Matrix<N, N>(M.transpose()));
@@ -80,7 +66,7 @@ void GravityHold::read(const GravityPrior& reading, HeldPose& from, HeldPose& cu
 
   const Matrix3 R_camera_world = current.T_world_camera.R.transpose();
   const Vector3 expected = R_camera_world * down_;
-  const Matrix<3, 2> U = across(expected);
+  const Matrix<3, 2> U = frame_along(expected).block<3, 2>(0, 0);
   const Matrix<2, 3> J_omega = U.transpose().lazyProduct(R_camera_world).eval().lazyProduct(skew(down_));
   Matrix<2, 6> J_gravity;
   J_gravity.block<2, 3>(0, 0) = U.transpose().lazyProduct(R_camera_world);

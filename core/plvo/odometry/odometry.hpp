@@ -177,7 +177,7 @@ class Odometry {
   bool still_seen(int slot) const;
   int free_slot() const;
   void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
-  bool recognise(int slot, FrameFeatures& features, const PairPrior& prior, const DepthSampler& depth,
+  bool recognise(int slot, FrameFeatures& features, const Vector6& velocity, const DepthSampler& depth,
                  const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);

@@ -27,9 +27,17 @@ constexpr double kPlausible = 0.9999;
 
 }  // namespace
 
-// features: of the current frame, whose velocity the prior knows; believed: its pose otherwise.
-bool Odometry::recognise(int slot, FrameFeatures& features, const PairPrior& prior, const DepthSampler& depth,
-                         const HeldPose& believed, TrackedMotion& tracked, TrackResult& result) {
+// features: of the current frame, which moves at this velocity; believed: its pose otherwise.
+bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& velocity,
+                         const DepthSampler& depth, const HeldPose& believed, TrackedMotion& tracked,
+                         TrackResult& result) {
+  PairPrior prior;
+  prior.velocity = velocity;
+  prior.velocity_known = true;
+  prior.reference_velocity = frame(slot).velocity;
+  prior.reference_velocity_known = frame(slot).motion_ns > 0;
+  prior.reference_is_last = false;
+  prior.depth_after_colour_s = depth_after_colour_s_;
   const SensedMotion nothing;
   const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing};
   const Reference reference{&frame(slot).features, prior, {}, {}};
@@ -48,16 +56,14 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
                       TrackResult& result) {
   if (kept_.empty()) return false;
   const int slot = kept_.latest();
-  PairPrior pair;
-  pair.velocity_known = true;  // it stands still: what it did before says nothing any more
-  pair.reference_velocity = frame(slot).velocity;
-  pair.reference_velocity_known = frame(slot).motion_ns > 0;
-  pair.reference_is_last = false;
-  pair.depth_after_colour_s = depth_after_colour_s_;
   HeldPose believed = held(last_);
   grow_unseen(result.stamp_ns, believed.covariance);
   TrackResult trial = result;
-  if (!recognise(slot, frame(current_).features, pair, depth, believed, tracked, trial)) return false;
+  // It stands still, for all that is known: what it did before says nothing any more.
+  const bool found =
+      recognise(slot, frame(current_).features, Vector6::Zero(), depth, believed, tracked, trial);
+  result.stage_ns = trial.stage_ns;
+  if (!found) return false;
   result = trial;
   kept_.drop(slot);
   keyframe_ = slot;
@@ -76,21 +82,17 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
   frames_since_look_back_ = 0;
   const int slot = kept_.next();
   Frame& last = frame(last_);  // the frame just tracked
-  PairPrior pair;
-  pair.velocity = last.velocity;
-  pair.velocity_known = true;
-  pair.reference_velocity = frame(slot).velocity;
-  pair.reference_velocity_known = frame(slot).motion_ns > 0;
-  pair.reference_is_last = false;
-  pair.depth_after_colour_s = depth_after_colour_s_;
-  TrackResult trial;  // the counts of the frame are those of its own tracking
-  if (!recognise(slot, last.features, pair, depth, held(last_), tracked, trial)) return;
+  TrackResult trial;           // the counts of the frame are those of its own tracking
+  trial.stage_ns = result.stage_ns;
+  const bool found = recognise(slot, last.features, last.velocity, depth, held(last_), tracked, trial);
+  result.stage_ns = trial.stage_ns;
+  if (!found) return;
   const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
   if (keyframe_ != last_) {
-    const Se3 T_last_keyframe = last.T_world_camera.inverse() * frame(keyframe_).T_world_camera;
-    const Se3 T_keyframe_last = T_last_keyframe.inverse();
-    hold(keyframe_,
-         advance(pose, T_keyframe_last, inverse_covariance(T_last_keyframe, last.motion_covariance)));
+    const MotionReference from_keyframe = last_from_keyframe();
+    const Se3& T_last_keyframe = from_keyframe.T_reference_base;
+    hold(keyframe_, advance(pose, T_last_keyframe.inverse(),
+                            inverse_covariance(T_last_keyframe, from_keyframe.covariance)));
   }
   hold(last_, pose);
   kept_.drop(slot);

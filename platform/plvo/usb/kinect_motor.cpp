@@ -8,12 +8,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "plvo/inertial/imu_config.hpp"
+
 namespace plvo {
 namespace {
 
 constexpr unsigned kTimeoutMs = 1000;
 constexpr double kCountsPerG = 819;
-constexpr double kGravity = 9.80665;  // m/s²
 constexpr double kRadPerDegree = 3.14159265358979323846 / 180;
 
 constexpr std::uint32_t kCommandMagic = 0x06022009;
@@ -188,7 +189,7 @@ Status KinectMotor::read(KinectState& state) {
     const auto field = [&data](std::size_t at) {
       return static_cast<double>(static_cast<std::int32_t>(get_le32(&data[at])));
     };
-    state.acceleration = Vector3(field(16), field(20), field(24)) * (kGravity / kCountsPerG);
+    state.acceleration = Vector3(field(16), field(20), field(24)) * (kStandardGravity / kCountsPerG);
     state.tilt_rad = field(28) * kRadPerDegree;
     return {};
   }
@@ -199,7 +200,7 @@ Status KinectMotor::read(KinectState& state) {
   if (got != static_cast<int>(data.size()))
     return {StatusCode::kDamaged, "short answer from the Kinect's motor"};
   state.acceleration =
-      Vector3(get_be16(&data[2]), get_be16(&data[4]), get_be16(&data[6])) * (kGravity / kCountsPerG);
+      Vector3(get_be16(&data[2]), get_be16(&data[4]), get_be16(&data[6])) * (kStandardGravity / kCountsPerG);
   state.moving = data[9] == 4;
   state.at_limit = data[9] == 1;
   // While it moves the angle reads −128.

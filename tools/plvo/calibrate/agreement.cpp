@@ -180,9 +180,9 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const TrackedRecording& recording = recordings[r];
     cameras.push_back(with_timing(recording.camera, timing));
-    blocks.emplace_back(static_cast<std::size_t>(recording.camera.width) *
-                            static_cast<std::size_t>(recording.camera.height) * 4 +
-                        2 * kArenaAlignment);
+    ArenaSizer sizer;
+    UndistortionMap().carve(sizer, recording.camera.width, recording.camera.height);
+    blocks.emplace_back(sizer.peak() + kArenaAlignment);
     Arena arena(blocks.back());
     maps[r].carve(arena, recording.camera.width, recording.camera.height);
     maps[r].init(recording.camera);

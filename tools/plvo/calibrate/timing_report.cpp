@@ -12,7 +12,6 @@ namespace plvo::calibrate {
 namespace {
 
 constexpr double kMs = 1e3;
-constexpr double kDegrees = 57.29577951308232;
 // The picture of a curve, and its margins, px.
 constexpr double kWidth = 420, kHeight = 240, kLeft = 48, kRight = 12, kTop = 12, kBottom = 34;
 

@@ -97,7 +97,7 @@ class Search {
           StatusCode::kDegenerate,
           fmt::format("the camera hardly turns ({:.1f} deg/s), so its timing does not show; turn the camera: "
                       "left and right, up and down, about its axis, 20 to 60 deg/s, all the while",
-                      result_.turn_rad_per_s * 57.29578));
+                      kDegrees * result_.turn_rad_per_s));
     return {};
   }
 

@@ -15,6 +15,8 @@
 
 namespace plvo::calibrate {
 
+inline constexpr double kDegrees = 57.29577951308232;  // of a radian
+
 struct CurvePoint {
   double seconds = 0;
   double disagreement = 0;  // mean of all matches: 3 to 4 where the model is right, 30 where nothing fits

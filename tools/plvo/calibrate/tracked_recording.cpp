@@ -109,6 +109,7 @@ Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_
   Limits limits;
   limits.width = camera.width;
   limits.height = camera.height;
+  limits.kept_keyframes = 0;  // a pose that is put right later would look like a velocity
   std::vector<std::byte> memory(required_bytes(limits) + kArenaAlignment);
   Odometry odometry;
   if (Status status = odometry.init(memory, camera, config, limits); !status.ok()) return status;

@@ -8,7 +8,6 @@
 namespace plvo::sim {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s², along −z of the scene
 // Differences over so long: the shortest sway takes 0.15 s, and rounding stays below 1e-9 m/s².
 constexpr double kDifference_s = 5e-4;
 constexpr std::uint32_t kGyro = 0x47U, kAccelerometer = 0x41U, kOffset = 0x4fU;
@@ -49,7 +48,7 @@ Vector3 InertialSensor::force(const Trajectory& trajectory, double t_s, std::uin
   const Vector3 acceleration =
       (trajectory.at(t_s + kDifference_s).t - 2 * now.t + trajectory.at(t_s - kDifference_s).t) /
       (kDifference_s * kDifference_s);
-  return now.R.transpose() * (acceleration + Vector3(0, 0, kGravity)) + accelerometer_offset_ +
+  return now.R.transpose() * (acceleration + Vector3(0, 0, kStandardGravity)) + accelerometer_offset_ +
          noise(sample, kAccelerometer, options_.accelerometer_noise);
 }
 

@@ -36,7 +36,8 @@ void TrackSummary::add(const FrameRecord& record) {
     last_loss_[kind] = result.status;
     return;
   }
-  if (has_pose_) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
+  // Where a pose is put right it jumps, and the camera does not.
+  if (has_pose_ && !result.returned) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
   has_pose_ = true;
   last_pose_ = result.T_world_camera;
   if (result.state == TrackState::kInitialising) {
