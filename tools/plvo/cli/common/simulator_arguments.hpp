@@ -11,7 +11,7 @@
 namespace plvo::cli {
 
 inline constexpr const char* kSimulatorGroup = "Simulated camera";
-inline constexpr int kSimulatedFrames = 240;  // unless told otherwise: 8 s
+inline constexpr int kSimulatedFrames = 180;  // unless told otherwise: 6 s
 inline constexpr int kMostSimulatedFrames = 1'000'000;
 
 struct SimulatorArguments {
