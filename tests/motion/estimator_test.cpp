@@ -75,6 +75,29 @@ TEST(Estimator, SameSeedSameBits) {
   EXPECT_EQ(a.ransac.draws, b.ransac.draws);
 }
 
+TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
+  Gaussian gaussian(17);
+  const SimulatedPair pair = test::simulate(gaussian, 200, 40, 0.4);
+  Bench bench;
+  const MotionEstimate drawn = bench.estimate(pair, {}, 42);
+  ASSERT_EQ(drawn.status, StatusCode::kOk);
+  Vector6 off;
+  off << 3e-3, -2e-3, 2e-3, 2e-3, -1e-3, 1e-3;
+  const Se3 near = boxplus(pair.truth, off);
+  const MotionEstimate refined = bench.estimate(pair, {}, 42, {&near, {}, true});
+  ASSERT_EQ(refined.status, StatusCode::kOk);
+  EXPECT_EQ(refined.ransac.draws, 0);
+  EXPECT_LT(test::nees(refined.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)),
+            0.1);
+
+  // Nothing agrees with it: it is a prediction like any other.
+  const Se3 far = boxplus(pair.truth, 200 * off);
+  const MotionEstimate found = bench.estimate(pair, {}, 42, {&far, {}, true});
+  ASSERT_EQ(found.status, StatusCode::kOk);
+  EXPECT_GT(found.ransac.draws, 0);
+  EXPECT_LT(test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)), 0.1);
+}
+
 TEST(Estimator, NaNsAreLeftOut) {
   Gaussian gaussian(12);
   SimulatedPair pair = test::simulate(gaussian, 60, 20);

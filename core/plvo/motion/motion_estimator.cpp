@@ -82,7 +82,14 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  bool found = false;
+  if (start.estimated) {
+    T = *start.prediction;
+    ransac.refine(T);
+    (void)ransac.judge(T, kFirstRoundScale);
+    found = consensus();
+  }
+  if (!found && !ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;

@@ -43,12 +43,14 @@ struct MotionEstimate {
 };
 
 // What is thought of the motion, and of what the current frame's features share, before anything is
-// estimated.
+// estimated. estimated: the prediction is an estimate from these frames already; hypotheses are drawn only
+// where the matches do not agree with it.
 struct MotionStart {
-  MotionStart(const Se3* T_predicted, const SharedErrors& shared_errors = {})
-      : prediction(T_predicted), shared(shared_errors) {}
+  MotionStart(const Se3* T_predicted, const SharedErrors& shared_errors = {}, bool is_estimated = false)
+      : prediction(T_predicted), shared(shared_errors), estimated(is_estimated && T_predicted != nullptr) {}
   const Se3* prediction;
   SharedErrors shared;
+  bool estimated;
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all

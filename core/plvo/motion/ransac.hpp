@@ -57,6 +57,10 @@ class Ransac {
   // The best motion found; false when no hypothesis scored at all.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
+  // A motion that is known to be near, brought nearer by a part of the matches that agree with it; writes the
+  // inlier flags.
+  void refine(Se3& T);
+
   // Sets the inlier flag of every stride-th match by the χ² test under T, with the thresholds scaled by
   // `scale`, and clears the others; true when a flag changed.
   bool judge(const Se3& T, double scale, std::size_t stride = 1);
@@ -70,7 +74,6 @@ class Ransac {
  private:
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
-  void refine(Se3& T);
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
   int iterations_needed() const;
 

@@ -160,7 +160,8 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
   solve(std::span(features).first(references.size()), poses, current.sensed, base_is_last ? 0 : 1,
-        {&T_current_base, shared_errors(exposure, current.noise)}, kFineSolve, scratch, tracked, result);
+        {&T_current_base, shared_errors(exposure, current.noise), true}, kFineSolve, scratch, tracked,
+        result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera_, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);

@@ -191,21 +191,49 @@ WarpedWindow warp_window(const PatchWarp& warp) {
   return window;
 }
 
-// Each pixel at a fraction of its own.
+// Every weight four times: for the four columns of a pixel.
+constexpr auto kColumnWeights = [] {
+  std::array<std::array<std::array<std::int16_t, kTaps>, kTaps>, 1 << kFractionBits> table{};
+  for (std::size_t i = 0; i < table.size(); ++i)
+    for (std::size_t tap = 0; tap < kTaps; ++tap) table[i][tap].fill(kWeights[i][tap]);
+  return table;
+}();
+
+// Each pixel at a fraction of its own, two of them at once: down their four columns, then across.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+  constexpr std::int32_t kFraction = kOnePixel - 1;
   Window values;
-  for (std::size_t k = 0; k < kPixels; ++k) {
-    const std::int32_t at_x = x + window.x[k];
-    const std::int32_t at_y = y + window.y[k];
-    const Weights& across = kWeights[static_cast<std::size_t>(at_x & (kOnePixel - 1))];
-    const Weights& down = kWeights[static_cast<std::size_t>(at_y & (kOnePixel - 1))];
-    const std::uint8_t* p =
-        image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
-    std::array<std::int16_t, kTaps> column;
-    for (std::size_t r = 0; r < kTaps; ++r, p += image.stride)
-      column[r] = static_cast<std::int16_t>(
-          (p[0] * across[0] + p[1] * across[1] + p[2] * across[2] + p[3] * across[3] + 4) >> 3);
-    values[k] = blend_down(column.data(), 1, down);
+  for (std::size_t k = 0; k < kPixels; k += 2) {
+    const std::uint8_t* p[2];
+    const std::array<std::int16_t, kTaps>* down[2];
+    const Weights* across[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::int32_t at_x = x + window.x[k + i];
+      const std::int32_t at_y = y + window.y[k + i];
+      p[i] = image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
+      down[i] = kColumnWeights[static_cast<std::size_t>(at_y & kFraction)].data();
+      across[i] = &kWeights[static_cast<std::size_t>(at_x & kFraction)];
+    }
+    Lanes sum = {};
+    for (std::ptrdiff_t r = 0; r < kTaps; ++r) {
+      std::uint8_t row[2 * kTaps];
+      std::int16_t weights[2 * kTaps];
+      for (std::size_t i = 0; i < 2; ++i) {
+        std::memcpy(row + i * kTaps, p[i] + r * image.stride, kTaps);
+        std::memcpy(weights + i * kTaps, down[i] + r, sizeof *down[i]);
+      }
+      Lanes pixels, weight;
+      load_bytes(row, pixels);
+      std::memcpy(&weight, weights, sizeof weight);
+      sum += pixels * weight;
+    }
+    sum = (sum + std::int16_t{4}) >> 3;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Weights& w = *across[i];
+      const std::size_t c = i * kTaps;
+      values[k + i] = static_cast<std::int16_t>(
+          (sum[c] * w[0] + sum[c + 1] * w[1] + sum[c + 2] * w[2] + sum[c + 3] * w[3] + 64) >> 7);
+    }
   }
   return values;
 }
