@@ -101,7 +101,7 @@ TEST(Calibration, TellsWhatItAssumes) {
   for (std::string_view name : builtin_calibration_names()) {
     ASSERT_TRUE(builtin_calibration(name, c).ok());
     EXPECT_TRUE(c.readout_given) << name;
-    EXPECT_EQ(c.depth_scale_given, name.starts_with("tum-")) << name;
+    EXPECT_EQ(c.depth_scale_given, name.starts_with("tum-") || name == "7scenes") << name;
   }
 }
 
@@ -151,6 +151,24 @@ TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
   EXPECT_TRUE(says(read_text("fx 525\nfy\n", c), "'fy' needs a number"));
   EXPECT_TRUE(says(read_text("fx 525\n", c), "must all be given"));
   EXPECT_EQ(read_calibration("/nowhere/calibration.txt", c).code(), StatusCode::kNotFound);
+}
+
+// As ScanNet's exports have it.
+TEST(Calibration, ReadsAMatrix) {
+  const std::string matrix = "577.87 0 319.5 0\n0 578.5 239.5 0\n0 0 1 0\n0 0 0 1\n";
+  Calibration c;
+  ASSERT_TRUE(read_text(matrix, c).ok());
+  EXPECT_EQ(c.camera.pinhole.fx, 577.87);
+  EXPECT_EQ(c.camera.pinhole.fy, 578.5);
+  EXPECT_EQ(c.camera.pinhole.cx, 319.5);
+  EXPECT_EQ(c.camera.pinhole.cy, 239.5);
+  EXPECT_TRUE(c.camera.distortion.is_zero());
+  EXPECT_FALSE(c.depth_scale_given);
+  ASSERT_TRUE(read_text(matrix + "depth_scale 1000\n", c).ok());
+  EXPECT_EQ(c.depth_units_per_metre, 1000);
+  // A pose is no camera.
+  EXPECT_TRUE(says(read_text("0.8 0 0.6 1.5\n0 1 0 -0.2\n-0.6 0 0.8 2\n0 0 0 1\n", c),
+                   "has 16 numbers; expected 'fx fy cx cy [depth_scale"));
 }
 
 TEST(Calibration, RefusesNaN) {

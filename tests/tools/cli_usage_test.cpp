@@ -34,7 +34,8 @@ TEST(CliUsage, AllowedValuesAreNamedInWords) {
   expect_usage("run x --reference next", "--reference: expected previous, keyframe or both, not 'next'");
   expect_usage("run x --pace slow", "--pace: expected fast, realtime or step, not 'slow'");
   expect_usage("run --camera film", "--camera: expected sim, not 'film'");
-  expect_usage("run x --camera-model tum-fr9", "expected tum-fr1, tum-fr2, tum-fr3 or kinect-v1-default");
+  expect_usage("run x --camera-model tum-fr9",
+               "expected tum-fr1, tum-fr2, tum-fr3, 7scenes or kinect-v1-default");
   expect_usage("simulate --out x --scene moon",
                "expected corridor, staircase, hall, desk or bare, not 'moon'");
   expect_usage("eval --gt a --est b --gt-sampling some", "expected nearest or interpolated, not 'some'");

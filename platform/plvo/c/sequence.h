@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/* A calibration by name (tum-fr1, tum-fr2, tum-fr3, kinect-v1-default) or from a file of any form that plvo
+/* A calibration by name (tum-fr1, tum-fr2, tum-fr3, 7scenes, kinect-v1-default) or from a file of any form that plvo
  * reads. camera->struct_size must be set (plvo_camera_init). A file that names no image size leaves width and
  * height as they are. metres_per_unit, of the depth, may be NULL. */
 PLVO_API plvo_status plvo_camera_builtin(const char* name, plvo_camera* camera, double* metres_per_unit);

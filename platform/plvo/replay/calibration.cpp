@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> kBuiltinNames = {"tum-fr1", "tum-fr2", "tum-fr3",
+constexpr std::array<std::string_view, 5> kBuiltinNames = {"tum-fr1", "tum-fr2", "tum-fr3", "7scenes",
                                                            "kinect-v1-default"};
 constexpr std::uintmax_t kMaxBytes = 1u << 20;  // of a calibration, whatever comments it has
 
@@ -67,7 +67,8 @@ Status read_calibration(const fs::path& path, Calibration& calibration) {
 
 std::optional<fs::path> calibration_file_in(const fs::path& folder) {
   std::error_code error;
-  for (const char* name : {"calibration.txt", "calibration.yaml", "camera.yaml"})
+  for (const char* name : {"calibration.txt", "calibration.yaml", "camera.yaml",
+                           "intrinsic/intrinsic_depth.txt", "intrinsic/intrinsic_color.txt"})
     if (fs::exists(folder / name, error)) return folder / name;
   return {};
 }
@@ -92,6 +93,10 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
     camera.distortion = {0.231222, -0.784899, -0.003257, -0.000105, 0.917205};
   } else if (name == "tum-fr3") {
     camera.pinhole = {535.4, 539.2, 320.1, 247.6};
+  } else if (name == "7scenes") {
+    camera.pinhole = {585, 585, 320, 240};
+    result.depth_units_per_metre = 1000;
+    result.depth_scale_given = true;
   } else if (name == "kinect-v1-default") {
     camera.pinhole = {525, 525, 319.5, 239.5};
   } else {

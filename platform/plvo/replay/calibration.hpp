@@ -2,11 +2,11 @@
 // Camera calibrations from files and by name. Forms that are understood, told apart by their content (YAML by
 // the extension .yaml or .yml):
 //   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; lines with keys may
-//   follow fx: 525  (or fx = 525, or fx 525), one a line             keys in any order: calibration_keys.hpp
-//   has the table YAML with the same keys ROS camera_info YAML image_width, camera_matrix, plumb_bob
-//   distortion, and
-//                                                             beside them the keys of the sensor
-//                                                             (depth_scale, …)
+//   follow fx 0 cx 0  0 fy cy 0  0 0 1 0  0 0 0 1                   the same of a matrix, as ScanNet's are
+//   fx: 525  (or fx = 525, or fx 525), one a line             keys in any order: calibration_keys.hpp has
+//   them YAML with the same keys ROS camera_info YAML                                      image_width,
+//   camera_matrix, plumb_bob distortion,
+//                                                             and beside them the keys of the sensor
 // What a source does not say is assumed, and known to be: see assumptions().
 #pragma once
 
@@ -45,11 +45,12 @@ struct Calibration {
 Status read_calibration(const std::filesystem::path& path, Calibration& calibration);
 
 // The calibration that lies beside a recorded sequence: the first that is there of calibration.txt,
-// calibration.yaml, camera.yaml.
+// calibration.yaml, camera.yaml, and of what ScanNet's exports have, intrinsic/intrinsic_depth.txt (the
+// images must have one size, which is that of depth) and intrinsic/intrinsic_color.txt.
 std::optional<std::filesystem::path> calibration_file_in(const std::filesystem::path& folder);
 
-// tum-fr1, tum-fr2, tum-fr3 (the values the benchmark publishes), kinect-v1-default. kNotFound lists the
-// names.
+// tum-fr1, tum-fr2, tum-fr3 (the values the benchmark publishes), 7scenes (as its page says),
+// kinect-v1-default. kNotFound lists the names.
 Status builtin_calibration(std::string_view name, Calibration& calibration);
 std::span<const std::string_view> builtin_calibration_names();
 

@@ -14,7 +14,17 @@ namespace {
 using namespace calibration_form;
 namespace fs = std::filesystem;
 
-constexpr std::string_view kForm = "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]'";
+constexpr std::string_view kForm =
+    "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]', or the 4x4 matrix fx 0 cx 0, 0 fy cy 0, 0 0 1 "
+    "0, 0 0 0 1";
+
+bool is_camera_matrix(const std::vector<double>& m) {
+  if (m.size() != 16) return false;
+  constexpr std::size_t kZeros[] = {1, 3, 4, 7, 8, 9, 11, 12, 13, 14};
+  for (const std::size_t zero : kZeros)
+    if (m[zero] != 0) return false;
+  return m[10] == 1 && m[15] == 1;
+}
 
 // Words without comments; ':', '=', ',' count as white space.
 std::vector<std::string_view> words_of(std::string_view content) {
@@ -41,16 +51,20 @@ Status parse_text(const fs::path& path, std::string_view content, Calibration& c
   const std::vector<std::string_view> words = words_of(content);
   if (words.empty()) return damaged(path, fmt::format("is empty; expected {}", kForm));
   Collector collector(path);
-  std::size_t numbers = 0;
-  for (double value = 0; numbers < words.size() && parse_number(words[numbers], value); ++numbers)
-    if (numbers < kPlaces) collector.set_place(numbers, value);
+  std::vector<double> values;
+  for (double value = 0; values.size() < words.size() && parse_number(words[values.size()], value);)
+    values.push_back(value);
+  const std::size_t numbers = values.size();
   const bool known_word =
       numbers < words.size() &&
       std::any_of(keys().begin(), keys().end(), [&](const Key& key) { return key.name == words[numbers]; });
   if (numbers > 0 && numbers < words.size() && !known_word)
     return damaged(path, fmt::format("'{}' is not a number", words[numbers].substr(0, 40)));
-  if (numbers != 0 && numbers != 4 && numbers != 5 && numbers != 10 && numbers != kPlaces)
+  const bool matrix = is_camera_matrix(values);
+  if (matrix) values = {values[0], values[5], values[2], values[6]};
+  if (!matrix && numbers != 0 && numbers != 4 && numbers != 5 && numbers != 10 && numbers != kPlaces)
     return damaged(path, fmt::format("has {} numbers; expected {}", numbers, kForm));
+  for (std::size_t place = 0; place < values.size(); ++place) collector.set_place(place, values[place]);
   for (std::size_t i = numbers; i < words.size(); i += 2) {
     const std::string_view value = i + 1 < words.size() ? words[i + 1] : std::string_view();
     if (Status status = collector.set(words[i], value); !status.ok()) return status;
