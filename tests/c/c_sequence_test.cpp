@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recorded folders for C: the frames of TumCamera, and the program of docs/c.md, which tracks them as C++
-// does.
+// Recorded folders for C: the frames of RecordedCamera, and the program of docs/c.md, which tracks them as
+// C++ does.
 #include "plvo/c/sequence.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "command.hpp"
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/odometry/odometry.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "procedural_sequence.hpp"
 #include "tiny_sequence.hpp"
 
@@ -115,7 +115,7 @@ TEST(CSequence, TheProgramOfThePageTracksAFolder) {
 
   Calibration calibration;
   ASSERT_TRUE(read_calibration(folder / "walk" / "calibration.txt", calibration).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(camera.open(folder / "walk", calibration).ok());
   Limits limits;
   limits.width = 320;

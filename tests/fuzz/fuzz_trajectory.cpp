@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a trajectory in each format, and as the files of covariances: what is accepted is sorted and
-// finite.
+// Any bytes as a trajectory in each format, as the pose file of a numbered frame, and as the files of
+// covariances: what is accepted is sorted and finite.
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/eval/uncertainty_file.hpp"
+#include "plvo/replay/numbered_index.hpp"
 #include "scratch_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -19,6 +20,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::require(i == 0 || trajectory.poses[i - 1].stamp_ns < trajectory.poses[i].stamp_ns);
     }
   }
+  Trajectory poses;
+  if (read_numbered_poses(fuzz::scratch_folder(), {{0, "trajectory.txt"}}, poses).ok())
+    fuzz::require(poses.poses.size() == 1 && poses.poses[0].T_world_camera.is_finite());
   std::vector<eval::StampedCovariance> covariances;
   std::vector<eval::UncertainMotion> motions;
   (void)eval::read_covariances(path, covariances);

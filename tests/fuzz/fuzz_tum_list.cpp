@@ -9,7 +9,7 @@
 
 namespace {
 
-void check(const plvo::Status& status, const plvo::TumIndex& index) {
+void check(const plvo::Status& status, const plvo::SequenceIndex& index) {
   using plvo::fuzz::require;
   if (!status.ok()) return require(!std::string_view(status.message()).empty());
   require(!index.pairs.empty());
@@ -26,9 +26,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t rest = first < size ? first + 1 : size;
   fuzz::write_scratch("rgb.txt", data, first);
   fuzz::write_scratch("depth.txt", data + rest, size - rest);
-  TumIndex lists;
+  SequenceIndex lists;
   check(read_tum_index(fuzz::scratch_folder(), {}, 20'000'000, lists), lists);
-  TumIndex associated;
+  SequenceIndex associated;
   const auto associations = fuzz::write_scratch("associations.txt", data, size);
   check(read_tum_index(fuzz::scratch_folder(), associations, 20'000'000, associated), associated);
   return 0;

@@ -17,7 +17,7 @@
 #include "kinect_reference.hpp"
 #include "plvo/cli/command_line.hpp"
 #include "plvo/odometry/odometry.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "processor_time.hpp"
 #include "temporary_folder.hpp"
@@ -171,7 +171,7 @@ TEST_F(KinectCommand, RecordKeepsEveryByte) {
   ASSERT_EQ(plvo({"record", path("walk"), "--frames", "6", "--quiet"}), 0) << err_;
   plvo::Calibration calibration;
   ASSERT_TRUE(plvo::read_calibration(path("walk/calibration.txt"), calibration).ok());
-  plvo::TumCamera camera;
+  plvo::RecordedCamera camera;
   ASSERT_TRUE(camera.open(path("walk"), calibration).ok());
   plvo::RgbdFrame frame;
   int frames = 0;

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "plvo/openni2/openni2_camera.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 
 namespace plvo_test {
 namespace {
@@ -35,7 +35,7 @@ TEST(VirtualFrames, LiveAndReplayAreTheSameBytes) {
 
   plvo::Calibration calibration;
   ASSERT_TRUE(plvo::read_calibration(folder / "tum" / "calibration.txt", calibration).ok());
-  plvo::TumCamera replay;
+  plvo::RecordedCamera replay;
   const plvo::Status replayed = replay.open(folder / "tum", calibration);
   ASSERT_TRUE(replayed.ok()) << replayed.message();
 

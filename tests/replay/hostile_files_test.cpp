@@ -12,7 +12,7 @@
 
 #include "plvo/replay/calibration.hpp"
 #include "plvo/replay/image_decoder.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/tum_index.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
@@ -84,7 +84,7 @@ TEST(HostileFiles, AHeaderOf16384PixelsAllocatesNothing) {
   ASSERT_TRUE(builtin_calibration("kinect-v1-default", calibration).ok());
   calibration.has_size = false;
   const long before = peak_kib();
-  TumCamera camera;
+  RecordedCamera camera;
   const Status status = camera.open(folder.path(), calibration);
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_TRUE(says(status, "says that it is 16384x16384; images of at most 2047x2047 are read"))
@@ -195,12 +195,12 @@ const std::array<Reader, 6>& readers() {
        }},
       {"associations.txt",
        [](const fs::path& path) {
-         TumIndex index;
+         SequenceIndex index;
          return read_tum_index(path.parent_path(), path, 1, index);
        }},
       {"rgb.txt",
        [](const fs::path& path) {
-         TumIndex index;
+         SequenceIndex index;
          return read_tum_index(path.parent_path(), {}, 1, index);
        }},
       {"colour.png",

@@ -10,7 +10,7 @@
 #include "dense.hpp"
 #include "plvo/odometry/feature_extraction.hpp"
 #include "plvo/odometry/reference_tracking.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "procedural_sequence.hpp"
 
 namespace plvo {
@@ -132,7 +132,7 @@ TEST(Theorem1, HoldsOnEveryPairOfTheRecordedSequences) {
     if (!fs::exists(entry.path() / "rgb.txt")) continue;
     Calibration calibration;
     ASSERT_TRUE(read_calibration(entry.path() / "calibration.txt", calibration).ok());
-    TumCamera camera;
+    RecordedCamera camera;
     ASSERT_TRUE(camera.open(entry.path(), calibration, {}).ok());
     Pairs pairs(camera.model());
     RgbdFrame frame;

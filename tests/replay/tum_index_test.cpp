@@ -37,7 +37,7 @@ TEST(TumIndex, PairsTwoLists) {
   const TemporaryFolder folder;
   write_file(folder / "rgb.txt", "# header\n1.000000 rgb/a.png\n\n1.033000 rgb/b.png\r\n1.066 rgb/c.png\n");
   write_file(folder / "depth.txt", "1.001000 depth/a.png\n1.060000 depth/c.png\n9.0 depth/z.png\n");
-  TumIndex index;
+  SequenceIndex index;
   const Status status = read_tum_index(folder.path(), {}, kTolerance, index);
   ASSERT_TRUE(status.ok()) << status.message();
   ASSERT_EQ(index.pairs.size(), 2u);
@@ -51,7 +51,7 @@ TEST(TumIndex, PairsTwoLists) {
 TEST(TumIndex, ReadsAssociations) {
   const TemporaryFolder folder;
   write_file(folder / "associations.txt", "1.0 rgb/a.png 1.1 depth/a.png\n2.0 rgb/b.png 2.1 depth/b.png\n");
-  TumIndex index;
+  SequenceIndex index;
   ASSERT_TRUE(read_tum_index(folder.path(), {}, kTolerance, index).ok());
   ASSERT_EQ(index.pairs.size(), 2u);
   EXPECT_EQ(index.pairs[1].depth.stamp_ns, 2'100'000'000);
@@ -60,10 +60,10 @@ TEST(TumIndex, ReadsAssociations) {
                    "mine.txt line 1: expected 'stamp rgb stamp depth'"));
 }
 
-TumIndex read_associations(const std::string& lines, Status& status) {
+SequenceIndex read_associations(const std::string& lines, Status& status) {
   const TemporaryFolder folder;
   write_file(folder / "associations.txt", lines);
-  TumIndex index;
+  SequenceIndex index;
   status = read_tum_index(folder.path(), {}, kTolerance, index);
   return index;
 }
@@ -71,7 +71,7 @@ TumIndex read_associations(const std::string& lines, Status& status) {
 // The benchmark's own script lists whatever it was given first.
 TEST(TumIndex, AssociationsMayNameDepthFirst) {
   Status status;
-  const TumIndex index =
+  const SequenceIndex index =
       read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 ./depth/b.png 2.1 ./rgb/b.png\n", status);
   ASSERT_TRUE(status.ok()) << status.message();
   ASSERT_EQ(index.pairs.size(), 2u);
@@ -79,14 +79,15 @@ TEST(TumIndex, AssociationsMayNameDepthFirst) {
   EXPECT_EQ(index.pairs[0].colour.stamp_ns, 1'100'000'000);
   EXPECT_EQ(index.pairs[1].depth.file, "./depth/b.png");
   // One line that says otherwise, and the names say nothing any more.
-  const TumIndex mixed = read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 rgb/b 2.1 depth/b\n", status);
+  const SequenceIndex mixed =
+      read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 rgb/b 2.1 depth/b\n", status);
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(mixed.pairs[0].colour.file, "depth/a.png");
 }
 
 TEST(TumIndex, NamesMayHoldSpaces) {
   Status status;
-  const TumIndex index =
+  const SequenceIndex index =
       read_associations("1.0 my rgb/a 1.png 1.1  my depth/a  1.PNG\n2.0 rgb/b 2.1 depth/b\r\n", status);
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(index.pairs[0].colour.file, "my rgb/a 1.png");
@@ -96,7 +97,7 @@ TEST(TumIndex, NamesMayHoldSpaces) {
   const TemporaryFolder folder;
   write_file(folder / "rgb.txt", "1.0 rgb/the first.jpeg\n2.0\trgb/second.jpg extra\n");
   write_file(folder / "depth.txt", "1.0 depth/the first.png\n2.0 depth/2\n");
-  TumIndex lists;
+  SequenceIndex lists;
   ASSERT_TRUE(read_tum_index(folder.path(), {}, kTolerance, lists).ok());
   EXPECT_EQ(lists.pairs[0].colour.file, "rgb/the first.jpeg");
   EXPECT_EQ(lists.pairs[0].depth.file, "depth/the first.png");
@@ -122,16 +123,16 @@ TEST(TumIndex, ByteOrderMarks) {
 TEST(TumIndex, AnOniFileSaysHowItIsPlayed) {
   const TemporaryFolder folder;
   write_file(folder / "walk.oni", "NI10");
-  TumIndex index;
-  const Status status = read_tum_index(folder / "walk.oni", {}, kTolerance, index);
+  SequenceIndex index;
+  const Status status = read_sequence_index(folder / "walk.oni", {}, index);
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
   EXPECT_TRUE(says(status, "plvo live --device ")) << status.message();
 }
 
 TEST(TumIndex, BadFolders) {
   const TemporaryFolder folder;
-  TumIndex index;
-  EXPECT_TRUE(says(read_tum_index(folder / "none", {}, kTolerance, index), "is not a folder"));
+  SequenceIndex index;
+  EXPECT_TRUE(says(read_sequence_index(folder / "none", {}, index), "is not a folder"));
   EXPECT_TRUE(
       says(read_tum_index(folder.path(), {}, kTolerance, index), "rgb.txt; a sequence needs rgb.txt"));
   write_file(folder / "rgb.txt", "1.0 rgb/a.png\n");
@@ -147,7 +148,7 @@ TEST(TumIndex, BadFolders) {
 
 TEST(TumIndex, BadStamps) {
   const TemporaryFolder folder;
-  TumIndex index;
+  SequenceIndex index;
   write_file(folder / "depth.txt", "1.0 depth/a.png\n");
   write_file(folder / "rgb.txt", "1.0 rgb/a.png\n0.5 rgb/b.png\n");
   EXPECT_TRUE(says(read_tum_index(folder.path(), {}, kTolerance, index),

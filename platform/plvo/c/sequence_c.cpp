@@ -10,11 +10,11 @@
 #include <string>
 
 #include "plvo/c/boundary.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
 
 struct plvo_sequence {
-  plvo::TumCamera camera;
+  plvo::RecordedCamera camera;
 };
 
 namespace {
@@ -84,10 +84,8 @@ plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo
     *sequence = nullptr;
     if (folder == nullptr) return missing("folder");
     // A folder that is no sequence should be told so before a missing calibration is.
-    plvo::TumIndex index;
-    if (Status status = plvo::read_tum_index(folder, {}, plvo::TumOptions().tolerance_ns, index);
-        !status.ok())
-      return status;
+    plvo::SequenceIndex index;
+    if (Status status = plvo::read_sequence_index(folder, {}, index); !status.ok()) return status;
     plvo::Calibration found;
     if (Status status = find_calibration(folder, calibration, found); !status.ok()) return status;
     auto opened = std::make_unique<plvo_sequence>();

@@ -15,12 +15,8 @@ Status row_error(const fs::path& path, const TableRow& row, const std::string& w
   return {StatusCode::kDamaged, fmt::format("{} line {}: {}", path.string(), row.line, what)};
 }
 
-Status read_table(const fs::path& path, std::vector<TableRow>& rows) {
-  rows.clear();
-  std::error_code error;
-  std::ifstream stream(path);
-  if (!stream || fs::is_directory(path, error))
-    return {StatusCode::kNotFound, fmt::format("cannot read {}; name an existing file", path.string())};
+std::vector<TableRow> parse_table(std::istream& stream) {
+  std::vector<TableRow> rows;
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {
     TableRow row{line, {}, false};
@@ -33,6 +29,16 @@ Status read_table(const fs::path& path, std::vector<TableRow>& rows) {
     }
     if (!row.words.empty()) rows.push_back(std::move(row));
   }
+  return rows;
+}
+
+Status read_table(const fs::path& path, std::vector<TableRow>& rows) {
+  rows.clear();
+  std::error_code error;
+  std::ifstream stream(path);
+  if (!stream || fs::is_directory(path, error))
+    return {StatusCode::kNotFound, fmt::format("cannot read {}; name an existing file", path.string())};
+  rows = parse_table(stream);
   return {};
 }
 

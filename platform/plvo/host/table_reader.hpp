@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct TableRow {
   bool commas = false;
 };
 
+std::vector<TableRow> parse_table(std::istream& stream);
 // kNotFound when the file cannot be read.
 Status read_table(const std::filesystem::path& path, std::vector<TableRow>& rows);
 

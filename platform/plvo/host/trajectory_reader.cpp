@@ -37,7 +37,7 @@ bool is_rotation(const Quaternion& q) {
   return !(squared < 0.25 || squared > 4);  // a NaN is told by its own rule
 }
 
-bool is_rotation(const Matrix3& R) {
+bool is_rotation_as_written(const Matrix3& R) {
   return !((R.transpose() * R - Matrix3::Identity()).norm() > 0.1) && !(R.determinant() < 0);
 }
 
@@ -51,16 +51,6 @@ Status quaternion_pose(const std::filesystem::path& path, const TableRow& row, c
                     q.x, q.y, q.z, q.w));
   pose = {to_rotation(q), t};
   return {};
-}
-
-Se3 pose_from_matrix(const std::vector<double>& v) {
-  Se3 T;
-  for (int row = 0; row < 3; ++row) {
-    const auto first = static_cast<std::size_t>(row) * 4;
-    for (int column = 0; column < 3; ++column) T.R(row, column) = v[first + static_cast<std::size_t>(column)];
-    T.t[row] = v[first + 3];
-  }
-  return T;
 }
 
 Status read_kitti_times(const std::filesystem::path& path, std::size_t needed,
@@ -97,10 +87,7 @@ Status row_pose(const std::filesystem::path& path, const TableRow& row, Trajecto
   if (Status status = parse_numbers(path, row, kitti ? 0 : 1, v); !status.ok()) return status;
   usable = all_finite(v);
   if (!usable) return {};
-  if (kitti) {
-    pose = pose_from_matrix(v);
-    return is_rotation(pose.R) ? Status() : row_error(path, row, "the 3x3 part of the matrix is no rotation");
-  }
+  if (kitti) return matrix_pose(path, row, v, pose);
   const bool w_first = format == TrajectoryFormat::kEuroc;
   const Quaternion q = w_first ? Quaternion{v[4], v[5], v[6], v[3]} : Quaternion{v[3], v[4], v[5], v[6]};
   return quaternion_pose(path, row, Vector3(v[0], v[1], v[2]), q, pose);
@@ -112,6 +99,19 @@ Status parse_pose(const std::filesystem::path& path, const TableRow& row, std::s
   std::vector<double> v(7);
   if (Status status = parse_numbers(path, row, first, v); !status.ok()) return status;
   return quaternion_pose(path, row, Vector3(v[0], v[1], v[2]), {v[3], v[4], v[5], v[6]}, pose);
+}
+
+Status matrix_pose(const std::filesystem::path& path, const TableRow& row, const std::vector<double>& v,
+                   Se3& pose) {
+  Se3 T;
+  for (int i = 0; i < 3; ++i) {
+    const auto first = static_cast<std::size_t>(i) * 4;
+    for (int column = 0; column < 3; ++column) T.R(i, column) = v[first + static_cast<std::size_t>(column)];
+    T.t[i] = v[first + 3];
+  }
+  if (!is_rotation_as_written(T.R)) return row_error(path, row, "the 3x3 part of the matrix is no rotation");
+  pose = T;
+  return {};
 }
 
 Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory) {

@@ -46,4 +46,9 @@ Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory);
 // NaN is read, not refused.
 Status parse_pose(const std::filesystem::path& path, const TableRow& row, std::size_t first, Se3& pose);
 
+// A pose from the rows of a matrix T_world_camera, 3×4 or 4×4, of finite numbers. kDamaged as above; row: for
+// the message.
+Status matrix_pose(const std::filesystem::path& path, const TableRow& row, const std::vector<double>& matrix,
+                   Se3& pose);
+
 }  // namespace plvo

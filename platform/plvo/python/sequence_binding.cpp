@@ -5,8 +5,8 @@
 
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
 
 namespace plvo::python {
 
@@ -32,7 +32,6 @@ Calibration calibration_for(const std::filesystem::path& folder, const py::objec
     throw_unless_ok(status);
   }
   if (!guess.empty()) warn(guess);
-  for (const std::string& sentence : found.assumptions()) warn(sentence);
   return found;
 }
 
@@ -41,12 +40,12 @@ class Sequence {
   Sequence(const py::object& path, const py::object& camera) {
     const std::filesystem::path folder = path_text(path);
     // A folder that is no sequence should be told so before a missing calibration is.
-    TumIndex index;
-    throw_unless_ok(read_tum_index(folder, {}, TumOptions().tolerance_ns, index));
-    calibration_ = calibration_for(folder, camera);
-    throw_unless_ok(camera_.open(folder, calibration_));
-    calibration_.camera = camera_.model();
-    calibration_.has_size = true;
+    SequenceIndex index;
+    throw_unless_ok(read_sequence_index(folder, {}, index));
+    if (!index.remark.empty()) warn(index.remark);
+    throw_unless_ok(camera_.open(folder, calibration_for(folder, camera)));
+    if (py::isinstance<Calibration>(camera)) return;
+    for (const std::string& sentence : calibration().assumptions()) warn(sentence);
   }
 
   // False at the end. Damaged pairs of images are warned of, and left out.
@@ -63,12 +62,11 @@ class Sequence {
       warn(status.message());
     }
   }
-  const Calibration& calibration() const { return calibration_; }
+  const Calibration& calibration() const { return camera_.calibration(); }
   std::size_t length() const { return camera_.frame_count(); }
 
  private:
-  Calibration calibration_;
-  TumCamera camera_;
+  RecordedCamera camera_;
 };
 
 }  // namespace

@@ -48,15 +48,6 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-bool ends_as_image(std::string_view name) {
-  const auto ends = [name](std::string_view extension) {
-    return name.size() > extension.size() &&
-           std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-  };
-  return ends(".png") || ends(".jpg") || ends(".jpeg");
-}
-
 // Takes a file's name off the front: the words up to the first one that ends as an image's name does, with
 // what is between them; without such an end, one word.
 std::string take_name(std::string_view& line) {
@@ -92,11 +83,10 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
   std::string content;
   if (Status status = read_text_file(list, kMaxTextBytes, content); !status.ok()) {
     if (status.code() != StatusCode::kNotFound) return status;
-    return {
-        StatusCode::kNotFound,
-        fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), or an "
-                    "associations.txt",
-                    list.string())};
+    return {StatusCode::kNotFound,
+            fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), an "
+                        "associations.txt, or numbered frames (docs/formats.md)",
+                        list.string())};
   }
   std::string_view rest = content;
   for (int line = 1; !rest.empty(); ++line) {
@@ -121,7 +111,7 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
 }
 
 Status pair_up(const std::vector<StampedFile>& colour, const std::vector<StampedFile>& depth,
-               std::int64_t tolerance_ns, TumIndex& index) {
+               std::int64_t tolerance_ns, SequenceIndex& index) {
   const auto stamps = [](const std::vector<StampedFile>& files) {
     std::vector<std::int64_t> result;
     for (const StampedFile& file : files) result.push_back(file.stamp_ns);
@@ -144,21 +134,9 @@ Status pair_up(const std::vector<StampedFile>& colour, const std::vector<Stamped
 }  // namespace
 
 Status read_tum_index(const fs::path& folder, const fs::path& associations, std::int64_t tolerance_ns,
-                      TumIndex& index) {
+                      SequenceIndex& index) {
   index = {};
   std::error_code error;
-  if (fs::is_regular_file(folder, error) && folder.extension() == ".oni") {
-    return {StatusCode::kUnsupported,
-            fmt::format(
-                "{0} is a recording of OpenNI2, not a folder of images: plvo live --device {0} plays it, and "
-                "plvo record FOLDER --device {0} makes a folder of it",
-                folder.string())};
-  }
-  if (!fs::is_directory(folder, error)) {
-    return {
-        StatusCode::kNotFound,
-        fmt::format("{} is not a folder; name the folder that holds rgb.txt and depth.txt", folder.string())};
-  }
   std::vector<StampedFile> lists[2];
   fs::path joint = associations;
   if (joint.empty() && !fs::exists(folder / "rgb.txt", error) &&

@@ -6,34 +6,17 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "plvo/base/status.hpp"
+#include "plvo/replay/sequence_index.hpp"
 
 namespace plvo {
 
-struct StampedFile {
-  std::int64_t stamp_ns = 0;
-  std::string file;  // relative to the folder
-};
-
-struct TumPair {
-  StampedFile colour;
-  StampedFile depth;
-};
-
-struct TumIndex {
-  std::vector<TumPair> pairs;  // colour stamps strictly increasing
-  std::size_t unpaired_colour = 0;
-  std::size_t unpaired_depth = 0;
-};
-
 // Reads folder/rgb.txt and folder/depth.txt, or, when `associations` names a file or the folder has no
 // rgb.txt but an associations.txt, that file. tolerance_ns: the largest difference of stamps in a pair.
-// kNotFound for a missing folder or list; kDamaged, naming file and line, for a line that is not understood
+// kNotFound for a missing list; kDamaged, naming file and line, for a line that is not understood
 // or stamps that do not increase; kInvalidArgument when nothing pairs up, or a list is no regular file.
 Status read_tum_index(const std::filesystem::path& folder, const std::filesystem::path& associations,
-                      std::int64_t tolerance_ns, TumIndex& index);
+                      std::int64_t tolerance_ns, SequenceIndex& index);
 
 }  // namespace plvo

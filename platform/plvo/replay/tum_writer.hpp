@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes frames as a TUM folder that TumCamera reads back: rgb/, depth/, rgb.txt, depth.txt, calibration.txt,
-// and groundtruth.txt when poses are known. A frame is listed only after its two images are on the disk, so
-// that a full disk or an interruption leaves a folder that can be read up to there.
+// Writes frames as a TUM folder that RecordedCamera reads back: rgb/, depth/, rgb.txt, depth.txt,
+// calibration.txt, and groundtruth.txt when poses are known. A frame is listed only after its two images are
+// on the disk, so that a full disk or an interruption leaves a folder that can be read up to there.
 #pragma once
 
 #include <filesystem>

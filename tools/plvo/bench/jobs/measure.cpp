@@ -13,8 +13,8 @@
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/resident_memory.hpp"
 #include "plvo/host/trajectory_file.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -27,7 +27,7 @@ struct Tracks {
   int lost = 0;
 };
 
-Status track_all(TumCamera& camera, System& system, Tracks& tracks) {
+Status track_all(RecordedCamera& camera, System& system, Tracks& tracks) {
   for (RgbdFrame frame;;) {
     const Status status = camera.next(frame);
     if (status.code() == StatusCode::kEndOfStream) return {};
@@ -65,10 +65,10 @@ Status measure(const Job& job, const fs::path& out) {
                      ? sequence_calibration(job.folder, calibration, guess)
                      : builtin_calibration(job.options.camera_model, calibration);
   if (!found.ok()) return found;
-  TumOptions tum;
-  if (job.options.frames > 0) tum.end_frame = job.options.frames;
-  TumCamera camera;
-  if (Status status = camera.open(job.folder, calibration, tum); !status.ok()) return status;
+  SequenceOptions range;
+  if (job.options.frames > 0) range.end_frame = job.options.frames;
+  RecordedCamera camera;
+  if (Status status = camera.open(job.folder, calibration, range); !status.ok()) return status;
 
   // The peak is counted anew from here, so that what the loading of the program took does not hide it.
   forget_peak_resident();

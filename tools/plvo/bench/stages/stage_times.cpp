@@ -4,13 +4,13 @@
 #include "plvo/base/random.hpp"
 #include "plvo/bench/stages/track_counted.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
 
 namespace plvo::bench {
 namespace {
 
-Status open(const NamedFolder& sequence, const JobOptions& options, TumCamera& camera) {
+Status open(const NamedFolder& sequence, const JobOptions& options, RecordedCamera& camera) {
   const std::string& model = sequence.camera_model.empty() ? options.camera_model : sequence.camera_model;
   Calibration calibration;
   std::string guess;
@@ -18,9 +18,9 @@ Status open(const NamedFolder& sequence, const JobOptions& options, TumCamera& c
                                     : builtin_calibration(model, calibration);
       !status.ok())
     return status;
-  TumOptions tum;
-  if (options.frames > 0) tum.end_frame = options.frames;
-  return camera.open(sequence.folder, calibration, tum);
+  SequenceOptions range;
+  if (options.frames > 0) range.end_frame = options.frames;
+  return camera.open(sequence.folder, calibration, range);
 }
 
 // A new one for each frame, as the worst sensor would give it; stripes and squares move with the frame.
@@ -47,7 +47,7 @@ void fill(Replacement replacement, int index, int width, int height, std::vector
 
 Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Replacement replacement,
                       StageTimes& times) {
-  TumCamera camera;
+  RecordedCamera camera;
   if (Status status = open(sequence, options, camera); !status.ok()) return status;
   Limits limits;
   limits.width = camera.model().width;

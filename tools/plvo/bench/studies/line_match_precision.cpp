@@ -26,7 +26,7 @@
 #include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/lines/msld.hpp"
 #include "plvo/replay/calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 
 namespace {
 
@@ -231,7 +231,7 @@ void print(const Settings& settings, const Totals& t) {
 
 int run(const Settings& settings) {
   plvo::Calibration calibration;
-  plvo::TumCamera camera;
+  plvo::RecordedCamera camera;
   plvo::eval::Trajectory truth;
   plvo::eval::TrajectorySource source;
   source.path = settings.folder + "/groundtruth.txt";

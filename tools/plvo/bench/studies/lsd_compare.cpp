@@ -20,7 +20,7 @@
 #include "plvo/image/pyramid.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/replay/calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 
 namespace {
 
@@ -54,7 +54,7 @@ struct Sequence {
 plvo::Status load(const Options& options, Sequence& sequence) {
   const std::filesystem::path folder = options.folder;
   plvo::Calibration calibration;
-  plvo::TumCamera camera;
+  plvo::RecordedCamera camera;
   plvo::Trajectory truth;
   if (plvo::Status status = plvo::read_calibration(folder / "calibration.txt", calibration); !status.ok())
     return status;

@@ -20,7 +20,7 @@
 #include "plvo/eval/statistics.hpp"
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/replay/calibration.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -156,7 +156,7 @@ Status collect(const std::string& folder, Samples& samples) {
   if (Status status = read_calibration(std::filesystem::path(folder) / "calibration.txt", calibration);
       !status.ok())
     return status;
-  TumCamera camera;
+  RecordedCamera camera;
   if (Status status = camera.open(folder, calibration); !status.ok()) return status;
   eval::Trajectory truth;
   if (Status status =

@@ -232,7 +232,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   group.whole("--threads", options->threads, 1, 256,
               "Threads; the result does not depend on them (default 2)");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
-  add_calibration_options(command, options->calibration, DepthScale::kAsked, "calibration.txt in the folder");
+  add_calibration_options(command, options->calibration, DepthScale::kAsked, "the calibration in the folder");
   add_json_option(command, options->json);
   on_command(command, exit_code, [&command, options] {
     check(command, *options);

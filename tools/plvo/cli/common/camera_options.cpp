@@ -7,7 +7,8 @@
 
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/live/live_camera.hpp"
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/numbered_index.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
 namespace plvo::cli {
@@ -22,13 +23,14 @@ bool parse_count(std::string_view text, std::size_t& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-TumOptions tum_options(const CameraOptions& options) {
-  TumOptions tum;
-  tum.associations = options.associations;
-  tum.tolerance_ns = static_cast<std::int64_t>(options.tolerance_s * 1e9);
-  tum.first_frame = options.frames.first;
-  tum.end_frame = options.frames.end;
-  return tum;
+SequenceOptions sequence_options(const CameraOptions& options) {
+  SequenceOptions sequence;
+  sequence.associations = options.associations;
+  sequence.tolerance_ns = static_cast<std::int64_t>(options.tolerance_s * 1e9);
+  sequence.frames_per_s = options.rate_hz;
+  sequence.first_frame = options.frames.first;
+  sequence.end_frame = options.frames.end;
+  return sequence;
 }
 
 std::string sequence_name(const fs::path& path) {
@@ -36,28 +38,29 @@ std::string sequence_name(const fs::path& path) {
   return (normal.filename().empty() ? normal.parent_path() : normal).filename().string();
 }
 
-Status open_tum(const CameraOptions& options, Log& log, OpenedCamera& opened) {
+Status open_folder(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   const fs::path folder = options.sequence;
-  const TumOptions tum = tum_options(options);
+  const SequenceOptions sequence = sequence_options(options);
   // A folder that is no sequence should be told so before a missing calibration is.
-  TumIndex index;
-  if (Status status = read_tum_index(folder, tum.associations, tum.tolerance_ns, index); !status.ok())
-    return status;
+  SequenceIndex index;
+  if (Status status = read_sequence_index(folder, sequence, index); !status.ok()) return status;
   Calibration calibration;
   std::string guess;
   if (Status status = find_calibration(options.calibration, folder, calibration, guess); !status.ok())
     return status;
-  auto camera = std::make_unique<TumCamera>();
-  if (Status status = camera->open(folder, calibration, tum); !status.ok()) return status;
-  if (!guess.empty()) log.write(LogLevel::kWarning, guess);
-  for (const std::string& sentence : calibration.assumptions()) log.write(LogLevel::kWarning, sentence);
+  auto camera = std::make_unique<RecordedCamera>();
+  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) return status;
+  for (const std::string& sentence : {index.remark, guess})
+    if (!sentence.empty()) log.write(LogLevel::kWarning, sentence);
+  for (const std::string& sentence : camera->calibration().assumptions())
+    log.write(LogLevel::kWarning, sentence);
   opened.frame_count = camera->frame_count();
   opened.unpaired_images = index.unpaired_colour;
   opened.name = sequence_name(folder);
   std::error_code error;
-  if (const fs::path truth_file = folder / "groundtruth.txt"; fs::exists(truth_file, error)) {
-    opened.ground_truth = [truth_file](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
-      return eval::read_trajectory({truth_file, {}, {}}, truth);
+  if (fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty()) {
+    opened.ground_truth = [folder, sequence](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
+      return read_ground_truth(folder, sequence, truth);
     };
   }
   opened.inertial = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
@@ -137,10 +140,16 @@ bool parse_frame_range(const std::string& text, FrameRange& range) {
   return true;
 }
 
+CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz) {
+  return group.number("--rate", rate_hz, kNumberedRates_hz, "HZ",
+                      "Numbered frames, which have no stamps: how many a second (default 30)");
+}
+
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   OptionGroup group(command);
   group.path("sequence", options.sequence,
-             "What was recorded: a folder with rgb.txt and depth.txt (TUM layout), or an .oni file",
+             "What was recorded: a folder with rgb.txt and depth.txt (TUM layout) or with numbered frames "
+             "(7-Scenes, ScanNet), or an .oni file",
              "DIR|FILE.oni");
   group.choice("--camera", options.simulated, Choices<bool>{{"sim", true}},
                "The simulated camera, instead of a recorded sequence");
@@ -154,7 +163,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
              "List of pairs 'stamp rgb_file stamp depth_file', instead of rgb.txt and depth.txt");
   group.number("--tolerance", options.tolerance_s, kTolerance_s, "SECONDS",
                "Colour and depth whose stamps differ by more are no pair (default 0.02)");
-  add_calibration_options(command, options.calibration, DepthScale::kAsked, "calibration.txt in the folder");
+  add_rate_option(group, options.rate_hz);
+  add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
 }
 
@@ -165,7 +175,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
     if (!options.sequence.empty())
       refuse("--camera", "sim and a recorded sequence (" + options.sequence + ") exclude each other");
     refuse_group(command, kCalibrationGroup, why);
-    refuse_options(command, {"--associations", "--tolerance"}, why);
+    refuse_options(command, {"--associations", "--tolerance", "--rate"}, why);
     if (options.frames.first != 0)
       refuse("--frames", "a simulated walk starts at frame 0: give the number of frames, such as 100");
     if (options.frames.end != FrameRange().end && options.frames.end > kMostSimulatedFrames)
@@ -176,8 +186,12 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
     refuse_command("a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
   refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
   if (is_oni_file(options.sequence))
-    refuse_options(command, {"--associations", "--tolerance", "--depth-scale"},
-                   "does not apply to an .oni file, which has pairs and units of its own");
+    return refuse_options(command, {"--associations", "--tolerance", "--rate", "--depth-scale"},
+                          "does not apply to an .oni file, which has pairs, stamps and units of its own");
+  if (options.associations.empty() && is_numbered_folder(options.sequence))
+    return refuse_options(command, {"--tolerance"},
+                          "does not apply to numbered frames: one number is a pair");
+  refuse_options(command, {"--rate"}, "is for numbered frames; this sequence has stamps");
 }
 
 void add_inputs(const CameraOptions& options, FileRoles& files) {
@@ -191,19 +205,18 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
        {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
     files.reads(folder / name);
   files.reads(calibration_file_in(folder).value_or(fs::path()));
-  TumIndex index;
-  const TumOptions tum = tum_options(options);
-  if (!files.may_overwrite() || !read_tum_index(folder, tum.associations, tum.tolerance_ns, index).ok())
-    return;
-  for (const TumPair& pair : index.pairs) {
+  SequenceIndex index;
+  if (!files.may_overwrite() || !read_sequence_index(folder, sequence_options(options), index).ok()) return;
+  for (const ImagePair& pair : index.pairs) {
     files.reads(folder / pair.colour.file);
     files.reads(folder / pair.depth.file);
   }
+  for (const StampedFile& pose : index.poses) files.reads(folder / pose.file);
 }
 
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   if (options.simulated) return open_simulator(options, opened);
-  return is_oni_file(options.sequence) ? open_oni(options, log, opened) : open_tum(options, log, opened);
+  return is_oni_file(options.sequence) ? open_oni(options, log, opened) : open_folder(options, log, opened);
 }
 
 }  // namespace plvo::cli

@@ -20,6 +20,7 @@
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/replay/calibration.hpp"
 #include "plvo/replay/imu_files.hpp"
+#include "plvo/replay/sequence_index.hpp"
 
 namespace plvo::cli {
 
@@ -49,12 +50,17 @@ struct FrameRange {
 // "b": the first b frames; "a:b", "a:", ":b": frames a … b-1.
 bool parse_frame_range(const std::string& text, FrameRange& range);
 
+// Of numbered frames; their stamps stay within 64 bits.
+inline constexpr NumberRange kNumberedRates_hz = {0.1, 1000};
+CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz);
+
 struct CameraOptions {
   bool simulated = false;
   std::string sequence;  // a folder or an .oni file, where it is not simulated
   FrameRange frames;
   std::string associations;
   double tolerance_s = 0.02;
+  double rate_hz = SequenceOptions().frames_per_s;
   CalibrationOptions calibration;
   SimulatorArguments simulator;
 };

@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/line_file.hpp"
+#include "plvo/replay/numbered_index.hpp"
 #include "plvo/report/report.hpp"
 
 namespace plvo::cli {
@@ -24,6 +26,7 @@ namespace {
 constexpr const char* kEvalHelp =
     "Examples:\n"
     "  plvo eval --gt walk/groundtruth.txt --est trajectory.txt\n"
+    "  plvo eval --gt chess/seq-01 --est trajectory.txt     the poses of numbered frames\n"
     "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n";
 
 struct EvalOptions {
@@ -32,6 +35,7 @@ struct EvalOptions {
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
   double offset_s = 0;
+  SequenceOptions folder;  // where the ground truth is a folder
   std::vector<eval::RpeDelta> deltas;
   std::string json;
 };
@@ -43,10 +47,17 @@ bool stamps_are_moderate(const eval::Trajectory& trajectory) {
   });
 }
 
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error);
+}
+
 Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, eval::Trajectory& estimate,
                    std::vector<eval::StampedCovariance>& covariances,
                    std::vector<eval::UncertainMotion>& motions) {
-  Status status = read_trajectory(options.ground_truth, ground_truth);
+  const std::filesystem::path& truth = options.ground_truth.path;
+  Status status = is_folder(truth) ? read_ground_truth(truth, options.folder, ground_truth)
+                                   : read_trajectory(options.ground_truth, ground_truth);
   if (status.ok()) status = read_trajectory(options.estimate, estimate);
   if (status.ok() && !stamps_are_moderate(estimate))
     status = {StatusCode::kInvalidArgument, options.estimate.path.string() + " has stamps beyond 146 years"};
@@ -81,8 +92,8 @@ int eval_command(EvalOptions options) {
   for (const auto& [trajectory, source] :
        {std::pair(&ground_truth, &options.ground_truth), std::pair(&estimate, &options.estimate)})
     if (trajectory->ignored_rows > 0)
-      warn(fmt::format("{}: {} rows with a NaN or a repeated stamp were ignored", source->path.string(),
-                       trajectory->ignored_rows));
+      warn(fmt::format("{}: {} poses with a NaN, an infinity or a repeated stamp were ignored",
+                       source->path.string(), trajectory->ignored_rows));
   if (!options.report.empty()) {
     report::ReportInput input;
     input.title = options.estimate.path.filename().string();
@@ -99,9 +110,16 @@ int eval_command(EvalOptions options) {
 void check(const CLI::App& command, const EvalOptions& options) {
   if (options.sampling != eval::GroundTruthSampling::kNearest)
     refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
+  const std::filesystem::path& truth = options.ground_truth.path;
+  if (is_folder(truth)) refuse_options(command, {"--gt-format"}, "is for a file, and --gt names a folder");
+  if (!is_numbered_folder(truth)) refuse_options(command, {"--rate"}, "is for a folder of numbered frames");
   FileRoles files;
   files.writes("--report", options.report);
   files.writes("--json", options.json);
+  files.reads(truth / "groundtruth.txt");
+  SequenceIndex index;
+  if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
+    for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);
   for (const std::filesystem::path& path :
        {options.ground_truth.path, options.estimate.path, std::filesystem::path(options.kitti_times),
         std::filesystem::path(options.covariance), std::filesystem::path(options.motions)})
@@ -118,7 +136,7 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
     });
   };
   require(file("--gt", options.ground_truth.path,
-               "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI"));
+               "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI, or the folder of a sequence"));
   require(file("--est", options.estimate.path, "The estimate, likewise"));
   const std::vector<std::pair<std::string, eval::TrajectoryFormat>> formats = {
       {"auto", eval::TrajectoryFormat::kAuto},
@@ -127,6 +145,7 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
       {"kitti", eval::TrajectoryFormat::kKitti}};
   group.choice("--gt-format", options.ground_truth.format, formats, "auto: told by the content (default)");
   group.choice("--est-format", options.estimate.format, formats, "auto: told by the content (default)");
+  add_rate_option(group, options.folder.frames_per_s);
   file("--kitti-times", options.kitti_times,
        "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart)");
   file("--est-covariance", options.covariance,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/replay/tum_camera.hpp"
+#include "plvo/replay/recorded_camera.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,16 +22,16 @@ using test::tiny_stamp;
 using test::TinyFrame;
 using test::write_tiny_sequence;
 
-Status open(TumCamera& camera, const fs::path& folder, const TumOptions& options = {}) {
+Status open(RecordedCamera& camera, const fs::path& folder, const SequenceOptions& options = {}) {
   Calibration calibration;
   if (Status status = read_calibration(folder / "calibration.txt", calibration); !status.ok()) return status;
   return camera.open(folder, calibration, options);
 }
 
-TEST(TumCamera, GivesBackWhatWasWritten) {
+TEST(RecordedCamera, GivesBackWhatWasWritten) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   const Status status = open(camera, folder.path());
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(camera.frame_count(), 3u);
@@ -51,13 +51,13 @@ TEST(TumCamera, GivesBackWhatWasWritten) {
   EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
 }
 
-TEST(TumCamera, FrameRange) {
+TEST(RecordedCamera, FrameRange) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 5).ok());
-  TumOptions options;
+  SequenceOptions options;
   options.first_frame = 2;
   options.end_frame = 4;
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder.path(), options).ok());
   EXPECT_EQ(camera.frame_count(), 2u);
   RgbdFrame frame;
@@ -68,13 +68,13 @@ TEST(TumCamera, FrameRange) {
   EXPECT_TRUE(says(open(camera, folder.path(), options), "the frame range is empty"));
 }
 
-TEST(TumCamera, DamagedFrameIsSkippedNotFatal) {
+TEST(RecordedCamera, DamagedFrameIsSkippedNotFatal) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
   const fs::path victim = folder.path() / "depth" / "100.038333.png";
   ASSERT_TRUE(fs::exists(victim));
   fs::resize_file(victim, fs::file_size(victim) / 2);
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder.path()).ok());
   RgbdFrame frame;
   EXPECT_TRUE(camera.next(frame).ok());
@@ -85,48 +85,48 @@ TEST(TumCamera, DamagedFrameIsSkippedNotFatal) {
   EXPECT_EQ(frame.stamp_ns, tiny_stamp(2));
 }
 
-TEST(TumCamera, NothingReadableIsRefusedAtOpen) {
+TEST(RecordedCamera, NothingReadableIsRefusedAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   fs::remove_all(folder / "rgb");
-  TumCamera camera;
+  RecordedCamera camera;
   EXPECT_TRUE(says(open(camera, folder.path()), "no image of the sequence can be read; rgb/100.000000.png"));
 }
 
-TEST(TumCamera, EightBitDepthIsRefusedAtOpen) {
+TEST(RecordedCamera, EightBitDepthIsRefusedAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   const std::vector<std::uint8_t> grey(96 * 64, 80);
   ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png",
                         ColourView{grey.data(), 96, 64, 96, PixelFormat::kGray8})
                   .ok());
-  TumCamera camera;
+  RecordedCamera camera;
   EXPECT_TRUE(says(open(camera, folder.path()), "has 8 bits per channel; depth must be a 16-bit grey PNG"));
 }
 
-TEST(TumCamera, DifferentSizesAreRefusedAtOpen) {
+TEST(RecordedCamera, DifferentSizesAreRefusedAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", TinyFrame(0, 48, 32).frame.depth).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   EXPECT_TRUE(says(open(camera, folder.path()), "colour is 96x64 but depth is 48x32"));
 }
 
 // The names do not say it, the images do.
-TEST(TumCamera, DepthFirstAssociationsAreNamed) {
+TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   fs::rename(folder / "rgb", folder / "a");
   fs::rename(folder / "depth", folder / "b");
   test::write_file(folder / "pairs.txt", "100.0 b/100.005000.png 100.0 a/100.000000.png\n");
-  TumOptions options;
+  SequenceOptions options;
   options.associations = folder / "pairs.txt";
-  TumCamera camera;
+  RecordedCamera camera;
   const Status status = open(camera, folder.path(), options);
   EXPECT_TRUE(says(status, "the associations name depth first")) << status.message();
 }
 
-TEST(TumCamera, CarriesEveryPropertyOfTheSensor) {
+TEST(RecordedCamera, CarriesEveryPropertyOfTheSensor) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   fs::remove(folder / "calibration.txt");
@@ -135,28 +135,28 @@ TEST(TumCamera, CarriesEveryPropertyOfTheSensor) {
   Calibration calibration;
   ASSERT_EQ(calibration_file_in(folder.path()), folder / "camera.yaml");
   ASSERT_TRUE(read_calibration(*calibration_file_in(folder.path()), calibration).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(camera.open(folder.path(), calibration).ok());
   EXPECT_EQ(camera.model().pinhole.fy, 81);
   EXPECT_EQ(camera.model().readout_s, 0.02);
   EXPECT_EQ(camera.model().width, 96);
-  EXPECT_EQ(camera.depth_units_per_metre(), 1000);
+  EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
 }
 
-TEST(TumCamera, CalibrationMustFit) {
+TEST(RecordedCamera, CalibrationMustFit) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   Calibration calibration;
   ASSERT_TRUE(builtin_calibration("tum-fr1", calibration).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   EXPECT_TRUE(says(camera.open(folder.path(), calibration), "is for 640x480 images, these are 96x64"));
 }
 
-TEST(TumCamera, ReadsARealSequence) {
+TEST(RecordedCamera, ReadsARealSequence) {
   const char* shared = std::getenv("PLVO_SHARED");
   const fs::path folder = fs::path(shared == nullptr ? "" : shared) / "data" / "fr1_xyz_10f";
   if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder).ok());
   // Its two lists run half a period apart, so that the best-first rule leaves one image of each without a
   // partner.
@@ -183,7 +183,7 @@ class FakeClock final : public Clock {
 TEST(PacedCamera, RealtimeKeepsTheStampsDistances) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder.path()).ok());
   FakeClock clock;
   PacedCamera paced(camera, Pace::kRealtime, clock, {});
@@ -197,7 +197,7 @@ TEST(PacedCamera, RealtimeKeepsTheStampsDistances) {
 TEST(PacedCamera, StepAsksBeforeEachFrame) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
-  TumCamera camera;
+  RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder.path()).ok());
   FakeClock clock;
   int steps = 0;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded folder as a camera. Every buffer is made by open(): one colour image, one depth image, and
+// the bytes of the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "plvo/hal/rgbd_camera.hpp"
+#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/sequence_index.hpp"
+
+namespace plvo {
+
+class RecordedCamera final : public RgbdCamera {
+ public:
+  // Finds the frames, checks the first readable pair (sizes, bits) and the calibration against it. What the
+  // calibration leaves unsaid, the layout says: numbered frames have depth in millimetres. All of what
+  // read_sequence_index returns, and kInvalidArgument for an empty frame range, images of different sizes,
+  // 8-bit depth, or a calibration that does not fit.
+  Status open(const std::filesystem::path& folder, const Calibration& calibration,
+              const SequenceOptions& options = {});
+
+  CameraModel model() const override { return calibration_.camera; }
+  // kDamaged, with the file and why, for a pair that cannot be decoded; the next call goes on after it.
+  Status next(RgbdFrame& frame) override;
+
+  std::size_t frame_count() const { return index_.pairs.size(); }  // in the chosen range
+  const SequenceIndex& index() const { return index_; }
+  const Calibration& calibration() const { return calibration_; }  // in force; with the size of the images
+
+ private:
+  Status choose_range(const SequenceOptions& options);
+  Status find_image_size(int& width, int& height);
+  void allocate();
+
+  std::filesystem::path folder_;
+  SequenceIndex index_;
+  Calibration calibration_;
+  ImageDecoder decoder_;
+  std::vector<std::uint8_t> colour_;
+  std::vector<std::uint16_t> depth_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace plvo

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Folders of numbered frames: the same trajectory as from a TUM folder with the same images and stamps, and
+// every folder that is not as it should be refused in words.
+#include "plvo/replay/numbered_index.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "numbered_sequence.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/replay/recorded_camera.hpp"
+#include "plvo/replay/sequence_calibration.hpp"
+#include "says.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::NumberedSequence;
+using test::says;
+using test::scannet_file;
+using test::seven_scenes_file;
+using test::TemporaryFolder;
+using test::write_file;
+
+Status open_alone(RecordedCamera& camera, const fs::path& folder) {
+  Calibration calibration;
+  std::string guess;
+  if (Status status = sequence_calibration(folder, calibration, guess); !status.ok()) return status;
+  return camera.open(folder, calibration);
+}
+
+struct Pose {
+  std::int64_t stamp_ns;
+  double numbers[12 + 36];
+};
+
+std::vector<Pose> track(const fs::path& folder) {
+  RecordedCamera camera;
+  const Status opened = open_alone(camera, folder);
+  EXPECT_TRUE(opened.ok()) << opened.message();
+  Limits limits = Limits::qvga();
+  std::vector<std::byte> memory(required_bytes(limits));
+  Odometry odometry;
+  EXPECT_TRUE(odometry.init(memory, camera.model(), Config(), limits).ok());
+  std::vector<Pose> poses;
+  for (RgbdFrame frame; camera.next(frame).ok();) {
+    const TrackResult result = odometry.track(frame);
+    EXPECT_TRUE(result.status.ok()) << result.status.message();
+    Pose pose{result.stamp_ns, {}};
+    std::memcpy(pose.numbers, result.T_world_camera.R.data(), 9 * sizeof(double));
+    std::memcpy(pose.numbers + 9, result.T_world_camera.t.data(), 3 * sizeof(double));
+    std::memcpy(pose.numbers + 12, result.pose_covariance.data(), 36 * sizeof(double));
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+TEST(NumberedFolder, TracksAsTheTumFolderWithTheSameStamps) {
+  const NumberedSequence sequence;
+  ASSERT_TRUE(sequence.good());
+  const std::vector<Pose> expected = track(sequence.tum());
+  ASSERT_EQ(expected.size(), std::size_t{test::kNumberedFrames});
+  EXPECT_EQ(expected[1].stamp_ns, 33'333'333);
+  EXPECT_NE(expected[5].numbers[9], 0);
+  for (const fs::path& folder : {sequence.seven_scenes(), sequence.scannet()}) {
+    const std::vector<Pose> poses = track(folder);
+    ASSERT_EQ(poses.size(), expected.size()) << folder;
+    EXPECT_EQ(std::memcmp(poses.data(), expected.data(), poses.size() * sizeof(Pose)), 0) << folder;
+  }
+}
+
+TEST(NumberedFolder, DepthIsInMillimetresAndTheCalibrationSaysMore) {
+  const NumberedSequence sequence;
+  RecordedCamera camera;
+  ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
+  EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
+  EXPECT_EQ(camera.calibration().assumptions().size(), 1u);  // the shutter
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.depth.metres_per_unit, 1.0 / 1000);
+  Calibration calibration;
+  ASSERT_TRUE(builtin_calibration("7scenes", calibration).ok());
+  EXPECT_EQ(calibration.camera.pinhole.fx, 585);
+  EXPECT_EQ(calibration.camera.pinhole.cy, 240);
+  EXPECT_EQ(calibration.depth_units_per_metre, 1000);
+  // What a calibration says itself holds.
+  calibration.has_size = false;
+  calibration.camera.pinhole = {290, 290, 160, 120};
+  calibration.depth_units_per_metre = 5000;
+  ASSERT_TRUE(camera.open(sequence.scannet(), calibration).ok());
+  EXPECT_EQ(camera.calibration().depth_units_per_metre, 5000);
+}
+
+TEST(NumberedFolder, PosesAreTheTruth) {
+  const NumberedSequence sequence;
+  write_file(sequence.scannet() / scannet_file("pose", 2),
+             "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
+  write_file(sequence.scannet() / scannet_file("pose", 3), "nan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  SequenceOptions options;
+  options.frames_per_s = 10;
+  Trajectory truth;
+  const Status status = read_ground_truth(sequence.scannet(), options, truth);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(truth.ignored_rows, 2u);
+  ASSERT_EQ(truth.poses.size(), 4u);
+  EXPECT_EQ(truth.poses[2].stamp_ns, 400'000'000);
+  const Se3 expected = ProceduralRenderer::T_world_camera(4);
+  EXPECT_EQ(truth.poses[2].T_world_camera.R, expected.R);
+  EXPECT_EQ(truth.poses[2].T_world_camera.t, expected.t);
+  // A trajectory beside the frames comes first.
+  fs::copy(sequence.tum() / "groundtruth.txt", sequence.scannet() / "groundtruth.txt");
+  ASSERT_TRUE(read_ground_truth(sequence.scannet(), options, truth).ok());
+  EXPECT_EQ(truth.poses.size(), 6u);
+  fs::remove_all(sequence.scannet() / "pose");
+  fs::remove(sequence.scannet() / "groundtruth.txt");
+  EXPECT_EQ(read_ground_truth(sequence.scannet(), options, truth).code(), StatusCode::kNotFound);
+}
+
+TEST(NumberedFolder, DamagedPosesAreNamed) {
+  const NumberedSequence sequence;
+  const fs::path file = sequence.seven_scenes() / seven_scenes_file("pose", 4);
+  Trajectory truth;
+  const auto refused = [&](std::string_view content, std::string_view words) {
+    fs::remove(file);
+    write_file(file, content);
+    const Status status = read_ground_truth(sequence.seven_scenes(), {}, truth);
+    EXPECT_EQ(status.code(), StatusCode::kDamaged) << content;
+    EXPECT_TRUE(says(status, words)) << status.message();
+    EXPECT_TRUE(says(status, "frame-000004.pose.txt")) << status.message();
+  };
+  refused("", "expected four rows of four numbers");
+  refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "expected four rows of four numbers");
+  refused("1 0 0\n0 1 0\n0 0 1\n0 0 0\n", "expected four rows of four numbers");
+  refused("1 0 0 0\n0 1 0 x\n0 0 1 0\n0 0 0 1\n", "line 2: 'x' is not a number");
+  refused("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", "no rotation");
+  refused("1 0 0 0\n0 1 0 0\n0 0 1 0\n4 5 6 1\n", "line 4: the last row of a pose must be 0 0 0 1");
+  fs::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_TRUE(says(read_ground_truth(sequence.seven_scenes(), {}, truth), "it is a pipe"));
+  fs::remove(file);
+  write_file(file, "");
+  fs::resize_file(file, std::uintmax_t{1} << 40);
+  EXPECT_TRUE(says(read_ground_truth(sequence.seven_scenes(), {}, truth), "1099511627776 bytes"));
+}
+
+// Names alone, for what is judged before an image is read.
+class NumberedNames : public ::testing::Test {
+ protected:
+  void touch(const std::string& name) {
+    fs::create_directories((folder_ / name).parent_path());
+    write_file(folder_ / name, "");
+  }
+  Status read() { return read_sequence_index(folder_.path(), {}, index_); }
+
+  TemporaryFolder folder_;
+  SequenceIndex index_;
+};
+
+TEST_F(NumberedNames, AreOrderedByNumberAndPaired) {
+  for (const char* name : {"color/10.jpg", "color/9.JPG", "color/100.png", "depth/9.png", "depth/10.png",
+                           "depth/11.png", "pose/9.txt", "color/.hidden.jpg", "color/Thumbs.db", "notes.txt"})
+    touch(name);
+  const Status status = read();
+  ASSERT_TRUE(status.ok()) << status.message();
+  ASSERT_EQ(index_.pairs.size(), 2u);
+  EXPECT_EQ(index_.pairs[0].colour.file, "color/9.JPG");
+  EXPECT_EQ(index_.pairs[0].colour.stamp_ns, 300'000'000);
+  EXPECT_EQ(index_.pairs[1].depth.file, "depth/10.png");
+  EXPECT_EQ(index_.pairs[1].depth.stamp_ns, 333'333'333);
+  EXPECT_EQ(index_.unpaired_colour, 1u);
+  EXPECT_EQ(index_.unpaired_depth, 1u);
+  EXPECT_EQ(index_.poses.size(), 1u);
+}
+
+TEST_F(NumberedNames, GapsAreToldUnlessFramesWereTakenOutEvenly) {
+  for (int number : {0, 20, 40, 60}) {
+    touch(seven_scenes_file("color", number));
+    touch(seven_scenes_file("depth", number));
+  }
+  ASSERT_TRUE(read().ok());
+  EXPECT_EQ(index_.remark, "");
+  fs::remove(folder_ / seven_scenes_file("depth", 20));
+  touch(seven_scenes_file("color", 80));
+  touch(seven_scenes_file("depth", 80));
+  ASSERT_TRUE(read().ok());
+  EXPECT_NE(index_.remark.find("between the frames 0 and 80 there is no pair of images for 1 numbers, the "
+                               "first of them 20"),
+            std::string::npos)
+      << index_.remark;
+}
+
+TEST_F(NumberedNames, WithoutANumberAreRefused) {
+  for (const char* name : {"frame-000000.color.png", "frame-000000.depth.png"}) touch(name);
+  for (const char* name :
+       {"frame-00000x.color.png", "frame--1.depth.png", "frame-.pose.txt", "frame-123456789.color.jpg"}) {
+    touch(name);
+    const Status status = read();
+    EXPECT_EQ(status.code(), StatusCode::kDamaged) << name;
+    EXPECT_TRUE(says(status, std::string(name) + ": expected a number of at most 8 digits")) << name;
+    fs::remove(folder_ / name);
+  }
+  EXPECT_TRUE(read().ok());
+}
+
+TEST_F(NumberedNames, OfOneNumberAreRefused) {
+  for (const char* name : {"color/7.jpg", "color/007.png", "depth/7.png"}) touch(name);
+  const Status status = read();
+  EXPECT_EQ(status.code(), StatusCode::kDamaged);
+  EXPECT_TRUE(says(status, "color/007.png and color/7.jpg have the same number")) << status.message();
+}
+
+TEST_F(NumberedNames, WithoutPairsAreRefused) {
+  for (const char* name : {"color/1.jpg", "depth/2.png"}) touch(name);
+  EXPECT_TRUE(says(read(), "no colour image has a depth image of the same number"));
+  fs::remove_all(folder_ / "depth");
+  EXPECT_TRUE(says(read(), "rgb.txt; a sequence needs rgb.txt")) << "half a layout is none";
+}
+
+// Lists, and what the user names, come before names.
+TEST_F(NumberedNames, GiveWayToLists) {
+  for (const char* name : {"color/1.png", "depth/1.png"}) touch(name);
+  EXPECT_TRUE(is_numbered_folder(folder_.path()));
+  SequenceOptions options;
+  options.associations = folder_ / "pairs.txt";
+  write_file(options.associations, "5.0 color/1.png 5.0 depth/1.png\n");
+  ASSERT_TRUE(read_sequence_index(folder_.path(), options, index_).ok());
+  EXPECT_EQ(index_.pairs[0].colour.stamp_ns, 5'000'000'000);
+  fs::rename(folder_ / "pairs.txt", folder_ / "associations.txt");
+  EXPECT_FALSE(is_numbered_folder(folder_.path()));
+}
+
+TEST(NumberedFolder, ADamagedImageCostsItsFrame) {
+  const NumberedSequence sequence;
+  const fs::path victim = sequence.scannet() / scannet_file("depth", 2);
+  fs::resize_file(victim, fs::file_size(victim) / 2);
+  fs::remove(sequence.scannet() / scannet_file("color", 3));
+  ASSERT_EQ(::mkfifo((sequence.scannet() / scannet_file("color", 3)).c_str(), 0600), 0);
+  RecordedCamera camera;
+  ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
+  RgbdFrame frame;
+  EXPECT_TRUE(camera.next(frame).ok());
+  EXPECT_TRUE(camera.next(frame).ok());
+  EXPECT_TRUE(says(camera.next(frame), "depth/2.png: damaged or cut off"));
+  EXPECT_TRUE(says(camera.next(frame), "color/3.png: it is a pipe"));
+  EXPECT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.stamp_ns, 133'333'333);
+}
+
+TEST(NumberedFolder, ColourOfAnotherSizeThanDepthIsRefused) {
+  const NumberedSequence sequence;
+  const std::vector<std::uint8_t> large(3 * 640 * 480, 80);
+  for (int i = 0; i < test::kNumberedFrames; ++i)
+    ASSERT_TRUE(write_png(sequence.scannet() / scannet_file("color", i),
+                          ColourView{large.data(), 640, 480, 3 * 640, PixelFormat::kRgb8})
+                    .ok());
+  RecordedCamera camera;
+  const Status status = open_alone(camera, sequence.scannet());
+  EXPECT_TRUE(says(status, "colour is 640x480 but depth is 320x240")) << status.message();
+  EXPECT_TRUE(says(status, "export colour at the size of depth")) << status.message();
+}
+
+}  // namespace
+}  // namespace plvo
