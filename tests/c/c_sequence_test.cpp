@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/replay/image_writer.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "procedural_sequence.hpp"
 #include "tiny_sequence.hpp"
@@ -52,6 +53,22 @@ TEST(CSequence, GivesTheFramesOfTheFolder) {
     EXPECT_EQ(frame.metres_per_unit, 1.0 / 5000);
   }
   EXPECT_EQ(plvo_sequence_next(sequence, &frame).code, PLVO_END_OF_STREAM);
+  plvo_sequence_close(sequence);
+}
+
+TEST(CSequence, GivesNumberedFrames) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_png(folder / "frame-000003.color.png", test::TinyFrame(3).frame.colour).ok());
+  ASSERT_TRUE(write_png(folder / "frame-000003.depth.png", test::TinyFrame(3).frame.depth).ok());
+  test::write_file(folder / "calibration.txt", "80 80 47.5 31.5");
+  plvo_sequence* sequence = nullptr;
+  const plvo_status status = plvo_sequence_open(folder.path().c_str(), nullptr, &sequence);
+  ASSERT_EQ(status.code, PLVO_OK) << status.message;
+  plvo_frame frame = {};
+  frame.struct_size = sizeof frame;
+  EXPECT_EQ(plvo_sequence_next(sequence, &frame).code, PLVO_OK);
+  EXPECT_EQ(frame.stamp_ns, 100'000'000);
+  EXPECT_EQ(frame.metres_per_unit, 1.0 / 1000);
   plvo_sequence_close(sequence);
 }
 

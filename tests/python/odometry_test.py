@@ -2,6 +2,7 @@
 """The odometry for Python: the poses of `plvo run`, arrays that are views, errors in the library's words."""
 import os
 import pathlib
+import shutil
 import subprocess
 import threading
 import warnings
@@ -199,6 +200,21 @@ def test_a_damaged_image_costs_its_frame(walk, tmp_path):
     with pytest.warns(RuntimeWarning, match="depth"):
         results = list(plvo.run(copy))
     assert len(results) == 23 and results[-1].state == "tracking"
+
+
+def test_numbered_frames_are_a_sequence_too(walk, tmp_path):
+    for kind, listed in (("color", "rgb"), ("depth", "depth")):
+        (tmp_path / kind).mkdir()
+        for number, image in enumerate(sorted((walk / listed).iterdir())[:5]):
+            if number != 2:
+                shutil.copy(image, tmp_path / kind / f"{number}.png")
+    shutil.copy(walk / "calibration.txt", tmp_path)
+    with pytest.warns(RuntimeWarning, match="the first is 2"):
+        frames = [(f.stamp_ns, f.colour.copy(), f.depth.copy()) for f in plvo.Sequence(tmp_path)]
+    assert [frame[0] for frame in frames] == [0, 33_333_333, 100_000_000, 133_333_333]
+    listed = frames_of(walk, 5)[1]
+    for (_, colour, depth), expected in zip(frames, listed[:2] + listed[3:]):
+        assert np.array_equal(colour, expected.colour) and np.array_equal(depth, expected.depth)
 
 
 def test_what_is_assumed_is_warned_of(walk, tmp_path):

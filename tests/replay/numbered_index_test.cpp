@@ -188,8 +188,8 @@ TEST_F(NumberedNames, GapsAreToldUnlessFramesWereTakenOutEvenly) {
   touch(seven_scenes_file("color", 80));
   touch(seven_scenes_file("depth", 80));
   ASSERT_TRUE(read().ok());
-  EXPECT_NE(index_.remark.find("between the frames 0 and 80 there is no pair of images for 1 numbers, the "
-                               "first of them 20"),
+  EXPECT_NE(index_.remark.find("numbers without a pair of images between the frames 0 and 80: 1, the first "
+                               "is 20"),
             std::string::npos)
       << index_.remark;
 }

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -111,8 +110,8 @@ std::string gaps(const std::vector<std::uint32_t>& numbers) {
   }
   if (missing == 0) return {};
   return fmt::format(
-      "between the frames {} and {} there is no pair of images for {} numbers, the first of them {}: they "
-      "are taken as gaps in time; if they should be there, copy the recording again",
+      "numbers without a pair of images between the frames {} and {}: {}, the first is {}; they are taken as "
+      "gaps in time (if the images should be there, copy the recording again)",
       numbers.front(), numbers.back(), missing, first);
 }
 
@@ -124,7 +123,8 @@ Status read_pose(const fs::path& path, Se3& pose, bool& usable) {
   const std::vector<TableRow> rows = parse_table(stream);
   std::vector<double> matrix;
   for (const TableRow& row : rows) {
-    std::vector<double> numbers(row.words.size());
+    std::vector<double> numbers(4);
+    if (row.words.size() != numbers.size()) break;
     if (Status status = parse_numbers(path, row, 0, numbers); !status.ok()) return status;
     matrix.insert(matrix.end(), numbers.begin(), numbers.end());
   }
@@ -132,7 +132,7 @@ Status read_pose(const fs::path& path, Se3& pose, bool& usable) {
     return {StatusCode::kDamaged, fmt::format("{}: expected four rows of four numbers", path.string())};
   usable = std::all_of(matrix.begin(), matrix.end(), [](double value) { return std::isfinite(value); });
   if (!usable) return {};
-  if (!std::equal(matrix.begin() + 12, matrix.end(), std::array{0.0, 0.0, 0.0, 1.0}.begin()))
+  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
     return row_error(path, rows[3], "the last row of a pose must be 0 0 0 1");
   return matrix_pose(path, rows[0], matrix, pose);
 }

@@ -137,7 +137,7 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
   };
   require(file("--gt", options.ground_truth.path,
                "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI, or the folder of a sequence"));
-  require(file("--est", options.estimate.path, "The estimate, likewise"));
+  require(file("--est", options.estimate.path, "The estimate: a trajectory in one of these forms"));
   const std::vector<std::pair<std::string, eval::TrajectoryFormat>> formats = {
       {"auto", eval::TrajectoryFormat::kAuto},
       {"tum", eval::TrajectoryFormat::kTum},
