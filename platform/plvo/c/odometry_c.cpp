@@ -27,7 +27,8 @@ constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
 Status refuse(const char* why) { return {StatusCode::kInvalidArgument, why}; }
 
 plvo_limits to_c(const plvo::Limits& limits) {
-  return {sizeof(plvo_limits), limits.width, limits.height, limits.keypoints, limits.segments};
+  return {sizeof(plvo_limits), limits.width,      limits.height,     limits.keypoints,
+          limits.segments,     limits.references, limits.line_bands, limits.kept_keyframes};
 }
 
 plvo_config default_config() {
@@ -35,6 +36,9 @@ plvo_config default_config() {
   std::memset(&config, 0, sizeof config);
   config.struct_size = sizeof config;
   config.seed = plvo::Config().seed;
+  const plvo::BudgetConfig budget;
+  config.budget_patience_frames = budget.patience_frames;
+  config.budget_spare_share = budget.spare_share;
   return config;
 }
 
@@ -42,17 +46,30 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
   if (given == nullptr) return {};
   plvo_limits whole = to_c(limits);
   if (Status status = plvo::c::take_struct(given, whole, "limits"); !status.ok()) return status;
-  limits = {whole.width, whole.height, whole.keypoints, whole.segments};
+  limits = {
+      .width = whole.width,
+      .height = whole.height,
+      .keypoints = whole.keypoints,
+      .segments = whole.segments,
+      .references = whole.references != 0 ? whole.references : limits.references,
+      .line_bands = whole.line_bands != 0 ? whole.line_bands : limits.line_bands,
+      .kept_keyframes = whole.kept_keyframes,
+  };
   return limits.validate();
 }
+
+constexpr const char* kNoPreset = "preset must be one of PLVO_PRESET_…";
 
 Status take_config(const plvo_config* given, plvo::Config& config) {
   if (given == nullptr) return {};
   plvo_config whole = default_config();
   if (Status status = plvo::c::take_struct(given, whole, "config"); !status.ok()) return status;
-  if (whole.preset != PLVO_PRESET_DEFAULT && whole.preset != PLVO_PRESET_PAPER)
-    return refuse("config: preset must be PLVO_PRESET_DEFAULT or PLVO_PRESET_PAPER");
-  if (whole.preset == PLVO_PRESET_PAPER) config = plvo::Config::paper();
+  switch (whole.preset) {
+    case PLVO_PRESET_DEFAULT: break;
+    case PLVO_PRESET_PAPER: config = plvo::Config::paper(); break;
+    case PLVO_PRESET_TINY: config = plvo::Config::tiny(); break;
+    default: return refuse("config: ").append(kNoPreset);
+  }
   switch (whole.features) {
     case PLVO_FEATURES_OF_PRESET: break;
     case PLVO_FEATURES_POINTS: config.features = plvo::Features::kPoints; break;
@@ -70,6 +87,9 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
   }
   config.seed = whole.seed;
   config.stage_clock = whole.stage_clock;
+  config.budget.frame_ns = whole.frame_budget_ns;
+  if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
+  if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
   return {};
 }
 
@@ -151,6 +171,7 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   static_assert(sizeof whole.stage_ns / sizeof *whole.stage_ns == plvo::kStageCount);
   std::copy(result.stage_ns.begin(), result.stage_ns.end(), whole.stage_ns);
   whole.returned = result.returned ? 1 : 0;
+  whole.feature_step = result.feature_step;
   plvo::c::give_struct(whole, caller);
 }
 
@@ -200,6 +221,13 @@ void plvo_limits_init(plvo_limits* limits, std::size_t size) {
 void plvo_config_init(plvo_config* config, std::size_t size) {
   config->struct_size = static_cast<std::uint32_t>(size);
   if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
+}
+
+plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
+  if (Status status = plvo::c::check_struct(limits, "limits"); !status.ok()) return to_c(status);
+  if (preset < PLVO_PRESET_DEFAULT || preset > PLVO_PRESET_TINY) return to_c(refuse(kNoPreset));
+  plvo::c::give_struct(to_c(preset == PLVO_PRESET_TINY ? plvo::Limits::tiny() : plvo::Limits()), limits);
+  return to_c(Status());
 }
 
 void plvo_prior_init(plvo_prior* prior, std::size_t size) {
@@ -270,6 +298,12 @@ plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* fra
       unreadable.ok() ? odometry->odometry.track(view, prior) : odometry->odometry.track(plvo::RgbdFrame());
   give_result(tracked, result);
   return to_c(unreadable.ok() ? tracked.status : unreadable);
+}
+
+plvo_status plvo_frame_took(plvo_odometry* odometry, std::int64_t ns) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  odometry->odometry.frame_took(ns);
+  return to_c(Status());
 }
 
 plvo_status plvo_reset(plvo_odometry* odometry) {
