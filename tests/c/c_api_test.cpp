@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "allocation_guard.hpp"
-#include "plvo/c/boundary.hpp"
-#include "plvo/c/plvo.h"
+#include "c_support.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
 
@@ -18,67 +17,10 @@ namespace {
 
 constexpr Limits kLimits = Limits::qvga();
 
-plvo_camera c_camera(const CameraModel& model) { return c::to_c(model); }
-plvo_limits c_limits(const Limits& limits = kLimits) {
-  return {sizeof(plvo_limits), limits.width,      limits.height,     limits.keypoints,
-          limits.segments,     limits.references, limits.line_bands, limits.kept_keyframes};
-}
-plvo_frame c_frame(const RgbdFrame& frame) {
-  plvo_frame result = {};
-  result.struct_size = sizeof result;
-  result.width = frame.colour.width;
-  result.height = frame.colour.height;
-  result.colour_format = PLVO_PIXELS_RGB8;
-  result.stamp_ns = frame.stamp_ns;
-  result.depth_stamp_ns = frame.depth_stamp_ns;
-  result.colour = frame.colour.data;
-  result.depth = frame.depth.data;
-  result.colour_stride_bytes = frame.colour.stride_bytes;
-  result.depth_stride_bytes = 2 * frame.depth.stride;
-  result.metres_per_unit = frame.depth.metres_per_unit;
-  return result;
-}
-
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-void expect_same(const Se3& T, const double (&c)[12]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) EXPECT_TRUE(same_bits(T.R(row, column), c[4 * row + column]));
-    EXPECT_TRUE(same_bits(T.t(row), c[4 * row + 3]));
-  }
-}
-void expect_same(const Matrix6& matrix, const double (&c)[36]) {
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column)
-      EXPECT_TRUE(same_bits(matrix(row, column), c[6 * row + column]));
-}
-void expect_same(const FeatureCounts& counts, const plvo_counts& c) {
-  EXPECT_EQ(counts.detected, c.detected);
-  EXPECT_EQ(counts.dropped, c.dropped);
-  EXPECT_EQ(counts.with_depth, c.with_depth);
-  EXPECT_EQ(counts.matched, c.matched);
-  EXPECT_EQ(counts.inliers, c.inliers);
-}
-void expect_same(const TrackResult& result, const plvo_result& c) {
-  EXPECT_EQ(static_cast<int>(result.state), c.state);
-  EXPECT_EQ(result.stamp_ns, c.stamp_ns);
-  EXPECT_EQ(result.reference_stamp_ns, c.reference_stamp_ns);
-  expect_same(result.T_world_camera, c.T_world_camera);
-  expect_same(result.pose_covariance, c.pose_covariance);
-  expect_same(result.T_camera_reference, c.T_camera_reference);
-  expect_same(result.motion_covariance, c.motion_covariance);
-  expect_same(result.points, c.points);
-  expect_same(result.lines, c.lines);
-  EXPECT_EQ(result.ransac_iterations, c.ransac_iterations);
-  EXPECT_EQ(result.lm_iterations, c.lm_iterations);
-  EXPECT_TRUE(same_bits(result.mean_brightness, c.mean_brightness));
-  EXPECT_EQ(result.feature_step, c.feature_step);
-}
-
 // Both doors with the same settings.
 struct Doors {
   explicit Doors(const Config& config = {}, const plvo_config* c_config = nullptr, std::size_t offset = 0)
-      : Doors(config, c_config, kLimits, c_limits(), offset) {}
+      : Doors(config, c_config, kLimits, c_limits(kLimits), offset) {}
   Doors(const Config& config, const plvo_config* c_config, const Limits& limits, const plvo_limits& given,
         std::size_t offset = 0) {
     memory.resize(required_bytes(limits));
@@ -282,7 +224,7 @@ TEST(CApi, TakesNoMemory) {
 }
 
 TEST(CApi, SaysHowManyBytesAreMissing) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   const plvo_camera camera = c_camera(ProceduralSequence(kLimits.width, kLimits.height).camera());
   const std::size_t needed = plvo_required_bytes(&limits);
   std::vector<std::byte> memory(needed - 1);
@@ -294,7 +236,7 @@ TEST(CApi, SaysHowManyBytesAreMissing) {
 }
 
 TEST(CApi, RefusesWhatItCannotUse) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   const plvo_camera camera = c_camera(sequence.camera());
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
@@ -354,7 +296,7 @@ TEST(CApi, RefusesWhatItCannotUse) {
 }
 
 TEST(CApi, SizesTellHowTheProgramWasCompiled) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   plvo_camera camera = c_camera(CameraModel());
   EXPECT_EQ(sizeof camera, c::kFirstSize<plvo_camera>)
       << "grown since: this test wants a case that is smaller";
@@ -377,7 +319,7 @@ TEST(CApi, APriorAndSetPoseGiveTheBitsOfCpp) {
   Odometry odometry;
   ASSERT_TRUE(odometry.init(cpp_memory, sequence.camera(), {}, kLimits).ok());
   const plvo_camera camera = c_camera(sequence.camera());
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
   plvo_odometry* c = nullptr;
   ASSERT_EQ(plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &c).code, PLVO_OK);

@@ -14,7 +14,8 @@
  * newer than the caller takes the defaults for what it lacks; one that is older refuses the struct and says
  * so. Units: metres, radians, nanoseconds, pixels. The camera looks along z, x is right and y down. Threads:
  * an odometry is used by one thread at a time; several odometries do not know each other. No function
- * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. */
+ * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. imu.h makes
+ * priors of a gyro and an accelerometer, sequence.h reads recorded folders. */
 #ifndef PLVO_C_PLVO_H
 #define PLVO_C_PLVO_H
 
@@ -84,8 +85,8 @@ typedef struct plvo_limits {
   int32_t kept_keyframes;      /* after a loss, 0 to 4 */
 } plvo_limits;
 
-/* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have the
- * room for (plvo_limits_of_preset). */
+/* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have
+ * the room for (plvo_limits_of_preset). */
 enum { PLVO_PRESET_DEFAULT = 0, PLVO_PRESET_PAPER = 1, PLVO_PRESET_TINY = 2 };
 /* 0 leaves it to the preset. */
 enum { PLVO_FEATURES_OF_PRESET = 0, PLVO_FEATURES_POINTS, PLVO_FEATURES_LINES, PLVO_FEATURES_BOTH };
@@ -193,8 +194,8 @@ PLVO_API plvo_status plvo_init(void* memory, size_t bytes, const plvo_camera* ca
 PLVO_API plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
 
 /* For plvo_config.frame_budget_ns: what the last plvo_track took, by the caller's clock. The features of the
- * next frames are stepped down after one that took too long, in a fixed order, and up again when there is time
- * to spare; the same words give the same bits. Without a budget it has no effect. */
+ * next frames are stepped down after one that took too long, in a fixed order, and up again when there is
+ * time to spare; the same words give the same bits. Without a budget it has no effect. */
 PLVO_API plvo_status plvo_frame_took(plvo_odometry* odometry, int64_t ns);
 
 /* What sensors other than the camera say of a frame: how the camera moved since the frame before (a gyro,
