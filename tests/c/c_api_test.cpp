@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "allocation_guard.hpp"
-#include "plvo/c/boundary.hpp"
-#include "plvo/c/plvo.h"
+#include "c_support.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
 
@@ -18,72 +17,19 @@ namespace {
 
 constexpr Limits kLimits = Limits::qvga();
 
-plvo_camera c_camera(const CameraModel& model) { return c::to_c(model); }
-plvo_limits c_limits() {
-  return {sizeof(plvo_limits), kLimits.width, kLimits.height, kLimits.keypoints, kLimits.segments};
-}
-plvo_frame c_frame(const RgbdFrame& frame) {
-  plvo_frame result = {};
-  result.struct_size = sizeof result;
-  result.width = frame.colour.width;
-  result.height = frame.colour.height;
-  result.colour_format = PLVO_PIXELS_RGB8;
-  result.stamp_ns = frame.stamp_ns;
-  result.depth_stamp_ns = frame.depth_stamp_ns;
-  result.colour = frame.colour.data;
-  result.depth = frame.depth.data;
-  result.colour_stride_bytes = frame.colour.stride_bytes;
-  result.depth_stride_bytes = 2 * frame.depth.stride;
-  result.metres_per_unit = frame.depth.metres_per_unit;
-  return result;
-}
-
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-void expect_same(const Se3& T, const double (&c)[12]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) EXPECT_TRUE(same_bits(T.R(row, column), c[4 * row + column]));
-    EXPECT_TRUE(same_bits(T.t(row), c[4 * row + 3]));
-  }
-}
-void expect_same(const Matrix6& matrix, const double (&c)[36]) {
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column)
-      EXPECT_TRUE(same_bits(matrix(row, column), c[6 * row + column]));
-}
-void expect_same(const FeatureCounts& counts, const plvo_counts& c) {
-  EXPECT_EQ(counts.detected, c.detected);
-  EXPECT_EQ(counts.dropped, c.dropped);
-  EXPECT_EQ(counts.with_depth, c.with_depth);
-  EXPECT_EQ(counts.matched, c.matched);
-  EXPECT_EQ(counts.inliers, c.inliers);
-}
-void expect_same(const TrackResult& result, const plvo_result& c) {
-  EXPECT_EQ(static_cast<int>(result.state), c.state);
-  EXPECT_EQ(result.stamp_ns, c.stamp_ns);
-  EXPECT_EQ(result.reference_stamp_ns, c.reference_stamp_ns);
-  expect_same(result.T_world_camera, c.T_world_camera);
-  expect_same(result.pose_covariance, c.pose_covariance);
-  expect_same(result.T_camera_reference, c.T_camera_reference);
-  expect_same(result.motion_covariance, c.motion_covariance);
-  expect_same(result.points, c.points);
-  expect_same(result.lines, c.lines);
-  EXPECT_EQ(result.ransac_iterations, c.ransac_iterations);
-  EXPECT_EQ(result.lm_iterations, c.lm_iterations);
-  EXPECT_TRUE(same_bits(result.mean_brightness, c.mean_brightness));
-}
-
 // Both doors with the same settings.
 struct Doors {
-  explicit Doors(const Config& config = {}, const plvo_config* c_config = nullptr, std::size_t offset = 0) {
-    const plvo_limits limits = c_limits();
-    memory.resize(required_bytes(kLimits));
-    c_memory.resize(plvo_required_bytes(&limits) + offset);
+  explicit Doors(const Config& config = {}, const plvo_config* c_config = nullptr, std::size_t offset = 0)
+      : Doors(config, c_config, kLimits, c_limits(kLimits), offset) {}
+  Doors(const Config& config, const plvo_config* c_config, const Limits& limits, const plvo_limits& given,
+        std::size_t offset = 0) {
+    memory.resize(required_bytes(limits));
+    c_memory.resize(plvo_required_bytes(&given) + offset);
     const plvo_camera camera = c_camera(sequence.camera());
-    const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+    const Status status = odometry.init(memory, sequence.camera(), config, limits);
     EXPECT_TRUE(status.ok()) << status.message();
-    const plvo_status c_status = plvo_init(c_memory.data() + offset, c_memory.size() - offset, &camera,
-                                           c_config, &limits, &c_odometry);
+    const plvo_status c_status =
+        plvo_init(c_memory.data() + offset, c_memory.size() - offset, &camera, c_config, &given, &c_odometry);
     EXPECT_EQ(c_status.code, PLVO_OK) << c_status.message;
   }
   ProceduralSequence sequence{kLimits.width, kLimits.height};
@@ -132,6 +78,86 @@ TEST(CApi, PresetsAndChoicesAreThoseOfConfig) {
   config.seed = 7;
   Doors with_choice(config, &chosen);
   EXPECT_GE(tracked_alike(with_choice, 4), 3);
+}
+
+TEST(CApi, TheTinyPresetIsThatOfConfigAndLimits) {
+  plvo_config config;
+  plvo_config_init(&config, sizeof config);
+  config.preset = PLVO_PRESET_TINY;
+  plvo_limits limits = {};
+  limits.struct_size = sizeof limits;
+  ASSERT_EQ(plvo_limits_of_preset(PLVO_PRESET_TINY, &limits).code, PLVO_OK);
+  EXPECT_LE(plvo_required_bytes(&limits), 512U * 1024);
+  Doors doors(Config::tiny(), &config, Limits::tiny(), limits);
+  EXPECT_GE(tracked_alike(doors, 5), 4);
+  EXPECT_LE(plvo_keypoints(doors.c_odometry, nullptr, 0), 200U);
+
+  limits.references = 3;
+  EXPECT_EQ(plvo_required_bytes(&limits), 0U);
+  for (const std::int32_t preset : {PLVO_PRESET_DEFAULT, PLVO_PRESET_PAPER}) {
+    ASSERT_EQ(plvo_limits_of_preset(preset, &limits).code, PLVO_OK);
+    EXPECT_EQ(plvo_required_bytes(&limits), plvo_required_bytes(nullptr));
+  }
+}
+
+// What a frame took is what the caller says: down by too long ones, up by quick ones.
+TEST(CApi, ABudgetOfTimeStepsTheFeatures) {
+  plvo_config c_config;
+  plvo_config_init(&c_config, sizeof c_config);
+  c_config.frame_budget_ns = 1000;
+  c_config.budget_patience_frames = 2;
+  c_config.budget_spare_share = 0.5;
+  Config config;
+  config.budget = {.frame_ns = 1000, .patience_frames = 2, .spare_share = 0.5};
+  Doors doors(config, &c_config);
+  std::vector<int> steps;
+  for (int i = 0; i < 12; ++i) {
+    const RgbdFrame frame = doors.sequence.render(i);
+    const plvo_frame c = c_frame(frame);
+    plvo_result result = {};
+    result.struct_size = sizeof result;
+    EXPECT_EQ(plvo_track(doors.c_odometry, &c, &result).code, PLVO_OK);
+    expect_same(doors.odometry.track(frame), result);
+    steps.push_back(result.feature_step);
+    const std::int64_t took_ns = i < 4 ? 1001 : (i < 7 ? 501 : 499);
+    doors.odometry.frame_took(took_ns);
+    EXPECT_EQ(plvo_frame_took(doors.c_odometry, took_ns).code, PLVO_OK);
+  }
+  EXPECT_EQ(steps, (std::vector{0, 1, 1, 1, 2, 2, 2, 2, 2, 1, 1, 1}));
+  EXPECT_EQ(plvo_frame_took(nullptr, 1).code, PLVO_INVALID_ARGUMENT);
+}
+
+// A struct of zeros but for what its user knew is one of a program that was written before the rest.
+TEST(CApi, WhatAProgramDoesNotKnowIsTheDefault) {
+  Limits expected;
+  expected.width = kLimits.width;
+  expected.height = kLimits.height;
+  plvo_limits shorter = c_limits(expected);
+  shorter.struct_size = c::kFirstSize<plvo_limits>;
+  shorter.references = shorter.line_bands = shorter.kept_keyframes = 77;  // not the library's to read
+  EXPECT_EQ(plvo_required_bytes(&shorter), [&] {
+    const plvo_limits whole = c_limits(expected);
+    return plvo_required_bytes(&whole);
+  }());
+  plvo_config config;
+  plvo_config_init(&config, sizeof config);
+  config.struct_size = c::kFirstSize<plvo_config>;
+  config.frame_budget_ns = -7;
+  Doors doors({}, &config, expected, shorter);
+  EXPECT_GE(tracked_alike(doors, 4), 3);
+
+  plvo_limits zeros = {};
+  zeros.struct_size = sizeof zeros;
+  zeros.width = zeros.height = 240;
+  zeros.keypoints = zeros.segments = 100;
+  expected = {240, 240, 100, 100, Limits().references, Limits().line_bands, 0};
+  const plvo_limits whole = c_limits(expected);
+  EXPECT_EQ(plvo_required_bytes(&zeros), plvo_required_bytes(&whole));
+  plvo_config unset = {};
+  unset.struct_size = sizeof unset;
+  unset.seed = Config().seed;
+  Doors with_zeros({}, &unset);
+  EXPECT_GE(tracked_alike(with_zeros, 4), 3);
 }
 
 TEST(CApi, TheBlockMayStartAnywhere) {
@@ -198,7 +224,7 @@ TEST(CApi, TakesNoMemory) {
 }
 
 TEST(CApi, SaysHowManyBytesAreMissing) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   const plvo_camera camera = c_camera(ProceduralSequence(kLimits.width, kLimits.height).camera());
   const std::size_t needed = plvo_required_bytes(&limits);
   std::vector<std::byte> memory(needed - 1);
@@ -210,7 +236,7 @@ TEST(CApi, SaysHowManyBytesAreMissing) {
 }
 
 TEST(CApi, RefusesWhatItCannotUse) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   const plvo_camera camera = c_camera(sequence.camera());
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
@@ -236,8 +262,16 @@ TEST(CApi, RefusesWhatItCannotUse) {
   config.reference = -1;
   says(init(&camera, &config, &limits), "reference");
   plvo_config_init(&config, sizeof config);
-  config.preset = 2;
+  config.preset = 3;
   says(init(&camera, &config, &limits), "preset");
+  plvo_config_init(&config, sizeof config);
+  config.frame_budget_ns = -1;
+  says(init(&camera, &config, &limits), "budget.frame_ns");
+  plvo_limits of_preset = limits;
+  says(plvo_limits_of_preset(3, &of_preset), "preset");
+  says(plvo_limits_of_preset(PLVO_PRESET_TINY, nullptr), "limits is NULL");
+  of_preset.struct_size = 0;
+  says(plvo_limits_of_preset(PLVO_PRESET_TINY, &of_preset), "struct_size");
   plvo_limits wild = limits;
   wild.keypoints = std::numeric_limits<std::int32_t>::max();
   says(init(&camera, nullptr, &wild), "keypoints");
@@ -262,7 +296,7 @@ TEST(CApi, RefusesWhatItCannotUse) {
 }
 
 TEST(CApi, SizesTellHowTheProgramWasCompiled) {
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   plvo_camera camera = c_camera(CameraModel());
   EXPECT_EQ(sizeof camera, c::kFirstSize<plvo_camera>)
       << "grown since: this test wants a case that is smaller";
@@ -285,7 +319,7 @@ TEST(CApi, APriorAndSetPoseGiveTheBitsOfCpp) {
   Odometry odometry;
   ASSERT_TRUE(odometry.init(cpp_memory, sequence.camera(), {}, kLimits).ok());
   const plvo_camera camera = c_camera(sequence.camera());
-  const plvo_limits limits = c_limits();
+  const plvo_limits limits = c_limits(kLimits);
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
   plvo_odometry* c = nullptr;
   ASSERT_EQ(plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &c).code, PLVO_OK);

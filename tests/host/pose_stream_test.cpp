@@ -95,6 +95,8 @@ TEST(PoseJson, SaysEverything) {
   EXPECT_EQ(json["state"], to_string(TrackState::kLost));
   EXPECT_EQ(json["status"], "too_few_features");
   EXPECT_EQ(json["message"], "only \"3\" points \\ 0 lines lamp off? caf??");
+  EXPECT_EQ(json["frame_id"], "world_optical");
+  EXPECT_EQ(json["child_frame_id"], "camera_optical");
   EXPECT_NEAR(json["position"][1].get<double>(), -2, 1e-9);
   EXPECT_NEAR(json["orientation_xyzw"][2].get<double>(), std::sin(0.5), 1e-8);
   ASSERT_EQ(json["covariance"].size(), 36u);

@@ -180,6 +180,13 @@ TEST(ImuIntegrator, RefusesNonsense) {
   config.R_camera_imu(0, 0) = 2;
   EXPECT_EQ(Imu(config).status.code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(Imu({}, 1).status.code(), StatusCode::kInvalidArgument);
+  // Stamps whose differences do not fit say nothing, and change nothing.
+  Imu far;
+  far.feed(-0.1, 0.2);
+  (void)far.integrator.prior(stamp(0.1));
+  EXPECT_FALSE(far.integrator.prior(std::numeric_limits<std::int64_t>::max()).rotation);
+  EXPECT_FALSE(far.integrator.prior(std::numeric_limits<std::int64_t>::min()).rotation);
+  EXPECT_TRUE(far.integrator.prior(stamp(0.13)).rotation);
 }
 
 TEST(ImuIntegrator, DownIsWhereTheForceIsNot) {

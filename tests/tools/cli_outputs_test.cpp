@@ -136,6 +136,32 @@ TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
   EXPECT_EQ(read_file(folder_ / "log"), "before\n" + expected);
 }
 
+TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
+  const auto header = [this](const char* name) {
+    const std::string text = read_file(folder_ / name);
+    return text.substr(0, text.find('\n'));
+  };
+  ASSERT_EQ(
+      run("--quiet --out " + path("t") + " --covariance " + path("c") + " --motions " + path("m")).exit_code,
+      0);
+  const std::string poses =
+      "; frame_id: world_optical, child_frame_id: camera_optical (x right, y down, z forward; the world is "
+      "the "
+      "first frame's camera)";
+  EXPECT_EQ(header("t"), "# timestamp tx ty tz qx qy qz qw" + poses);
+  EXPECT_TRUE(header("c").ends_with("axes of the world" + poses)) << header("c");
+  EXPECT_TRUE(
+      header("m").ends_with("; frame_id: camera_optical, child_frame_id: camera_optical at the "
+                            "reference_timestamp (x right, y down, z forward)"))
+      << header("m");
+  // Who reads them back takes it for a comment.
+  const CommandResult read_back =
+      run_command(kPlvo + " eval --gt " + path("walk/groundtruth.txt") + " --est " + path("t") +
+                  " --est-covariance " + path("c") + " --est-motions " + path("m") + " --json -");
+  ASSERT_EQ(read_back.exit_code, 0) << read_back.err;
+  EXPECT_TRUE(nlohmann::json::parse(read_back.out).contains("nees_motion"));
+}
+
 TEST_F(CliOutputs, WhatCannotBeWrittenToStandardOutputIsAnError) {
   const std::string truth = path("walk/groundtruth.txt");
   for (const std::string& words :

@@ -132,9 +132,14 @@ TEST(UncertaintyFile, ReadsBackWhatTheWriterWrote) {
   result.T_camera_reference = {rotation_exp(Vector3(0.1, 0.2, -0.3)), Vector3(0.01, -0.02, 0.03)};
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) result.motion_covariance(r, c) = (r == c ? 1 : 0.01 * (r + c)) * 1e-6;
-  write_file(folder / "c.txt", std::string(kCovarianceHeader) + '\n' +
-                                   covariance_line(2'000'000'000, result.motion_covariance) + '\n');
-  write_file(folder / "m.txt", std::string(kMotionsHeader) + '\n' + motion_line(result) + '\n');
+  result.pose_covariance = result.motion_covariance;
+  result.state = TrackState::kTracking;
+  CovarianceFile covariance_file;
+  ASSERT_TRUE(covariance_file.open(folder / "c.txt").ok());
+  ASSERT_TRUE(covariance_file.write(result).ok());
+  MotionFile motion_file;
+  ASSERT_TRUE(motion_file.open(folder / "m.txt").ok());
+  ASSERT_TRUE(motion_file.write(result).ok());
   std::vector<StampedCovariance> covariances;
   ASSERT_TRUE(read_covariances(folder / "c.txt", covariances).ok());
   ASSERT_EQ(covariances.size(), 1u);

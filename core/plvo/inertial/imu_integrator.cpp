@@ -14,6 +14,9 @@ constexpr double kMostReading = 1e4;
 constexpr double kLeastSeconds = 1e-4;
 // Of the accelerometer, as a share of g.
 constexpr double kMostOffset = 0.5;
+// Differences of stamps within fit into 64 bits.
+constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
+bool is_stamp(std::int64_t ns) { return ns >= -kFarthest_ns && ns <= kFarthest_ns; }
 // What a frame teaches at most, in standard deviations of the prior.
 constexpr double kMostSigmas = 5;
 
@@ -30,10 +33,9 @@ Vector3 value_at(const ImuSample& a, const ImuSample& b, std::int64_t stamp_ns) 
 }  // namespace
 
 bool SampleRing::push(const ImuSample& sample) {
-  constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
   if (memory_.empty() || !(sample.value.cwiseAbs().maxCoeff() <= kMostReading) || !sample.value.allFinite())
     return false;
-  if (sample.stamp_ns > kFarthest_ns || sample.stamp_ns < -kFarthest_ns) return false;
+  if (!is_stamp(sample.stamp_ns)) return false;
   if (count_ > 0 && sample.stamp_ns <= (*this)[count_ - 1].stamp_ns) return false;
   if (count_ == memory_.size()) pop();
   memory_[(first_ + count_) % memory_.size()] = sample;
@@ -126,7 +128,7 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   const bool first = !started_;
   const std::int64_t before_ns = last_ns_;
   open_ = false;
-  if (!first && stamp_ns <= before_ns) return prior;
+  if (!is_stamp(stamp_ns) || (!first && stamp_ns <= before_ns)) return prior;
   started_ = true;
   before_ns_ = before_ns;
   last_ns_ = stamp_ns;

@@ -1,7 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/c/boundary.hpp"
 
+#include "plvo/base/arena.hpp"
+
 namespace plvo::c {
+
+Status too_small(const char* for_what, std::size_t needed, std::size_t bytes) {
+  return Status(StatusCode::kOutOfMemory, "init needs a block of ")
+      .append(static_cast<std::int64_t>(needed))
+      .append(" bytes ")
+      .append(for_what)
+      .append(", got ")
+      .append(static_cast<std::int64_t>(bytes));
+}
+
+std::span<std::byte> aligned_part(void* memory, std::size_t bytes) {
+  const std::size_t beside = reinterpret_cast<std::uintptr_t>(memory) % kArenaAlignment;
+  const std::size_t start = beside == 0 ? 0 : kArenaAlignment - beside;
+  return {static_cast<std::byte*>(memory) + start, bytes - start};
+}
 
 CameraModel from_c(const plvo_camera& camera) {
   CameraModel model;

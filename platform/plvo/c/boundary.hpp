@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What crosses between C and the library: statuses, matrices, and structs whose sizes tell how their caller
-// was compiled.
+// What crosses between C and the library: statuses, blocks of memory, and structs whose sizes tell how their
+// caller was compiled.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "plvo/base/status.hpp"
+#include "plvo/c/imu.h"
 #include "plvo/c/plvo.h"
 #include "plvo/camera/camera_model.hpp"
-#include "plvo/math/se3.hpp"
 
 namespace plvo::c {
 
@@ -38,6 +39,9 @@ inline constexpr std::size_t kFirstSize<plvo_prior> = end_of(offsetof(plvo_prior
 template <>
 inline constexpr std::size_t kFirstSize<plvo_result> = end_of(offsetof(plvo_result, stage_ns),
                                                               &plvo_result::stage_ns);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_imu_config> = end_of(offsetof(plvo_imu_config, longest_gap_s),
+                                                                  &plvo_imu_config::longest_gap_s);
 
 // kInvalidArgument unless the struct is there and its size one that this library knows.
 template <typename Struct>
@@ -83,6 +87,14 @@ inline plvo_status to_c(const Status& status) {
   std::memcpy(result.message, status.message(), std::strlen(status.message()));
   return result;
 }
+
+inline Status refuse(const char* why) { return {StatusCode::kInvalidArgument, why}; }
+
+// kOutOfMemory, and how many bytes are needed.
+Status too_small(const char* for_what, std::size_t needed, std::size_t bytes);
+
+// Of the caller's block, from the first address that the core likes on. bytes: more than kArenaAlignment.
+std::span<std::byte> aligned_part(void* memory, std::size_t bytes);
 
 CameraModel from_c(const plvo_camera& camera);
 plvo_camera to_c(const CameraModel& model);

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "plvo/c/boundary.hpp"
+#include "plvo/c/matrices.hpp"
 #include "plvo/c/plvo.h"
 #include "plvo/odometry/odometry.hpp"
 
@@ -20,14 +21,17 @@ namespace {
 
 using plvo::Status;
 using plvo::StatusCode;
+using plvo::c::matrix;
+using plvo::c::put;
+using plvo::c::refuse;
 using plvo::c::to_c;
+using plvo::c::vector3;
 
 constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
 
-Status refuse(const char* why) { return {StatusCode::kInvalidArgument, why}; }
-
 plvo_limits to_c(const plvo::Limits& limits) {
-  return {sizeof(plvo_limits), limits.width, limits.height, limits.keypoints, limits.segments};
+  return {sizeof(plvo_limits), limits.width,      limits.height,     limits.keypoints,
+          limits.segments,     limits.references, limits.line_bands, limits.kept_keyframes};
 }
 
 plvo_config default_config() {
@@ -35,6 +39,9 @@ plvo_config default_config() {
   std::memset(&config, 0, sizeof config);
   config.struct_size = sizeof config;
   config.seed = plvo::Config().seed;
+  const plvo::BudgetConfig budget;
+  config.budget_patience_frames = budget.patience_frames;
+  config.budget_spare_share = budget.spare_share;
   return config;
 }
 
@@ -42,17 +49,30 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
   if (given == nullptr) return {};
   plvo_limits whole = to_c(limits);
   if (Status status = plvo::c::take_struct(given, whole, "limits"); !status.ok()) return status;
-  limits = {whole.width, whole.height, whole.keypoints, whole.segments};
+  limits = {
+      .width = whole.width,
+      .height = whole.height,
+      .keypoints = whole.keypoints,
+      .segments = whole.segments,
+      .references = whole.references != 0 ? whole.references : limits.references,
+      .line_bands = whole.line_bands != 0 ? whole.line_bands : limits.line_bands,
+      .kept_keyframes = whole.kept_keyframes,
+  };
   return limits.validate();
 }
+
+constexpr const char* kNoPreset = "preset must be one of PLVO_PRESET_…";
 
 Status take_config(const plvo_config* given, plvo::Config& config) {
   if (given == nullptr) return {};
   plvo_config whole = default_config();
   if (Status status = plvo::c::take_struct(given, whole, "config"); !status.ok()) return status;
-  if (whole.preset != PLVO_PRESET_DEFAULT && whole.preset != PLVO_PRESET_PAPER)
-    return refuse("config: preset must be PLVO_PRESET_DEFAULT or PLVO_PRESET_PAPER");
-  if (whole.preset == PLVO_PRESET_PAPER) config = plvo::Config::paper();
+  switch (whole.preset) {
+    case PLVO_PRESET_DEFAULT: break;
+    case PLVO_PRESET_PAPER: config = plvo::Config::paper(); break;
+    case PLVO_PRESET_TINY: config = plvo::Config::tiny(); break;
+    default: return refuse("config: ").append(kNoPreset);
+  }
   switch (whole.features) {
     case PLVO_FEATURES_OF_PRESET: break;
     case PLVO_FEATURES_POINTS: config.features = plvo::Features::kPoints; break;
@@ -70,6 +90,9 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
   }
   config.seed = whole.seed;
   config.stage_clock = whole.stage_clock;
+  config.budget.frame_ns = whole.frame_budget_ns;
+  if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
+  if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
   return {};
 }
 
@@ -95,38 +118,17 @@ Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {
   return {};
 }
 
-plvo::Matrix3 matrix3(const double (&values)[9]) {
-  plvo::Matrix3 matrix;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) matrix(row, column) = values[3 * row + column];
-  return matrix;
-}
-
-plvo::Vector3 vector3(const double (&values)[3]) { return {values[0], values[1], values[2]}; }
-
 Status take_prior(const plvo_prior* given, plvo::MotionPrior& prior) {
   if (given == nullptr) return {};
   plvo_prior whole;
   if (Status status = plvo::c::take_struct(given, whole, "prior"); !status.ok()) return status;
   if (whole.has_rotation != 0)
-    prior.rotation = {matrix3(whole.R_now_before), matrix3(whole.rotation_covariance)};
+    prior.rotation = {matrix<3>(whole.R_now_before), matrix<3>(whole.rotation_covariance)};
   if (whole.has_translation != 0)
-    prior.translation = {vector3(whole.t_now_before), matrix3(whole.translation_covariance)};
+    prior.translation = {vector3(whole.t_now_before), matrix<3>(whole.translation_covariance)};
   if (whole.has_gravity != 0)
-    prior.gravity = {vector3(whole.down), matrix3(whole.gravity_covariance), whole.gravity_offset_sigma};
+    prior.gravity = {vector3(whole.down), matrix<3>(whole.gravity_covariance), whole.gravity_offset_sigma};
   return prior.validate();
-}
-
-void put(const plvo::Se3& T, double (&out)[12]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) out[4 * row + column] = T.R(row, column);
-    out[4 * row + 3] = T.t(row);
-  }
-}
-
-void put(const plvo::Matrix6& matrix, double (&out)[36]) {
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column) out[6 * row + column] = matrix(row, column);
 }
 
 plvo_counts to_c(const plvo::FeatureCounts& counts) {
@@ -151,6 +153,7 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   static_assert(sizeof whole.stage_ns / sizeof *whole.stage_ns == plvo::kStageCount);
   std::copy(result.stage_ns.begin(), result.stage_ns.end(), whole.stage_ns);
   whole.returned = result.returned ? 1 : 0;
+  whole.feature_step = result.feature_step;
   plvo::c::give_struct(whole, caller);
 }
 
@@ -202,6 +205,13 @@ void plvo_config_init(plvo_config* config, std::size_t size) {
   if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
 }
 
+plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
+  if (Status status = plvo::c::check_struct(limits, "limits"); !status.ok()) return to_c(status);
+  if (preset < PLVO_PRESET_DEFAULT || preset > PLVO_PRESET_TINY) return to_c(refuse(kNoPreset));
+  plvo::c::give_struct(to_c(preset == PLVO_PRESET_TINY ? plvo::Limits::tiny() : plvo::Limits()), limits);
+  return to_c(Status());
+}
+
 void plvo_prior_init(plvo_prior* prior, std::size_t size) {
   plvo_prior nothing;
   std::memset(&nothing, 0, sizeof nothing);
@@ -210,10 +220,7 @@ void plvo_prior_init(plvo_prior* prior, std::size_t size) {
 }
 
 void plvo_quaternion(const double T[12], double xyzw[4]) {
-  plvo::Matrix3 R;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) R(row, column) = T[4 * row + column];
-  const plvo::Quaternion q = plvo::to_quaternion(R);
+  const plvo::Quaternion q = plvo::to_quaternion(plvo::c::se3(T).R);
   const double values[4] = {q.x, q.y, q.z, q.w};
   std::memcpy(xyzw, values, sizeof values);
 }
@@ -236,17 +243,11 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
   plvo_camera known_camera = to_c(plvo::CameraModel());
   if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
   const std::size_t needed = plvo_required_bytes(limits);
-  if (bytes < needed)
-    return to_c(Status(StatusCode::kOutOfMemory, "init needs a block of ")
-                    .append(static_cast<std::int64_t>(needed))
-                    .append(" bytes for these limits, got ")
-                    .append(static_cast<std::int64_t>(bytes)));
+  if (bytes < needed) return to_c(plvo::c::too_small("for these limits", needed, bytes));
 
-  const std::size_t beside = reinterpret_cast<std::uintptr_t>(memory) % plvo::kArenaAlignment;
-  const std::size_t start = beside == 0 ? 0 : plvo::kArenaAlignment - beside;
-  std::byte* block = static_cast<std::byte*>(memory) + start;
-  auto* handle = new (block) plvo_odometry;
-  const std::span<std::byte> rest(block + kHandleBytes, bytes - start - kHandleBytes);
+  const std::span<std::byte> block = plvo::c::aligned_part(memory, bytes);
+  auto* handle = new (block.data()) plvo_odometry;
+  const std::span<std::byte> rest = block.subspan(kHandleBytes);
   const Status status =
       handle->odometry.init(rest, plvo::c::from_c(known_camera), known_config, known_limits);
   if (status.ok()) *odometry = handle;
@@ -272,6 +273,12 @@ plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* fra
   return to_c(unreadable.ok() ? tracked.status : unreadable);
 }
 
+plvo_status plvo_frame_took(plvo_odometry* odometry, std::int64_t ns) {
+  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  odometry->odometry.frame_took(ns);
+  return to_c(Status());
+}
+
 plvo_status plvo_reset(plvo_odometry* odometry) {
   if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
   odometry->odometry.reset();
@@ -281,15 +288,7 @@ plvo_status plvo_reset(plvo_odometry* odometry) {
 plvo_status plvo_set_pose(plvo_odometry* odometry, const double T[12], const double values[36]) {
   if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
   if (T == nullptr || values == nullptr) return to_c(refuse("the pose or its covariance is NULL"));
-  plvo::Se3 pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) pose.R(row, column) = T[4 * row + column];
-    pose.t(row) = T[4 * row + 3];
-  }
-  plvo::Matrix6 covariance;
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column) covariance(row, column) = values[6 * row + column];
-  return to_c(odometry->odometry.set_pose(pose, covariance));
+  return to_c(odometry->odometry.set_pose(plvo::c::se3(T), matrix<6>(values)));
 }
 
 std::size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, std::size_t capacity) {

@@ -14,7 +14,8 @@
  * newer than the caller takes the defaults for what it lacks; one that is older refuses the struct and says
  * so. Units: metres, radians, nanoseconds, pixels. The camera looks along z, x is right and y down. Threads:
  * an odometry is used by one thread at a time; several odometries do not know each other. No function
- * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. */
+ * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. imu.h makes
+ * priors of a gyro and an accelerometer, sequence.h reads recorded folders. */
 #ifndef PLVO_C_PLVO_H
 #define PLVO_C_PLVO_H
 
@@ -79,9 +80,14 @@ typedef struct plvo_limits {
   uint32_t struct_size;
   int32_t width, height;       /* the largest image */
   int32_t keypoints, segments; /* per frame */
+  int32_t references;          /* frames that one is matched with, 1 or 2; 0: the default, 2 */
+  int32_t line_bands;          /* of the image, searched for segments one by one, 1 to 8; 0: the default, 1 */
+  int32_t kept_keyframes;      /* after a loss, 0 to 4 */
 } plvo_limits;
 
-enum { PLVO_PRESET_DEFAULT = 0, PLVO_PRESET_PAPER = 1 };
+/* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have
+ * the room for (plvo_limits_of_preset). */
+enum { PLVO_PRESET_DEFAULT = 0, PLVO_PRESET_PAPER = 1, PLVO_PRESET_TINY = 2 };
 /* 0 leaves it to the preset. */
 enum { PLVO_FEATURES_OF_PRESET = 0, PLVO_FEATURES_POINTS, PLVO_FEATURES_LINES, PLVO_FEATURES_BOTH };
 enum {
@@ -99,12 +105,22 @@ typedef struct plvo_config {
   uint64_t seed;     /* of the random generator */
   /* For plvo_result.stage_ns: a monotonic clock in nanoseconds, or NULL. */
   int64_t (*stage_clock)(void);
+  /* What a frame may take, where somebody waits for it (plvo_frame_took); 0: as long as it takes. */
+  int64_t frame_budget_ns;
+  /* More features again after so many frames in a row that took less than this share of it; 0 leaves it to
+   * the preset. */
+  int32_t budget_patience_frames;
+  double budget_spare_share;
 } plvo_config;
 
 /* Each sets struct_size and the defaults. `size` is sizeof of the struct. */
 PLVO_API void plvo_camera_init(plvo_camera* camera, size_t size);
 PLVO_API void plvo_limits_init(plvo_limits* limits, size_t size);
 PLVO_API void plvo_config_init(plvo_config* config, size_t size);
+
+/* The limits that go with a preset: 640x480, but for PLVO_PRESET_TINY, which is 320x240 in 512 KiB.
+ * limits->struct_size must be set. */
+PLVO_API plvo_status plvo_limits_of_preset(int32_t preset, plvo_limits* limits);
 
 enum { PLVO_PIXELS_GRAY8 = 0, PLVO_PIXELS_RGB8, PLVO_PIXELS_BGR8 };
 
@@ -154,6 +170,7 @@ typedef struct plvo_result {
   double mean_brightness; /* 0 … 255 */
   int64_t stage_ns[5];    /* PLVO_STAGE_…; zero without plvo_config.stage_clock */
   int32_t returned;       /* 1: the pose was put right at a view from before a loss */
+  int32_t feature_step;   /* of plvo_config.frame_budget_ns: 0, all the features that fit, to 8 */
 } plvo_result;
 
 /* The unit quaternion x y z w (Hamilton, w >= 0) of the rotation in a 3×4 matrix. */
@@ -175,6 +192,11 @@ PLVO_API plvo_status plvo_init(void* memory, size_t bytes, const plvo_camera* ca
  * good frame goes on. A frame of the wrong size, without images, or not later than the one before is refused
  * with PLVO_INVALID_ARGUMENT and changes nothing. */
 PLVO_API plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
+
+/* For plvo_config.frame_budget_ns: what the last plvo_track took, by the caller's clock. The features of the
+ * next frames are stepped down after one that took too long, in a fixed order, and up again when there is
+ * time to spare; the same words give the same bits. Without a budget it has no effect. */
+PLVO_API plvo_status plvo_frame_took(plvo_odometry* odometry, int64_t ns);
 
 /* What sensors other than the camera say of a frame: how the camera moved since the frame before (a gyro,
  * wheel odometry), and where down is (an accelerometer). "Now" is this frame, "before" the one before it that

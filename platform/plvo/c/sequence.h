@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recorded sequences and calibrations for C: a TUM folder as a camera. Unlike the odometry, these read files and
- * take memory from the heap. C99. */
+/* Recorded sequences and calibrations for C: a TUM folder as a camera. Unlike the odometry, these read files
+ * and take memory from the heap. C99. */
 #ifndef PLVO_C_SEQUENCE_H
 #define PLVO_C_SEQUENCE_H
 
@@ -19,9 +19,11 @@ PLVO_API plvo_status plvo_camera_read(const char* file, plvo_camera* camera, dou
 typedef struct plvo_sequence plvo_sequence;
 
 /* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second. `calibration`: a file, or a
- * name as above, or NULL: the calibration in the folder, or the TUM camera that the folder's name speaks of. On
- * failure *sequence is NULL. What is opened is closed by plvo_sequence_close. */
-PLVO_API plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo_sequence** sequence);
+ * name as above, or NULL: the calibration in the folder (calibration.txt, calibration.yaml, camera.yaml, or the
+ * intrinsics beside numbered frames), or the TUM camera that the folder's name speaks of. On failure *sequence
+ * is NULL. What is opened is closed by plvo_sequence_close. */
+PLVO_API plvo_status plvo_sequence_open(const char* folder, const char* calibration,
+                                        plvo_sequence** sequence);
 
 /* The camera that the frames obey, and how many pairs of images there are. */
 PLVO_API plvo_status plvo_sequence_camera(const plvo_sequence* sequence, plvo_camera* camera);

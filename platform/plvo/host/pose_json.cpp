@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "plvo/host/frame_names.hpp"
+
 namespace plvo {
 namespace {
 
@@ -43,8 +45,10 @@ std::string json_string(std::string_view text) {
 
 std::string pose_json(const TrackResult& result) {
   std::string out = fmt::format(
-      "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"position\":[", result.stamp_ns,
-      to_string(result.state), to_string(result.status.code()), json_string(result.status.message()));
+      "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"frame_id\":\"{}\","
+      "\"child_frame_id\":\"{}\",\"position\":[",
+      result.stamp_ns, to_string(result.state), to_string(result.status.code()),
+      json_string(result.status.message()), kWorldFrame, kCameraFrame);
   for (int i = 0; i < 3; ++i) {
     if (i > 0) out += ',';
     put_number(out, result.T_world_camera.t[i]);

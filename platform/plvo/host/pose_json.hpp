@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pose as one line of JSON, for programs that are not ours. Keys: stamp_ns, state, status, message,
-// position (m), orientation_xyzw, covariance (36 numbers, row-major: position, then orientation; axes of the
-// world), points, lines. And what is said while there is no pose, so that whoever reads can tell a camera
-// that stalls from a program that hangs.
+// frame_id and child_frame_id (frame_names.hpp), position (m), orientation_xyzw, covariance (36 numbers,
+// row-major: position, then orientation; axes of the world), points, lines. And what is said while there is
+// no pose, so that whoever reads can tell a camera that stalls from a program that hangs.
 #pragma once
 
 #include <string>

@@ -5,6 +5,7 @@
 
 #include <iterator>
 
+#include "plvo/host/frame_names.hpp"
 #include "plvo/host/stamp_text.hpp"
 
 namespace plvo {
@@ -14,6 +15,24 @@ void append_covariance(std::string& line, const Matrix6& covariance) {
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column)
       fmt::format_to(std::back_inserter(line), " {:.9e}", covariance(row, column));
+}
+
+// The first line says what the columns are, and in which frames.
+Status open_with(LineFile& file, const std::filesystem::path& path, const char* columns,
+                 const std::string& frames) {
+  return file.open(path, columns + ("; " + frames));
+}
+
+std::string pose_frames() {
+  return fmt::format(
+      "frame_id: {}, child_frame_id: {} (x right, y down, z forward; the world is the first frame's camera)",
+      kWorldFrame, kCameraFrame);
+}
+
+std::string motion_frames() {
+  return fmt::format(
+      "frame_id: {0}, child_frame_id: {0} at the reference_timestamp (x right, y down, z forward)",
+      kCameraFrame);
 }
 
 }  // namespace
@@ -41,14 +60,26 @@ std::string motion_line(const TrackResult& result) {
   return line;
 }
 
+Status TrajectoryFile::open(const std::filesystem::path& path) {
+  return open_with(file_, path, kTrajectoryHeader, pose_frames());
+}
+
 Status TrajectoryFile::write(const TrackResult& result) {
   if (!has_pose(result)) return {};
   return file_.write(trajectory_line(result.stamp_ns, result.T_world_camera));
 }
 
+Status CovarianceFile::open(const std::filesystem::path& path) {
+  return open_with(file_, path, kCovarianceHeader, pose_frames());
+}
+
 Status CovarianceFile::write(const TrackResult& result) {
   if (!has_pose(result)) return {};
   return file_.write(covariance_line(result.stamp_ns, result.pose_covariance));
+}
+
+Status MotionFile::open(const std::filesystem::path& path) {
+  return open_with(file_, path, kMotionsHeader, motion_frames());
 }
 
 Status MotionFile::write(const TrackResult& result) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of the files that plvo writes; docs/formats.md describes them to the user.
+// Lines of the files that plvo writes; docs/formats.md describes them to the user. The first is a comment:
+// what the columns are, and in which frames (frame_names.hpp).
 //   trajectory  stamp tx ty tz qx qy qz qw                        TUM; T_world_camera
 //   covariance  stamp c00 c01 … c55                               36 numbers, row-major, of the pose
 //   motions     stamp reference_stamp tx ty tz qx qy qz qw c00 …  T_camera_reference with its covariance
@@ -39,7 +40,7 @@ std::string motion_line(const TrackResult& result);
 // motion). Until open() made the file, write() does nothing.
 class TrajectoryFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path) { return file_.open(path, kTrajectoryHeader); }
+  Status open(const std::filesystem::path& path);
   Status write(const TrackResult& result) override;
 
  private:
@@ -48,7 +49,7 @@ class TrajectoryFile final : public PoseSink {
 
 class CovarianceFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path) { return file_.open(path, kCovarianceHeader); }
+  Status open(const std::filesystem::path& path);
   Status write(const TrackResult& result) override;
 
  private:
@@ -57,7 +58,7 @@ class CovarianceFile final : public PoseSink {
 
 class MotionFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path) { return file_.open(path, kMotionsHeader); }
+  Status open(const std::filesystem::path& path);
   Status write(const TrackResult& result) override;
 
  private:

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "plvo/odometry/config.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/settings.hpp"
 
 namespace plvo::python {
 
@@ -28,33 +28,51 @@ Value choose(const char* what, const std::string& text, const Choice<Value> (&ch
   throw py::value_error(std::string(what) + ": expected one of " + names + ", got '" + text + "'");
 }
 
-Config make_config(const std::string& preset, const std::optional<std::string>& features,
-                   const std::optional<std::string>& reference, const std::optional<std::uint64_t>& seed) {
-  constexpr Choice<bool> kPresets[] = {{"default", false}, {"paper", true}};
+enum class Preset { kDefault, kPaper, kTiny };
+
+Settings of_preset(Preset preset) {
+  if (preset == Preset::kPaper) return {.config = Config::paper(), .limits = {}};
+  if (preset == Preset::kTiny) return {.config = Config::tiny(), .limits = Limits::tiny()};
+  return {};
+}
+
+Settings make_settings(const std::string& preset, const std::optional<std::string>& features,
+                       const std::optional<std::string>& reference, const std::optional<std::uint64_t>& seed,
+                       const BudgetConfig& budget) {
+  constexpr Choice<Preset> kPresets[] = {
+      {"default", Preset::kDefault}, {"paper", Preset::kPaper}, {"tiny", Preset::kTiny}};
   constexpr Choice<Features> kFeatures[] = {
       {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}};
   constexpr Choice<ReferencePolicy> kReferences[] = {{"previous", ReferencePolicy::kPreviousFrame},
                                                      {"keyframe", ReferencePolicy::kKeyframe},
                                                      {"both", ReferencePolicy::kKeyframeAndPrevious}};
-  Config config = choose("preset", preset, kPresets) ? Config::paper() : Config();
+  Settings settings = of_preset(choose("preset", preset, kPresets));
+  Config& config = settings.config;
   if (features) config.features = choose("features", *features, kFeatures);
   if (reference) config.references.policy = choose("reference", *reference, kReferences);
   if (seed) config.seed = *seed;
-  return config;
+  config.budget = budget;
+  throw_unless_ok(config.validate());
+  return settings;
 }
 
 }  // namespace
 
 void bind_config(py::module_& module) {
-  py::class_<Config>(module, "Config")
+  const BudgetConfig budget;
+  py::class_<Settings>(module, "Config")
       .def(py::init([](const std::string& preset, const py::object& features, const py::object& reference,
-                       const py::object& seed) {
-             return make_config(preset, optional<std::string>(features), optional<std::string>(reference),
-                                optional<std::uint64_t>(seed));
+                       const py::object& seed, std::int64_t frame_budget_ns, int budget_patience_frames,
+                       double budget_spare_share) {
+             return make_settings(preset, optional<std::string>(features), optional<std::string>(reference),
+                                  optional<std::uint64_t>(seed),
+                                  {frame_budget_ns, budget_patience_frames, budget_spare_share});
            }),
            py::kw_only(), "preset"_a = "default", "features"_a = py::none(), "reference"_a = py::none(),
-           "seed"_a = py::none())
-      .def_readonly("seed", &Config::seed);
+           "seed"_a = py::none(), "frame_budget_ns"_a = budget.frame_ns,
+           "budget_patience_frames"_a = budget.patience_frames, "budget_spare_share"_a = budget.spare_share)
+      .def_property_readonly("seed", [](const Settings& s) { return s.config.seed; })
+      .def_property_readonly("frame_budget_ns", [](const Settings& s) { return s.config.budget.frame_ns; });
 }
 
 }  // namespace plvo::python

@@ -9,6 +9,7 @@
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/settings.hpp"
 #include "plvo/replay/calibration.hpp"
 
 namespace plvo::python {
@@ -17,19 +18,31 @@ using namespace py::literals;
 
 namespace {
 
+// The numbers of Limits that are not None stand in for those of the preset.
+struct OwnLimits {
+  py::object keypoints, segments, references, line_bands, kept_keyframes;
+
+  void put_into(Limits& limits) const {
+    const std::pair<const py::object&, int&> pairs[] = {{keypoints, limits.keypoints},
+                                                        {segments, limits.segments},
+                                                        {references, limits.references},
+                                                        {line_bands, limits.line_bands},
+                                                        {kept_keyframes, limits.kept_keyframes}};
+    for (const auto& [own, entry] : pairs) entry = optional<int>(own).value_or(entry);
+  }
+};
+
 class Tracker {
  public:
-  Tracker(const Calibration& camera, const Config& config, const std::optional<int>& keypoints,
-          const std::optional<int>& segments)
+  Tracker(const Calibration& camera, const Settings& settings, const OwnLimits& own)
       : metres_per_unit_(1.0 / camera.depth_units_per_metre) {
-    Limits limits;
+    Limits limits = settings.limits;
     limits.width = camera.camera.width;
     limits.height = camera.camera.height;
-    limits.keypoints = keypoints.value_or(limits.keypoints);
-    limits.segments = segments.value_or(limits.segments);
+    own.put_into(limits);
     throw_unless_ok(limits.validate());
     memory_.resize(required_bytes(limits));
-    throw_unless_ok(odometry_.init(memory_, camera.camera, config, limits));
+    throw_unless_ok(odometry_.init(memory_, camera.camera, settings.config, limits));
   }
 
   TrackResult track(const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
@@ -52,6 +65,10 @@ class Tracker {
   FeatureView features() {
     refuse_if_busy();
     return odometry_.features();
+  }
+  void frame_took(std::int64_t ns) {
+    refuse_if_busy();
+    odometry_.frame_took(ns);
   }
   void reset() {
     refuse_if_busy();
@@ -102,12 +119,15 @@ void bind_odometry(py::module_& module) {
                                          "point_tracks point_inliers line_tracks line_inliers");
   py::class_<Tracker>(module, "Odometry")
       .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
-                       const py::object& segments) {
-             return std::make_unique<Tracker>(camera, config.is_none() ? Config() : config.cast<Config>(),
-                                              optional<int>(keypoints), optional<int>(segments));
+                       const py::object& segments, const py::object& references, const py::object& line_bands,
+                       const py::object& kept_keyframes) {
+             return std::make_unique<Tracker>(
+                 camera, config.is_none() ? Settings() : config.cast<Settings>(),
+                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes});
            }),
            "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
-           "segments"_a = py::none())
+           "segments"_a = py::none(), "references"_a = py::none(), "line_bands"_a = py::none(),
+           "kept_keyframes"_a = py::none())
       .def(
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
@@ -117,6 +137,7 @@ void bind_odometry(py::module_& module) {
           },
           "colour"_a, "depth"_a, "stamp_ns"_a, "depth_stamp_ns"_a = py::none(), py::kw_only(),
           "bgr"_a = false, "prior"_a = py::none())
+      .def("frame_took", &Tracker::frame_took, "ns"_a)
       .def("reset", &Tracker::reset)
       .def("set_pose", &Tracker::set_pose, "T_world_camera"_a, "covariance"_a = py::none())
       .def("features", [features](const py::object& self) { return features_of(self, features); })

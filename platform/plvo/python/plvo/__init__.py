@@ -2,6 +2,7 @@
 """RGB-D visual odometry from points and lines. docs/python.md has examples."""
 import json as _json
 import os as _os
+import time as _time
 
 from . import _evaluation, _plvo
 from ._plvo import Camera, Config, Counts, Error, Features, Frame, Imu, MotionPrior, Odometry, RecordedImu, Result, Sequence, __version__
@@ -13,12 +14,15 @@ __all__ = [
 
 
 def run(folder, camera=None, config=None, *, imu=False):
-    """Tracks a recorded folder: a Result for each frame. imu: with the folder's gyroscope.txt and accelerometer.txt."""
+    """Tracks a recorded folder: a Result for each frame. imu: with the folder's gyroscope.txt and accelerometer.txt. A budget
+    of config's is held against the processor time of this thread; results then depend on the machine."""
     sequence = Sequence(folder, camera)
     odometry = Odometry(sequence.camera, config)
     readings = RecordedImu(folder) if imu else None
     for frame in sequence:
+        began_ns = _time.thread_time_ns()
         result = odometry.track(*frame, prior=readings and readings.prior(frame.stamp_ns))
+        odometry.frame_took(_time.thread_time_ns() - began_ns)
         if readings:
             readings.learn(result)
         yield result

@@ -57,18 +57,25 @@ class Camera:
     def depth_units_per_metre(self) -> float: ...
 
 class Config:
-    """How the odometry is set; None leaves an entry to the preset."""
+    """How the odometry is set; None leaves an entry to the preset. tiny brings small limits with it, for images of 320x240.
+    frame_budget_ns: what a frame may take (see Odometry.frame_took), 0: as long as it takes; fewer features after one that took
+    longer, more again after budget_patience_frames in a row that took less than budget_spare_share of it."""
 
     def __init__(
         self,
         *,
-        preset: Literal["default", "paper"] = "default",
+        preset: Literal["default", "paper", "tiny"] = "default",
         features: Literal["points", "lines", "both"] | None = None,
         reference: Literal["previous", "keyframe", "both"] | None = None,
         seed: int | None = None,
+        frame_budget_ns: int = 0,
+        budget_patience_frames: int = ...,
+        budget_spare_share: float = ...,
     ) -> None: ...
     @property
     def seed(self) -> int: ...
+    @property
+    def frame_budget_ns(self) -> int: ...
 
 class Counts:
     @property
@@ -123,6 +130,9 @@ class Result:
     def mean_brightness(self) -> float: ...
     @property
     def returned(self) -> bool: ...
+    @property
+    def feature_step(self) -> int:
+        """Of the budget of time: 0, all the features that fit, to 8."""
 
 class Features(NamedTuple):
     """What the last frame was made of, in pixels of the undistorted image."""
@@ -186,8 +196,18 @@ class RecordedImu:
     def learn(self, result: Result) -> None: ...
 
 class Odometry:
+    """Frames in, poses out. What is None of the limits is the preset's."""
+
     def __init__(
-        self, camera: Camera, config: Config | None = None, *, keypoints: int | None = None, segments: int | None = None
+        self,
+        camera: Camera,
+        config: Config | None = None,
+        *,
+        keypoints: int | None = None,
+        segments: int | None = None,
+        references: int | None = None,
+        line_bands: int | None = None,
+        kept_keyframes: int | None = None,
     ) -> None: ...
     def track(
         self,
@@ -199,6 +219,9 @@ class Odometry:
         bgr: bool = False,
         prior: MotionPrior | None = None,
     ) -> Result: ...
+    def frame_took(self, ns: int) -> None:
+        """What the last track took, by a clock of yours, for Config's budget. The same words give the same bits."""
+
     def reset(self) -> None: ...
     def set_pose(self, T_world_camera: _Array, covariance: _Array | None = None) -> None: ...
     def features(self) -> Features: ...

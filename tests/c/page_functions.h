@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The functions of docs/c.md, as C11 gives them to C++. */
+#ifndef PLVO_TESTS_C_PAGE_FUNCTIONS_H
+#define PLVO_TESTS_C_PAGE_FUNCTIONS_H
+
+#include "plvo/c/imu.h"
+#include "plvo/c/plvo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The page's clock: each look at it is 60 ms later than the one before, and so is every frame too late. */
+int64_t now_ns(void);
+
+plvo_status start_tiny(const plvo_camera* camera, plvo_odometry** odometry);
+plvo_status track_in_time(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
+plvo_status track_turned(plvo_odometry* odometry, const plvo_frame* frame, const double R[9],
+                         plvo_result* result);
+plvo_status start_imu(plvo_imu** imu);
+void on_sample(plvo_imu* imu, int64_t stamp_ns, const double rate[3], const double force[3]);
+plvo_status track_with_imu(plvo_odometry* odometry, plvo_imu* imu, const plvo_frame* frame,
+                           plvo_result* result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tiny preset, limits and the budget of time from Python."""
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import plvo
+
+PLVO = os.environ["PLVO_BINARY"]
+
+
+def test_the_tiny_preset_is_that_of_the_command_line(walk, tmp_path):
+    subprocess.run([PLVO, "run", walk, "--preset", "tiny", "--quiet", "--out", tmp_path / "t"], check=True)
+    poses = np.loadtxt(tmp_path / "t")
+    results = list(plvo.run(walk, config=plvo.Config(preset="tiny")))
+    assert len(results) == len(poses) == 24
+    for result, pose in zip(results, poses):
+        assert np.array_equal(np.round(np.hstack([result.position, result.quaternion]), 9), pose[1:])
+    assert not np.array_equal(results[-1].position, list(plvo.run(walk))[-1].position)
+
+
+def test_limits_decide_the_memory(walk):
+    camera, tiny = plvo.Sequence(walk).camera, plvo.Config(preset="tiny")
+    bytes_of_tiny = plvo.Odometry(camera, tiny).memory_bytes
+    assert bytes_of_tiny <= 512 * 1024
+    assert plvo.Odometry(camera, tiny, line_bands=1).memory_bytes > bytes_of_tiny
+    whole = plvo.Odometry(camera).memory_bytes
+    assert plvo.Odometry(camera, kept_keyframes=0).memory_bytes < whole
+    assert plvo.Odometry(camera, plvo.Config(reference="keyframe"), references=1).memory_bytes < whole
+    for wrong in ({"references": 3}, {"line_bands": 9}, {"kept_keyframes": -1}):
+        with pytest.raises(plvo.Error, match=f"Limits::{next(iter(wrong))}"):
+            plvo.Odometry(camera, **wrong)
+    with pytest.raises(plvo.Error, match="Limits::references"):
+        plvo.Odometry(camera, plvo.Config(preset="tiny", reference="both"))
+
+
+def test_a_budget_steps_the_features_by_what_one_says(walk):
+    def steps(config):
+        odometry, found = plvo.Odometry(plvo.Sequence(walk).camera, config), []
+        for i, frame in zip(range(12), plvo.Sequence(walk)):
+            found.append(odometry.track(*frame).feature_step)
+            odometry.frame_took(1001 if i < 4 else 501 if i < 7 else 499)
+        return found
+
+    config = plvo.Config(frame_budget_ns=1000, budget_patience_frames=2, budget_spare_share=0.5)
+    assert config.frame_budget_ns == 1000 and plvo.Config().frame_budget_ns == 0
+    assert steps(config) == [0, 1, 1, 1, 2, 2, 2, 2, 2, 1, 1, 1]
+    assert steps(plvo.Config()) == [0] * 12
+    for wrong in ({"frame_budget_ns": -1}, {"budget_patience_frames": 0}, {"budget_spare_share": 2.0}):
+        with pytest.raises(plvo.Error, match="budget"):
+            plvo.Config(**wrong)
+
+
+def test_run_holds_a_budget_against_the_processor_time(walk):
+    """No frame is tracked within a nanosecond."""
+    results = list(plvo.run(walk, config=plvo.Config(frame_budget_ns=1)))
+    assert [r.feature_step for r in results] == [(i + 2) // 3 for i in range(24)]
+    assert results[-1].points.matched < list(plvo.run(walk))[-1].points.matched
