@@ -52,6 +52,28 @@ def test_samples_one_by_one_are_those_of_the_folder(covered):
         assert np.allclose(a.down, b.down) and a.gravity_covariance.shape == (3, 3)
 
 
+def learnt_offset(folder, more):
+    sequence = plvo.Sequence(folder)
+    odometry, imu = plvo.Odometry(sequence.camera), plvo.Imu(gyro_offset_sigma=0.05, longest_gap_s=0.1)
+    samples = [(round(stamp * 1e6) * 1000, np.array(rate) + more)
+               for stamp, *rate in np.loadtxt(folder / "gyroscope.txt")]
+    assert np.array_equal(imu.gyro_offset, [0, 0, 0])
+    for frame, _ in zip(sequence, range(12)):
+        while samples and samples[0][0] <= frame.stamp_ns + 10_000_000:
+            imu.add_gyro(*samples.pop(0))
+        imu.learn(odometry.track(*frame, prior=imu.prior(frame.stamp_ns)))
+    assert np.all(imu.gyro_offset_variance < 0.05**2 / 4)
+    return imu.gyro_offset
+
+
+def test_the_offset_of_the_gyro_is_learnt(covered):
+    more = np.array([0.02, -0.01, 0.015])
+    # The simulated gyro has an offset of its own.
+    assert np.all(np.abs(learnt_offset(covered, more) - learnt_offset(covered, 0) - more) < 0.003)
+    with pytest.raises(plvo.Error, match="longest_gap_s"):
+        plvo.Imu(longest_gap_s=-1)
+
+
 def test_a_prior_of_ones_own(covered):
     camera = plvo.Sequence(covered).camera
     odometry = plvo.Odometry(camera)

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "command.hpp"
+#include "numbered_sequence.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -204,6 +205,21 @@ TEST_F(Bench, TheCameraMayBeNamedForEachFolder) {
       run_command(kBench + " run " + walk("constant") + "=tum-fr9 --out " + (*folder_ / "bad").string());
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_NE(unknown.err.find("tum-fr1"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Bench, FoldersOfNumberedFramesHaveTheirOwnTruth) {
+  const test::NumberedSequence sequence;
+  ASSERT_TRUE(sequence.good());
+  const fs::path results = *folder_ / "numbered";
+  const CommandResult run =
+      run_command(kBench + " run " + sequence.tum().string() + ' ' + sequence.seven_scenes().string() + ' ' +
+                  sequence.scannet().string() + " --systems plvo-both --out " + results.string());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json all = json::parse(read_file(results / "comparison.json"));
+  ASSERT_EQ(all["results"].size(), 3U);
+  for (const json& result : all["results"])
+    EXPECT_NEAR(result["estimate"]["rpe_frame_mm"].get<double>(),
+                all["results"][0]["estimate"]["rpe_frame_mm"].get<double>(), 1e-4);
 }
 
 TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {

@@ -40,7 +40,7 @@ briefly() {
   build clang --target golden_test fuzzers
   suite clang --tests-regex '^(golden_test|fuzz_.*)$'
   build asan --target core_and_reader_tests
-  suite asan --label-regex '^(core|golden|reader)$'
+  suite asan --label-regex '^(core|golden|reader)$' --label-exclude '^statistics$'
   build tsan --target threaded_tests
   suite tsan --label-regex '^threads$'
   local run passed

@@ -63,10 +63,8 @@ std::unique_ptr<RecordedImu> read_imu(const py::object& folder) {
   return imu;
 }
 
-template <int Rows, int Columns, typename Of>
-py::object copy_or_none(const Of* part, Matrix<Rows, Columns> Of::*member) {
-  if (part == nullptr) return py::none();
-  const Matrix<Rows, Columns>& matrix = part->*member;
+template <int Rows, int Columns>
+py::object copy_of(const Matrix<Rows, Columns>& matrix) {
   std::vector<py::ssize_t> shape{Rows};
   if (Columns > 1) shape.push_back(Columns);
   py::array_t<double> array(shape);
@@ -74,6 +72,12 @@ py::object copy_or_none(const Of* part, Matrix<Rows, Columns> Of::*member) {
     for (int column = 0; column < Columns; ++column)
       array.mutable_data()[row * Columns + column] = matrix(row, column);
   return array;
+}
+
+template <int Rows, int Columns, typename Of>
+py::object copy_or_none(const Of* part, Matrix<Rows, Columns> Of::*member) {
+  if (part == nullptr) return py::none();
+  return copy_of(part->*member);
 }
 
 template <typename Part>
@@ -108,19 +112,30 @@ void bind_prior(py::module_& module) {
 
   py::class_<Imu>(module, "Imu")
       .def(py::init([](const py::object& R_camera_imu, double gyro_noise, double gyro_offset_sigma,
-                       double accelerometer_noise, double accelerometer_offset_sigma) {
+                       double gyro_offset_walk, double gyro_scale_sigma, double accelerometer_noise,
+                       double accelerometer_offset_sigma, double acceleration, double acceleration_s,
+                       double longest_gap_s) {
              ImuConfig config;
              if (!R_camera_imu.is_none()) config.R_camera_imu = matrix_of<3, 3>(R_camera_imu, "R_camera_imu");
              config.gyro_noise = gyro_noise;
              config.gyro_offset_sigma = gyro_offset_sigma;
+             config.gyro_offset_walk = gyro_offset_walk;
+             config.gyro_scale_sigma = gyro_scale_sigma;
              config.accelerometer_noise = accelerometer_noise;
              config.accelerometer_offset_sigma = accelerometer_offset_sigma;
+             config.acceleration = acceleration;
+             config.acceleration_s = acceleration_s;
+             config.longest_gap_s = longest_gap_s;
              return std::make_unique<Imu>(config);
            }),
            py::kw_only(), "R_camera_imu"_a = py::none(), "gyro_noise"_a = ImuConfig().gyro_noise,
            "gyro_offset_sigma"_a = ImuConfig().gyro_offset_sigma,
+           "gyro_offset_walk"_a = ImuConfig().gyro_offset_walk,
+           "gyro_scale_sigma"_a = ImuConfig().gyro_scale_sigma,
            "accelerometer_noise"_a = ImuConfig().accelerometer_noise,
-           "accelerometer_offset_sigma"_a = ImuConfig().accelerometer_offset_sigma)
+           "accelerometer_offset_sigma"_a = ImuConfig().accelerometer_offset_sigma,
+           "acceleration"_a = ImuConfig().acceleration, "acceleration_s"_a = ImuConfig().acceleration_s,
+           "longest_gap_s"_a = ImuConfig().longest_gap_s)
       .def(
           "add_gyro",
           [](Imu& imu, std::int64_t stamp_ns, const py::object& rate) {
@@ -137,7 +152,10 @@ void bind_prior(py::module_& module) {
           "prior", [](Imu& imu, std::int64_t stamp_ns) { return imu.integrator().prior(stamp_ns); },
           "stamp_ns"_a)
       .def(
-          "learn", [](Imu& imu, const TrackResult& result) { imu.integrator().learn(result); }, "result"_a);
+          "learn", [](Imu& imu, const TrackResult& result) { imu.integrator().learn(result); }, "result"_a)
+      .def_property_readonly("gyro_offset", [](Imu& imu) { return copy_of(imu.integrator().gyro_offset()); })
+      .def_property_readonly("gyro_offset_variance",
+                             [](Imu& imu) { return copy_of(imu.integrator().gyro_offset_variance()); });
 
   py::class_<RecordedImu>(module, "RecordedImu")
       .def(py::init(&read_imu), "folder"_a)

@@ -180,13 +180,23 @@ class Imu:
         R_camera_imu: _Array | None = None,
         gyro_noise: float = ...,
         gyro_offset_sigma: float = ...,
+        gyro_offset_walk: float = ...,
+        gyro_scale_sigma: float = ...,
         accelerometer_noise: float = ...,
         accelerometer_offset_sigma: float = ...,
+        acceleration: float = ...,
+        acceleration_s: float = ...,
+        longest_gap_s: float = ...,
     ) -> None: ...
     def add_gyro(self, stamp_ns: int, rate: _Array) -> bool: ...
     def add_acceleration(self, stamp_ns: int, force: _Array) -> bool: ...
     def prior(self, stamp_ns: int) -> MotionPrior: ...
     def learn(self, result: Result) -> None: ...
+    @property
+    def gyro_offset(self) -> NDArray[float64]:
+        """What was learnt of it so far: rad/s, in the sensor's axes."""
+    @property
+    def gyro_offset_variance(self) -> NDArray[float64]: ...
 
 class RecordedImu:
     """gyroscope.txt and accelerometer.txt of a folder."""

@@ -15,6 +15,7 @@
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
+#include "plvo/replay/sequence_index.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -45,8 +46,7 @@ Status track_all(RecordedCamera& camera, System& system, Tracks& tracks) {
 
 Status evaluate_tracks(const Job& job, const Tracks& tracks, Result& result) {
   eval::Trajectory truth;
-  if (Status status = eval::read_trajectory({job.folder / "groundtruth.txt", {}, {}}, truth); !status.ok())
-    return status;
+  if (Status status = read_ground_truth(job.folder, {}, truth); !status.ok()) return status;
   eval::EvaluationOptions options;
   options.sampling = job.options.sampling;
   eval::Evaluation evaluation;

@@ -206,7 +206,7 @@ void add_sequences_command(CLI::App& app, int& exit_code, bool tum) {
           : app.add_subcommand("run", "Every system over every sequence: accuracy, time, memory");
   command
       ->add_option("folders", options->folders,
-                   "Sequences in TUM's layout, with groundtruth.txt; DIR=MODEL names the camera")
+                   "Recorded folders, as plvo run takes them, with ground truth; DIR=MODEL names the camera")
       ->required()
       ->type_name("DIR[=MODEL]");
   add_common_options(*command, options->common);
