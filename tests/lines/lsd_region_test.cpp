@@ -193,7 +193,8 @@ TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
       const Eigen::Vector2d d = Eigen::Vector2d(p.x, p.y) - centre;
       moments += static_cast<double>(f.field.magnitude[f.field.index(p.x, p.y)]) * d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(moments);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+    solver.computeDirect(moments);
     const Eigen::Vector2d axis = solver.eigenvectors().col(1);
     if (solver.eigenvalues()[1] < 1.2 * solver.eigenvalues()[0]) continue;
     EXPECT_NEAR(std::abs(axis.x() * r.dx + axis.y() * r.dy) / 16384, 1, 1e-4);

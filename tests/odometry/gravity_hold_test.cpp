@@ -6,13 +6,17 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "dense.hpp"
 #include "plvo/odometry/gravity_hold.hpp"
 #include "simulated_pair.hpp"
 
 namespace plvo {
 namespace {
 
+using test::Dense;
+using test::DenseVector;
 using test::Gaussian;
+using test::product;
 
 Vector3 normal3(Gaussian& gaussian, double sigma) { return sigma * gaussian.vector<3>(); }
 
@@ -43,9 +47,8 @@ TEST(GravityHold, IsADenseKalmanStep) {
   hold.read(reading, from, current);
   ASSERT_TRUE(hold.known());
 
-  using Joint = Matrix<18, 18>;
   const auto joint = [](const HeldPose& a, const HeldPose& c, const GravityHold& h) {
-    Joint P = Joint::Zero();
+    Dense P = Dense::Zero(18, 18);
     Matrix6 A = Matrix6::Identity();
     A.block<3, 3>(0, 3) = -skew(c.T_world_camera.t - a.T_world_camera.t);
     P.block<6, 6>(0, 0) = a.covariance;
@@ -63,29 +66,31 @@ TEST(GravityHold, IsADenseKalmanStep) {
   from = advance(current, {rotation_exp({0.1, 0.3, 0.2}), {0.2, -0.1, 0.3}}, diagonal(0.01, 0.02));
   current = advance(from, {rotation_exp({0.2, 0.1, -0.3}), {0.1, 0.4, 0.2}}, C_motion);
   reading.down = current.T_world_camera.R.transpose() * g + normal3(random, 0.03);
-  const Joint P = joint(from, current, hold);
+  const Dense P = joint(from, current, hold);
   EXPECT_GT(test::symmetric_eigenvalues(P)[0], -1e-12) << "a covariance";
-  const auto predicted = [&](const Vector<18>& x) {
+  const auto predicted = [&](const DenseVector& x) {
     const Matrix3 R = rotation_exp(x.segment<3>(9)) * current.T_world_camera.R;
     return Vector3(R.transpose() * (hold.down_in_world() + x.segment<3>(12)) + hold.offset() + x.tail<3>());
   };
-  Matrix<3, 18> J;
+  const DenseVector none = DenseVector::Zero(18);
+  Dense J(3, 18);
   for (int i = 0; i < 18; ++i) {
-    Vector<18> x = Vector<18>::Zero();
+    DenseVector x = none;
     x[i] = 1e-6;
-    J.col(i) = (predicted(x) - predicted(Vector<18>(-x))) / 2e-6;
+    J.col(i) = (predicted(x) - predicted(-x)) / 2e-6;
   }
   // Only what lies across the direction counts.
   const Vector3 d = current.T_world_camera.R.transpose() * hold.down_in_world();
   const Vector3 u = d.cross(Vector3(1, 0, 0)).normalized();
-  Matrix<2, 3> U;
+  Dense U(2, 3);
   U.row(0) = u.transpose();
   U.row(1) = d.cross(u).transpose();
-  const Matrix<2, 18> H = U * J;
-  const Matrix2 S = H * P * H.transpose() + U * reading.covariance * U.transpose();
-  const Matrix<18, 2> K = P * H.transpose() * S.inverse();
-  const Vector<18> x = K * (U * (reading.down.normalized() - predicted(Vector<18>::Zero())));
-  const Joint after = P - K * H * P;
+  const Dense H = product(U, J);
+  const Dense PHt = product(P, H.transpose());
+  const Dense S = product(H, PHt) + product(U, product(reading.covariance, U.transpose()));
+  const Dense K = product(PHt, test::inverse(S));
+  const DenseVector x = product(K, product(U, reading.down.normalized() - predicted(none)));
+  const Dense after = P - product(K, product(H, P));
 
   HeldPose from_after = from, current_after = current;
   GravityHold hold_after = hold;

@@ -40,17 +40,17 @@ std::string escaped(const std::string& text) {
 std::string drawing(const TimingResult& result, std::size_t i) {
   const std::vector<CurvePoint>& curve = result.curves[i];
   if (curve.size() < 2) return {};
-  const auto [low, high] = std::minmax_element(
+  const auto range = std::minmax_element(
       curve.begin(), curve.end(),
       [](const CurvePoint& a, const CurvePoint& b) { return a.disagreement < b.disagreement; });
+  const double lowest = range.first->disagreement;
+  const double highest = range.second->disagreement;
   const double span_s = curve.back().seconds - curve.front().seconds;
-  const double span = std::max(high->disagreement - low->disagreement, 1e-9);
+  const double span = std::max(highest - lowest, 1e-9);
   const auto x = [&](double s) {
     return kLeft + (kWidth - kLeft - kRight) * (s - curve.front().seconds) / span_s;
   };
-  const auto y = [&](double d) {
-    return kTop + (kHeight - kTop - kBottom) * (high->disagreement - d) / span;
-  };
+  const auto y = [&](double d) { return kTop + (kHeight - kTop - kBottom) * (highest - d) / span; };
   std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n", kWidth,
                                 kHeight, kTimingNames[i].what);
   const double found_x = x(value_of(result.timing, i));
@@ -73,9 +73,9 @@ std::string drawing(const TimingResult& result, std::size_t i) {
     fmt::format_to(std::back_inserter(svg),
                    "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.1f} ms</text>\n", x(s),
                    kHeight - 12, kMs * s);
-  for (const CurvePoint& p : {*low, *high})
+  for (const double d : {lowest, highest})
     fmt::format_to(std::back_inserter(svg), "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.2f}</text>\n",
-                   kLeft - 6, y(p.disagreement) + 4, p.disagreement);
+                   kLeft - 6, y(d) + 4, d);
   return svg + "</svg>\n";
 }
 
