@@ -107,6 +107,23 @@ TEST_F(CliRun, SameInputSameBytes) {
   EXPECT_EQ(read_file(file("ca.txt")), read_file(file("cb.txt")));
 }
 
+TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
+  ASSERT_EQ(run("--quiet --out " + file("1.txt") + " --covariance " + file("c1.txt")).exit_code, 0);
+  const CommandResult two = run("--cores 2 --out " + file("2.txt") + " --covariance " + file("c2.txt") +
+                                " --json " + file("j.json"));
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_TRUE(contains(two.out, "elapsed per frame")) << two.out;
+  EXPECT_EQ(read_file(file("1.txt")), read_file(file("2.txt")));
+  EXPECT_EQ(read_file(file("c1.txt")), read_file(file("c2.txt")));
+  // The second thread's time counts too.
+  const auto json = nlohmann::json::parse(read_file(file("j.json")));
+  double stages = 0;
+  for (const char* stage : {"image", "points", "lines", "matching", "motion"})
+    stages += json["cpu_ms"][stage]["mean"].get<double>();
+  EXPECT_GT(json["cpu_ms"]["total"]["mean"].get<double>(), 1.1 * stages);
+  EXPECT_EQ(run("--cores 3").exit_code, 2);
+}
+
 TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {
   ASSERT_EQ(run("--quiet --out " + file("recorded.txt")).exit_code, 0);
   ASSERT_EQ(run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --seed 3 --quiet --frames :" +

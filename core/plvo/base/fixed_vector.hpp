@@ -57,6 +57,8 @@ class FixedVector {
   constexpr T* end() { return data_ + size_; }
   constexpr const T* begin() const { return data_; }
   constexpr const T* end() const { return data_ + size_; }
+  // All that there is room for.
+  constexpr std::span<T> storage() const { return {data_, capacity_}; }
   constexpr std::span<T> span() { return {data_, size_}; }
   constexpr std::span<const T> span() const { return {data_, size_}; }
 

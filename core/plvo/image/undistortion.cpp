@@ -151,9 +151,9 @@ void UndistortionMap::gather(const std::uint8_t* base, std::ptrdiff_t stride, Ro
   }
 }
 
-void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal) const {
+void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const {
   Row row;
-  for (int y = 0; y < height_; ++y) {
+  for (int y = begin; y < end; ++y) {
     for (int block = 0; block < width_; block += Row::kSize) {
       const int size = std::min(Row::kSize, width_ - block);
       for (int i = 0; i < size; i += kCell) {

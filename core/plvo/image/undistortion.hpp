@@ -32,7 +32,9 @@ class UndistortionMap {
 
   // ideal(x, y) ← raw at the map's position; pixels that the camera did not see repeat its border. raw's
   // stride is at most kMaxSide.
-  void undistort(GrayView raw, ImageView<std::uint8_t> ideal) const;
+  void undistort(GrayView raw, ImageView<std::uint8_t> ideal) const { undistort(raw, ideal, 0, height_); }
+  // Of ideal the rows from begin to before end.
+  void undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const;
 
   // Where the map says that ideal pixel (x, y) was imaged.
   Vector2 position_px(int x, int y) const {

@@ -137,6 +137,7 @@ Status Limits::validate() const {
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
   if (!within(kept_keyframes, 0, kMostKeptKeyframes)) return out_of_range("Limits::kept_keyframes", "0 to 4");
   if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
+  if (!within(cores, 1, 2)) return out_of_range("Limits::cores", "1 or 2");
   if (!within(line_bands, 1, 8)) return out_of_range("Limits::line_bands", "1 to 8");
   return {};
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "plvo/base/side_by_side.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/lines/line3d.hpp"
@@ -30,10 +31,12 @@ struct Limits {
   int line_bands = 1;
   // Keyframes that are kept after a loss, 0 … 4, each as large as a reference (kept_keyframes.hpp).
   int kept_keyframes = 1;
+  // 2: points are searched for in scratch of their own, so that Config::side_by_side may be set.
+  int cores = 1;
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0}; }
+  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0, 1}; }
   // Within 512 KiB, with Config::tiny().
-  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0}; }
+  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1}; }
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
@@ -128,6 +131,9 @@ struct Config {
   // by it.
   std::int64_t (*stage_clock)() = nullptr;
   StageHook stage_hook;
+  // Where there is a second core: it takes half of the images' rows and of the features, and the points while
+  // segments are searched for (Stage::kPoints is then the time of both searches). Needs Limits::cores = 2.
+  SideBySide side_by_side;
 
   static Config paper();
   // Settings that Limits::tiny() has the room for.

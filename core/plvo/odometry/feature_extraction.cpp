@@ -15,6 +15,17 @@ namespace {
 
 constexpr int kLineLevel = 1;
 
+// The rows from begin to before end.
+ColourView rows(const ColourView& colour, int begin, int end) {
+  ColourView part = colour;
+  part.data += begin * colour.stride_bytes;
+  part.height = end - begin;
+  return part;
+}
+ImageView<std::uint8_t> rows(const ImageView<std::uint8_t>& image, int begin, int end) {
+  return {image.row(begin), image.width, end - begin, image.stride};
+}
+
 }  // namespace
 
 void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
@@ -27,21 +38,27 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   segment_detector_[0] = SegmentDetector(segment_search_);
 }
 
+void FeatureExtraction::make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const {
+  config_.side_by_side.halves(
+      camera_.height, [&](int begin, int end) { to_gray(rows(colour, begin, end), rows(gray, begin, end)); });
+}
+
 void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
   if (map_.active()) {
     const ScratchScope scope(scratch);
     const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
     const std::span<std::uint8_t> raw = scratch.take<std::uint8_t>("raw grey image", pixels);
     const ImageView<std::uint8_t> raw_view{raw.data(), camera_.width, camera_.height, camera_.width};
-    to_gray(colour, raw_view);
-    map_.undistort(raw_view, pyramid_.base());
+    make_gray(colour, raw_view);
+    config_.side_by_side.halves(
+        camera_.height, [&](int begin, int end) { map_.undistort(raw_view, pyramid_.base(), begin, end); });
   } else {
-    to_gray(colour, pyramid_.base());
+    make_gray(colour, pyramid_.base());
   }
   pyramid_.build();
 }
 
-void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) {
+void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) const {
   const ScratchScope scope(scratch);
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
@@ -71,13 +88,30 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
   features.points.keypoints.clear();
   features.lines.segments.clear();
   features.lines.count_3d = 0;
-  if (config_.features != Features::kLines) extract_points(depth, scratch, features.points, result);
-  if (config_.features != Features::kPoints) extract_lines(depth, noise, scratch, features.lines, result);
+  const bool points = config_.features != Features::kLines;
+  const bool lines = config_.features != Features::kPoints;
+  const bool at_once = points && lines && config_.side_by_side;
+  if (at_once) {
+    const StageTimer timer(config_, result, Stage::kPoints);
+    const ScratchScope scope(scratch);
+    Arena own(
+        scratch.take<std::byte>("points beside segments", point_scratch(camera_.width, camera_.height)));
+    config_.side_by_side.both([&] { find_segments(scratch, features.lines, result); },
+                              [&] { find_points(depth, own, features.points, result); });
+  } else if (points) {
+    const StageTimer timer(config_, result, Stage::kPoints);
+    find_points(depth, scratch, features.points, result);
+  }
+  if (lines) {
+    const StageTimer timer(config_, result, Stage::kLines);
+    if (!at_once) find_segments(scratch, features.lines, result);
+    lift_segments(depth, noise, scratch, features.lines);
+    result.lines.with_depth = static_cast<int>(features.lines.count_3d);
+  }
 }
 
-void FeatureExtraction::extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                                       TrackResult& result) {
-  const StageTimer timer(config_, result, Stage::kPoints);
+void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                                    TrackResult& result) const {
   const DetectionSummary summary =
       detect_keypoints(pyramid_, depth, config_.points.detector, scratch, points.keypoints);
   describe_points(scratch, points);
@@ -96,16 +130,19 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
   const PointConfig& config = config_.points;
   const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
   const double depth_scale = sqrt(noise.depth);
-  for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
-    const Keypoint& keypoint = points.keypoints[i];
-    const auto u = static_cast<double>(keypoint.u);
-    const auto v = static_cast<double>(keypoint.v);
-    const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
-    // One whose window turns out to have no usable depth is at the camera's centre: "no 3D point".
-    points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
-                                     depth_scale * depth.sigma_m);
-    points.masks[i] = depth.depth_m > 0 ? own_surface(depth_sampler, keypoint, depth.depth_m) : WindowMask{};
-  }
+  config_.side_by_side.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Keypoint& keypoint = points.keypoints[i];
+      const auto u = static_cast<double>(keypoint.u);
+      const auto v = static_cast<double>(keypoint.v);
+      const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
+      // One whose window turns out to have no usable depth is at the camera's centre: "no 3D point".
+      points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
+                                       depth_scale * depth.sigma_m);
+      points.masks[i] =
+          depth.depth_m > 0 ? own_surface(depth_sampler, keypoint, depth.depth_m) : WindowMask{};
+    }
+  });
 }
 
 bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
@@ -119,29 +156,42 @@ bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& 
 
 void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseScales& noise,
                                          LineFeatures& lines) const {
-  for (std::size_t i = 0; i < lines.count_3d; ++i)
-    (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
+  config_.side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
+  });
 }
 
-void FeatureExtraction::extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
-                                      LineFeatures& lines, TrackResult& result) {
-  const StageTimer timer(config_, result, Stage::kLines);
-  constexpr double kScale = 1 << kLineLevel;
-  const GrayView reduced = pyramid_.level(kLineLevel);
-  const Status status =
-      segment_detector_[0].detect(reduced, kScale, pyramid_.level(0), scratch, lines.segments);
+void FeatureExtraction::find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result) {
+  const Status status = segment_detector_[0].detect(pyramid_.level(kLineLevel), 1 << kLineLevel,
+                                                    pyramid_.level(0), scratch, lines.segments);
   if (!status.ok()) lines.segments.clear();
   result.lines.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped());
   result.lines.dropped = static_cast<int>(lines.segments.dropped());
+}
 
-  for (std::size_t i = 0; i < lines.segments.size(); ++i) {
-    const Segment segment = lines.segments[i];
-    if (!lift_line(depth, noise, segment, lines.lines[lines.count_3d])) continue;
-    std::swap(lines.segments[i], lines.segments[lines.count_3d]);
-    lines.descriptors[lines.count_3d] = describe_segment(reduced, 1 / kScale, segment);
-    ++lines.count_3d;
+void FeatureExtraction::lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+                                      LineFeatures& lines) const {
+  const ScratchScope scope(scratch);
+  const std::size_t n = lines.segments.size();
+  const std::span<std::uint8_t> lifted = scratch.take<std::uint8_t>("segments with 3D", n);
+  config_.side_by_side.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Segment& segment = lines.segments[i];
+      lifted[i] = lift_line(depth, noise, segment, lines.lines[i]) ? 1 : 0;
+      if (lifted[i] != 0)
+        lines.descriptors[i] = describe_segment(pyramid_.level(kLineLevel), 1.0 / (1 << kLineLevel), segment);
+    }
+  });
+  // Those with 3D come first.
+  for (std::size_t i = 0; i < lifted.size(); ++i) {
+    if (lifted[i] == 0) continue;
+    const std::size_t to = lines.count_3d++;
+    if (to == i) continue;
+    std::swap(lines.segments[i], lines.segments[to]);
+    lines.lines[to] = lines.lines[i];
+    lines.descriptors[to] = lines.descriptors[i];
   }
-  result.lines.with_depth = static_cast<int>(lines.count_3d);
 }
 
 }  // namespace plvo

@@ -29,24 +29,25 @@ class FeatureExtraction {
     segment_search_ = segment_search(limits);
     segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
   }
-  // Scratch: the stages come one after the other, so the largest counts.
+  // Scratch: the stages come one after the other, so the largest counts; on two cores the points have their
+  // own.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
-    const auto pixels = static_cast<std::size_t>(limits.width) * static_cast<std::size_t>(limits.height);
     {
       const ScratchScope scope(memory);
-      memory.template take<std::uint8_t>("raw grey image", pixels);
+      memory.template take<std::uint8_t>("raw grey image", pixels_of(limits.width, limits.height));
     }
+    reserve_points(memory, limits.width, limits.height);
     {
       const ScratchScope scope(memory);
-      memory.template take<std::uint8_t>("smoothed image", pixels);
-      take_smoothing_row(memory, limits.width);
-    }
-    reserve_detection(memory, limits.width, limits.height);
-    {
-      const ScratchScope scope(memory);
+      if (limits.cores > 1)
+        memory.template take<std::byte>("points beside segments", point_scratch(limits.width, limits.height));
       memory.template take<std::byte>("segment detection",
                                       SegmentDetector::scratch_bytes(segment_search(limits)));
+    }
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("segments with 3D", static_cast<std::size_t>(limits.segments));
     }
   }
 
@@ -77,13 +78,35 @@ class FeatureExtraction {
     if (limits.line_bands > 1) search.most_candidates = 8 * static_cast<std::size_t>(limits.segments);
     return search;
   }
+  static constexpr std::size_t pixels_of(int width, int height) {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  template <typename Memory>
+  static constexpr void reserve_points(Memory& memory, int width, int height) {
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("smoothed image", pixels_of(width, height));
+      take_smoothing_row(memory, width);
+    }
+    reserve_detection(memory, width, height);
+  }
+  // Of an arena that holds what reserve_points counts, wherever it starts.
+  static constexpr std::size_t point_scratch(int width, int height) {
+    ArenaSizer sizer;
+    reserve_points(sizer, width, height);
+    return sizer.peak() + kArenaAlignment;
+  }
+  void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
-  void extract_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points, TrackResult& result);
-  void extract_lines(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
-                     TrackResult& result);
+  void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                   TrackResult& result) const;
+  void find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result);
+  // Moves the segments that have 3D to the front, with their lines and descriptors.
+  void lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+                     LineFeatures& lines) const;
   bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                  Line3d& line) const;
-  void describe_points(Arena& scratch, PointFeatures& points);
+  void describe_points(Arena& scratch, PointFeatures& points) const;
 
   CameraModel camera_;
   Config config_;

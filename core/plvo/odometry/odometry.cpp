@@ -63,6 +63,8 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   if (config.references.policy == ReferencePolicy::kKeyframeAndPrevious && limits.references < 2)
     return {StatusCode::kInvalidArgument,
             "config: references.policy with both references needs Limits::references = 2"};
+  if (config.side_by_side && limits.cores < 2)
+    return {StatusCode::kInvalidArgument, "config: side_by_side needs Limits::cores = 2"};
   if (memory.size() < required_bytes(limits))
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
         .append(static_cast<std::int64_t>(required_bytes(limits)))

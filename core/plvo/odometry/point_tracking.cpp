@@ -71,6 +71,22 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
             scale * registered_sigma_px(view.config, alignment), tracks);
 }
 
+// The room from `first` on.
+PointTracks from(const PointTracks& tracks, std::size_t first) {
+  return {FixedVector<Match>(tracks.matches.storage().subspan(first)), tracks.pixels.subspan(first),
+          tracks.points.subspan(first)};
+}
+
+// `later`, whose room begins at or behind the last of `tracks`, moves up to it.
+void append(const PointTracks& later, PointTracks& tracks) {
+  for (std::size_t i = 0; i < later.matches.size(); ++i) {
+    const std::size_t track = tracks.matches.size();
+    if (!tracks.matches.push_back({later.matches[i].reference, static_cast<std::uint16_t>(track)})) return;
+    tracks.pixels[track] = later.pixels[i];
+    tracks.points[track] = later.points[i];
+  }
+}
+
 }  // namespace
 
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
@@ -105,13 +121,21 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,
                      std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks) {
-  tracks.matches.clear();
-  for (std::size_t i = 0; i < reference.keypoints.size(); ++i) {
-    const Prediction prediction = predict(view, reference_points[i], T_current_reference);
-    if (prediction.visible)
-      register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{},
-                        warp_of(view.pinhole, reference_points[i].p, T_current_reference), tracks);
-  }
+  const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
+    found.matches.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Prediction prediction = predict(view, reference_points[i], T_current_reference);
+      if (prediction.visible)
+        register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{},
+                          warp_of(view.pinhole, reference_points[i].p, T_current_reference), found);
+    }
+  };
+  const std::size_t n = reference.keypoints.size();
+  if (!view.side_by_side) return track(0, n, tracks);
+  const std::size_t middle = n / 2;
+  PointTracks later = from(tracks, middle);
+  view.side_by_side.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
+  append(later, tracks);
 }
 
 }  // namespace plvo

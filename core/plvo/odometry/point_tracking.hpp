@@ -46,6 +46,7 @@ struct TrackingView {
   const DepthSampler& depth;
   const Exposure& exposure;
   const NoiseScales& noise;
+  const SideBySide& side_by_side;
 };
 
 // Through descriptors, within radius_px of where T_current_reference puts the reference keypoints; registered

@@ -107,7 +107,8 @@ class ReferenceTracking {
   SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
   TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
                        const Exposure& exposure) const {
-    return {camera_.pinhole, config_.points, current.extraction.pyramid(), depth, exposure, current.noise};
+    return {camera_.pinhole, config_.points, current.extraction.pyramid(), depth,
+            exposure,        current.noise,  config_.side_by_side};
   }
 
   CameraModel camera_;

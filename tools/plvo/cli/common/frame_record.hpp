@@ -15,7 +15,8 @@ struct FrameRecord {
   // Not ok: the camera could not give this frame out, and of what follows only the stamp holds.
   Status camera_status;
   TrackResult result;
-  std::int64_t cpu_ns = 0;  // CPU time of track() alone
+  std::int64_t cpu_ns = 0;      // of track() alone, on all its cores
+  std::int64_t elapsed_ns = 0;  // from its call to its result
 
   bool damaged() const { return !camera_status.ok(); }
   bool has_pose() const { return !damaged() && plvo::has_pose(result); }

@@ -2,6 +2,7 @@
 #include "plvo/cli/common/odometry_options.hpp"
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/host/posix_clock.hpp"
 
 namespace plvo::cli {
 
@@ -24,9 +25,15 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.number("--frame-budget", options.budget_ms, positive(1e6), "MS",
                "Fewer features after a frame that took more processor time than this, and more again when "
                "there is time to spare; results then depend on the machine");
+  group.whole("--cores", options.cores, 1, 2,
+              "2: points and lines are searched for at the same time, and images and features halved between "
+              "two threads; results are the same. Times of stages are those of the first (default 1)");
   group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
 }
 
+namespace {
+
+// The preset, then what was asked for beside it.
 Config make_config(const OdometryOptions& options) {
   Config config;
   if (options.preset == Preset::kPaper) config = Config::paper();
@@ -42,12 +49,35 @@ Limits make_limits(const OdometryOptions& options, const CameraModel& camera) {
   Limits limits = options.preset == Preset::kTiny ? Limits::tiny() : Limits();
   limits.width = camera.width;
   limits.height = camera.height;
+  limits.cores = options.cores;
   return limits;
 }
 
-Status OdometryBlock::init(const CameraModel& camera, const Config& config, const Limits& limits) {
+}  // namespace
+
+Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& options) {
+  Config config = make_config(options);
+  config.stage_clock = posix_thread_cpu_ns;
+  if (options.cores > 1) {
+    pair_ = std::make_unique<ThreadPair>();
+    config.side_by_side = pair_->side_by_side();
+  }
+  const Limits limits = make_limits(options, camera);
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});
   return odometry_.init(memory_, camera, config, limits);
+}
+
+std::int64_t OdometryBlock::cpu_ns() const {
+  return posix_thread_cpu_ns() + (pair_ != nullptr ? pair_->cpu_ns() : 0);
+}
+
+void OdometryBlock::track(const RgbdFrame& frame, const MotionPrior& prior, FrameRecord& record) {
+  const std::int64_t start_ns = posix_monotonic_ns();
+  const std::int64_t cpu_before_ns = cpu_ns();
+  record.result = odometry_.track(frame, prior);
+  record.cpu_ns = cpu_ns() - cpu_before_ns;
+  record.elapsed_ns = posix_monotonic_ns() - start_ns;
+  odometry_.frame_took(record.cpu_ns);
 }
 
 }  // namespace plvo::cli

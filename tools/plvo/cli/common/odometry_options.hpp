@@ -4,10 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/frame_record.hpp"
+#include "plvo/host/thread_pair.hpp"
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo::cli {
@@ -20,22 +23,24 @@ struct OdometryOptions {
   std::optional<ReferencePolicy> reference;
   std::optional<std::uint64_t> seed;
   double budget_ms = 0;  // 0: none
+  int cores = 1;
 };
 void add_odometry_options(CLI::App& command, OdometryOptions& options);
 
-// The preset, then what was asked for beside it.
-Config make_config(const OdometryOptions& options);
-Limits make_limits(const OdometryOptions& options, const CameraModel& camera);
-
-// An odometry with the block it needs. Every page of the block is touched, so that memory does not seem
-// to grow later.
+// An odometry with the block it needs, and the second thread that it was asked for. Every page of the block
+// is touched, so that memory does not seem to grow later.
 class OdometryBlock {
  public:
-  Status init(const CameraModel& camera, const Config& config, const Limits& limits);
+  Status init(const CameraModel& camera, const OdometryOptions& options);
+  // Tracks, notes what came of it and what it took, and tells the budget.
+  void track(const RgbdFrame& frame, const MotionPrior& prior, FrameRecord& record);
   Odometry& odometry() { return odometry_; }
 
  private:
+  std::int64_t cpu_ns() const;
+
   std::vector<std::byte> memory_;
+  std::unique_ptr<ThreadPair> pair_;
   Odometry odometry_;
 };
 

@@ -57,6 +57,7 @@ class TrackSummary {
   std::array<std::uint64_t, kKinds> losses_{};  // by kind: the words of one kind differ from frame to frame
   std::array<Status, kKinds> last_loss_;
   std::array<DurationHistogram, kStageCount + 1> stages_;  // the last one: the whole of track()
+  DurationHistogram elapsed_;
   CountHistogram point_inliers_, line_inliers_;
 };
 

@@ -41,10 +41,7 @@ Status LiveSession::open() {
   if (Status status = open_live_camera(options_.camera, console_, camera_); !status.ok()) return status;
   const bool every = options_.every_frame || is_oni_file(options_.camera.device);
   const CameraModel model = camera_->model();
-  Config config = make_config(options_.odometry);
-  config.stage_clock = posix_thread_cpu_ns;
-  if (Status status = block_.init(model, config, make_limits(options_.odometry, model)); !status.ok())
-    return status;
+  if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
   if (!options_.summary.empty())
@@ -102,10 +99,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   if (options_.rate_hz > 0)
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
-  const std::int64_t start = posix_thread_cpu_ns();
-  record_.result = block_.odometry().track(frame);
-  record_.cpu_ns = posix_thread_cpu_ns() - start;
-  block_.odometry().frame_took(record_.cpu_ns);
+  block_.track(frame, MotionPrior(), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;

@@ -78,11 +78,7 @@ class Run {
   // Everything that can be wrong is found before the first file is made.
   Status open() {
     if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
-    Config config = make_config(options_.odometry);
-    config.stage_clock = posix_thread_cpu_ns;
-    const CameraModel& model = opened_.camera->model();
-    if (Status status = block_.init(model, config, make_limits(options_.odometry, model)); !status.ok())
-      return status;
+    if (Status status = block_.init(opened_.camera->model(), options_.odometry); !status.ok()) return status;
     if (Status status = open_imu(options_.imu, opened_, console_, imu_); !status.ok()) return status;
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
@@ -115,10 +111,7 @@ class Run {
                          fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
         const MotionPrior prior = imu_ ? imu_->prior(frame.stamp_ns) : MotionPrior();
-        const std::int64_t start = posix_thread_cpu_ns();
-        record.result = block_.odometry().track(frame, prior);
-        record.cpu_ns = posix_thread_cpu_ns() - start;
-        block_.odometry().frame_took(record.cpu_ns);
+        block_.track(frame, prior, record);
         if (imu_) imu_->learn(record.result);
       }
       summary_->add(record);
