@@ -10,14 +10,14 @@ namespace {
 
 // A local refinement looks at every n-th match so that there are about this many: enough for a motion far
 // more precise than a match, at a cost that does not grow with the frame.
-constexpr std::size_t kRefinementMatches = 192;
+constexpr std::size_t kRefinementMatches = 96;
 // A motion from three matches is less precise than a match: the first rounds forgive it three and two times
 // the distance.
 constexpr double kRoundScales[] = {9, 4, 1};
 // A fresh hypothesis is scored with thresholds this much wider, and must beat every fresh one before it and
 // reach this share of what the best refined one scores so.
 constexpr double kFreshScale = 4;
-constexpr double kFreshShare = 0.5;
+constexpr double kFreshShare = 0.75;
 // Sets drawn from the consensus until one is not degenerate.
 constexpr int kDegeneracyDraws = 200;
 constexpr int kRefinementSteps = 2;
