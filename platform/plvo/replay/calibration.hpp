@@ -3,10 +3,11 @@
 // the extension .yaml or .yml):
 //   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; lines with keys may
 //   follow fx 0 cx 0  0 fy cy 0  0 0 1 0  0 0 0 1                   the same of a matrix, as ScanNet's are
-//   fx: 525  (or fx = 525, or fx 525), one a line             keys in any order: calibration_keys.hpp has
-//   them YAML with the same keys ROS camera_info YAML                                      image_width,
-//   camera_matrix, plumb_bob distortion,
-//                                                             and beside them the keys of the sensor
+//   fx: 525  (or fx = 525, or fx 525), one a line            keys in any order: calibration_keys.hpp has them
+//   YAML with the same keys
+//   ROS camera_info YAML                                     image_width, camera_matrix, the lens
+//                                                            (camera_info.hpp), and beside them the sensor's
+//                                                            keys
 // What a source does not say is assumed, and known to be: see assumptions().
 #pragma once
 
@@ -40,7 +41,7 @@ struct Calibration {
 };
 
 // kNotFound, kDamaged (what is expected and where), kInvalidArgument (not a regular file, or larger than a
-// calibration can be), kUnsupported for a distortion model other than plumb_bob. On failure `calibration` is
+// calibration can be), kUnsupported for a lens that plvo does not know. On failure `calibration` is
 // unchanged.
 Status read_calibration(const std::filesystem::path& path, Calibration& calibration);
 

@@ -3,8 +3,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "plvo/camera/camera_info.hpp"
 
 namespace plvo::calibration_form {
 namespace {
@@ -25,6 +28,9 @@ constexpr auto kKeys = std::to_array<Key>({
     {"k3", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k3; }},
     {"readout_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.readout_s; }},
     // Keys alone from here on.
+    {"k4", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k4; }},
+    {"k5", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k5; }},
+    {"k6", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k6; }},
     {"depth_delay_s", KeyKind::kSensor,
      [](N& n) -> double& { return n.calibration.camera.depth_timing.delay_s; }},
     {"depth_readout_s", KeyKind::kSensor,
@@ -37,7 +43,7 @@ static_assert(kKeys.size() <= kMaxKeys && kPlaces <= kKeys.size());
 std::string all_names() {
   std::string names;
   for (const Key& key : kKeys) names.append(names.empty() ? "" : " ").append(key.name);
-  return names;
+  return names.append(" ").append(kLensModelKey);
 }
 
 bool is_image_side(double value) { return value >= 1 && value <= 100000 && value == std::floor(value); }
@@ -45,6 +51,11 @@ bool is_image_side(double value) { return value >= 1 && value <= 100000 && value
 }  // namespace
 
 std::span<const Key> keys() { return kKeys; }
+
+bool is_key(std::string_view name) {
+  return name == kLensModelKey ||
+         std::any_of(kKeys.begin(), kKeys.end(), [&](const Key& key) { return key.name == name; });
+}
 
 bool parse_number(std::string_view text, double& value) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -70,7 +81,19 @@ void Collector::set_lens(const Pinhole& pinhole, const Distortion& distortion) {
     if (kKeys[i].kind == KeyKind::kLens) given_[i] = true;
 }
 
+Status Collector::set_lens_model(std::string_view name) {
+  if (!lens_model_.empty()) return damaged(path_, fmt::format("'{}' is said twice", kLensModelKey));
+  if (name.empty())
+    return damaged(path_, fmt::format("'{}' needs plumb_bob, rational_polynomial or equidistant after it",
+                                      kLensModelKey));
+  lens_model_ = name;
+  const Status status = lens_model_of(name, numbers_.calibration.camera.distortion.model);
+  return status.ok() ? status
+                     : Status(status.code(), fmt::format("{}: {}", path_.string(), status.message()));
+}
+
 Status Collector::set(std::string_view key, std::string_view value) {
+  if (key == kLensModelKey) return set_lens_model(value);
   for (std::size_t i = 0; i < kKeys.size(); ++i) {
     if (kKeys[i].name != key) continue;
     double number = 0;
@@ -94,6 +117,8 @@ Status Collector::finish(Calibration& calibration) {
   if (given("width") != given("height"))
     return damaged(path_, "width and height must be given both, or neither");
   Calibration& result = numbers_.calibration;
+  if (lens_model_ == "plumb_bob" && !result.camera.distortion.is_plumb_bob())
+    return damaged(path_, "plumb_bob has no k4 k5 k6; the lens that has them is rational_polynomial");
   result.has_size = given("width");
   if (result.has_size) {
     if (!is_image_side(numbers_.width) || !is_image_side(numbers_.height))
