@@ -54,7 +54,8 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
   expect_usage("run x --readout 20", "--readout: expected a number from 0 to 1, not '20'");
   expect_usage("run x --distortion 1 2 3 nan",
                "--distortion: expected a number from -1000 to 1000, not 'nan'");
-  expect_usage("run x --distortion-rational 1 2 3 4 5", "--distortion-rational: At least 8 required but received 5");
+  expect_usage("run x --distortion-rational 1 2 3 4 5",
+               "--distortion-rational: At least 8 required but received 5");
   expect_usage("run x --distortion-equidistant 1 2 x 4",
                "--distortion-equidistant: expected a number from -1000 to 1000, not 'x'");
   expect_usage("run x --distortion 1 2 3 4 --distortion-equidistant 1 2 3 4",
