@@ -328,6 +328,38 @@ TEST(Calibration, LensesAreWrittenAsTheyAreRead) {
   }
 }
 
+TEST(Calibration, ADepthCameraOfItsOwn) {
+  const std::string colour = "525 525 319.5 239.5 1000\n";
+  const std::string pinhole = "depth_fx 360\ndepth_fy 361\ndepth_cx 159.5\ndepth_cy 119.5\n";
+  Calibration c;
+  ASSERT_TRUE(read_text(colour, c).ok());
+  EXPECT_FALSE(c.depth_camera.known);
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 0.025\ndepth_ty 0.001\ndepth_tz 0\n", c).ok());
+  EXPECT_TRUE(c.depth_camera.known && c.depth_camera.pinhole.fy == 361 && c.depth_camera.tx == 0.025);
+  EXPECT_TRUE(c.validate(640, 480).ok());
+  for (const std::string& text : {calibration_text(c), calibration_lines(c)}) {
+    Calibration again;
+    ASSERT_TRUE(read_text(text, again).ok()) << text;
+    EXPECT_TRUE(again.depth_camera.known && again.depth_camera.tx == 0.025 && again.depth_camera.qw == 1);
+    EXPECT_EQ(calibration_text(again), calibration_text(c));
+  }
+  ASSERT_TRUE(read_text(std::string(kCameraInfo) + "depth_fx: 360\ndepth_fy: 360\ndepth_cx: 1\ndepth_cy: 2\n",
+                        c, "a.yaml")
+                  .ok());
+  EXPECT_TRUE(c.depth_camera.known);
+  EXPECT_TRUE(
+      says(read_text(colour + "depth_fx 360\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
+  EXPECT_TRUE(
+      says(read_text(colour + "depth_tx 0.1\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
+  EXPECT_TRUE(says(read_text(colour + pinhole + "depth_tx 0.1\n", c), "go together"));
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_qx 0\ndepth_qy 0\ndepth_qz 0\ndepth_qw 0.5\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "depth_qw must have the length 1"));
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 25\ndepth_ty 0\ndepth_tz 0\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "are metres"));
+  ASSERT_TRUE(read_text(colour + "depth_fx -1\ndepth_fy 1\ndepth_cx 1\ndepth_cy 1\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "depth_fx and depth_fy must be positive"));
+}
+
 TEST(Calibration, RefusesOtherDistortionModels) {
   Calibration c;
   const Status status = read_text(camera_info("omnidirectional", "0.1"), c, "rgb.yaml");

@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/host/trajectory_reader.hpp"
+#include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/image_writer.hpp"
 #include "temporary_folder.hpp"
 
@@ -210,6 +211,36 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
       nlohmann::json::parse(run("--quiet --json - --out /dev/null --base-camera " + place).out)["evaluation"],
       nlohmann::json::parse(run("--quiet --json -").out)["evaluation"])
       << "the summary stays the camera's";
+}
+
+// Each second pixel of the depth images, as a sensor with a smaller depth camera in the same place has them.
+TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
+  ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
+  ImageDecoder decoder;
+  std::vector<std::uint16_t> whole(160 * 120), half(80 * 60);
+  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth")) {
+    ASSERT_TRUE(decoder.decode_depth(entry.path(), 160, 120, whole).ok());
+    for (std::size_t i = 0; i < half.size(); ++i) half[i] = whole[2 * (i / 80) * 160 + 2 * (i % 80)];
+    ASSERT_TRUE(write_png(entry.path(), DepthView{half.data(), 80, 60, 80, 0.0002}).ok());
+  }
+  const CommandResult refused = run("--quiet");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("colour is 160x120 but depth is 80x60; export colour at the size of depth"),
+            std::string::npos)
+      << refused.err;
+  const std::string colour = read_file(folder_ / "walk/calibration.txt");
+  for (const char* said :
+       {"width 160\nheight 120\n", "depth_fx 65.625\ndepth_fy 65.625\ndepth_cx 39.75\ndepth_cy 29.75\n"}) {
+    write_file(folder_ / "walk/calibration.txt", colour + "\n" + said);
+    const CommandResult r = run("--quiet --out " + path("half"));
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const CommandResult e =
+        run_command(kPlvo + " eval --gt " + path("whole") + " --est " + path("half") + " --json -");
+    ASSERT_EQ(e.exit_code, 0) << e.err;
+    const auto json = nlohmann::json::parse(e.out);
+    EXPECT_EQ(json["poses"], kFrames);
+    EXPECT_LT(json["ate_m"]["identity"]["max"], 0.01) << said;
+  }
 }
 
 TEST_F(CliOutputs, ACameraWithoutATurnIsWarnedOf) {

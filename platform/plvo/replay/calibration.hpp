@@ -20,6 +20,7 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/replay/depth_registration.hpp"
 
 namespace plvo {
 
@@ -30,9 +31,11 @@ struct Calibration {
   bool has_size = false;  // the source says which image size it is for
   double depth_units_per_metre = kTumDepthUnitsPerMetre;
   bool depth_scale_given = false;  // by the source or a flag; else the default above is a guess
+  DepthCamera depth_camera;        // of depth that is not registered to colour
   bool readout_given = false;      // of the rolling shutter, 0 included; else a global shutter is a guess
 
-  // As CameraModel::validate for images of this size, and a depth scale between 1 and 100000 units per metre.
+  // As CameraModel::validate for colour images of this size, a depth scale between 1 and 100000 units per
+  // metre, and a depth camera that is one.
   Status validate(int width, int height) const;
 
   // What was not said and is therefore assumed: a sentence each, with what to do if it is wrong. To be shown

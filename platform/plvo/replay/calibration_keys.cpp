@@ -35,6 +35,21 @@ constexpr auto kKeys = std::to_array<Key>({
      [](N& n) -> double& { return n.calibration.camera.depth_timing.delay_s; }},
     {"depth_readout_s", KeyKind::kSensor,
      [](N& n) -> double& { return n.calibration.camera.depth_timing.readout_s; }},
+    {"depth_fx", KeyKind::kDepthCamera,
+     [](N& n) -> double& { return n.calibration.depth_camera.pinhole.fx; }},
+    {"depth_fy", KeyKind::kDepthCamera,
+     [](N& n) -> double& { return n.calibration.depth_camera.pinhole.fy; }},
+    {"depth_cx", KeyKind::kDepthCamera,
+     [](N& n) -> double& { return n.calibration.depth_camera.pinhole.cx; }},
+    {"depth_cy", KeyKind::kDepthCamera,
+     [](N& n) -> double& { return n.calibration.depth_camera.pinhole.cy; }},
+    {"depth_tx", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.tx; }},
+    {"depth_ty", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.ty; }},
+    {"depth_tz", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.tz; }},
+    {"depth_qx", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qx; }},
+    {"depth_qy", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qy; }},
+    {"depth_qz", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qz; }},
+    {"depth_qw", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qw; }},
     {"width", KeyKind::kSize, [](N& n) -> double& { return n.width; }},
     {"height", KeyKind::kSize, [](N& n) -> double& { return n.height; }},
 });
@@ -111,6 +126,21 @@ bool Collector::given(std::string_view key) const {
   return false;
 }
 
+Status Collector::finish_depth_camera(DepthCamera& depth) const {
+  const auto count = [&](std::initializer_list<const char*> names) {
+    return std::count_if(names.begin(), names.end(), [&](const char* name) { return given(name); });
+  };
+  const auto pinhole = count({"depth_fx", "depth_fy", "depth_cx", "depth_cy"});
+  const auto place = count({"depth_tx", "depth_ty", "depth_tz"});
+  const auto turn = count({"depth_qx", "depth_qy", "depth_qz", "depth_qw"});
+  depth.known = pinhole == 4;
+  if (pinhole != 4 && pinhole + place + turn > 0)
+    return damaged(path_, "depth_fx, depth_fy, depth_cx and depth_cy must all be given");
+  if (place % 3 != 0 || turn % 4 != 0)
+    return damaged(path_, "depth_tx depth_ty depth_tz, and depth_qx depth_qy depth_qz depth_qw, go together");
+  return {};
+}
+
 Status Collector::finish(Calibration& calibration) {
   if (!given("fx") || !given("fy") || !given("cx") || !given("cy"))
     return damaged(path_, "fx, fy, cx and cy must all be given");
@@ -119,6 +149,7 @@ Status Collector::finish(Calibration& calibration) {
   Calibration& result = numbers_.calibration;
   if (lens_model_ == "plumb_bob" && !result.camera.distortion.is_plumb_bob())
     return damaged(path_, "plumb_bob has no k4 k5 k6; the lens that has them is rational_polynomial");
+  if (Status status = finish_depth_camera(result.depth_camera); !status.ok()) return status;
   result.has_size = given("width");
   if (result.has_size) {
     if (!is_image_side(numbers_.width) || !is_image_side(numbers_.height))

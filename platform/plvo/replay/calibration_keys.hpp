@@ -21,9 +21,10 @@ struct Numbers {
 };
 
 enum class KeyKind : std::uint8_t {
-  kLens,    // a camera_info says these in its own words
-  kSize,    // likewise
-  kSensor,  // what a camera_info does not know
+  kLens,         // a camera_info says these in its own words
+  kSize,         // likewise
+  kSensor,       // what a camera_info does not know
+  kDepthCamera,  // likewise; all of it or nothing
 };
 
 struct Key {
@@ -57,6 +58,7 @@ class Collector {
 
  private:
   bool given(std::string_view key) const;
+  Status finish_depth_camera(DepthCamera& depth) const;
   Status set_lens_model(std::string_view name);
   void put(std::size_t index, double value);
 

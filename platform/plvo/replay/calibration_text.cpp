@@ -86,7 +86,9 @@ std::string calibration_text(const Calibration& calibration) {
     text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
   for (const Key& key : keys().subspan(kPlaces)) {
     const bool timed = key.kind == KeyKind::kSensor && calibration.camera.depth_timing.known;
-    if (timed || (key.kind != KeyKind::kSize && !is_default(key)))
+    const bool of_depth = key.kind == KeyKind::kDepthCamera && calibration.depth_camera.known;
+    const bool others = key.kind == KeyKind::kSensor || key.kind == KeyKind::kLens;
+    if (timed || of_depth || (others && !is_default(key)))
       text += fmt::format("\n{} {}", key.name, key.of(numbers));
   }
   const Distortion& lens = calibration.camera.distortion;
@@ -103,6 +105,7 @@ std::string calibration_lines(const Calibration& calibration) {
   const bool timed = calibration.camera.depth_timing.known;
   const auto written = [&](const Key& key) {
     if (key.kind == KeyKind::kSize) return calibration.has_size;
+    if (key.kind == KeyKind::kDepthCamera) return calibration.depth_camera.known;
     if (key.name.starts_with("depth_") && key.name != "depth_scale") return timed;
     if (key.name == "readout_s") return calibration.readout_given;
     const bool of_pinhole = key.name == "fx" || key.name == "fy" || key.name == "cx" || key.name == "cy";

@@ -51,7 +51,7 @@ Status from_camera_info(const fs::path& path, const YAML::Node& root, Collector&
     if (Status status = set(collector, "height", height); !status.ok()) return status;
   }
   for (const Key& key : keys()) {
-    if (key.kind != KeyKind::kSensor) continue;
+    if (key.kind != KeyKind::kSensor && key.kind != KeyKind::kDepthCamera) continue;
     const std::string name(key.name);
     if (const YAML::Node value = root[name]; value)
       if (Status status = set(collector, name, value); !status.ok()) return status;
