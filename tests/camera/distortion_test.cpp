@@ -71,7 +71,9 @@ void reference(const Distortion& lens, const Vector2& ideal, Real& out_x, Real& 
 }
 
 TEST(Lens, FollowsOpenCvsFormulas) {
-  for (const auto& [name, camera] : kCameras) {
+  for (const NamedCamera& named : kCameras) {
+    const char* name = named.name;
+    const CameraModel& camera = named.camera;
     double worst = 0;
     for_image(camera, [&](const Vector2& px) {
       const Vector2 ideal = normalised(camera, px);
@@ -86,7 +88,9 @@ TEST(Lens, FollowsOpenCvsFormulas) {
 }
 
 TEST(Lens, JacobianMatchesDifferences) {
-  for (const auto& [name, camera] : kCameras) {
+  for (const NamedCamera& named : kCameras) {
+    const char* name = named.name;
+    const CameraModel& camera = named.camera;
     for (double x : {-0.7, -0.1, 0.0, 0.4}) {
       for (double y : {-0.5, 0.0, 0.3}) {
         Matrix2 J;
@@ -100,7 +104,9 @@ TEST(Lens, JacobianMatchesDifferences) {
 }
 
 TEST(Lens, RoundTripsOverTheWholeIdealImage) {
-  for (const auto& [name, camera] : kCameras) {
+  for (const NamedCamera& named : kCameras) {
+    const char* name = named.name;
+    const CameraModel& camera = named.camera;
     ASSERT_TRUE(camera.validate().ok()) << name << camera.validate().message();
     for_image(camera, [&](const Vector2& px) {
       ASSERT_LT((undistort_pixel(camera, distort_pixel(camera, px)) - px).norm(), 1e-9)
@@ -110,7 +116,9 @@ TEST(Lens, RoundTripsOverTheWholeIdealImage) {
 }
 
 TEST(Lens, EveryPixelOfTheSensorHasAnIdealOneBelowARightAngle) {
-  for (const auto& [name, camera] : kCameras) {
+  for (const NamedCamera& named : kCameras) {
+    const char* name = named.name;
+    const CameraModel& camera = named.camera;
     int none = 0;
     for_image(camera, [&](const Vector2& px) {
       const Distortion& lens = camera.distortion;
@@ -135,10 +143,10 @@ TEST(Lens, EveryPixelOfTheSensorHasAnIdealOneBelowARightAngle) {
 }
 
 TEST(Lens, NoNumberLeavesFarOutsideTheImage) {
-  for (const auto& [name, camera] : kCameras)
+  for (const NamedCamera& named : kCameras)
     for (const Vector2& px : {Vector2(-1e4, -1e4), Vector2(1e6, 3), Vector2(639, 1e5), Vector2(-1e9, 1e9)}) {
-      EXPECT_TRUE(undistort_pixel(camera, px).allFinite()) << name << px.transpose();
-      EXPECT_TRUE(distort_pixel(camera, px).allFinite()) << name << px.transpose();
+      EXPECT_TRUE(undistort_pixel(named.camera, px).allFinite()) << named.name << px.transpose();
+      EXPECT_TRUE(distort_pixel(named.camera, px).allFinite()) << named.name << px.transpose();
     }
 }
 
@@ -163,9 +171,9 @@ TEST(Lens, PlumbBobHasTheBitsOfItsOwnFormula) {
 // Recorded with GCC on x86-64.
 TEST(Lens, TheSameBitsOnEveryMachine) {
   Fingerprint there, back;
-  for (const auto& [name, camera] : kCameras)
-    for_image(camera, [&](const Vector2& px) {
-      const Vector2 raw = distort_pixel(camera, px), ideal = undistort_pixel(camera, raw);
+  for (const NamedCamera& named : kCameras)
+    for_image(named.camera, [&](const Vector2& px) {
+      const Vector2 raw = distort_pixel(named.camera, px), ideal = undistort_pixel(named.camera, raw);
       for (int i = 0; i < 2; ++i) {
         there.add(raw[i]);
         back.add(ideal[i]);
