@@ -2,6 +2,13 @@
 #include "plvo/camera/camera_info.hpp"
 
 namespace plvo {
+namespace {
+
+Status wrong_count(const char* words, std::size_t count) {
+  return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::int64_t>(count));
+}
+
+}  // namespace
 
 Status lens_model_of(std::string_view name, LensModel& model) {
   if (name == "equidistant" || name == "fisheye") {
@@ -27,19 +34,18 @@ Status distortion_of(std::string_view model, std::span<const double> coefficient
   const std::span<const double> D = coefficients;
   LensModel known = LensModel::kRational;
   if (const Status status = lens_model_of(model, known); !status.ok()) return status;
-  const auto wrong_count = [&](std::string_view words) {
-    return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::int64_t>(D.size()));
-  };
   if (known == LensModel::kEquidistant) {
-    if (D.size() != 4) return wrong_count("equidistant has 4 distortion coefficients, k1 k2 k3 k4, not ");
+    if (D.size() != 4)
+      return wrong_count("equidistant has 4 distortion coefficients, k1 k2 k3 k4, not ", D.size());
     lens = {.k1 = D[0], .k2 = D[1], .k3 = D[2], .k4 = D[3], .model = LensModel::kEquidistant};
     return {};
   }
   if (model == "plumb_bob" && D.size() > 5)
-    return wrong_count("plumb_bob has 4 or 5 distortion coefficients (8 are rational_polynomial's), not ");
+    return wrong_count("plumb_bob has 4 or 5 distortion coefficients (8 are rational_polynomial's), not ",
+                       D.size());
   if (D.size() != 0 && D.size() != 4 && D.size() != 5 && D.size() != 8 && D.size() != 12 && D.size() != 14)
-    return wrong_count(
-        "expected 4 or 5 distortion coefficients (plumb_bob) or 8 (rational_polynomial), not ");
+    return wrong_count("expected 4 or 5 distortion coefficients (plumb_bob) or 8 (rational_polynomial), not ",
+                       D.size());
   for (std::size_t i = 8; i < D.size(); ++i)
     if (D[i] != 0)
       return {StatusCode::kUnsupported,

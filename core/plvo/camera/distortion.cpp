@@ -96,14 +96,10 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
 
 bool finite(double x) { return x - x == 0; }
 
-Status folds_at(double theta, std::string_view what, std::string_view names) {
-  return Status(StatusCode::kInvalidArgument, "the ")
-      .append(what)
-      .append(" distortion folds the image ")
+Status folds_at(double theta, const char* what, const char* degrees_from_the_axis) {
+  return Status(StatusCode::kInvalidArgument, what)
       .append(static_cast<std::int64_t>(theta * (180 / kPi)))
-      .append(" degrees from the axis; check ")
-      .append(names)
-      .append(" and their order, or calibrate again with the target in the image's corners, too");
+      .append(degrees_from_the_axis);
 }
 
 constexpr int kSteps = 512;           // along the radius, less than 1 px each
@@ -117,7 +113,10 @@ Status check_rational(const Distortion& lens, double radius) {
     const double s = r * r;
     const double imaged = r * cubic(1, lens.k1, lens.k2, lens.k3, s) / cubic(1, lens.k4, lens.k5, lens.k6, s);
     if (!(imaged - before >= kLeastSlope * radius / kSteps))
-      return folds_at(atan2(r, 1), "rational", "k1 k2 p1 p2 k3 k4 k5 k6");
+      return folds_at(
+          atan2(r, 1), "the rational distortion folds the image ",
+          " degrees from the axis; check k1 k2 p1 p2 k3 k4 k5 k6 and their order, or calibrate again "
+          "with the target in the image's corners, too");
     before = imaged;
   }
   return {};
@@ -127,7 +126,11 @@ Status check_equidistant(const Distortion& lens, double radius) {
   const double widest = atan2(radius, 1);
   for (int i = 1; i <= kSteps; ++i) {
     const double theta = widest * i / kSteps;
-    if (!(fisheye_slope(lens, theta) >= kLeastSlope)) return folds_at(theta, "equidistant", "k1 k2 k3 k4");
+    if (!(fisheye_slope(lens, theta) >= kLeastSlope))
+      return folds_at(
+          theta, "the equidistant distortion folds the image ",
+          " degrees from the axis; check k1 k2 k3 k4 and their order, or calibrate again with the "
+          "target in the image's corners, too");
   }
   return {};
 }
