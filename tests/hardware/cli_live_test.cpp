@@ -83,6 +83,15 @@ TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
   EXPECT_EQ(poses, 12);
 }
 
+TEST_F(CliLive, ADepthCameraInTheCalibrationIsForRecordings) {
+  plvo::test::write_file(
+      path("c.txt"),
+      "262 262 159.5 119.5 1000\ndepth_fx 262\ndepth_fy 262\ndepth_cx 159.5\ndepth_cy 119.5\n");
+  const CommandResult r = plvo("live " + kSmall + "--frames 1 --calibration " + path("c.txt"));
+  EXPECT_EQ(r.exit_code, 1) << r.err;
+  EXPECT_NE(r.err.find("leave them out of the calibration"), std::string::npos) << r.err;
+}
+
 TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
   ASSERT_EQ(plvo("record " + path("a.oni") + " --quiet --seconds 1.2 " + kSmall).exit_code, 0);
   const CommandResult live = plvo("live --device " + path("a.oni") + files("oni"));
