@@ -298,8 +298,7 @@ TEST(CApi, RefusesWhatItCannotUse) {
 TEST(CApi, SizesTellHowTheProgramWasCompiled) {
   const plvo_limits limits = c_limits(kLimits);
   plvo_camera camera = c_camera(CameraModel());
-  EXPECT_EQ(sizeof camera, c::kFirstSize<plvo_camera>)
-      << "grown since: this test wants a case that is smaller";
+  EXPECT_EQ(c::kFirstSize<plvo_camera>, 112U) << "of version 0.1, as programs were compiled then";
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
   plvo_odometry* odometry = nullptr;
   camera.struct_size = 0;
@@ -308,9 +307,48 @@ TEST(CApi, SizesTellHowTheProgramWasCompiled) {
   camera.struct_size = sizeof camera + 8;
   status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
   EXPECT_NE(std::strstr(status.message, "compiled for a newer plvo"), nullptr) << status.message;
+  // A program of version 0.1 has plumb_bob, whatever lies behind its struct.
+  camera = c_camera(ProceduralSequence(kLimits.width, kLimits.height).camera());
+  camera.struct_size = static_cast<std::uint32_t>(c::kFirstSize<plvo_camera>);
+  camera.lens = 77;
+  status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  EXPECT_EQ(status.code, PLVO_OK) << status.message;
   plvo_config config;
   plvo_config_init(&config, 4);
   EXPECT_EQ(config.struct_size, 4U) << "nothing is written past what the caller says there is";
+}
+
+TEST(CApi, LensesAreThoseOfCpp) {
+  const plvo_limits limits = c_limits(kLimits);
+  std::vector<std::byte> memory(plvo_required_bytes(&limits));
+  plvo_odometry* odometry = nullptr;
+  const auto init = [&](const plvo_camera& camera) {
+    return plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  };
+  CameraModel model = ProceduralSequence(kLimits.width, kLimits.height).camera();
+  model.distortion = {.k1 = 0.1, .k2 = 0.2, .k3 = 0.1 * 3, .k4 = 0.4, .model = LensModel::kEquidistant};
+  plvo_camera camera = c_camera(model);
+  EXPECT_EQ(camera.lens, PLVO_LENS_EQUIDISTANT);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(camera.distortion[i], 0.1 * (i + 1)) << "ROS's order";
+  CameraModel back;
+  ASSERT_TRUE(c::from_c(camera, back).ok());
+  EXPECT_TRUE(back.distortion.k1 == 0.1 && back.distortion.k2 == 0.2 && back.distortion.k3 == 0.1 * 3 &&
+              back.distortion.k4 == 0.4 && back.distortion.model == LensModel::kEquidistant);
+  EXPECT_EQ(init(camera).code, PLVO_OK) << init(camera).message;
+  camera.distortion[0] = -5;
+  EXPECT_NE(std::strstr(init(camera).message, "equidistant distortion folds"), nullptr)
+      << init(camera).message;
+  camera.distortion[4] = 1;
+  EXPECT_NE(std::strstr(init(camera).message, "the others must be 0"), nullptr) << init(camera).message;
+  camera.lens = 2;
+  EXPECT_NE(std::strstr(init(camera).message, "camera.lens must be"), nullptr) << init(camera).message;
+
+  model.distortion = {1, 2, 3, 4, 5, 6, 7, 8};
+  camera = c_camera(model);
+  ASSERT_TRUE(c::from_c(camera, back).ok());
+  EXPECT_EQ(camera.distortion_more[2], 8);
+  EXPECT_TRUE(back.distortion.p1 == 3 && back.distortion.k3 == 5 && back.distortion.k4 == 6 &&
+              back.distortion.k6 == 8 && back.distortion.model == LensModel::kRational);
 }
 
 TEST(CApi, APriorAndSetPoseGiveTheBitsOfCpp) {

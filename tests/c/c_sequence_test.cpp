@@ -108,6 +108,25 @@ TEST(CSequence, FindsCalibrationsByNameAndInFiles) {
   EXPECT_EQ(plvo_camera_read((folder / "none.txt").c_str(), &camera, nullptr).code, PLVO_NOT_FOUND);
 }
 
+// A lens that a program of an older version cannot be told must not reach it as another one.
+TEST(CSequence, ALensThatTheCallersStructHasNoRoomForIsRefused) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "camera.txt", "300 301 160 120 1000\ndistortion_model equidistant\nk1 0.1\n");
+  plvo_camera camera = empty_camera();
+  ASSERT_EQ(plvo_camera_read((folder / "camera.txt").c_str(), &camera, nullptr).code, PLVO_OK);
+  EXPECT_EQ(camera.lens, PLVO_LENS_EQUIDISTANT);
+  EXPECT_EQ(camera.distortion[0], 0.1);
+  camera = empty_camera();
+  const double before = camera.fx;
+  camera.struct_size = 112;  // of version 0.1
+  const plvo_status status = plvo_camera_read((folder / "camera.txt").c_str(), &camera, nullptr);
+  EXPECT_EQ(status.code, PLVO_INVALID_ARGUMENT);
+  EXPECT_NE(std::strstr(status.message, "compile the program for this plvo"), nullptr) << status.message;
+  EXPECT_EQ(camera.fx, before);
+  EXPECT_EQ(plvo_camera_builtin("tum-fr1", &camera, nullptr).code, PLVO_OK);
+  EXPECT_NEAR(camera.fx, 517.3, 0.1);
+}
+
 TEST(CSequence, RefusesWhatIsNoSequence) {
   const test::TemporaryFolder folder;
   plvo_sequence* sequence = nullptr;

@@ -50,6 +50,48 @@ TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
   expect_same("files", "again", 12);
 }
 
+TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
+  make_walk();
+  const std::string place = " --base-camera 0.2 -0.1 0.5 -0.5 0.5 -0.5 0.5";
+  ASSERT_EQ(plvo("run " + path("walk") + files("files") + place).exit_code, 0);
+  const CommandResult live = plvo("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
+                                      " --every-frame --frames 12 --stream -" + files("live") + place,
+                                  device("pace 150000", path("raw")));
+  ASSERT_EQ(live.exit_code, 0) << live.err;
+  expect_same("files", "live", 12);
+  std::istringstream stream(live.out);
+  std::istringstream file(read_file(path("live.txt")));
+  std::string row;
+  std::getline(file, row);
+  EXPECT_NE(row.find("frame_id: odom, child_frame_id: base_link"), std::string::npos) << row;
+  int poses = 0;
+  for (std::string line; std::getline(stream, line);) {
+    const auto json = nlohmann::json::parse(line);
+    if (json.contains("heartbeat")) continue;
+    EXPECT_EQ(json["frame_id"], "odom");
+    EXPECT_EQ(json["child_frame_id"], "base_link");
+    double stamp = 0;
+    ASSERT_TRUE(file >> stamp);
+    for (const auto* part : {"position", "orientation_xyzw"})
+      for (const auto& told : json[part]) {
+        double written = 0;
+        ASSERT_TRUE(file >> written);
+        EXPECT_NEAR(told.get<double>(), written, 2e-9);
+      }
+    ++poses;
+  }
+  EXPECT_EQ(poses, 12);
+}
+
+TEST_F(CliLive, ADepthCameraInTheCalibrationIsForRecordings) {
+  plvo::test::write_file(
+      path("c.txt"),
+      "262 262 159.5 119.5 1000\ndepth_fx 262\ndepth_fy 262\ndepth_cx 159.5\ndepth_cy 119.5\n");
+  const CommandResult r = plvo("live " + kSmall + "--frames 1 --calibration " + path("c.txt"));
+  EXPECT_EQ(r.exit_code, 1) << r.err;
+  EXPECT_NE(r.err.find("leave them out of the calibration"), std::string::npos) << r.err;
+}
+
 TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
   ASSERT_EQ(plvo("record " + path("a.oni") + " --quiet --seconds 1.2 " + kSmall).exit_code, 0);
   const CommandResult live = plvo("live --device " + path("a.oni") + files("oni"));

@@ -105,6 +105,12 @@ TEST(PoseJson, SaysEverything) {
   EXPECT_EQ(json["lines"]["matched"], 7);
 }
 
+TEST(PoseJson, SaysWhoseFramesTheyAre) {
+  const nlohmann::json json = nlohmann::json::parse(pose_json(sample(1), kBaseFrames));
+  EXPECT_EQ(json["frame_id"], "odom");
+  EXPECT_EQ(json["child_frame_id"], "base_link");
+}
+
 TEST(PoseJson, NumbersThatJsonDoesNotKnowBecomeNull) {
   TrackResult result = sample(1);
   result.T_world_camera.t.x() = std::numeric_limits<double>::quiet_NaN();

@@ -14,8 +14,8 @@ run(${CMAKE_COMMAND} -E env --unset=DESTDIR ${CMAKE_COMMAND} --install ${BUILD} 
 
 # The headers: the doors, what they include, and nothing else.
 set(include ${WORK}/prefix/include)
-set(reached plvo/odometry/odometry.hpp plvo/inertial/imu_integrator.hpp plvo/hal/clock.hpp plvo/hal/log.hpp
-  plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp plvo/hal/task_pair.hpp)
+set(reached plvo/odometry/odometry.hpp plvo/inertial/imu_integrator.hpp plvo/camera/camera_info.hpp plvo/hal/clock.hpp
+  plvo/hal/log.hpp plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp plvo/hal/task_pair.hpp)
 if(C_EXAMPLE)
   list(APPEND reached plvo/c/imu.h plvo/c/plvo.h plvo/c/sequence.h)
 endif()

@@ -120,6 +120,31 @@ TEST(Undistortion, AKinectsLensIsMetToAFiftiethOfAPixel) {
   }
 }
 
+// Wherever the camera saw the pixel: a sensor's rational lens at its size, and fisheyes of 130° and 180°.
+TEST(Undistortion, WideLensesAreMetToAFiftiethOfAPixel) {
+  const auto fisheye = [](double k1, double k2, double k3, double k4) {
+    return Distortion{.k1 = k1, .k2 = k2, .k3 = k3, .k4 = k4, .model = LensModel::kEquidistant};
+  };
+  for (const CameraModel& camera :
+       {CameraModel{1280, 720, {611, 611, 638, 367}, {0.45, -2.58, 0.0008, -0.0003, 1.49, 0.33, -2.41, 1.42}},
+        CameraModel{640, 480, {210, 208, 325, 236}, {0.6, 0.05, 0.001, -0.002, 0, 0.9, 0.12, 0}},
+        CameraModel{848, 800, {286, 286, 421, 400}, fisheye(-0.0063, 0.0493, -0.0463, 0.0090)},
+        CameraModel{640, 480, {203, 203, 318, 241}, fisheye(0, 0, 0, 0)}}) {
+    ASSERT_TRUE(camera.validate().ok()) << camera.validate().message();
+    const Map owned(camera);
+    ASSERT_TRUE(owned.map.active());
+    double worst = 0;
+    for (int y = 0; y < camera.height; ++y)
+      for (int x = 0; x < camera.width; ++x) {
+        const Vector2 at = distort_pixel(camera, Vector2(x, y));
+        if (at.x() < 0 || at.y() < 0 || at.x() > camera.width || at.y() > camera.height) continue;
+        const Vector2 error = owned.map.position_px(x, y) - at;
+        worst = std::max({worst, std::abs(error.x()), std::abs(error.y())});
+      }
+    EXPECT_LT(worst, 0.02) << camera.width;
+  }
+}
+
 // A window's plane goes through the map at its centre, and stays near it.
 TEST(Undistortion, AWindowFollowsTheMap) {
   const CameraModel camera = camera_with(kBarrel);

@@ -142,7 +142,31 @@ def test_cameras(tmp_path):
     (tmp_path / "c.txt").write_text("300 301 160 120 1000\n")
     assert plvo.Camera.read(tmp_path / "c.txt").fy == 301
     camera = plvo.Camera(640, 480, 525, 525, 319.5, 239.5, (0.1, 0, 0, 0), depth_units_per_metre=5000)
-    assert camera.distortion == (0.1, 0, 0, 0, 0)
+    assert camera.distortion == (0.1, 0, 0, 0, 0) and camera.distortion_model == "plumb_bob"
+
+
+def test_lenses(tmp_path):
+    def camera(distortion, model=""):
+        return plvo.Camera(640, 480, 525, 525, 319.5, 239.5, distortion, distortion_model=model)
+
+    eight = (0.1, 0.02, 0.001, -0.001, 0.01, 0.05, 0.01, 0.002)
+    for rational in (camera(eight), camera(list(eight), "rational_polynomial")):
+        assert rational.distortion == eight and rational.distortion_model == "rational_polynomial"
+    fisheye = camera((0.1, -0.02, 0.003, 0.0004), "equidistant")
+    assert fisheye.distortion == (0.1, -0.02, 0.003, 0.0004) and fisheye.distortion_model == "equidistant"
+    (tmp_path / "info.yaml").write_text(
+        "width: 640\nheight: 480\nK: [525, 0, 320, 0, 525, 240, 0, 0, 1]\n"
+        "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"
+    )
+    read = plvo.Camera.read(tmp_path / "info.yaml")
+    assert read.distortion_model == "equidistant" and read.distortion[0] == 0.1
+    with pytest.raises(ValueError, match="k1 k2 k3 k4, not 5"):
+        camera((1, 2, 3, 4, 5), "equidistant")
+    with pytest.raises(ValueError, match="'pinhole' is not supported"):
+        camera((), "pinhole")
+    with pytest.raises(plvo.Error, match="folds the image") as error:
+        camera((-3, 0, 0, 0), "equidistant")
+    assert error.value.code == "invalid_argument"
 
 
 def test_errors_are_the_librarys_words(walk, tmp_path):

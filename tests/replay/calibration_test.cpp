@@ -259,13 +259,116 @@ TEST(Calibration, TheFolderSaysWhichFile) {
   }
 }
 
+std::string camera_info(const std::string& model, const std::string& coefficients) {
+  return "width: 640\nheight: 480\nK: [500, 0, 320, 0, 501, 240, 0, 0, 1]\ndistortion_model: " + model +
+         "\nD: [" + coefficients + "]\n";
+}
+
+// As the drivers of Azure Kinect and Orbbec cameras publish it, and of RealSense's fisheyes.
+TEST(Calibration, ReadsRationalAndEquidistantCameraInfo) {
+  Calibration c;
+  ASSERT_TRUE(read_text(camera_info("rational_polynomial", "1, 2, 3, 4, 5, 6, 7, 8"), c, "a.yaml").ok());
+  const Distortion& lens = c.camera.distortion;
+  EXPECT_TRUE(lens.k1 == 1 && lens.p1 == 3 && lens.p2 == 4 && lens.k3 == 5 && lens.k4 == 6 && lens.k6 == 8);
+  EXPECT_EQ(lens.model, LensModel::kRational);
+  for (const char* name : {"equidistant", "fisheye"}) {
+    ASSERT_TRUE(read_text(camera_info(name, "0.1, 0.2, 0.3, 0.4"), c, "a.yaml").ok()) << name;
+    EXPECT_EQ(lens.model, LensModel::kEquidistant);
+    EXPECT_TRUE(lens.k1 == 0.1 && lens.k2 == 0.2 && lens.k3 == 0.3 && lens.k4 == 0.4 && lens.p1 == 0);
+  }
+}
+
+TEST(Calibration, ReadsLensesByKeys) {
+  const std::string pinhole = "fx: 500\nfy: 501\ncx: 320\ncy: 240\n";
+  const std::string rational = pinhole + "k1: 0.1\nk6: 0.6\np2: 0.2\n";
+  for (const char* name : {"calibration.txt", "calibration.yaml"}) {
+    Calibration c;
+    const Distortion& lens = c.camera.distortion;
+    ASSERT_TRUE(read_text(rational, c, name).ok());
+    EXPECT_TRUE(lens.k1 == 0.1 && lens.k6 == 0.6 && lens.p2 == 0.2 && lens.model == LensModel::kRational);
+    ASSERT_TRUE(read_text(rational + "distortion_model: rational_polynomial\n", c, name).ok());
+    ASSERT_TRUE(read_text(pinhole + "distortion_model: equidistant\nk1: 0.1\nk4: 0.4\n", c, name).ok());
+    EXPECT_TRUE(lens.k1 == 0.1 && lens.k4 == 0.4 && lens.model == LensModel::kEquidistant);
+    EXPECT_TRUE(
+        says(read_text(rational + "distortion_model: plumb_bob\n", c, name), "plumb_bob has no k4 k5 k6"));
+    const Status unknown = read_text(pinhole + "distortion_model: ftheta\n", c, name);
+    EXPECT_EQ(unknown.code(), StatusCode::kUnsupported);
+    EXPECT_TRUE(says(unknown, "'ftheta' is not supported, only plumb_bob, rational_polynomial and equi"));
+  }
+  Calibration c;
+  ASSERT_TRUE(read_text("500 501 320 240 1000\ndistortion_model equidistant\n", c).ok());
+  EXPECT_EQ(c.camera.distortion.model, LensModel::kEquidistant);
+  EXPECT_TRUE(says(read_text(pinhole + "distortion_model\n", c), "'distortion_model' needs plumb_bob"));
+  EXPECT_TRUE(says(read_text(pinhole + "distortion_model fisheye\ndistortion_model fisheye\n", c),
+                   "'distortion_model' is said twice"));
+}
+
+TEST(Calibration, LensesAreWrittenAsTheyAreRead) {
+  Calibration written;
+  written.camera.pinhole = {500, 501, 320, 240};
+  for (const Distortion& lens :
+       {Distortion{0.1, 0.2, 1e-3, -1e-3, 0.3, 1 / 3.0, -0.1, 1e-9}, Distortion{.k6 = 0.1},
+        Distortion{.model = LensModel::kEquidistant},
+        Distortion{.k1 = 0.1, .k2 = -0.2, .k3 = 0.3, .k4 = 1 / 3.0, .model = LensModel::kEquidistant}}) {
+    written.camera.distortion = lens;
+    for (const std::string& text : {calibration_text(written), calibration_lines(written)}) {
+      Calibration c;
+      const Status status = read_text(text, c);
+      ASSERT_TRUE(status.ok()) << status.message() << text;
+      const Distortion& got = c.camera.distortion;
+      EXPECT_TRUE(got.model == lens.model && got.k1 == lens.k1 && got.k2 == lens.k2 && got.p1 == lens.p1 &&
+                  got.p2 == lens.p2 && got.k3 == lens.k3 && got.k4 == lens.k4 && got.k5 == lens.k5 &&
+                  got.k6 == lens.k6)
+          << text;
+      EXPECT_EQ(calibration_text(c), calibration_text(written));
+    }
+    Calibration c;
+    EXPECT_TRUE(read_text(calibration_lines(written), c, "a.yaml").ok()) << "the same as YAML";
+    EXPECT_EQ(c.camera.distortion.k4, lens.k4);
+  }
+}
+
+TEST(Calibration, ADepthCameraOfItsOwn) {
+  const std::string colour = "525 525 319.5 239.5 1000\n";
+  const std::string pinhole = "depth_fx 360\ndepth_fy 361\ndepth_cx 159.5\ndepth_cy 119.5\n";
+  Calibration c;
+  ASSERT_TRUE(read_text(colour, c).ok());
+  EXPECT_FALSE(c.depth_camera.known);
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 0.025\ndepth_ty 0.001\ndepth_tz 0\n", c).ok());
+  EXPECT_TRUE(c.depth_camera.known && c.depth_camera.pinhole.fy == 361 && c.depth_camera.tx == 0.025);
+  EXPECT_TRUE(c.validate(640, 480).ok());
+  for (const std::string& text : {calibration_text(c), calibration_lines(c)}) {
+    Calibration again;
+    ASSERT_TRUE(read_text(text, again).ok()) << text;
+    EXPECT_TRUE(again.depth_camera.known && again.depth_camera.tx == 0.025 && again.depth_camera.qw == 1);
+    EXPECT_EQ(calibration_text(again), calibration_text(c));
+  }
+  ASSERT_TRUE(read_text(std::string(kCameraInfo) + "depth_fx: 360\ndepth_fy: 360\ndepth_cx: 1\ndepth_cy: 2\n",
+                        c, "a.yaml")
+                  .ok());
+  EXPECT_TRUE(c.depth_camera.known);
+  EXPECT_TRUE(
+      says(read_text(colour + "depth_fx 360\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
+  EXPECT_TRUE(
+      says(read_text(colour + "depth_tx 0.1\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
+  EXPECT_TRUE(says(read_text(colour + pinhole + "depth_tx 0.1\n", c), "go together"));
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_qx 0\ndepth_qy 0\ndepth_qz 0\ndepth_qw 0.5\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "depth_qw must have the length 1"));
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 25\ndepth_ty 0\ndepth_tz 0\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "are metres"));
+  ASSERT_TRUE(read_text(colour + "depth_fx -1\ndepth_fy 1\ndepth_cx 1\ndepth_cy 1\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "depth_fx and depth_fy must be positive"));
+}
+
 TEST(Calibration, RefusesOtherDistortionModels) {
   Calibration c;
-  std::string text = kCameraInfo;
-  text.replace(text.find("plumb_bob"), 9, "equidistant");
-  const Status status = read_text(text, c, "rgb.yaml");
+  const Status status = read_text(camera_info("omnidirectional", "0.1"), c, "rgb.yaml");
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
-  EXPECT_TRUE(says(status, "'equidistant' is not supported, only plumb_bob")) << status.message();
+  EXPECT_TRUE(says(status, "'omnidirectional' is not supported, only plumb_bob, rational_polynomial and "))
+      << status.message();
+  EXPECT_EQ(read_text(camera_info("equidistant", "0.1, 0.2"), c, "rgb.yaml").code(), StatusCode::kDamaged);
+  EXPECT_TRUE(says(read_text(camera_info("plumb_bob", "1, 2, 3, 4, 5, 6, 7, 8"), c, "rgb.yaml"),
+                   "8 are rational_polynomial's"));
 }
 
 TEST(Calibration, RefusesBrokenYaml) {

@@ -112,6 +112,27 @@ TEST(RecordedCamera, DifferentSizesAreRefusedAtOpen) {
   EXPECT_TRUE(says(open(camera, folder.path()), "colour is 96x64 but depth is 48x32"));
 }
 
+TEST(RecordedCamera, SmallerDepthOfOneViewIsEnlarged) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
+  const TinyFrame small(0, 48, 32);
+  ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", small.frame.depth).ok());
+  Calibration calibration;
+  calibration.camera = {96, 64, {80, 80, 47.5, 31.5}, {}};
+  calibration.has_size = true;  // of colour: the two halves of depth's width and height cannot be meant
+  RecordedCamera camera;
+  const Status status = camera.open(folder.path(), calibration);
+  ASSERT_TRUE(status.ok()) << status.message();
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.depth.width, 96);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x)
+      ASSERT_EQ(frame.depth.data[y * frame.depth.stride + x],
+                small.depth[static_cast<std::size_t>(y / 2 * 48 + x / 2)])
+          << x << ' ' << y;
+}
+
 // The names do not say it, the images do.
 TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
   const TemporaryFolder folder;

@@ -46,6 +46,8 @@ struct RosNode : testing::Test {
       info.k = {camera.pinhole.fx, 0, camera.pinhole.cx, 0, camera.pinhole.fy, camera.pinhole.cy, 0, 0, 1};
       const Distortion& lens = camera.distortion;
       info.d = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+      if (!coefficients.empty()) info.d = coefficients;
+      info.distortion_model = model;
       rclcpp::wires.camera_info(info);
       for (int i = 0; i < kFrames; ++i) {
         const RgbdFrame frame = i == dark ? sequence.render_dark(i) : sequence.render(i);
@@ -60,6 +62,8 @@ struct RosNode : testing::Test {
 
   ProceduralSequence sequence{320, 240};
   int dark = -1;
+  std::string model = "plumb_bob";
+  std::vector<double> coefficients;  // none: the sequence's
 };
 
 TEST_F(RosNode, PublishesTheBaseInOdom) {
@@ -102,6 +106,23 @@ TEST_F(RosNode, PublishesTheBaseInOdom) {
                   covariance[static_cast<std::size_t>(6 * j + i)], 1e-12);
   }
   EXPECT_TRUE(rclcpp::wires.logged.empty());
+}
+
+TEST_F(RosNode, TakesTheLensByItsName) {
+  model = "rational_polynomial";
+  coefficients = {0.05, -0.12, 0.0008, -0.0005, 0.06, 0, 0, 0};  // the sequence's, which is plumb_bob
+  run();
+  EXPECT_EQ(rclcpp::wires.published.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_TRUE(rclcpp::wires.logged.empty());
+}
+
+TEST_F(RosNode, SaysWhichLensItDoesNotKnow) {
+  model = "omnidirectional";
+  run();
+  EXPECT_TRUE(rclcpp::wires.published.empty());
+  ASSERT_FALSE(rclcpp::wires.logged.empty());
+  EXPECT_NE(rclcpp::wires.logged.front().find("'omnidirectional' is not supported"), std::string::npos)
+      << rclcpp::wires.logged.front();
 }
 
 TEST_F(RosNode, PublishesNothingWhileLost) {

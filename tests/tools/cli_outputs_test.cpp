@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/trajectory_reader.hpp"
+#include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/image_writer.hpp"
 #include "temporary_folder.hpp"
 
@@ -160,6 +163,91 @@ TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
                   " --est-covariance " + path("c") + " --est-motions " + path("m") + " --json -");
   ASSERT_EQ(read_back.exit_code, 0) << read_back.err;
   EXPECT_TRUE(nlohmann::json::parse(read_back.out).contains("nees_motion"));
+}
+
+// The base's poses are the camera's, moved by where the camera sits, and so are their covariances: what a
+// motion's error is in units of its covariance stays what it was.
+TEST_F(CliOutputs, PosesOfTheRobotsBase) {
+  const std::string place = "0.2 -0.1 0.5 -0.54 0.46 -0.5 0.497";
+  const Se3 T_base_camera{to_rotation({-0.54, 0.46, -0.5, 0.497}), Vector3(0.2, -0.1, 0.5)};
+  const auto files = [this](const std::string& name) {
+    return "--quiet --out " + path(name + ".t") + " --covariance " + path(name + ".c") + " --motions " +
+           path(name + ".m");
+  };
+  ASSERT_EQ(run(files("camera")).exit_code, 0);
+  const CommandResult r = run(files("base") + " --base-camera " + place);
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_EQ(r.err, "");
+  EXPECT_NE(read_file(folder_ / "base.t").find("frame_id: odom, child_frame_id: base_link (x forward"),
+            std::string::npos);
+
+  const auto moved = [&](const std::string& from, const std::string& to, const Se3& behind) {
+    Trajectory trajectory;
+    ASSERT_TRUE(read_trajectory({folder_ / from, TrajectoryFormat::kTum, {}}, trajectory).ok());
+    std::string text;
+    for (const StampedPose& pose : trajectory.poses)
+      text += trajectory_line(pose.stamp_ns, T_base_camera * pose.T_world_camera * behind) + '\n';
+    write_file(folder_ / to, text);
+  };
+  moved("camera.t", "moved.t", T_base_camera.inverse());
+  moved("walk/groundtruth.txt", "truth.t", T_base_camera.inverse());
+  const auto eval = [&](const std::string& truth, const std::string& name) {
+    const CommandResult e = run_command(kPlvo + " eval --gt " + path(truth) + " --est " + path(name + ".t") +
+                                        " --est-covariance " + path(name + ".c") + " --est-motions " +
+                                        path(name + ".m") + " --json -");
+    EXPECT_EQ(e.exit_code, 0) << e.err;
+    return nlohmann::json::parse(e.out);
+  };
+  EXPECT_LT(eval("moved.t", "base")["ate_m"]["max"], 5e-9) << "but for the decimals of the files";
+  const auto of_base = eval("truth.t", "base");
+  const auto of_camera = eval("walk/groundtruth.txt", "camera");
+  for (const char* nees : {"nees_motion", "nees_pose"}) {
+    const double expected = of_camera[nees]["mean"];
+    EXPECT_GT(expected, 0.1);
+    EXPECT_NEAR(of_base[nees]["mean"].get<double>(), expected, 1e-3 * expected) << nees;
+  }
+  EXPECT_NE(read_file(folder_ / "base.c"), read_file(folder_ / "camera.c"));
+  EXPECT_EQ(
+      nlohmann::json::parse(run("--quiet --json - --out /dev/null --base-camera " + place).out)["evaluation"],
+      nlohmann::json::parse(run("--quiet --json -").out)["evaluation"])
+      << "the summary stays the camera's";
+}
+
+// Each second pixel of the depth images, as a sensor with a smaller depth camera in the same place has them.
+TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
+  ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
+  ImageDecoder decoder;
+  std::vector<std::uint16_t> whole(160 * 120), half(80 * 60);
+  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth")) {
+    ASSERT_TRUE(decoder.decode_depth(entry.path(), 160, 120, whole).ok());
+    for (std::size_t i = 0; i < half.size(); ++i) half[i] = whole[2 * (i / 80) * 160 + 2 * (i % 80)];
+    ASSERT_TRUE(write_png(entry.path(), DepthView{half.data(), 80, 60, 80, 0.0002}).ok());
+  }
+  const CommandResult refused = run("--quiet");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("colour is 160x120 but depth is 80x60; export colour at the size of depth"),
+            std::string::npos)
+      << refused.err;
+  const std::string colour = read_file(folder_ / "walk/calibration.txt");
+  for (const char* said :
+       {"width 160\nheight 120\n", "depth_fx 65.625\ndepth_fy 65.625\ndepth_cx 39.75\ndepth_cy 29.75\n"}) {
+    write_file(folder_ / "walk/calibration.txt", colour + "\n" + said);
+    const CommandResult r = run("--quiet --out " + path("half"));
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const CommandResult e =
+        run_command(kPlvo + " eval --gt " + path("whole") + " --est " + path("half") + " --json -");
+    ASSERT_EQ(e.exit_code, 0) << e.err;
+    const auto json = nlohmann::json::parse(e.out);
+    EXPECT_EQ(json["poses"], kFrames);
+    EXPECT_LT(json["ate_m"]["identity"]["max"], 0.01) << said;
+  }
+}
+
+TEST_F(CliOutputs, ACameraWithoutATurnIsWarnedOf) {
+  const CommandResult r = run("--quiet --out " + path("t") + " --base-camera 0.2 0 0.5 0 0 0 1");
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_NE(r.err.find("this camera looks up"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("-0.5 0.5 -0.5 0.5"), std::string::npos) << r.err;
 }
 
 TEST_F(CliOutputs, WhatCannotBeWrittenToStandardOutputIsAnError) {

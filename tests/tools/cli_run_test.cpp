@@ -301,8 +301,13 @@ TEST_F(CliRun, UnknownDistortionModel) {
   write_file(
       folder_ / "info.yaml",
       "image_width: 160\nimage_height: 120\ncamera_matrix: {data: [131, 0, 79.5, 0, 131, 59.5, 0, 0, 1]}\n"
-      "distortion_model: equidistant\ndistortion_coefficients: {data: [0.1, 0, 0, 0]}\n");
-  expect_refused(run("--calibration " + file("info.yaml")), "'equidistant' is not supported, only plumb_bob");
+      "distortion_model: thin_prism\ndistortion_coefficients: {data: [0.1, 0, 0, 0]}\n");
+  expect_refused(run("--calibration " + file("info.yaml")), "'thin_prism' is not supported, only plumb_bob");
+}
+
+TEST_F(CliRun, ALensThatFoldsTheImage) {
+  expect_refused(run("--distortion-equidistant -3 0 0 0"), "the equidistant distortion folds the image");
+  expect_refused(run("--distortion-rational 0 0 0 0 0 0 0 -90"), "the rational distortion folds the image");
 }
 
 TEST_F(CliRun, OutputsThatCannotBeWritten) {

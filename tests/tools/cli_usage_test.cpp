@@ -54,6 +54,22 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
   expect_usage("run x --readout 20", "--readout: expected a number from 0 to 1, not '20'");
   expect_usage("run x --distortion 1 2 3 nan",
                "--distortion: expected a number from -1000 to 1000, not 'nan'");
+  expect_usage("run x --distortion-rational 1 2 3 4 5",
+               "--distortion-rational: At least 8 required but received 5");
+  expect_usage("run x --distortion-equidistant 1 2 x 4",
+               "--distortion-equidistant: expected a number from -1000 to 1000, not 'x'");
+  expect_usage("run x --distortion 1 2 3 4 --distortion-equidistant 1 2 3 4",
+               "give one of --distortion, --distortion-rational and --distortion-equidistant");
+  for (const char* command : {"run x", "live"}) {
+    const std::string base = std::string(command) + " --out t --base-camera ";
+    expect_usage(base + "0.1 0 0.5", "--base-camera: At least 7 required but received 3");
+    expect_usage(base + "0.1 0 0.5 0 0 0 0", "the quaternion qx qy qz qw must have the length 1, not 0");
+    expect_usage(base + "0.1 0 0.5 1 0.5 -0.5 0.5", "come qx qy qz qw, w last");
+    expect_usage(base + "0.1 0 x 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'x'");
+    expect_usage(base + "nan 0 0 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'nan'");
+    expect_usage(std::string(command) + " --base-camera 0 0 0 -0.5 0.5 -0.5 0.5",
+                 "changes what is written: add --out, --covariance, --motions or --stream");
+  }
   expect_usage("run x --frames 4:1",
                "--frames: expected a number of frames such as 20, or a range such as 10:20");
   expect_usage("run x --frames 0", "--frames: expected");

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera: a pinhole and a Brown–Conrady lens (k1 k2 p1 p2 k3, in OpenCV's and ROS's order, "plumb_bob").
+// The camera: a pinhole and a lens (distortion.hpp).
 // Pixel coordinates put (0, 0) at the centre of the top-left pixel; the optical frame is x right, y down, z
 // forward.
 #pragma once
 
 #include "plvo/base/status.hpp"
+#include "plvo/camera/distortion.hpp"
 #include "plvo/math/types.hpp"
 
 namespace plvo {
@@ -12,11 +13,6 @@ namespace plvo {
 struct Pinhole {
   double fx = 525, fy = 525;      // px
   double cx = 319.5, cy = 239.5;  // px
-};
-
-struct Distortion {
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
-  bool is_zero() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
 };
 
 // From the first row of a Kinect v1's colour image to the last: 26.1 ms by Ringaby & Forssén (ICCV 2011). On
@@ -52,14 +48,10 @@ Vector2 project(const Pinhole& pinhole, const Vector3& p);
 // Equation (1): the point at pixel (u, v) with depth d (metres along z).
 Vector3 back_project(const Pinhole& pinhole, double u, double v, double d);
 
-// Normalised image coordinates (x/z, y/z) before the lens → after it. J_distort, when asked for, is ∂out/∂in.
-Vector2 distort(const Distortion& distortion, const Vector2& ideal, Matrix2* J_distort = nullptr);
-
 // The pixel at which the lens images what an ideal pinhole would image at (u, v).
 Vector2 distort_pixel(const CameraModel& camera, const Vector2& ideal_px);
 
-// Inverse of distort_pixel, by Newton's method with a fixed number of steps (8): exact to 1e-9 px within any
-// lens that validate() accepts.
+// Inverse of distort_pixel: exact to 1e-9 px within any lens that validate() accepts.
 Vector2 undistort_pixel(const CameraModel& camera, const Vector2& distorted_px);
 
 }  // namespace plvo

@@ -20,16 +20,24 @@ std::span<std::byte> aligned_part(void* memory, std::size_t bytes) {
   return {static_cast<std::byte*>(memory) + start, bytes - start};
 }
 
-CameraModel from_c(const plvo_camera& camera) {
-  CameraModel model;
+Status from_c(const plvo_camera& camera, CameraModel& model) {
+  const double* k = camera.distortion;
+  const double* more = camera.distortion_more;
+  if (camera.lens == PLVO_LENS_EQUIDISTANT) {
+    if (k[4] != 0 || more[0] != 0 || more[1] != 0 || more[2] != 0)
+      return refuse("camera.distortion of PLVO_LENS_EQUIDISTANT is k1 k2 k3 k4; the others must be 0");
+    model.distortion = {.k1 = k[0], .k2 = k[1], .k3 = k[2], .k4 = k[3], .model = LensModel::kEquidistant};
+  } else if (camera.lens == PLVO_LENS_RATIONAL) {
+    model.distortion = {k[0], k[1], k[2], k[3], k[4], more[0], more[1], more[2]};
+  } else {
+    return refuse("camera.lens must be PLVO_LENS_RATIONAL or PLVO_LENS_EQUIDISTANT");
+  }
   model.width = camera.width;
   model.height = camera.height;
   model.pinhole = {camera.fx, camera.fy, camera.cx, camera.cy};
-  const double* k = camera.distortion;
-  model.distortion = {k[0], k[1], k[2], k[3], k[4]};
   model.readout_s = camera.readout_s;
   model.depth_timing = {camera.depth_timing_known != 0, camera.depth_delay_s, camera.depth_readout_s};
-  return model;
+  return {};
 }
 
 plvo_camera to_c(const CameraModel& model) {
@@ -44,12 +52,29 @@ plvo_camera to_c(const CameraModel& model) {
   camera.cx = model.pinhole.cx;
   camera.cy = model.pinhole.cy;
   const Distortion& lens = model.distortion;
-  const double k[5] = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
-  std::memcpy(camera.distortion, k, sizeof k);
+  const bool fisheye = lens.model == LensModel::kEquidistant;
+  camera.lens = fisheye ? PLVO_LENS_EQUIDISTANT : PLVO_LENS_RATIONAL;
+  const double rational[8] = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, lens.k4, lens.k5, lens.k6};
+  const double equidistant[8] = {lens.k1, lens.k2, lens.k3, lens.k4};
+  const double* k = fisheye ? equidistant : rational;
+  std::memcpy(camera.distortion, k, sizeof camera.distortion);
+  std::memcpy(camera.distortion_more, k + 5, sizeof camera.distortion_more);
   camera.readout_s = model.readout_s;
   camera.depth_delay_s = model.depth_timing.delay_s;
   camera.depth_readout_s = model.depth_timing.readout_s;
   return camera;
+}
+
+Status give_camera(const plvo_camera& whole, plvo_camera* caller) {
+  const bool older = caller->struct_size < sizeof whole;
+  const double* more = whole.distortion_more;
+  if (older && (whole.lens != PLVO_LENS_RATIONAL || more[0] != 0 || more[1] != 0 || more[2] != 0))
+    return refuse(
+        "this camera's lens has more coefficients than camera.struct_size has room for: compile the program "
+        "for "
+        "this plvo, which sets it to sizeof(plvo_camera)");
+  give_struct(whole, caller);
+  return {};
 }
 
 }  // namespace plvo::c

@@ -96,7 +96,10 @@ Status too_small(const char* for_what, std::size_t needed, std::size_t bytes);
 // Of the caller's block, from the first address that the core likes on. bytes: more than kArenaAlignment.
 std::span<std::byte> aligned_part(void* memory, std::size_t bytes);
 
-CameraModel from_c(const plvo_camera& camera);
+// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
+Status from_c(const plvo_camera& camera, CameraModel& model);
 plvo_camera to_c(const CameraModel& model);
+// As give_struct; kInvalidArgument where the caller's struct has no room for the lens.
+Status give_camera(const plvo_camera& whole, plvo_camera* caller);
 
 }  // namespace plvo::c

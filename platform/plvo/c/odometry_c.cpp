@@ -242,14 +242,15 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
   if (Status status = take_config(config, known_config); !status.ok()) return to_c(status);
   plvo_camera known_camera = to_c(plvo::CameraModel());
   if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
+  plvo::CameraModel model;
+  if (Status status = plvo::c::from_c(known_camera, model); !status.ok()) return to_c(status);
   const std::size_t needed = plvo_required_bytes(limits);
   if (bytes < needed) return to_c(plvo::c::too_small("for these limits", needed, bytes));
 
   const std::span<std::byte> block = plvo::c::aligned_part(memory, bytes);
   auto* handle = new (block.data()) plvo_odometry;
   const std::span<std::byte> rest = block.subspan(kHandleBytes);
-  const Status status =
-      handle->odometry.init(rest, plvo::c::from_c(known_camera), known_config, known_limits);
+  const Status status = handle->odometry.init(rest, model, known_config, known_limits);
   if (status.ok()) *odometry = handle;
   return to_c(status);
 }

@@ -63,7 +63,12 @@ typedef struct plvo_status {
 /* "ok", "invalid_argument", …; "unknown" for a number that is no code. Never NULL. */
 PLVO_API const char* plvo_status_name(int32_t code);
 
-/* A pinhole and a Brown-Conrady lens, k1 k2 p1 p2 k3 in OpenCV's and ROS's order (plumb_bob). */
+/* The lens: Brown-Conrady with or without a denominator (rational_polynomial and plumb_bob of ROS and
+ * OpenCV), or the fisheye of Kannala and Brandt (equidistant). */
+enum { PLVO_LENS_RATIONAL = 0, PLVO_LENS_EQUIDISTANT = 1 };
+
+/* A pinhole and a lens. Coefficients in OpenCV's and ROS's order: of PLVO_LENS_RATIONAL k1 k2 p1 p2 k3, and
+ * k4 k5 k6 in distortion_more; of PLVO_LENS_EQUIDISTANT k1 k2 k3 k4 and then zeros. */
 typedef struct plvo_camera {
   uint32_t struct_size;
   int32_t width, height;
@@ -73,6 +78,8 @@ typedef struct plvo_camera {
   double readout_s;       /* rolling shutter: from the first row's exposure to the last's; 0: all at once */
   double depth_delay_s;   /* the depth's middle row is exposed so long after the depth's stamp */
   double depth_readout_s; /* as readout_s, of the depth image */
+  double distortion_more[3];
+  int64_t lens; /* PLVO_LENS_… */
 } plvo_camera;
 
 /* Capacities. They decide the memory; what does not fit is dropped by a stated rule and counted. */

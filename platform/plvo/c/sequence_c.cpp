@@ -43,7 +43,7 @@ Status give_calibration(const plvo::Calibration& calibration, plvo_camera* camer
     whole.width = camera->width;
     whole.height = camera->height;
   }
-  plvo::c::give_struct(whole, camera);
+  if (Status status = plvo::c::give_camera(whole, camera); !status.ok()) return status;
   if (metres_per_unit != nullptr) *metres_per_unit = 1 / calibration.depth_units_per_metre;
   return {};
 }
@@ -97,8 +97,8 @@ plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo
 
 plvo_status plvo_sequence_camera(const plvo_sequence* sequence, plvo_camera* camera) {
   if (sequence == nullptr) return to_c(missing("sequence"));
-  const Status status = plvo::c::check_struct(camera, "camera");
-  if (status.ok()) plvo::c::give_struct(to_c(sequence->camera.model()), camera);
+  Status status = plvo::c::check_struct(camera, "camera");
+  if (status.ok()) status = plvo::c::give_camera(to_c(sequence->camera.model()), camera);
   return to_c(status);
 }
 

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of what plvo writes, by name, with REP 103's suffix for x right, y down, z forward.
-// docs/robot.md says how they become those of a robot.
+// The frames of what plvo writes, by name. docs/robot.md describes them.
 #pragma once
 
 namespace plvo {
 
-inline constexpr const char* kWorldFrame = "world_optical";  // the camera of the first frame
-inline constexpr const char* kCameraFrame = "camera_optical";
+struct FrameNames {
+  const char* world;
+  const char* body;
+  const char* axes;    // of both
+  const char* origin;  // of the world
+};
+
+// As tracked; the suffix is REP 103's for these axes.
+inline constexpr FrameNames kCameraFrames = {"world_optical", "camera_optical", "x right, y down, z forward",
+                                             "the first frame's camera"};
+// As result_of_base() makes them (robot_base.hpp): REP 105's names.
+inline constexpr FrameNames kBaseFrames = {"odom", "base_link", "x forward, y left, z up",
+                                           "the base at the first frame"};
 
 }  // namespace plvo

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "plvo/host/frame_names.hpp"
-
 namespace plvo {
 namespace {
 
@@ -43,12 +41,12 @@ std::string json_string(std::string_view text) {
   return out + '"';
 }
 
-std::string pose_json(const TrackResult& result) {
+std::string pose_json(const TrackResult& result, const FrameNames& frames) {
   std::string out = fmt::format(
       "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"frame_id\":\"{}\","
       "\"child_frame_id\":\"{}\",\"position\":[",
       result.stamp_ns, to_string(result.state), to_string(result.status.code()),
-      json_string(result.status.message()), kWorldFrame, kCameraFrame);
+      json_string(result.status.message()), frames.world, frames.body);
   for (int i = 0; i < 3; ++i) {
     if (i > 0) out += ',';
     put_number(out, result.T_world_camera.t[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pose as one line of JSON, for programs that are not ours. Keys: stamp_ns, state, status, message,
-// frame_id and child_frame_id (frame_names.hpp), position (m), orientation_xyzw, covariance (36 numbers,
+// frame_id and child_frame_id (frames), position (m), orientation_xyzw, covariance (36 numbers,
 // row-major: position, then orientation; axes of the world), points, lines. And what is said while there is
 // no pose, so that whoever reads can tell a camera that stalls from a program that hangs.
 #pragma once
@@ -8,11 +8,12 @@
 #include <string>
 #include <string_view>
 
+#include "plvo/host/frame_names.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
 
-std::string pose_json(const TrackResult& result);
+std::string pose_json(const TrackResult& result, const FrameNames& frames = kCameraFrames);
 
 // {"heartbeat":true,"state":"stalled","seconds_since_frame":1.2,"message":"…"}
 struct Heartbeat {

@@ -113,7 +113,7 @@ Status PoseStream::write_line(std::string line) {
 
 Status PoseStream::write(const TrackResult& result) {
   let_in();
-  return readers_.count() == 0 ? Status() : write_line(pose_json(result));
+  return readers_.count() == 0 ? Status() : write_line(pose_json(result, frames_));
 }
 
 Status PoseStream::write_heartbeat(const Heartbeat& heartbeat) {

@@ -17,7 +17,8 @@ namespace plvo {
 
 class PoseStream final : public PoseSink {
  public:
-  PoseStream() = default;
+  // frames: of the results that write() is given.
+  explicit PoseStream(const FrameNames& frames = kCameraFrames) : frames_(frames) {}
   ~PoseStream();
   PoseStream(const PoseStream&) = delete;
   PoseStream& operator=(const PoseStream&) = delete;
@@ -43,6 +44,7 @@ class PoseStream final : public PoseSink {
   void let_in();
   Status write_line(std::string line);
 
+  FrameNames frames_;
   int listener_ = -1;
   int port_ = 0;
   std::string unix_path_;

@@ -5,7 +5,6 @@
 
 #include <iterator>
 
-#include "plvo/host/frame_names.hpp"
 #include "plvo/host/stamp_text.hpp"
 
 namespace plvo {
@@ -23,16 +22,14 @@ Status open_with(LineFile& file, const std::filesystem::path& path, const char* 
   return file.open(path, columns + ("; " + frames));
 }
 
-std::string pose_frames() {
-  return fmt::format(
-      "frame_id: {}, child_frame_id: {} (x right, y down, z forward; the world is the first frame's camera)",
-      kWorldFrame, kCameraFrame);
+std::string pose_frames(const FrameNames& frames) {
+  return fmt::format("frame_id: {}, child_frame_id: {} ({}; the world is {})", frames.world, frames.body,
+                     frames.axes, frames.origin);
 }
 
-std::string motion_frames() {
-  return fmt::format(
-      "frame_id: {0}, child_frame_id: {0} at the reference_timestamp (x right, y down, z forward)",
-      kCameraFrame);
+std::string motion_frames(const FrameNames& frames) {
+  return fmt::format("frame_id: {0}, child_frame_id: {0} at the reference_timestamp ({1})", frames.body,
+                     frames.axes);
 }
 
 }  // namespace
@@ -60,8 +57,8 @@ std::string motion_line(const TrackResult& result) {
   return line;
 }
 
-Status TrajectoryFile::open(const std::filesystem::path& path) {
-  return open_with(file_, path, kTrajectoryHeader, pose_frames());
+Status TrajectoryFile::open(const std::filesystem::path& path, const FrameNames& frames) {
+  return open_with(file_, path, kTrajectoryHeader, pose_frames(frames));
 }
 
 Status TrajectoryFile::write(const TrackResult& result) {
@@ -69,8 +66,8 @@ Status TrajectoryFile::write(const TrackResult& result) {
   return file_.write(trajectory_line(result.stamp_ns, result.T_world_camera));
 }
 
-Status CovarianceFile::open(const std::filesystem::path& path) {
-  return open_with(file_, path, kCovarianceHeader, pose_frames());
+Status CovarianceFile::open(const std::filesystem::path& path, const FrameNames& frames) {
+  return open_with(file_, path, kCovarianceHeader, pose_frames(frames));
 }
 
 Status CovarianceFile::write(const TrackResult& result) {
@@ -78,8 +75,8 @@ Status CovarianceFile::write(const TrackResult& result) {
   return file_.write(covariance_line(result.stamp_ns, result.pose_covariance));
 }
 
-Status MotionFile::open(const std::filesystem::path& path) {
-  return open_with(file_, path, kMotionsHeader, motion_frames());
+Status MotionFile::open(const std::filesystem::path& path, const FrameNames& frames) {
+  return open_with(file_, path, kMotionsHeader, motion_frames(frames));
 }
 
 Status MotionFile::write(const TrackResult& result) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "plvo/hal/pose_sink.hpp"
+#include "plvo/host/frame_names.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/track_result.hpp"
@@ -21,7 +22,7 @@ inline constexpr const char* kCovarianceHeader =
     "# timestamp, then the 6x6 covariance of the pose, row-major: position (m), orientation (rad), axes of "
     "the world";
 inline constexpr const char* kMotionsHeader =
-    "# timestamp reference_timestamp tx ty tz qx qy qz qw (camera from reference), then its 6x6 covariance, "
+    "# timestamp reference_timestamp tx ty tz qx qy qz qw (frame from reference), then its 6x6 covariance, "
     "row-major";
 
 // A frame that still waits for the first usable one is initialising, too, but says why in its status.
@@ -40,7 +41,7 @@ std::string motion_line(const TrackResult& result);
 // motion). Until open() made the file, write() does nothing.
 class TrajectoryFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path);
+  Status open(const std::filesystem::path& path, const FrameNames& frames = kCameraFrames);
   Status write(const TrackResult& result) override;
 
  private:
@@ -49,7 +50,7 @@ class TrajectoryFile final : public PoseSink {
 
 class CovarianceFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path);
+  Status open(const std::filesystem::path& path, const FrameNames& frames = kCameraFrames);
   Status write(const TrackResult& result) override;
 
  private:
@@ -58,7 +59,7 @@ class CovarianceFile final : public PoseSink {
 
 class MotionFile final : public PoseSink {
  public:
-  Status open(const std::filesystem::path& path);
+  Status open(const std::filesystem::path& path, const FrameNames& frames = kCameraFrames);
   Status write(const TrackResult& result) override;
 
  private:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras for Python: a Calibration, which is a camera model and the unit of depth.
 #include <string>
+#include <vector>
 
+#include "plvo/camera/camera_info.hpp"
 #include "plvo/python/bindings.hpp"
 #include "plvo/replay/calibration.hpp"
 
@@ -13,17 +15,18 @@ namespace {
 
 Calibration make_camera(int width, int height, double fx, double fy, double cx, double cy,
                         const py::sequence& distortion, double depth_units_per_metre, double readout_s,
-                        const py::object& depth_delay_s, double depth_readout_s) {
+                        const py::object& depth_delay_s, double depth_readout_s,
+                        const std::string& distortion_model) {
   Calibration camera;
   camera.camera.width = width;
   camera.camera.height = height;
   camera.has_size = camera.depth_scale_given = camera.readout_given = true;
   camera.camera.pinhole = {fx, fy, cx, cy};
-  if (distortion.size() != 0 && distortion.size() != 4 && distortion.size() != 5)
-    throw py::value_error("distortion: expected k1 k2 p1 p2 or k1 k2 p1 p2 k3 (plumb_bob)");
-  Distortion& lens = camera.camera.distortion;
-  double* const entries[] = {&lens.k1, &lens.k2, &lens.p1, &lens.p2, &lens.k3};
-  for (std::size_t i = 0; i < distortion.size(); ++i) *entries[i] = distortion[i].cast<double>();
+  std::vector<double> coefficients;
+  for (const py::handle& number : distortion) coefficients.push_back(number.cast<double>());
+  if (const Status status = distortion_of(distortion_model, coefficients, camera.camera.distortion);
+      !status.ok())
+    throw py::value_error(status.message());
   camera.depth_units_per_metre = depth_units_per_metre;
   camera.camera.readout_s = readout_s;
   if (!depth_delay_s.is_none())
@@ -51,7 +54,8 @@ void bind_camera(py::module_& module) {
   py::class_<Calibration>(module, "Camera")
       .def(py::init(&make_camera), "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a,
            "distortion"_a = py::tuple(), "depth_units_per_metre"_a = 1000.0, "readout_s"_a = model.readout_s,
-           "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s)
+           "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s,
+           "distortion_model"_a = "")
       .def_static("builtin", &builtin_camera, "name"_a)
       .def_static("read", &read_camera, "path"_a)
       .def_property_readonly("width", [](const Calibration& c) { return c.camera.width; })
@@ -63,8 +67,15 @@ void bind_camera(py::module_& module) {
       .def_property_readonly("distortion",
                              [](const Calibration& c) {
                                const Distortion& lens = c.camera.distortion;
-                               return py::make_tuple(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+                               if (lens.model == LensModel::kEquidistant)
+                                 return py::make_tuple(lens.k1, lens.k2, lens.k3, lens.k4);
+                               if (lens.is_plumb_bob())
+                                 return py::make_tuple(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+                               return py::make_tuple(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, lens.k4,
+                                                     lens.k5, lens.k6);
                              })
+      .def_property_readonly("distortion_model",
+                             [](const Calibration& c) { return lens_model_name(c.camera.distortion); })
       .def_property_readonly("readout_s", [](const Calibration& c) { return c.camera.readout_s; })
       .def_readonly("depth_units_per_metre", &Calibration::depth_units_per_metre);
 }

@@ -32,6 +32,26 @@ Status Calibration::validate(int width, int height) const {
             "camera calibration: depth_scale must lie between 1 and 100000 units per metre, not metres per "
             "unit (5000 for TUM, 1000 for mm)"};
   }
+  if (depth_camera.known) {
+    const DepthCamera& depth = depth_camera;
+    const auto is_number = [](double x) { return x - x == 0; };
+    if (!is_number(depth.pinhole.fx) || !is_number(depth.pinhole.fy) || depth.pinhole.fx <= 0 ||
+        depth.pinhole.fy <= 0 || !is_number(depth.pinhole.cx) || !is_number(depth.pinhole.cy))
+      return {
+          StatusCode::kInvalidArgument,
+          "camera calibration: depth_fx and depth_fy must be positive, depth_cx and depth_cy numbers (pixels "
+          "of the depth image)"};
+    if (!(depth.tx * depth.tx + depth.ty * depth.ty + depth.tz * depth.tz <= 1))
+      return {
+          StatusCode::kInvalidArgument,
+          "camera calibration: depth_tx depth_ty depth_tz are metres, at most 1 m from the colour camera"};
+    const double length2 =
+        depth.qx * depth.qx + depth.qy * depth.qy + depth.qz * depth.qz + depth.qw * depth.qw;
+    if (!(length2 >= 0.98 && length2 <= 1.02))
+      return {
+          StatusCode::kInvalidArgument,
+          "camera calibration: the quaternion depth_qx depth_qy depth_qz depth_qw must have the length 1"};
+  }
   CameraModel sized = camera;
   sized.width = width;
   sized.height = height;

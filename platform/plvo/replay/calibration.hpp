@@ -3,10 +3,11 @@
 // the extension .yaml or .yml):
 //   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; lines with keys may
 //   follow fx 0 cx 0  0 fy cy 0  0 0 1 0  0 0 0 1                   the same of a matrix, as ScanNet's are
-//   fx: 525  (or fx = 525, or fx 525), one a line             keys in any order: calibration_keys.hpp has
-//   them YAML with the same keys ROS camera_info YAML                                      image_width,
-//   camera_matrix, plumb_bob distortion,
-//                                                             and beside them the keys of the sensor
+//   fx: 525  (or fx = 525, or fx 525), one a line            keys in any order: calibration_keys.hpp has them
+//   YAML with the same keys
+//   ROS camera_info YAML                                     image_width, camera_matrix, the lens
+//                                                            (camera_info.hpp), and beside them the sensor's
+//                                                            keys
 // What a source does not say is assumed, and known to be: see assumptions().
 #pragma once
 
@@ -19,6 +20,7 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/replay/depth_registration.hpp"
 
 namespace plvo {
 
@@ -29,9 +31,11 @@ struct Calibration {
   bool has_size = false;  // the source says which image size it is for
   double depth_units_per_metre = kTumDepthUnitsPerMetre;
   bool depth_scale_given = false;  // by the source or a flag; else the default above is a guess
+  DepthCamera depth_camera;        // of depth that is not registered to colour
   bool readout_given = false;      // of the rolling shutter, 0 included; else a global shutter is a guess
 
-  // As CameraModel::validate for images of this size, and a depth scale between 1 and 100000 units per metre.
+  // As CameraModel::validate for colour images of this size, a depth scale between 1 and 100000 units per
+  // metre, and a depth camera that is one.
   Status validate(int width, int height) const;
 
   // What was not said and is therefore assumed: a sentence each, with what to do if it is wrong. To be shown
@@ -40,7 +44,7 @@ struct Calibration {
 };
 
 // kNotFound, kDamaged (what is expected and where), kInvalidArgument (not a regular file, or larger than a
-// calibration can be), kUnsupported for a distortion model other than plumb_bob. On failure `calibration` is
+// calibration can be), kUnsupported for a lens that plvo does not know. On failure `calibration` is
 // unchanged.
 Status read_calibration(const std::filesystem::path& path, Calibration& calibration);
 

@@ -21,9 +21,10 @@ struct Numbers {
 };
 
 enum class KeyKind : std::uint8_t {
-  kLens,    // a camera_info says these in its own words
-  kSize,    // likewise
-  kSensor,  // what a camera_info does not know
+  kLens,         // a camera_info says these in its own words
+  kSize,         // likewise
+  kSensor,       // what a camera_info does not know
+  kDepthCamera,  // likewise; all of it or nothing
 };
 
 struct Key {
@@ -37,12 +38,17 @@ std::span<const Key> keys();
 inline constexpr std::size_t kPlaces = 11;
 inline constexpr std::size_t kMaxKeys = 32;
 
+// The one key whose value is a word: the name of the lens's model, as in a camera_info.
+inline constexpr std::string_view kLensModelKey = "distortion_model";
+bool is_key(std::string_view name);  // one of keys(), or kLensModelKey
+
 // Collects what a file says, key by key, and makes a calibration of it.
 class Collector {
  public:
   explicit Collector(const std::filesystem::path& path) : path_(path) {}
 
-  // kDamaged for a key that is not in the table, a value that is no number, or a key said twice.
+  // kDamaged for a key that is not in the table, a value that is none, or a key said twice; kUnsupported for
+  // a lens that is not known.
   Status set(std::string_view key, std::string_view value);
   void set_place(std::size_t place, double value);
   // The camera_info's own words, which need no keys.
@@ -52,10 +58,13 @@ class Collector {
 
  private:
   bool given(std::string_view key) const;
+  Status finish_depth_camera(DepthCamera& depth) const;
+  Status set_lens_model(std::string_view name);
   void put(std::size_t index, double value);
 
   std::filesystem::path path_;
   Numbers numbers_;
+  std::string lens_model_;
   std::array<bool, kMaxKeys> given_{};
 };
 

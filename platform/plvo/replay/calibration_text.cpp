@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "plvo/camera/camera_info.hpp"
 #include "plvo/replay/calibration_keys.hpp"
 
 namespace plvo {
@@ -55,9 +56,7 @@ Status parse_text(const fs::path& path, std::string_view content, Calibration& c
   for (double value = 0; values.size() < words.size() && parse_number(words[values.size()], value);)
     values.push_back(value);
   const std::size_t numbers = values.size();
-  const bool known_word =
-      numbers < words.size() &&
-      std::any_of(keys().begin(), keys().end(), [&](const Key& key) { return key.name == words[numbers]; });
+  const bool known_word = numbers < words.size() && is_key(words[numbers]);
   if (numbers > 0 && numbers < words.size() && !known_word)
     return damaged(path, fmt::format("'{}' is not a number", words[numbers].substr(0, 40)));
   const bool matrix = is_camera_matrix(values);
@@ -85,9 +84,15 @@ std::string calibration_text(const Calibration& calibration) {
   std::string text;
   for (std::size_t i = 0; i < places; ++i)
     text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
-  for (const Key& key : keys().subspan(kPlaces))
-    if (key.kind == KeyKind::kSensor && (calibration.camera.depth_timing.known || !is_default(key)))
+  for (const Key& key : keys().subspan(kPlaces)) {
+    const bool timed = key.kind == KeyKind::kSensor && calibration.camera.depth_timing.known;
+    const bool of_depth = key.kind == KeyKind::kDepthCamera && calibration.depth_camera.known;
+    const bool others = key.kind == KeyKind::kSensor || key.kind == KeyKind::kLens;
+    if (timed || of_depth || (others && !is_default(key)))
       text += fmt::format("\n{} {}", key.name, key.of(numbers));
+  }
+  const Distortion& lens = calibration.camera.distortion;
+  if (!lens.is_plumb_bob()) text += fmt::format("\n{} {}", kLensModelKey, lens_model_name(lens));
   return text;
 }
 
@@ -96,18 +101,22 @@ std::string calibration_lines(const Calibration& calibration) {
   numbers.calibration = calibration;
   numbers.width = calibration.camera.width;
   numbers.height = calibration.camera.height;
-  const bool lens = !calibration.camera.distortion.is_zero();
+  const Distortion& lens = calibration.camera.distortion;
   const bool timed = calibration.camera.depth_timing.known;
   const auto written = [&](const Key& key) {
     if (key.kind == KeyKind::kSize) return calibration.has_size;
+    if (key.kind == KeyKind::kDepthCamera) return calibration.depth_camera.known;
     if (key.name.starts_with("depth_") && key.name != "depth_scale") return timed;
     if (key.name == "readout_s") return calibration.readout_given;
     const bool of_pinhole = key.name == "fx" || key.name == "fy" || key.name == "cx" || key.name == "cy";
-    return key.kind == KeyKind::kSensor || of_pinhole || lens;
+    const bool of_rational = key.name == "k4" || key.name == "k5" || key.name == "k6";
+    return key.kind == KeyKind::kSensor || of_pinhole ||
+           (of_rational ? !lens.is_plumb_bob() : !lens.is_zero());
   };
   std::string text;
   for (const Key& key : keys())
     if (written(key)) text += fmt::format("{}: {}\n", key.name, key.of(numbers));
+  if (!lens.is_plumb_bob()) text += fmt::format("{}: {}\n", kLensModelKey, lens_model_name(lens));
   return text;
 }
 

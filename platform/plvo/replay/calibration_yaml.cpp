@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "plvo/camera/camera_info.hpp"
 #include "plvo/replay/calibration_keys.hpp"
 
 namespace plvo::calibration_form {
@@ -37,20 +38,11 @@ Status from_camera_info(const fs::path& path, const YAML::Node& root, Collector&
   const std::vector<double> K = numbers(camera_matrix(root));
   if (K.size() != 9) return damaged(path, "camera_matrix must have 9 numbers (fx 0 cx 0 fy cy 0 0 1)");
   const std::vector<double> D = numbers(first_of(root, {"distortion_coefficients", "D", "d"}));
-  const YAML::Node model_node = first_of(root, {"distortion_model"});
-  const std::string model = model_node ? model_node.as<std::string>() : "plumb_bob";
-  if (model != "plumb_bob" && !model.empty()) {
-    return {
-        StatusCode::kUnsupported,
-        fmt::format(
-            "{}: distortion model '{}' is not supported, only plumb_bob (k1 k2 p1 p2 k3); calibrate again "
-            "with it, or undistort the images first",
-            path.string(), model.substr(0, 40))};
-  }
-  if (!D.empty() && D.size() != 4 && D.size() != 5)
-    return damaged(path, fmt::format("plumb_bob has 4 or 5 distortion coefficients, not {}", D.size()));
+  const YAML::Node model_node = root[std::string(kLensModelKey)];
   Distortion lens;
-  if (!D.empty()) lens = {D[0], D[1], D[2], D[3], D.size() > 4 ? D[4] : 0.0};
+  if (Status status = distortion_of(model_node ? model_node.as<std::string>() : "", D, lens); !status.ok())
+    return {status.code() == StatusCode::kUnsupported ? status.code() : StatusCode::kDamaged,
+            fmt::format("{}: {}", path.string(), status.message())};
   collector.set_lens({K[0], K[4], K[2], K[5]}, lens);
   const YAML::Node width = first_of(root, {"image_width", "width"});
   const YAML::Node height = first_of(root, {"image_height", "height"});
@@ -59,7 +51,7 @@ Status from_camera_info(const fs::path& path, const YAML::Node& root, Collector&
     if (Status status = set(collector, "height", height); !status.ok()) return status;
   }
   for (const Key& key : keys()) {
-    if (key.kind != KeyKind::kSensor) continue;
+    if (key.kind != KeyKind::kSensor && key.kind != KeyKind::kDepthCamera) continue;
     const std::string name(key.name);
     if (const YAML::Node value = root[name]; value)
       if (Status status = set(collector, name, value); !status.ok()) return status;

@@ -18,13 +18,13 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
   next_ = 0;
   if (Status status = read_sequence_index(folder, options, index_); !status.ok()) return status;
   if (Status status = choose_range(options); !status.ok()) return status;
-  int width = 0;
-  int height = 0;
-  if (Status status = find_image_size(width, height); !status.ok()) return status;
-  if (Status status = calibration.validate(width, height); !status.ok()) return status;
+  ImageInfo colour, depth;
+  if (Status status = find_image_sizes(colour, depth); !status.ok()) return status;
   calibration_ = calibration;
-  calibration_.camera.width = width;
-  calibration_.camera.height = height;
+  if (Status status = choose_registration(colour, depth); !status.ok()) return status;
+  if (Status status = calibration.validate(colour.width, colour.height); !status.ok()) return status;
+  calibration_.camera.width = colour.width;
+  calibration_.camera.height = colour.height;
   calibration_.has_size = true;
   if (index_.numbered && !calibration.depth_scale_given) {
     calibration_.depth_units_per_metre = 1000;
@@ -48,10 +48,9 @@ Status RecordedCamera::choose_range(const SequenceOptions& options) {
 
 // The first pair whose two headers can be read decides. A single damaged file must not stop a sequence; a
 // sequence that is wrong throughout must be refused before anything is written.
-Status RecordedCamera::find_image_size(int& width, int& height) {
+Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
   Status first_failure;
   for (const ImagePair& pair : index_.pairs) {
-    ImageInfo colour, depth;
     Status status = decoder_.read_header(folder_ / pair.colour.file, colour);
     if (status.ok()) status = decoder_.read_header(folder_ / pair.depth.file, depth);
     if (status.ok()) {
@@ -69,16 +68,6 @@ Status RecordedCamera::find_image_size(int& width, int& height) {
                     "converting to 8 bits or to colour)",
                     pair.depth.file, depth.bits, depth.grey ? "" : " and colour")};
       }
-      if (colour.width != depth.width || colour.height != depth.height) {
-        return {
-            StatusCode::kInvalidArgument,
-            fmt::format(
-                "colour is {}x{} but depth is {}x{} ({}); depth must be registered to colour and have its "
-                "size (ScanNet: export colour at the size of depth)",
-                colour.width, colour.height, depth.width, depth.height, pair.depth.file)};
-      }
-      width = colour.width;
-      height = colour.height;
       return {};
     }
     if (first_failure.ok()) first_failure = status;
@@ -87,6 +76,23 @@ Status RecordedCamera::find_image_size(int& width, int& height) {
   return Status(too_large ? StatusCode::kInvalidArgument : StatusCode::kDamaged,
                 "no image of the sequence can be read; ")
       .append(first_failure.message());
+}
+
+Status RecordedCamera::choose_registration(const ImageInfo& colour, const ImageInfo& depth) {
+  depth_width_ = depth.width;
+  depth_height_ = depth.height;
+  const bool same_size = colour.width == depth.width && colour.height == depth.height;
+  registers_ = calibration_.depth_camera.known || !same_size;
+  if (same_size || calibration_.depth_camera.known) return {};
+  // The calibration must be known to be colour's: that of a smaller depth image would be read without a word.
+  if (calibration_.has_size &&
+      DepthRegistration::same_view(colour.width, colour.height, depth.width, depth.height))
+    return {};
+  return {StatusCode::kInvalidArgument,
+          fmt::format("colour is {}x{} but depth is {}x{}; export colour at the size of depth, or say in the "
+                      "calibration width and height of colour, where both have one view, or depth's camera: "
+                      "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
+                      colour.width, colour.height, depth.width, depth.height)};
 }
 
 void RecordedCamera::allocate() {
@@ -103,6 +109,11 @@ void RecordedCamera::allocate() {
       static_cast<std::size_t>(model().width) * static_cast<std::size_t>(model().height);
   colour_.assign(pixels * 3, 0);
   depth_.assign(pixels, 0);
+  if (registers_) {
+    raw_depth_.assign(static_cast<std::size_t>(depth_width_) * static_cast<std::size_t>(depth_height_), 0);
+    registration_.init(model(), calibration_.depth_camera, depth_width_, depth_height_,
+                       1 / calibration_.depth_units_per_metre);
+  }
   // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
   RgbdFrame first;
   [[maybe_unused]] const Status told_again_by_the_first_call = next(first);
@@ -116,10 +127,13 @@ Status RecordedCamera::next(RgbdFrame& frame) {
   frame.depth_stamp_ns = pair.depth.stamp_ns;
   const auto [width, height] = std::pair(model().width, model().height);
   Status status = decoder_.decode_rgb(folder_ / pair.colour.file, width, height, colour_);
-  if (status.ok()) status = decoder_.decode_depth(folder_ / pair.depth.file, width, height, depth_);
+  std::vector<std::uint16_t>& depth = registers_ ? raw_depth_ : depth_;
+  if (status.ok())
+    status = decoder_.decode_depth(folder_ / pair.depth.file, depth_width_, depth_height_, depth);
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
 
-  if (index_.numbered) std::replace(depth_.begin(), depth_.end(), kNoDepthInMillimetres, std::uint16_t{0});
+  if (index_.numbered) std::replace(depth.begin(), depth.end(), kNoDepthInMillimetres, std::uint16_t{0});
+  if (registers_) registration_.warp(raw_depth_.data(), depth_.data());
   frame.colour = {colour_.data(), width, height, width * std::ptrdiff_t{3}, PixelFormat::kRgb8};
   frame.depth = {depth_.data(), width, height, width, 1.0 / calibration_.depth_units_per_metre};
   return {};

@@ -19,8 +19,8 @@ class RecordedCamera final : public RgbdCamera {
  public:
   // Finds the frames, checks the first readable pair (sizes, bits) and the calibration against it. What the
   // calibration leaves unsaid, the layout says: numbered frames have depth in millimetres. All of what
-  // read_sequence_index returns, and kInvalidArgument for an empty frame range, images of different sizes,
-  // 8-bit depth, or a calibration that does not fit.
+  // read_sequence_index returns, and kInvalidArgument for an empty frame range, depth of which nobody says
+  // how it goes with colour, 8-bit depth, or a calibration that does not fit.
   Status open(const std::filesystem::path& folder, const Calibration& calibration,
               const SequenceOptions& options = {});
 
@@ -34,7 +34,9 @@ class RecordedCamera final : public RgbdCamera {
 
  private:
   Status choose_range(const SequenceOptions& options);
-  Status find_image_size(int& width, int& height);
+  Status find_image_sizes(ImageInfo& colour, ImageInfo& depth);
+  // Depth of its own size or camera; refused where the calibration does not say how it goes with colour.
+  Status choose_registration(const ImageInfo& colour, const ImageInfo& depth);
   void allocate();
 
   std::filesystem::path folder_;
@@ -43,6 +45,10 @@ class RecordedCamera final : public RgbdCamera {
   ImageDecoder decoder_;
   std::vector<std::uint8_t> colour_;
   std::vector<std::uint16_t> depth_;
+  int depth_width_ = 0, depth_height_ = 0;  // of the files
+  bool registers_ = false;
+  DepthRegistration registration_;
+  std::vector<std::uint16_t> raw_depth_;  // where it registers
   std::size_t next_ = 0;
 };
 

@@ -17,7 +17,11 @@ class Error(Exception):
     code: str  # "not_found", "invalid_argument", …
 
 class Camera:
-    """A pinhole with a plumb_bob lens, and the unit of depth."""
+    """A pinhole with a lens, and the unit of depth.
+
+    distortion, by distortion_model as in ROS: "plumb_bob" (k1 k2 p1 p2 [k3]), "rational_polynomial"
+    (… k4 k5 k6), "equidistant" (the fisheye's k1 k2 k3 k4). Without a model: as many as OpenCV's means.
+    """
 
     def __init__(
         self,
@@ -32,6 +36,7 @@ class Camera:
         readout_s: float = 0,
         depth_delay_s: float | None = None,
         depth_readout_s: float = 0,
+        distortion_model: str = "",
     ) -> None: ...
     @staticmethod
     def builtin(name: str) -> Camera: ...
@@ -50,7 +55,9 @@ class Camera:
     @property
     def cy(self) -> float: ...
     @property
-    def distortion(self) -> tuple[float, float, float, float, float]: ...
+    def distortion(self) -> tuple[float, ...]: ...
+    @property
+    def distortion_model(self) -> str: ...
     @property
     def readout_s(self) -> float: ...
     @property

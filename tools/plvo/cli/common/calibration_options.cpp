@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "plvo/camera/camera_info.hpp"
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/camera_options.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
@@ -43,19 +44,29 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
                  "Units of the depth images per metre: 5000 in TUM recordings, 1000 for millimetres");
   group.number("--readout", options.readout_s, kReadout_s, "SECONDS",
                "Rolling shutter: time from the first row to the last; Kinect v1: 0.0261, global shutter: 0");
-  CLI::Option* distortion = group.add("--distortion", "NUMBER", "Lens distortion: k1 k2 p1 p2 [k3]",
-                                      [&options](const std::string& text) {
-                                        double number = 0;
-                                        std::string wrong = read_number(text, kDistortion, number);
-                                        if (wrong.empty()) options.distortion.push_back(number);
-                                        return wrong;
-                                      });
-  takes_values(distortion, 4, 5);
+  const auto add_lens = [&](const char* option, const char* model, const char* what, int least, int most) {
+    CLI::Option* lens =
+        group.add(option, "NUMBER", what, [&options, model = std::string(model)](const std::string& text) {
+          double number = 0;
+          std::string wrong = read_number(text, kDistortion, number);
+          options.distortion_model = model;
+          if (wrong.empty()) options.distortion.push_back(number);
+          return wrong;
+        });
+    takes_values(lens, least, most);
+  };
+  add_lens("--distortion", "plumb_bob", "Lens distortion: k1 k2 p1 p2 [k3]", 4, 5);
+  add_lens("--distortion-rational", "rational_polynomial", "Lens distortion: k1 k2 p1 p2 k3 k4 k5 k6", 8, 8);
+  add_lens("--distortion-equidistant", "equidistant", "Lens distortion of a fisheye: k1 k2 k3 k4", 4, 4);
 }
 
 void check_calibration_options(const CLI::App& command) {
   if (given(command, "--calibration"))
     refuse_options(command, {"--camera-model"}, "cannot be combined with --calibration; give one of them");
+  if (given(command, "--distortion") + given(command, "--distortion-rational") +
+          given(command, "--distortion-equidistant") >
+      1)
+    refuse("--distortion", "give one of --distortion, --distortion-rational and --distortion-equidistant");
 }
 
 Status find_calibration(const CalibrationOptions& options, const fs::path& folder, Calibration& calibration,
@@ -84,13 +95,13 @@ Status find_calibration(const CalibrationOptions& options, const fs::path& folde
     pinhole = {options.fx.value_or(pinhole.fx), options.fy.value_or(pinhole.fy),
                options.cx.value_or(pinhole.cx), options.cy.value_or(pinhole.cy)};
   }
-  if (const auto& d = options.distortion; !d.empty())
-    calibration.camera.distortion = {d[0], d[1], d[2], d[3], d.size() > 4 ? d[4] : 0.0};
+  if (!options.distortion.empty())
+    status = distortion_of(options.distortion_model, options.distortion, calibration.camera.distortion);
   if (options.readout_s) calibration.camera.readout_s = *options.readout_s;
   calibration.readout_given |= options.readout_s.has_value();
   if (options.depth_scale) calibration.depth_units_per_metre = *options.depth_scale;
   calibration.depth_scale_given |= options.depth_scale.has_value();
-  return {};
+  return status;
 }
 
 }  // namespace plvo::cli

@@ -27,7 +27,8 @@ namespace plvo::cli {
 struct CalibrationOptions {
   std::string file, model_name;
   std::optional<double> fx, fy, cx, cy, depth_scale, readout_s;
-  std::vector<double> distortion;  // k1 k2 p1 p2 [k3]
+  std::vector<double> distortion;  // of the lens distortion_model (plvo/camera/camera_info.hpp)
+  std::string distortion_model;
 };
 inline constexpr const char* kCalibrationGroup = "Calibration";
 // The depth scale is asked for only where it is not the camera's own. fallback: what holds without

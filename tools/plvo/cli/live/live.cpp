@@ -74,12 +74,14 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
   group.flag("--quiet", options.quiet, "Warnings and errors only: no progress, no summary");
 }
 
-void check(const CLI::App& command, const LiveOptions& options) {
+void check(const CLI::App& command, LiveOptions& options) {
   check_live_camera_options(command, options.camera);
   if (is_oni_file(options.camera.device))
     refuse_options(command, {"--every-frame"}, "is what an .oni file does anyway; leave it away");
   if (options.outputs.view.empty())
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
+  LiveOutputOptions& outputs = options.outputs;
+  check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
   FileRoles files;
   for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
   files.writes("--json", options.summary);

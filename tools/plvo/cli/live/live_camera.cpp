@@ -142,6 +142,11 @@ Status calibrate(const CalibrationOptions& from, int width, int height, std::opt
   std::string guess;  // no folder, no guess
   Status status = find_calibration(from, {}, calibration, guess);
   if (status.ok()) status = calibration.validate(width, height);
+  if (status.ok() && calibration.depth_camera.known)
+    status = {
+        StatusCode::kInvalidArgument,
+        "depth_fx, depth_fy and what goes with them are for recordings; a live sensor registers its depth, "
+        "so leave them out of the calibration"};
   // A file that is not there is no missing sensor.
   if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};
   calibration.camera.width = width;

@@ -19,14 +19,15 @@ std::string with_brackets(const std::string& host) {
 
 Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
   lens_is_straight_ = lens_is_straight;
+  base_ = options.files.base;
+  warn_of_base_option(base_, console_);
   next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
   if (!options.view.empty())
     if (Status status = open_view(options.view, options.view_names); !status.ok()) return status;
   for (const std::string& address : options.streams)
     if (Status status = open_stream(address); !status.ok()) return status;
   const OutputOptions& files = options.files;
-  has_files_ = !files.trajectory.empty() || !files.covariance.empty() || !files.motions.empty() ||
-               !files.stats.empty();
+  has_files_ = files.has_poses() || !files.stats.empty();
   return files_.open(files);
 }
 
@@ -50,7 +51,7 @@ Status LiveOutputs::open_view(const std::string& address, const std::vector<std:
 }
 
 Status LiveOutputs::open_stream(const std::string& address) {
-  auto stream = std::make_unique<PoseStream>();
+  auto stream = std::make_unique<PoseStream>(base_.frames());
   if (Status status = stream->open(address); !status.ok()) return status;
   if (stream->port() != 0) {
     std::string host;
@@ -74,7 +75,8 @@ void LiveOutputs::write(const FrameRecord& record, const RgbdFrame& frame, const
                      fmt::format("{}; the files end here, the odometry goes on", written.message()));
     }
   }
-  to_streams([&](PoseStream& stream) { return stream.write(record.result); });
+  const TrackResult result = base_.apply(record.result);
+  to_streams([&](PoseStream& stream) { return stream.write(result); });
   if (view_) view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
 }
 

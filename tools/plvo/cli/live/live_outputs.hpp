@@ -53,6 +53,7 @@ class LiveOutputs {
 
   Console& console_;
   RunOutputs files_;
+  BaseOption base_;
   bool has_files_ = false, files_end_ = false;
   std::vector<std::unique_ptr<PoseStream>> streams_;
   std::unique_ptr<ViewServer> view_;

@@ -80,6 +80,7 @@ class Run {
     if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
     if (Status status = block_.init(opened_.camera->model(), options_.odometry); !status.ok()) return status;
     if (Status status = open_imu(options_.imu, opened_, console_, imu_); !status.ok()) return status;
+    warn_of_base_option(options_.outputs.base, console_);
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
@@ -170,11 +171,12 @@ class Run {
   PosixClock clock_;
 };
 
-void check(const CLI::App& command, const RunOptions& options) {
+void check(const CLI::App& command, RunOptions& options) {
   check_camera_options(command, options.camera);
   check_imu_options(command, options.imu, options.camera);
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
+  check_base_option(options.outputs.base, options.outputs.has_poses());
   FileRoles files;
   for (const auto& [option, path] : options.outputs.named()) files.writes(option, path);
   files.writes("--json", options.summary);

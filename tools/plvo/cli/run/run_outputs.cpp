@@ -36,6 +36,7 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
   group.path("--motions", options.motions,
              "Motion from the reference of each frame, with its 6x6 covariance");
   group.path("--stats", options.stats, "CSV: a row for each frame, lost and damaged ones with the reason");
+  add_base_option(group, options.base);
 }
 
 bool takes_standard_output(const std::vector<std::string>& paths) {
@@ -45,9 +46,11 @@ bool takes_standard_output(const std::vector<std::string>& paths) {
 
 Status RunOutputs::open(const OutputOptions& options) {
   Status status;
-  if (!options.trajectory.empty()) status = trajectory_.open(options.trajectory);
-  if (status.ok() && !options.covariance.empty()) status = covariance_.open(options.covariance);
-  if (status.ok() && !options.motions.empty()) status = motions_.open(options.motions);
+  base_ = options.base;
+  const FrameNames& frames = base_.frames();
+  if (!options.trajectory.empty()) status = trajectory_.open(options.trajectory, frames);
+  if (status.ok() && !options.covariance.empty()) status = covariance_.open(options.covariance, frames);
+  if (status.ok() && !options.motions.empty()) status = motions_.open(options.motions, frames);
   if (status.ok() && !options.stats.empty()) status = stats_.open(options.stats, stats_header());
   return status;
 }
@@ -55,9 +58,10 @@ Status RunOutputs::open(const OutputOptions& options) {
 Status RunOutputs::write(const FrameRecord& record) {
   Status status;
   if (!record.damaged()) {
-    status = trajectory_.write(record.result);
-    if (status.ok()) status = covariance_.write(record.result);
-    if (status.ok()) status = motions_.write(record.result);
+    const TrackResult result = base_.apply(record.result);
+    status = trajectory_.write(result);
+    if (status.ok()) status = covariance_.write(result);
+    if (status.ok()) status = motions_.write(result);
   }
   return status.ok() ? stats_.write(stats_row(record)) : status;
 }

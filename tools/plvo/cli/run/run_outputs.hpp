@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/base_option.hpp"
 #include "plvo/cli/common/frame_record.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/host/trajectory_file.hpp"
@@ -16,11 +17,13 @@ namespace plvo::cli {
 
 struct OutputOptions {
   std::string trajectory, covariance, motions, stats;
+  BaseOption base;  // what the first three, and pose streams, are about
 
   // For each: how the user names it, and its path.
   std::vector<std::pair<std::string, std::string>> named() const {
     return {{"--out", trajectory}, {"--covariance", covariance}, {"--motions", motions}, {"--stats", stats}};
   }
+  bool has_poses() const { return !trajectory.empty() || !covariance.empty() || !motions.empty(); }
 };
 void add_output_options(CLI::App& command, OutputOptions& options);
 
@@ -41,6 +44,7 @@ class RunOutputs {
   CovarianceFile covariance_;
   MotionFile motions_;
   LineFile stats_;
+  BaseOption base_;
 };
 
 std::string stats_header();

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of a robot instead of its camera's: T_base_camera says where the camera sits, and what was tracked is
+// told of the base. With base_link in REP 103's axes (x forward, y left, z up) the world becomes odom of REP
+// 105: the base at the first frame.
+#pragma once
+
+#include "plvo/odometry/track_result.hpp"
+
+namespace plvo {
+
+// The pose is T_odom_base = T_base_camera · T_world_camera · T_base_camera⁻¹, the motion that of the base
+// since the reference; covariances are carried along (first order), T_base_camera being exact. The names of
+// the members stay: T_world_camera is T_odom_base. All else is as it was.
+TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera);
+
+}  // namespace plvo
