@@ -23,6 +23,8 @@ endif()
 # loops do not do so. golden_native_test holds this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+# Bytes of code before time (base/build.hpp), where the build type says so.
+set(PLVO_CORE_DEFINITIONS $<$<CONFIG:MinSizeRel>:PLVO_SMALL_CODE>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 
 # plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target.
@@ -57,6 +59,17 @@ function(plvo_seal target)
     -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake)
 endfunction()
 
+# plvo_core_features(<core target> both|points|lines): the kinds of features that it holds.
+function(plvo_core_features target features)
+  if(features STREQUAL points)
+    target_compile_definitions(${target} PRIVATE PLVO_WITHOUT_LINES)
+  elseif(features STREQUAL lines)
+    target_compile_definitions(${target} PRIVATE PLVO_WITHOUT_POINTS)
+  elseif(NOT features STREQUAL both)
+    message(FATAL_ERROR "PLVO_FEATURES is '${features}': both, points or lines?")
+  endif()
+endfunction()
+
 # plvo_core_variant(<name> <options…>): the core once more, compiled another way, for tests that compare or watch it.
 # Options come after those of the build type, so the last optimisation level counts.
 function(plvo_core_variant name)
@@ -67,5 +80,6 @@ function(plvo_core_variant name)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/core)
   target_compile_options(${name} PRIVATE ${PLVO_CORE_OPTIONS} ${ARGN})
+  target_compile_definitions(${name} PRIVATE ${PLVO_CORE_DEFINITIONS})
   plvo_precompile(${name} PRIVATE ${PLVO_CORE_PRECOMPILED})
 endfunction()

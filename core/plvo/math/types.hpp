@@ -5,6 +5,10 @@
 
 #include <Eigen/Core>
 
+#ifdef PLVO_SMALL_CODE  // in the core's own sources alone (base/build.hpp)
+#include "plvo/math/rolled_loops.hpp"
+#endif
+
 namespace plvo {
 
 template <int Rows, int Cols>

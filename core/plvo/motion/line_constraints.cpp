@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/pair.hpp"
 
@@ -198,6 +199,7 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
       references_(workspace.references.first(inliers_.size())),
       landmarks_(workspace.landmarks.first(inliers_.size())),
       candidates_(workspace.candidates.first(inliers_.size())) {
+  if constexpr (!kLinesBuilt) return;  // there are no matches
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const Match& match = matches_[i];
     inliers_[i] = 0;
@@ -216,6 +218,7 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
 }
 
 Primitive LineConstraints::primitive(std::size_t i) const {
+  if constexpr (!kLinesBuilt) return {};
   const Reference& reference = references_[i];
   const Line3d& current = current_[matches_[i].current];
   const Vector3 d_current = current.b - current.a;
@@ -246,6 +249,7 @@ Primitive LineConstraints::primitive(std::size_t i) const {
 }
 
 double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const {
+  if constexpr (!kLinesBuilt) return cutoff;
   const Reference& reference = references_[i];
   const Line3d& current = current_[matches_[i].current];
   const Matrix3 G = T.R.lazyProduct(reference.frame);
@@ -267,6 +271,7 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
 }
 
 void LineConstraints::begin() {
+  if constexpr (!kLinesBuilt) return;
   for (std::size_t i = 0; i < matches_.size(); ++i)
     if (inliers_[i] != 0) landmarks_[i] = measured_landmark(references_[i]);
 }
@@ -275,6 +280,7 @@ void LineConstraints::accept() { std::swap(landmarks_, candidates_); }
 
 double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                                   JointInformation& sum) {
+  if constexpr (!kLinesBuilt) return 0;
   constexpr int kSize = JointInformation::kSize;
   const int size = shared.any() ? kSize : 6;
   double cost = 0;

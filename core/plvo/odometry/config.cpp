@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/config.hpp"
 
+#include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/odometry/kept_keyframes.hpp"
 
@@ -9,6 +10,17 @@ namespace {
 
 Status out_of_range(const char* entry, const char* range) {
   return Status(StatusCode::kInvalidArgument, "config: ").append(entry).append(" must be ").append(range);
+}
+
+// A kind of features that this build of the core leaves out.
+Status validate(Features features) {
+  if (!kLinesBuilt && features != Features::kPoints)
+    return {StatusCode::kUnsupported,
+            "config: features must be kPoints: this build is without lines (CMake: PLVO_FEATURES)"};
+  if (!kPointsBuilt && features != Features::kLines)
+    return {StatusCode::kUnsupported,
+            "config: features must be kLines: this build is without points (CMake: PLVO_FEATURES)"};
+  return {};
 }
 
 // False for NaN as well.
@@ -143,6 +155,7 @@ Status Limits::validate() const {
 }
 
 Status Config::validate() const {
+  if (Status status = plvo::validate(features); !status.ok()) return status;
   if (Status status = plvo::validate(depth_noise); !status.ok()) return status;
   if (Status status = plvo::validate(points); !status.ok()) return status;
   if (Status status = plvo::validate(lines); !status.ok()) return status;

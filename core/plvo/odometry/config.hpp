@@ -138,7 +138,8 @@ struct Config {
   static Config paper();
   // Settings that Limits::tiny() has the room for.
   static Config tiny();
-  // kInvalidArgument, naming the entry and its range.
+  // kInvalidArgument, naming the entry and its range; kUnsupported for features that are not built
+  // (PLVO_FEATURES).
   Status validate() const;
 };
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "plvo/base/build.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
@@ -33,6 +34,7 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
+  if constexpr (!kLinesBuilt) return;
   segment_search_.width = pyramid_.level(kLineLevel).width;
   segment_search_.height = pyramid_.level(kLineLevel).height;
   segment_detector_[0] = SegmentDetector(segment_search_);
@@ -88,8 +90,8 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
   features.points.keypoints.clear();
   features.lines.segments.clear();
   features.lines.count_3d = 0;
-  const bool points = config_.features != Features::kLines;
-  const bool lines = config_.features != Features::kPoints;
+  const bool points = kPointsBuilt && config_.features != Features::kLines;
+  const bool lines = kLinesBuilt && config_.features != Features::kPoints;
   const bool at_once = points && lines && config_.side_by_side;
   if (at_once) {
     const StageTimer timer(config_, result, Stage::kPoints);
@@ -124,6 +126,7 @@ void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, P
 
 void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
                                     PointFeatures& points) const {
+  if constexpr (!kPointsBuilt) return;
   // A registered patch is a landmark by definition, wherever its centre lies: only its depth is uncertain.
   // The little across the ray keeps its covariance invertible.
   constexpr double kPatchCentre_px = 0.02;
@@ -156,6 +159,7 @@ bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& 
 
 void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseScales& noise,
                                          LineFeatures& lines) const {
+  if constexpr (!kLinesBuilt) return;
   config_.side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);

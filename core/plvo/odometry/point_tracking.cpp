@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/point_tracking.hpp"
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/points/alignment.hpp"
 
@@ -94,6 +95,7 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
                          const Se3& T_current_reference, double radius_px, Arena& scratch,
                          PointTracks& tracks) {
   tracks.matches.clear();
+  if constexpr (!kPointsBuilt) return;
   const ScratchScope scope(scratch);
   const std::size_t n = reference.keypoints.size();
   const std::span<Prediction> predictions = scratch.take<Prediction>("predictions", n);
@@ -121,6 +123,8 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,
                      std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks) {
+  tracks.matches.clear();
+  if constexpr (!kPointsBuilt) return;
   const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
     found.matches.clear();
     for (std::size_t i = begin; i < end; ++i) {

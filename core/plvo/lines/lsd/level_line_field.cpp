@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "plvo/base/build.hpp"
+
 namespace plvo::lsd {
 namespace {
 
@@ -46,6 +48,11 @@ constexpr std::array<std::uint32_t, kMaxComponent + 1> make_reciprocals() {
 
 constexpr auto kOctant = make_octant();
 constexpr auto kReciprocals = make_reciprocals();
+
+std::uint32_t reciprocal(std::uint32_t component) {
+  if constexpr (kSmallCode) return ((kRatioSteps << 16) + component / 2) / component;
+  return kReciprocals[component];
+}
 
 // A gradient of at most rho = q / sin(tau) may be turned by more than tau by an error of q. Rounding to
 // integers moves each of four pixels by at most 1/2, so a component by at most 1 and the vector by at most
@@ -95,7 +102,7 @@ PolarGradient polar_gradient(int gx, int gy) {
   const bool x_is_major = ax >= ay;
   const std::uint32_t major = x_is_major ? ax : ay;
   const std::uint32_t minor = x_is_major ? ay : ax;
-  const OctantEntry entry = kOctant[(minor * kReciprocals[major] + 0x8000U) >> 16];
+  const OctantEntry entry = kOctant[(minor * reciprocal(major) + 0x8000U) >> 16];
   const int x = x_is_major ? entry.major : entry.minor;
   const int y = x_is_major ? entry.minor : entry.major;
   return {{static_cast<std::int16_t>(gx < 0 ? -x : x), static_cast<std::int16_t>(gy < 0 ? -y : y)},

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What this build of the core holds, as constants: what they rule out is compiled, but not kept. CMake sets
+// them for the core's own sources alone (PLVO_FEATURES, and a build type for small code).
+#pragma once
+
+namespace plvo {
+
+// Kinds of features that are built. One that is not has no matches, and Config::validate refuses to ask for
+// it.
+#ifdef PLVO_WITHOUT_POINTS
+inline constexpr bool kPointsBuilt = false;
+#else
+inline constexpr bool kPointsBuilt = true;
+#endif
+#ifdef PLVO_WITHOUT_LINES
+inline constexpr bool kLinesBuilt = false;
+#else
+inline constexpr bool kLinesBuilt = true;
+#endif
+
+// Bytes of code before time: a computation in place of a table, the result the same.
+#ifdef PLVO_SMALL_CODE
+inline constexpr bool kSmallCode = true;
+#else
+inline constexpr bool kSmallCode = false;
+#endif
+
+}  // namespace plvo
