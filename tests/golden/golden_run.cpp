@@ -98,7 +98,7 @@ void print_input(const GoldenMemory& memory, void (*print)(std::string_view)) {
 
 }  // namespace
 
-bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
+bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std::string_view only) {
   print("run frame state x_um y_um z_um image points lines matching motion result");
   print_input(memory, print);
   Config points, lines, keyframe, lost;
@@ -119,7 +119,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
       {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
   };
   for (const GoldenCase& golden : cases)
-    if (!run(golden, memory, print)) return false;
+    if ((only.empty() || only == golden.name) && !run(golden, memory, print)) return false;
   return true;
 }
 

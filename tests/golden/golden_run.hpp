@@ -23,6 +23,7 @@ struct GoldenMemory {
 };
 
 // Hands every line, without its end, to `print`. False, after a line that says why, when a run cannot start.
-bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view line));
+// only: the name of one run, or empty for all of them.
+bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view line), std::string_view only = {});
 
 }  // namespace plvo

@@ -218,12 +218,12 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
 }
 
 Primitive LineConstraints::primitive(std::size_t i) const {
-  if constexpr (!kLinesBuilt) return {};
+  Primitive primitive;
+  if constexpr (!kLinesBuilt) return primitive;
   const Reference& reference = references_[i];
   const Line3d& current = current_[matches_[i].current];
   const Vector3 d_current = current.b - current.a;
   const double length_current = sqrt(d_current.squaredNorm());
-  Primitive primitive;
   primitive.shape = Primitive::Shape::kLine;
   primitive.p_reference = reference.q;
   primitive.p_current = 0.5 * (current.a + current.b);

@@ -67,10 +67,10 @@ PointConstraints::PointConstraints(std::span<const Point3d> reference, std::span
 }
 
 Primitive PointConstraints::primitive(std::size_t i) const {
-  if constexpr (!kPointsBuilt) return {};
+  Primitive primitive;
+  if constexpr (!kPointsBuilt) return primitive;
   const Point3d& reference = reference_[matches_[i].reference];
   const Point3d& current = current_[matches_[i].current];
-  Primitive primitive;
   primitive.shape = Primitive::Shape::kPoint;
   primitive.p_reference = reference.p;
   primitive.p_current = current.p;

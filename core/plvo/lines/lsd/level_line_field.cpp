@@ -10,11 +10,11 @@ namespace plvo::lsd {
 namespace {
 
 constexpr int kMaxComponent = 510;  // of a gradient in half grey levels
-constexpr int kRatioSteps = 1024;
+constexpr std::uint32_t kRatioSteps = 1024;
 
 constexpr double constexpr_sqrt(double x) {  // 1 ≤ x ≤ 2
   double root = 1.2;
-  for (int i = 0; i < 6; ++i) root = 0.5 * (root + x / root);
+  for (int i = 0; i < 4; ++i) root = 0.5 * (root + x / root);
   return root;
 }
 
@@ -26,31 +26,41 @@ struct OctantEntry {
   std::uint16_t length = 0;  // · 2^-14
 };
 
+constexpr OctantEntry make_entry(std::uint32_t step) {
+  const double ratio = static_cast<double>(step) / kRatioSteps;
+  const double length = constexpr_sqrt(1 + ratio * ratio);
+  const double one = 1 << kDirectionBits;
+  return {static_cast<std::uint16_t>(one / length + 0.5),
+          static_cast<std::uint16_t>(one * ratio / length + 0.5),
+          static_cast<std::uint16_t>(one * length + 0.5)};
+}
+
 constexpr std::array<OctantEntry, kRatioSteps + 1> make_octant() {
   std::array<OctantEntry, kRatioSteps + 1> octant{};
-  for (int i = 0; i <= kRatioSteps; ++i) {
-    const double ratio = static_cast<double>(i) / kRatioSteps;
-    const double length = constexpr_sqrt(1 + ratio * ratio);
-    const double one = 1 << kDirectionBits;
-    octant[static_cast<std::size_t>(i)] = {static_cast<std::uint16_t>(one / length + 0.5),
-                                           static_cast<std::uint16_t>(one * ratio / length + 0.5),
-                                           static_cast<std::uint16_t>(one * length + 0.5)};
-  }
+  for (std::uint32_t step = 0; step <= kRatioSteps; ++step) octant[step] = make_entry(step);
   return octant;
 }
 
 // 2^16 · 1024 / component: a multiplication in place of the division that the ratio asks for.
+constexpr std::uint32_t make_reciprocal(std::uint32_t component) {
+  return ((kRatioSteps << 16) + component / 2) / component;
+}
+
 constexpr std::array<std::uint32_t, kMaxComponent + 1> make_reciprocals() {
   std::array<std::uint32_t, kMaxComponent + 1> reciprocals{};
-  for (std::uint32_t i = 1; i <= kMaxComponent; ++i) reciprocals[i] = ((kRatioSteps << 16) + i / 2) / i;
+  for (std::uint32_t i = 1; i <= kMaxComponent; ++i) reciprocals[i] = make_reciprocal(i);
   return reciprocals;
 }
 
 constexpr auto kOctant = make_octant();
 constexpr auto kReciprocals = make_reciprocals();
 
+OctantEntry octant_entry(std::uint32_t step) {
+  if constexpr (kSmallCode) return make_entry(step);
+  return kOctant[step];
+}
 std::uint32_t reciprocal(std::uint32_t component) {
-  if constexpr (kSmallCode) return ((kRatioSteps << 16) + component / 2) / component;
+  if constexpr (kSmallCode) return make_reciprocal(component);
   return kReciprocals[component];
 }
 
@@ -102,7 +112,7 @@ PolarGradient polar_gradient(int gx, int gy) {
   const bool x_is_major = ax >= ay;
   const std::uint32_t major = x_is_major ? ax : ay;
   const std::uint32_t minor = x_is_major ? ay : ax;
-  const OctantEntry entry = kOctant[(minor * reciprocal(major) + 0x8000U) >> 16];
+  const OctantEntry entry = octant_entry((minor * reciprocal(major) + 0x8000U) >> 16);
   const int x = x_is_major ? entry.major : entry.minor;
   const int y = x_is_major ? entry.minor : entry.major;
   return {{static_cast<std::int16_t>(gx < 0 ? -x : x), static_cast<std::int16_t>(gy < 0 ? -y : y)},
