@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include "plvo/math/se3.hpp"
@@ -39,8 +40,8 @@ struct JointInformation {
   Matrix<kSize, kSize> H = Matrix<kSize, kSize>::Zero();
   Vector<kSize> g = Vector<kSize>::Zero();
   void set_zero() {
-    H.setZero();
-    g.setZero();
+    std::memset(H.data(), 0, sizeof H);  // zero, in bits
+    std::memset(g.data(), 0, sizeof g);
   }
 };
 
