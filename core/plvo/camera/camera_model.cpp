@@ -6,21 +6,16 @@
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
-namespace {
-
-bool finite(double x) { return x - x == 0; }
-
-}  // namespace
 
 Status CameraModel::validate() const {
   const auto invalid = [](const char* what) {
     return Status(StatusCode::kInvalidArgument, "camera calibration: ").append(what);
   };
   if (width < 32 || height < 32) return invalid("the image must be at least 32x32 pixels");
-  if (!finite(pinhole.fx) || !finite(pinhole.fy) || pinhole.fx <= 0 || pinhole.fy <= 0)
+  if (!is_finite(pinhole.fx) || !is_finite(pinhole.fy) || pinhole.fx <= 0 || pinhole.fy <= 0)
     return invalid("fx and fy must be positive numbers (pixels)");
-  if (!finite(pinhole.cx) || !finite(pinhole.cy) || pinhole.cx < 0 || pinhole.cx >= width || pinhole.cy < 0 ||
-      pinhole.cy >= height)
+  if (!is_finite(pinhole.cx) || !is_finite(pinhole.cy) || pinhole.cx < 0 || pinhole.cx >= width ||
+      pinhole.cy < 0 || pinhole.cy >= height)
     return invalid("cx and cy must lie inside the image (pixels)");
   // To the farthest corner of the ideal image, the one that is looked at.
   const Vector2 corner(std::max(pinhole.cx, width - 1 - pinhole.cx) / pinhole.fx,

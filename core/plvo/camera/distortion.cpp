@@ -94,8 +94,6 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
   return sin(theta) / (cos(theta) * distance) * target;
 }
 
-bool finite(double x) { return x - x == 0; }
-
 Status folds_at(double theta, const char* what, const char* degrees_from_the_axis) {
   return Status(StatusCode::kInvalidArgument, what)
       .append(static_cast<std::int64_t>(theta * (180 / kPi)))
@@ -139,7 +137,7 @@ Status check_equidistant(const Distortion& lens, double radius) {
 
 Status Distortion::validate(double radius) const {
   for (const double k : {k1, k2, p1, p2, k3, k4, k5, k6})
-    if (!finite(k))
+    if (!is_finite(k))
       return {StatusCode::kInvalidArgument,
               "the distortion coefficients k1 k2 p1 p2 k3 (k4 k5 k6) must be numbers"};
   if (model == LensModel::kEquidistant) {

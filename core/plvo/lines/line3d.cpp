@@ -282,18 +282,18 @@ void leave_plane(const Segment& segment, const Pinhole& pinhole, const PlaneLine
 }
 
 // The consensus set and the line that fits it best, in turns; two suffice.
-constexpr int kMaxRounds = 2;
+constexpr int kConsensusRounds = 2;
 
 Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& config, PlaneLine& line,
                            Line3dReport& report) {
   if (!ransac(samples, config, line)) return Line3dOutcome::kNoConsensus;
   if (!re_anchor(line, samples.span().front().t, samples.span().back().t)) return Line3dOutcome::kNoConsensus;
   int consensus = find_consensus(samples, line, config.inlier_chi_square);
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kConsensusRounds; ++round) {
     if (consensus < 2) return Line3dOutcome::kNoConsensus;
     if (!refine(samples, line, report.cost)) return Line3dOutcome::kNotConverged;
     report.consensus = consensus;
-    if (round == kMaxRounds - 1) break;
+    if (round == kConsensusRounds - 1) break;
     const auto before = samples.consensus;
     consensus = find_consensus(samples, line, config.inlier_chi_square);
     if (samples.consensus == before) break;

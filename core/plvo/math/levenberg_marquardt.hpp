@@ -112,8 +112,6 @@ class LevenbergMarquardt {
   const Vector<N>& gradient() const { return g_; }
 
  private:
-  static bool is_finite(double x) { return x - x == 0; }
-
   static LmSummary finish(LmSummary& summary, LmStatus status) {
     summary.status = status;
     return summary;

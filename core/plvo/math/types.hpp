@@ -26,4 +26,6 @@ using Matrix3 = Matrix<3, 3>;
 using Matrix4 = Matrix<4, 4>;
 using Matrix6 = Matrix<6, 6>;
 
+constexpr bool is_finite(double x) { return x - x == 0; }
+
 }  // namespace plvo
