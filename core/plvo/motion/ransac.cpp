@@ -17,7 +17,7 @@ constexpr double kRoundScales[] = {9, 4, 1};
 // A fresh hypothesis is scored with thresholds this much wider, and must beat every fresh one before it and
 // reach this share of what the best refined one scores so.
 constexpr double kFreshScale = 4;
-constexpr double kFreshShare = 0.75;
+constexpr double kFreshShare = 0.5;
 // Sets drawn from the consensus until one is not degenerate.
 constexpr int kDegeneracyDraws = 200;
 constexpr int kRefinementSteps = 2;
