@@ -62,6 +62,7 @@ constexpr Ceiling kCeilings[] = {
     {"smoothing row", {1'400, 800, 800}},
     {"pyramid", {410'000, 103'000, 103'000}},
     {"segment detector", {2'200, 2'200, 2'200}},
+    {"image to align with", {20'000, 5'000, 5'000}},
     {"point tracks", {95'000, 60'000, 24'000}},
     {"line tracks", {2'600, 1'300, 400}},
 };

@@ -41,7 +41,6 @@ class Pairs {
     rooms_.carve(arena_, Limits::vga());
     arena_.seal();
     rooms_.extraction.init(camera, config_);
-    rooms_.tracking.init(camera, config_);
   }
 
   // The motion from the frame before.
@@ -50,7 +49,9 @@ class Pairs {
     const DepthSampler depth = rooms_.extraction.depth_sampler(frame);
     FrameFeatures& current = rooms_.frames[slot_];
     const NoiseScales noise = config_.noise.initial;
-    rooms_.extraction.extract(frame, depth, noise, arena_, current, result);
+    const Limits limits = Limits::vga();
+    current.clear({static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
+    rooms_.extraction.extract(frame, depth, arena_, current, result);
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
@@ -62,6 +63,7 @@ class Pairs {
       if (motion.status == StatusCode::kOk)
         rooms_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
     }
+    if (!has_reference_) rooms_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
     rooms_.extraction.lift_points(depth, noise, current.points);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
     has_reference_ = true;

@@ -18,11 +18,13 @@ struct LineFeatures {
   std::span<LineDescriptor> descriptors;  // of the 3D lines
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
+  bool lifted = false;  // 3D was looked for
 
   // No segments, and room for at most so many.
   void clear(std::size_t room) {
     segments = FixedVector<Segment>({segments.begin(), room < lines.size() ? room : lines.size()});
     count_3d = 0;
+    lifted = false;
   }
 
   template <typename Memory>

@@ -20,6 +20,8 @@ constexpr double kMinLengthSigmas = 4;
 // vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
 constexpr double kLandmarkTolerance = 1e-4;
+// A step that is longer than this share of the one before it does not converge.
+constexpr double kContraction = 0.5;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
@@ -160,6 +162,16 @@ LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const
   return result;
 }
 
+// `next` with weights halfway: where the ends' places along the line and the weights chase each other, two
+// values in turns, the solution lies between them.
+LineConstraints::Landmark between(const LineConstraints::Landmark& last,
+                                  const LineConstraints::Landmark& next) {
+  LineConstraints::Landmark result = next;
+  result.w_reference = 0.5 * (last.w_reference + next.w_reference);
+  result.w_current = 0.5 * (last.w_current + next.w_current);
+  return result;
+}
+
 LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
   return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
 }
@@ -297,12 +309,18 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
     }
     Linearized at;
     Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
+    double last_size = std::numeric_limits<double>::infinity();
+    bool halfway = false;
     for (int step = 0; step < kMaxLandmarkSteps; ++step) {
       if (!linearize_line(reference_[matches_[i].reference], current, T, landmark, at))
         return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
       q = T.R.lazyProduct(landmark.q);
-      landmark = moved(landmark, at);
-      if (at.y.cwiseAbs().maxCoeff() <= kLandmarkTolerance) break;
+      const Landmark next = moved(landmark, at);
+      const double size = at.y.cwiseAbs().maxCoeff();
+      halfway = halfway || size > kContraction * last_size;
+      landmark = halfway ? between(landmark, next) : next;
+      last_size = size;
+      if (size <= kLandmarkTolerance) break;
     }
     candidates_[i] = landmark;
 

@@ -79,17 +79,14 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) c
   }
 }
 
-void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, const NoiseScales& noise,
-                                Arena& scratch, FrameFeatures& features, TrackResult& result) {
+void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch,
+                                FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
     const StageTimer timer(config_, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
-  features.points.keypoints.clear();
-  features.lines.segments.clear();
-  features.lines.count_3d = 0;
   const bool points = kPointsBuilt && config_.features != Features::kLines;
   const bool lines = kLinesBuilt && config_.features != Features::kPoints;
   const bool at_once = points && lines && config_.side_by_side;
@@ -104,11 +101,9 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     const StageTimer timer(config_, result, Stage::kPoints);
     find_points(depth, scratch, features.points, result);
   }
-  if (lines) {
+  if (lines && !at_once) {
     const StageTimer timer(config_, result, Stage::kLines);
-    if (!at_once) find_segments(scratch, features.lines, result);
-    lift_segments(depth, noise, scratch, features.lines);
-    result.lines.with_depth = static_cast<int>(features.lines.count_3d);
+    find_segments(scratch, features.lines, result);
   }
 }
 
@@ -157,9 +152,22 @@ bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& 
   return true;
 }
 
-void FeatureExtraction::lift_lines_again(const DepthSampler& depth, const NoiseScales& noise,
-                                         LineFeatures& lines) const {
+void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& exposure,
+                                   const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
+                                   TrackResult& result) const {
   if constexpr (!kLinesBuilt) return;
+  const StageTimer timer(config_, result, Stage::kLines);
+  if (!lines.lifted) {
+    lift_segments(depth.with(exposure), noise, scratch, lines);
+    lines.lifted = true;
+  } else if (exposure.depth_apart()) {
+    lift_segments_again(depth.with(exposure), noise, lines);
+  }
+  result.lines.with_depth = static_cast<int>(lines.count_3d);
+}
+
+void FeatureExtraction::lift_segments_again(const DepthSampler& depth, const NoiseScales& noise,
+                                            LineFeatures& lines) const {
   config_.side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);

@@ -53,20 +53,26 @@ class FeatureExtraction {
 
   void init(const CameraModel& camera, const Config& config);
 
+  const CameraModel& camera() const { return camera_; }
+  const Config& config() const { return config_; }
+
   // A sampler of the frame's own depth: as long as the frame's views are valid.
   DepthSampler depth_sampler(const RgbdFrame& frame) const {
     return {frame.depth, map_, config_.depth_noise};
   }
 
-  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Its points have
-  // no 3D yet.
-  void extract(const RgbdFrame& frame, const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
-               FrameFeatures& features, TrackResult& result);
+  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Points and
+  // lines have no 3D yet.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
+               TrackResult& result);
   // P2, P3, and what belongs to each keypoint's own surface: when the motion during the exposure is known as
   // well as it will be.
   void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
-  // L2, L3 once more, with a better idea of the motion. A line that has no 3D any more keeps what it had.
-  void lift_lines_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
+  // L2, L3, for the motion during the exposure. The segments that get 3D move to the front and are described.
+  // Again, with a better idea of the motion, these are lifted anew where depth was exposed apart from colour;
+  // one that has no 3D any more keeps what it had.
+  void lift_lines(const DepthSampler& depth, const Exposure& exposure, const NoiseScales& noise,
+                  Arena& scratch, LineFeatures& lines, TrackResult& result) const;
 
   // Of the last frame: what matching refines against.
   const Pyramid& pyramid() const { return pyramid_; }
@@ -104,6 +110,7 @@ class FeatureExtraction {
   // Moves the segments that have 3D to the front, with their lines and descriptors.
   void lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                      LineFeatures& lines) const;
+  void lift_segments_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
   bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                  Line3d& line) const;
   void describe_points(Arena& scratch, PointFeatures& points) const;

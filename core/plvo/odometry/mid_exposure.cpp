@@ -27,6 +27,11 @@ Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
   return recent + 0.5 * kExtrapolated * (recent - prior.reference_velocity);
 }
 
+Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,
+                            const Se3& T_current_reference) {
+  return {camera, reference_velocity(prior, recent_velocity(prior, T_current_reference)), 0};
+}
+
 std::span<const Line3d> carried(const Exposure& shutter, std::span<const Line3d> lines, Arena& scratch) {
   const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
   for (std::size_t i = 0; i < copies.size(); ++i) {
@@ -44,22 +49,31 @@ Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, con
   return {camera, current_velocity(prior, recent), prior.depth_after_colour_s};
 }
 
-MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
-                            const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch) {
+MidExposure points_at_mid_exposure(const CameraModel& camera, const PairPrior& prior,
+                                   const Se3& T_current_reference, const FrameFeatures& reference,
+                                   Arena& scratch) {
   MidExposure result;
   const std::span<const Point3d> points = reference.points.points.first(reference.points.keypoints.size());
   result.reference_points = points;
-  result.reference_lines = reference.lines.lines_3d();
-  result.current_lines = current.lines.lines_3d();
   result.current = current_exposure(camera, prior, T_current_reference);
   if (!(camera.readout_s > 0)) return result;
 
-  const Vector6 recent = recent_velocity(prior, T_current_reference);
-  const Exposure shutter(camera, reference_velocity(prior, recent), 0);
+  const Exposure shutter = reference_exposure(camera, prior, T_current_reference);
   const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
   for (std::size_t i = 0; i < copies.size(); ++i)
     copies[i] = {shutter.at_mid_exposure(points[i].p), points[i].Sigma};
   result.reference_points = copies;
+  return result;
+}
+
+MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
+                            const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch) {
+  MidExposure result = points_at_mid_exposure(camera, prior, T_current_reference, reference, scratch);
+  result.reference_lines = reference.lines.lines_3d();
+  result.current_lines = current.lines.lines_3d();
+  if (!(camera.readout_s > 0)) return result;
+
+  const Exposure shutter = reference_exposure(camera, prior, T_current_reference);
   result.reference_lines = carried(shutter, reference.lines.lines_3d(), scratch);
   result.current_lines = carried(result.current, current.lines.lines_3d(), scratch);
   return result;

@@ -39,14 +39,22 @@ struct MidExposure {
 // How the camera moved while the current frame was exposed, if this is the motion.
 Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference);
 
+// Of the reference's points alone; otherwise as below.
+MidExposure points_at_mid_exposure(const CameraModel& camera, const PairPrior& prior,
+                                   const Se3& T_current_reference, const FrameFeatures& reference,
+                                   Arena& scratch);
 // Copies into the scratch what changes; with a global shutter nothing does, and the features are used as they
 // are.
 MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
                             const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch);
 
 template <typename Memory>
-constexpr void take_mid_exposure(Memory& memory, const Limits& limits) {
+constexpr void take_points_at_mid_exposure(Memory& memory, const Limits& limits) {
   memory.template take<Point3d>("at mid-exposure", static_cast<std::size_t>(limits.keypoints));
+}
+template <typename Memory>
+constexpr void take_mid_exposure(Memory& memory, const Limits& limits) {
+  take_points_at_mid_exposure(memory, limits);
   memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
   memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
 }

@@ -75,10 +75,7 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   rooms_.carve(arena_, limits, features);
   for (std::size_t i = 0; i < kFrames; ++i) frames_[i].features = features[i];
   arena_.seal();
-  camera_ = camera;
-  config_ = config;
   rooms_.extraction.init(camera, config);
-  rooms_.tracking.init(camera, config);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
   kept_.init(limits.kept_keyframes);
@@ -90,14 +87,14 @@ Status Odometry::check(const RgbdFrame& frame) const {
   if (!ready_) return {StatusCode::kInvalidArgument, "track() before a successful init()"};
   if (frame.colour.data == nullptr || frame.depth.data == nullptr)
     return {StatusCode::kInvalidArgument, "the frame has no colour or no depth image"};
-  if (frame.colour.width != camera_.width || frame.colour.height != camera_.height ||
-      frame.depth.width != camera_.width || frame.depth.height != camera_.height)
+  if (frame.colour.width != camera().width || frame.colour.height != camera().height ||
+      frame.depth.width != camera().width || frame.depth.height != camera().height)
     return Status(StatusCode::kInvalidArgument, "colour and depth must have the calibration's size, ")
-        .append(camera_.width)
+        .append(camera().width)
         .append("x")
-        .append(camera_.height);
+        .append(camera().height);
   const int bytes_per_pixel = frame.colour.format == PixelFormat::kGray8 ? 1 : 3;
-  if (frame.colour.stride_bytes < camera_.width * bytes_per_pixel || frame.depth.stride < camera_.width)
+  if (frame.colour.stride_bytes < camera().width * bytes_per_pixel || frame.depth.stride < camera().width)
     return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
   // Within this range the squares of depths and of inverse depths are far from the ends of a double's.
   if (!(frame.depth.metres_per_unit >= 1e-6 && frame.depth.metres_per_unit < 1))
@@ -129,28 +126,29 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   has_stamp_ = true;
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = rooms_.extraction.depth_sampler(input);
-  const DepthSampler depth_as_predicted = depth.with(predict_exposure(input.stamp_ns));
+  const Exposure predicted = predict_exposure(input.stamp_ns);
   take_feature_memory();
-  frame(current_).features.clear(budget_.room());
+  FrameFeatures& features = frame(current_).features;
+  features.clear(budget_.room());
   result.feature_step = budget_.step();
-  rooms_.extraction.extract(input, depth_as_predicted, noise_, arena_, frame(current_).features, result);
-  segment_count_ = view_segments(frame(current_).features.lines, rooms_.segment_views);
+  rooms_.extraction.extract(input, depth.with(predicted), arena_, features, result);
   TrackedMotion tracked;
-  if (keyframe_ == kNobody) {
-    if (resume(depth, prior, tracked, result)) return result;
-    rooms_.extraction.lift_points(depth_as_predicted, noise_, frame(current_).features.points);
+  if (keyframe_ != kNobody) {
+    estimate_motion(depth, tracked, result);
+    fill_views(tracked.motion);
+    if (tracked.motion.status == StatusCode::kOk) {
+      rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, features.points);
+      accept(tracked, prior, result);
+      look_back(depth, tracked, result);
+    } else {
+      lose(tracked.motion, prior, result);
+    }
+  } else if (!resume(depth, prior, tracked, result)) {
+    rooms_.extraction.lift_points(depth.with(predicted), noise_, features.points);
+    rooms_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
     start(prior, result);
-    return result;
   }
-  estimate_motion(depth, tracked, result);
-  fill_views(tracked.motion);
-  if (tracked.motion.status == StatusCode::kOk) {
-    rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
-    accept(tracked, prior, result);
-    look_back(depth, tracked, result);
-  } else {
-    lose(tracked.motion, prior, result);
-  }
+  segment_count_ = view_segments(features.lines, rooms_.segment_views);
   return result;
 }
 
@@ -166,18 +164,18 @@ void Odometry::take_feature_memory() {
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
-  if (!camera_.depth_timing.known) return 0;
+  if (!camera().depth_timing.known) return 0;
   // Stamps farther apart than this do not belong to one frame, whoever paired them.
   constexpr double kMost_s = 0.1;
   const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
-  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera_.depth_timing.delay_s;
+  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera().depth_timing.delay_s;
 }
 
 // How the camera moves while the frame is exposed, if it goes on as it did.
 Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
   if (last_ == kNobody) return {};
   const PairPrior prior = prior_of(last_, stamp_ns);
-  return current_exposure(camera_, prior, prior.T_current_reference);
+  return current_exposure(camera(), prior, prior.T_current_reference);
 }
 
 // The motion from the reference to now: as other sensors tell it, or if the camera goes on as it did between
@@ -214,22 +212,31 @@ std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& refer
   return 2;
 }
 
-// A first motion from the latest reference, where it is predicted; failing that from each, wherever it may
-// be, unless other sensors say where. Then the motion from all of them.
+// A first motion from the latest reference: by its image; failing that by its features, where they are
+// predicted; failing that from each, wherever it may be, unless other sensors say where. Then the motion from
+// all of them.
 void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
+  const Reference& latest = references[count - 1];
+  Se3 T_current_latest;
+  if (config().points.registered &&
+      rooms_.tracking.align(latest, current, arena_, T_current_latest, result)) {
+    rooms_.tracking.refine(std::span(references).first(count), current,
+                           T_current_latest * latest.pose.T_reference_base, arena_, tracked, result);
+    if (tracked.motion.status == StatusCode::kOk) return;
+  }
   for (std::size_t attempt = 0; attempt <= count; ++attempt) {
     const bool wide = attempt > 0;
     Reference from = references[count - (wide ? attempt : 1)];
     if (wide && !sensed_.known()) from.prior.T_current_reference = Se3{};
     rooms_.tracking.find(from, current,
-                         wide ? config_.references.wide_search_px : config_.points.match.radius_px, arena_,
+                         wide ? config().references.wide_search_px : config().points.match.radius_px, arena_,
                          tracked, result);
     if (tracked.motion.status != StatusCode::kOk) continue;
-    if (!config_.points.registered) return;
+    if (!config().points.registered) return;
     const Se3 T_current_base = tracked.motion.T_current_reference * from.pose.T_reference_base;
     rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, tracked,
                            result);
@@ -278,6 +285,7 @@ void Odometry::start(const MotionPrior& prior, TrackResult& result) {
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = last_ = current_;
+  keep_image();
   current_ = free_slot();
   lost_frames_ = 0;
   sensed_.restart();
@@ -286,8 +294,8 @@ void Odometry::start(const MotionPrior& prior, TrackResult& result) {
 // The last good pose's covariance by now, when nobody saw the motion since.
 void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
   const double seconds = static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, stamp_ns)) * 1e-9;
-  const double sigma_m = config_.references.unseen_m_per_s * seconds;
-  const double sigma_rad = config_.references.unseen_rad_per_s * seconds;
+  const double sigma_m = config().references.unseen_m_per_s * seconds;
+  const double sigma_rad = config().references.unseen_rad_per_s * seconds;
   for (int i = 0; i < 3; ++i) {
     covariance(i, i) += sigma_m * sigma_m;
     covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
@@ -315,7 +323,7 @@ void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, Tr
   note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
   lost_frames_ = 0;
   sensed_.restart();
-  learn(config_.noise, tracked.shown, noise_);
+  learn(config().noise, tracked.shown, noise_);
   choose_keyframe();
 }
 
@@ -340,9 +348,15 @@ void Odometry::choose_keyframe() {
   const bool affordable =
       features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
   const bool keep =
-      config_.references.policy != ReferencePolicy::kPreviousFrame && affordable && still_seen(keyframe_);
+      config().references.policy != ReferencePolicy::kPreviousFrame && affordable && still_seen(keyframe_);
   if (!keep) keyframe_ = last_;
+  if (!keep || uses_both_references()) keep_image();
   current_ = free_slot();
+}
+
+// Of the current frame, which is the latest reference from now on.
+void Odometry::keep_image() {
+  rooms_.tracking.keep_image(rooms_.extraction.pyramid(), frame(current_).features.stamp_ns);
 }
 
 // Whether the last estimate, whose base was that frame, found enough of its features.
@@ -352,7 +366,7 @@ bool Odometry::still_seen(int slot) const {
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
   return rooms_.tracking.tracks(0).inliers >=
-         config_.references.keyframe_inlier_ratio * static_cast<double>(available);
+         config().references.keyframe_inlier_ratio * static_cast<double>(available);
 }
 
 int Odometry::free_slot() const {
@@ -366,7 +380,7 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   result.status = explain_loss(motion, result, sensed_.known() ? "predicted: " : "lost: ");
   if (sensed_.known()) (void)predicted_pose(prior, result);
   ++lost_frames_;
-  if (lost_frames_ < config_.references.max_lost_frames) return;
+  if (lost_frames_ < config().references.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
   // starts anew at the last good pose.
   kept_.keep(keyframe_);

@@ -158,8 +158,8 @@ class Odometry {
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
   // Without registration find() is the whole estimate, of the base alone.
   bool uses_both_references() const {
-    return last_ != keyframe_ && config_.points.registered &&
-           config_.references.policy == ReferencePolicy::kKeyframeAndPrevious;
+    return last_ != keyframe_ && config().points.registered &&
+           config().references.policy == ReferencePolicy::kKeyframeAndPrevious;
   }
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
@@ -174,6 +174,7 @@ class Odometry {
   void hold(int slot, const HeldPose& pose);
   HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
   void choose_keyframe();
+  void keep_image();
   bool still_seen(int slot) const;
   int free_slot() const;
   void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
@@ -184,13 +185,13 @@ class Odometry {
   void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   void fill_views(const MotionEstimate& motion);
 
+  const CameraModel& camera() const { return rooms_.extraction.camera(); }
+  const Config& config() const { return rooms_.extraction.config(); }
   Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& frame(int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
   Arena arena_;
   OdometryRooms rooms_;
-  CameraModel camera_;
-  Config config_;
   FeatureBudget budget_;
   bool ready_ = false;
 

@@ -33,7 +33,7 @@ void Odometry::reset() {
   start_ = HeldPose();
   sensed_ = SensedMotion();
   gravity_.forget();
-  noise_ = config_.noise.initial;
+  noise_ = config().noise.initial;
   last_stamp_ns_ = 0;
   has_stamp_ = false;
   lost_frames_ = 0;
@@ -85,7 +85,7 @@ void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
   const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
                        elapsed_ns(last.features.stamp_ns, stamp_ns) <= kLongestCoast_ns;
   const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, stamp_ns)) * 1e-9;
-  sensed_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config_.references);
+  sensed_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config().references);
 }
 
 // Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the reference's keypoints in the current frame and lifts what was found to 3D. Twice: first through
-// descriptors, which need no good idea of the motion, to get one; then, with that motion, by registering the
-// patch of every reference keypoint where it must be — which does not depend on the detector finding the same
-// corner again, and so yields several times as many matches.
+// Finds the reference's keypoints in the current frame and lifts what was found to 3D: through descriptors,
+// which need no good idea of the motion, to get one; and, with a good idea of it, by registering the patch of
+// every reference keypoint where it must be — which does not depend on the detector finding the same corner
+// again, and so yields several times as many matches.
 #pragma once
 
 #include <cstdint>

@@ -41,9 +41,9 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   const SensedMotion nothing;
   const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing};
   const Reference reference{&frame(slot).features, prior, {}, {}};
-  const double anywhere_px = std::max(camera_.width, camera_.height);
+  const double anywhere_px = std::max(camera().width, camera().height);
   rooms_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
-  if (tracked.motion.status == StatusCode::kOk && config_.points.registered) {
+  if (tracked.motion.status == StatusCode::kOk && config().points.registered) {
     const Se3 T_current_reference = tracked.motion.T_current_reference;
     rooms_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
   }
@@ -78,7 +78,7 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
 // tracked: whose memory is free by now.
 void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
-  if (kept_.empty() || ++frames_since_look_back_ < config_.references.look_back_frames) return;
+  if (kept_.empty() || ++frames_since_look_back_ < config().references.look_back_frames) return;
   frames_since_look_back_ = 0;
   const int slot = kept_.next();
   Frame& last = frame(last_);  // the frame just tracked

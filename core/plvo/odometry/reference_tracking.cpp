@@ -14,6 +14,13 @@ namespace {
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
 constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-5, .cost_tolerance = 1e-6};
 
+// Sparse alignment, at most: rounds over a level, and Gauss–Newton steps in each. After a step of less (m and
+// rad) another round is in vain.
+constexpr int kCoarseRounds = 4;
+constexpr int kFineRounds = 1;
+constexpr int kStepsOfRound = 2;
+constexpr double kAligned = 5e-4;
+
 // Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and two such weigh as 2 / (1 + ½) independent ones.
 constexpr double kWeightOfTwo = 2.0 / 3;
@@ -36,23 +43,31 @@ void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, Tr
   result.lm_iterations += estimate.lm.iterations;
 }
 
+SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
+  return {exposure, config.turning_rad_per_s * sqrt(noise.turning),
+          config.shared_depth_m * sqrt(noise.shared_depth)};
+}
+
+TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, const Exposure& exposure) {
+  const Config& config = current.extraction.config();
+  return {current.extraction.camera().pinhole,
+          config.points,
+          current.extraction.pyramid(),
+          depth,
+          exposure,
+          current.noise,
+          config.side_by_side};
+}
+
 }  // namespace
 
-void ReferenceTracking::init(const CameraModel& camera, const Config& config) {
-  camera_ = camera;
-  config_ = config;
-}
-
-SharedErrors ReferenceTracking::shared_errors(const Exposure& exposure, const NoiseScales& noise) const {
-  return {exposure, config_.noise.turning_rad_per_s * sqrt(noise.turning),
-          config_.noise.shared_depth_m * sqrt(noise.shared_depth)};
-}
-
 void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                              const SensedMotion& sensed, std::size_t last_index, const MotionStart& start,
+                              const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
                               const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
                               TrackResult& result) {
-  const StageTimer timer(config_, result, Stage::kMotion);
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
+  const StageTimer timer(config, result, Stage::kMotion);
   const ScratchScope scope(scratch);
   const std::size_t last = features.size() - 1;
   const double weight = features.size() > 1 ? kWeightOfTwo : 1;
@@ -60,13 +75,13 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     const PointTracks& tracks = tracks_[r].points;
     PointConstraints set(features[r].reference_points, tracks.points, tracks.matches.span(),
                          PointConstraints::Workspace::take(scratch, tracks.matches.size()));
-    set.set_reference(r, config_.noise.point_correlation, weight);
+    set.set_reference(r, config.noise.point_correlation, weight);
     return set;
   };
   const auto lines_of = [&](std::size_t r) {
     LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks_[r].lines.span(),
                         LineConstraints::Workspace::take(scratch, tracks_[r].lines.size()));
-    set.set_reference(r, config_.noise.line_correlation, weight);
+    set.set_reference(r, config.noise.line_correlation, weight);
     return set;
   };
   std::array<PointConstraints, kMaxReferences> points{
@@ -75,65 +90,103 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
       lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
   std::array<ConstraintSet*, kMaxConstraintKinds> sets{&points[0], &lines[0], &points[1], &lines[1]};
   std::size_t set_count = 2 * features.size();
-  MotionConfig config = config_.motion;
+  const SensedMotion& sensed = current.sensed;
+  MotionConfig motion_config = config.motion;
   std::uint8_t sensed_flag = 0;
   PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&sensed_flag, 1});
   if (sensed.known()) {
     prior.set_reference(last_index, 0);
     sets[set_count++] = &prior;
-    config.max_sigma_m = config.max_sigma_rad = kHeld;
+    motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
   }
 
   tracked.exposure = {};
   tracked.shown = {};
-  estimate_motion(std::span(sets).first(set_count), poses, config, lm, config_.seed, start, scratch,
+  estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
                   tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
     std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
     std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
-  if (tracked.motion.status == StatusCode::kOk && config_.noise.learning_rate > 0) {
+  if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
     tracked.shown =
-        residual_scales(camera_.pinhole, points[last], lines[last],
+        residual_scales(camera.pinhole, points[last], lines[last],
                         motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
 }
 
+bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
+                              Se3& T_current_reference, TrackResult& result) const {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
+  if (!alignment_.holds(reference.features->stamp_ns)) return false;
+  const StageTimer timer(config, result, Stage::kMatching);
+  const ScratchScope scope(scratch);
+  const PointFeatures& features = reference.features->points;
+  const std::span<AlignmentWindow> room = SparseAlignment::take_windows(scratch);
+  const Pyramid& pyramid = current.extraction.pyramid();
+  Se3 T = reference.prior.T_current_reference;
+  AlignmentStep step;
+  const auto align = [&](std::span<const AlignmentWindow> windows, int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+      const ScratchScope exposed(scratch);
+      // What a rolling shutter does depends on the motion: anew for each better idea of it.
+      const MidExposure at = points_at_mid_exposure(camera, reference.prior, T, *reference.features, scratch);
+      for (int i = 0; i < kStepsOfRound; ++i)
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current, pyramid, T, step))
+          return false;
+      if (step.size < kAligned) break;
+    }
+    return true;
+  };
+  if (!align(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
+  if (!align(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
+  T_current_reference = T;
+  return true;
+}
+
 void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, double radius_px,
                              Arena& scratch, TrackedMotion& tracked, TrackResult& result) {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
   const ScratchScope scope(scratch);
   const Se3& T_predicted = reference.prior.T_current_reference;
+  current.extraction.lift_lines(current.depth, current_exposure(camera, reference.prior, T_predicted),
+                                current.noise, scratch, current.features.lines, result);
   const MidExposure features =
-      at_mid_exposure(camera_, reference.prior, T_predicted, *reference.features, current.features, scratch);
+      at_mid_exposure(camera, reference.prior, T_predicted, *reference.features, current.features, scratch);
   {
-    const StageTimer timer(config_, result, Stage::kMatching);
+    const StageTimer timer(config, result, Stage::kMatching);
     const DepthSampler depth = current.depth.with(features.current);
     track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
                         tracks_[0].points);
-    LineMatchConfig gates = config_.lines.match;
+    LineMatchConfig gates = config.lines.match;
     gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
-    match_predicted_lines(camera_.pinhole, features.current, reference.features->lines,
+    match_predicted_lines(camera.pinhole, features.current, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
   }
   // Without registration this is the whole estimate, else it only leads to it.
-  const bool whole = !config_.points.registered;
-  const SharedErrors shared = whole ? shared_errors(features.current, current.noise) : SharedErrors{};
+  const bool whole = !config.points.registered;
+  const SharedErrors shared =
+      whole ? shared_errors(config.noise, features.current, current.noise) : SharedErrors{};
   const bool is_last = reference.prior.reference_is_last;
   MotionReferences poses;
   if (!is_last) poses[1] = reference.last;
-  solve({&features, 1}, poses, current.sensed, is_last ? 0 : 1, {&T_predicted, shared},
+  solve({&features, 1}, poses, current, is_last ? 0 : 1, {&T_predicted, shared},
         whole ? kFineSolve : kRoughSolve, scratch, tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
-    tracked.exposure = current_exposure(camera_, reference.prior, tracked.motion.T_current_reference);
+    tracked.exposure = current_exposure(camera, reference.prior, tracked.motion.T_current_reference);
 }
 
 void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
                                const Se3& T_current_base, Arena& scratch, TrackedMotion& tracked,
                                TrackResult& result) {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
   const ScratchScope scope(scratch);
   MotionReferences poses;
   for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
@@ -141,29 +194,29 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   if (!base_is_last) poses[1] = references[0].last;
   const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
   const std::size_t last = references.size() - 1;
-  const Exposure exposure = current_exposure(camera_, references[last].prior, motions[last]);
+  const Exposure exposure = current_exposure(camera, references[last].prior, motions[last]);
   const DepthSampler depth = current.depth.with(exposure);
-  if (exposure.depth_apart())
-    current.extraction.lift_lines_again(depth, current.noise, current.features.lines);
+  current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,
+                                result);
   std::array<MidExposure, kMaxReferences> features;
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
     features[r] =
-        at_mid_exposure(camera_, reference.prior, motions[r], *reference.features, current.features, scratch);
-    const StageTimer timer(config_, result, Stage::kMatching);
+        at_mid_exposure(camera, reference.prior, motions[r], *reference.features, current.features, scratch);
+    const StageTimer timer(config, result, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points,
                     features[r].reference_points, motions[r], tracks_[r].points);
-    LineMatchConfig gates = config_.lines.match;
-    gates.max_offset_px = config_.lines.guided_offset_px;
-    gates.max_angle_rad = config_.lines.guided_angle_rad;
-    match_predicted_lines(camera_.pinhole, exposure, reference.features->lines, features[r].reference_lines,
+    LineMatchConfig gates = config.lines.match;
+    gates.max_offset_px = config.lines.guided_offset_px;
+    gates.max_angle_rad = config.lines.guided_angle_rad;
+    match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
   }
-  solve(std::span(features).first(references.size()), poses, current.sensed, base_is_last ? 0 : 1,
-        {&T_current_base, shared_errors(exposure, current.noise), true}, kFineSolve, scratch, tracked,
-        result);
+  solve(std::span(features).first(references.size()), poses, current, base_is_last ? 0 : 1,
+        {&T_current_base, shared_errors(config.noise, exposure, current.noise), true}, kFineSolve, scratch,
+        tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
-    tracked.exposure = current_exposure(camera_, references[last].prior,
+    tracked.exposure = current_exposure(camera, references[last].prior,
                                         motions_to_current(tracked.motion.T_current_reference, poses)[last]);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. find() makes a first
-// motion from one reference, by descriptors; refine() registers the features of all references with it and
-// solves for one motion over all of them.
+// Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. A first motion, from
+// one reference, comes from align(), by the images, or where that fails from find(), by descriptors; refine()
+// registers the features of all references with it and solves for one motion over all of them.
 #pragma once
 
 #include <array>
@@ -19,6 +19,7 @@
 #include "plvo/odometry/point_tracking.hpp"
 #include "plvo/odometry/sensed_motion.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/points/sparse_alignment.hpp"
 
 namespace plvo {
 
@@ -52,8 +53,8 @@ struct ReferenceTracks {
 
 // The frame that is being tracked.
 struct CurrentFrame {
-  FrameFeatures& features;  // lines are lifted again when the motion is known better
-  const FeatureExtraction& extraction;
+  FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
+  const FeatureExtraction& extraction;  // of its image; with the camera and the configuration of both
   const DepthSampler& depth;
   const NoiseScales& noise;
   const SensedMotion& sensed;
@@ -71,11 +72,17 @@ class ReferenceTracking {
   constexpr void carve(Memory& memory, const Limits& limits) {
     for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
       tracks_[r].carve(memory, limits);
+    alignment_.carve(memory, limits.width, limits.height);
   }
   // Scratch: the larger of the stages, which come one after the other.
   template <typename Memory>
   static constexpr void reserve(Memory& memory, const Limits& limits) {
     const ScratchScope scope(memory);
+    {
+      const ScratchScope aligning(memory);
+      SparseAlignment::take_windows(memory);
+      take_points_at_mid_exposure(memory, limits);
+    }
     const auto references = static_cast<std::size_t>(limits.references);
     for (std::size_t r = 0; r < references; ++r) take_mid_exposure(memory, limits);
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
@@ -85,8 +92,13 @@ class ReferenceTracking {
                 static_cast<std::size_t>(limits.segments));
   }
 
-  void init(const CameraModel& camera, const Config& config);
+  // Of the frame with this stamp, for align(), until the next call.
+  void keep_image(const Pyramid& pyramid, std::int64_t stamp_ns) { alignment_.keep(pyramid, stamp_ns); }
 
+  // T_current_reference of the reference whose image was kept, by sparse image alignment, from its prior.
+  // False for any other, and where the alignment cannot be trusted.
+  bool align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
+             Se3& T_current_reference, TrackResult& result) const;
   // T_current_reference of one reference: features are looked for within radius_px of where its prior has
   // them. Where points are not registered this is the whole estimate.
   void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
@@ -100,20 +112,12 @@ class ReferenceTracking {
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  // sensed: may say nothing; last_index: of the last good frame among the poses.
-  void solve(std::span<const MidExposure> features, const MotionReferences& poses, const SensedMotion& sensed,
-             std::size_t last_index, const MotionStart& start, const LmOptions& lm, Arena& scratch,
-             TrackedMotion& tracked, TrackResult& result);
-  SharedErrors shared_errors(const Exposure& exposure, const NoiseScales& noise) const;
-  TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth,
-                       const Exposure& exposure) const {
-    return {camera_.pinhole, config_.points, current.extraction.pyramid(), depth,
-            exposure,        current.noise,  config_.side_by_side};
-  }
-
-  CameraModel camera_;
-  Config config_;
+  // last_index: of the last good frame among the poses.
+  void solve(std::span<const MidExposure> features, const MotionReferences& poses,
+             const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
+             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
   std::array<ReferenceTracks, kMaxReferences> tracks_;
+  SparseAlignment alignment_;
 };
 
 }  // namespace plvo

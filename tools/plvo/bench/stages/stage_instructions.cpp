@@ -34,6 +34,7 @@ const std::vector<Row>& rows() {
       {"lines", "describe", {"plvo::describe_segment("}},
       {"lines", "depths", {"void plvo::sample_segment<"}},
       {"lines", "3D", {"plvo::fit_line3d("}},
+      {"matching", "by image", {"plvo::ReferenceTracking::align("}},
       {"matching", "by descriptor", {"plvo::track_by_descriptor("}},
       {"matching", "registration", {"plvo::track_by_motion("}},
       {"matching", "lines", {"plvo::match_predicted_lines("}},
