@@ -5,7 +5,8 @@
 
 #include <Eigen/Core>
 
-#ifdef PLVO_SMALL_CODE  // in the core's own sources alone (base/build.hpp)
+// In plvo's own files alone (tools/cmake/plvo.cmake): a user's Eigen stays as it is.
+#ifdef PLVO_ROLLED_LOOPS
 #include "plvo/math/rolled_loops.hpp"
 #endif
 
