@@ -9,6 +9,9 @@
 #ifdef PLVO_ROLLED_LOOPS
 #include "plvo/math/rolled_loops.hpp"
 #endif
+#ifdef PLVO_SMALL_CODE
+#include "plvo/math/one_product.hpp"
+#endif
 
 namespace plvo {
 
