@@ -6,6 +6,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "bare_metal"))
 import budget
+import mixed_levels
 from call_graph import CallGraph
 
 PAGE = "| what | bytes |\n|---|---:|\n| text | 1,000 |\n"
@@ -27,6 +28,14 @@ class Budget(unittest.TestCase):
     def test_ceiling_and_unknown_row(self):
         self.assertIn("ceiling", budget.judge(PAGE, "text", 1001, 1000))
         self.assertIn("no row", budget.judge(PAGE, "stack", 1000))
+
+
+class MixedLevels(unittest.TestCase):
+    def test_a_function_of_both_kinds_is_found(self):
+        lines = ["core.a:cold.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W hot()",
+                 "core.a:cold.cpp.o:0000 T cold()", "core.a:hot.cpp.o:     U cold()"]
+        self.assertEqual(mixed_levels.shared(lines, {"cold.cpp"}), ["both(int)"])
+        self.assertEqual(mixed_levels.shared(lines, {"cold.cpp", "hot.cpp"}), [])
 
 
 class Stack(unittest.TestCase):

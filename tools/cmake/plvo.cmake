@@ -6,9 +6,11 @@ add_library(plvo_warnings INTERFACE)
 target_compile_options(plvo_warnings INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor $<$<BOOL:${PLVO_WERROR}>:-Werror>)
 
-# No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf.
+# No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf. Loops in place of
+# code that Eigen writes out (math/rolled_loops.hpp), and, where the build type says so, bytes of code before time
+# (base/build.hpp): templates must be the same in all files that are linked together, so they all see both.
 add_compile_options(-ffp-contract=off)
-add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY PLVO_ROLLED_LOOPS $<$<CONFIG:MinSizeRel>:PLVO_SMALL_CODE>)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 # The order of the sums within Eigen's functions is part of the bits: tests/golden/golden.txt was written with this one.
@@ -23,8 +25,6 @@ endif()
 # loops do not do so. golden_native_test holds this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
-# Bytes of code before time (base/build.hpp), where the build type says so.
-set(PLVO_CORE_DEFINITIONS $<$<CONFIG:MinSizeRel>:PLVO_SMALL_CODE>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 
 # plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target.
@@ -80,6 +80,5 @@ function(plvo_core_variant name)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/core)
   target_compile_options(${name} PRIVATE ${PLVO_CORE_OPTIONS} ${ARGN})
-  target_compile_definitions(${name} PRIVATE ${PLVO_CORE_DEFINITIONS})
   plvo_precompile(${name} PRIVATE ${PLVO_CORE_PRECOMPILED})
 endfunction()

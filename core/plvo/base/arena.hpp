@@ -36,10 +36,7 @@ class ArenaSizer {
  public:
   template <typename T>
   constexpr std::span<T> take(const char* /*who*/, std::size_t count) {
-    const std::size_t needed = array_bytes(count, sizeof(T));
-    const std::size_t room = align_up(std::numeric_limits<std::size_t>::max()) - used_;
-    used_ += needed < room ? needed : room;
-    if (used_ > peak_) peak_ = used_;
+    add(array_bytes(count, sizeof(T)));
     return {};
   }
   constexpr std::size_t mark() const { return used_; }
@@ -48,6 +45,12 @@ class ArenaSizer {
   constexpr std::size_t peak() const { return peak_; }
 
  private:
+  constexpr void add(std::size_t aligned_bytes) {
+    const std::size_t room = align_up(std::numeric_limits<std::size_t>::max()) - used_;
+    used_ += aligned_bytes < room ? aligned_bytes : room;
+    if (used_ > peak_) peak_ = used_;
+  }
+
   std::size_t used_ = 0;
   std::size_t peak_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What this build of the core holds, as constants: what they rule out is compiled, but not kept. CMake sets
-// them for the core's own sources alone (PLVO_FEATURES, and a build type for small code).
+// them: the kinds of features for the core's own sources alone (PLVO_FEATURES), small code for all that is
+// built with them (its build type), since templates of headers ask for it.
 #pragma once
 
 namespace plvo {

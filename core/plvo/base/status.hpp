@@ -55,10 +55,9 @@ class [[nodiscard]] Status {
     message_[length_] = '\0';
     return *this;
   }
-  constexpr Status& append(std::int64_t value) {
+  constexpr Status& append(std::ptrdiff_t value) {  // as wide as any size, and no wider than the processor
     if (value < 0) append("-");
-    std::uint64_t rest =
-        value < 0 ? ~static_cast<std::uint64_t>(value) + 1 : static_cast<std::uint64_t>(value);
+    std::size_t rest = value < 0 ? ~static_cast<std::size_t>(value) + 1 : static_cast<std::size_t>(value);
     char digits[20] = {};
     std::size_t n = 0;
     do {

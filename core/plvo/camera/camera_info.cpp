@@ -5,7 +5,7 @@ namespace plvo {
 namespace {
 
 Status wrong_count(const char* words, std::size_t count) {
-  return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::int64_t>(count));
+  return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace

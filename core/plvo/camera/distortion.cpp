@@ -96,7 +96,7 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
 
 Status folds_at(double theta, const char* what, const char* degrees_from_the_axis) {
   return Status(StatusCode::kInvalidArgument, what)
-      .append(static_cast<std::int64_t>(theta * (180 / kPi)))
+      .append(static_cast<std::ptrdiff_t>(theta * (180 / kPi)))
       .append(degrees_from_the_axis);
 }
 

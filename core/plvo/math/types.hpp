@@ -5,8 +5,12 @@
 
 #include <Eigen/Core>
 
-#ifdef PLVO_SMALL_CODE  // in the core's own sources alone (base/build.hpp)
+// In plvo's own files alone (tools/cmake/plvo.cmake): a user's Eigen stays as it is.
+#ifdef PLVO_ROLLED_LOOPS
 #include "plvo/math/rolled_loops.hpp"
+#endif
+#ifdef PLVO_SMALL_CODE
+#include "plvo/math/one_product.hpp"
 #endif
 
 namespace plvo {

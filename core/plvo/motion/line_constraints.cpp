@@ -331,8 +331,7 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
     Jacobian J = Jacobian::Zero();
     for (int end = 0; end < 2; ++end) {
       const Vector3 S = q + at.ends[end] * at.G_current.col(2);
-      Matrix<3, SharedErrors::kCount> F = Matrix<3, SharedErrors::kCount>::Zero();
-      if (shared.any()) F = shared.fields(S + T.t);
+      const Matrix<3, SharedErrors::kCount> F = shared.fields(S + T.t);
       for (int k = 0; k < 2; ++k) {
         const Vector3 u = at.G_current.col(k);
         if (shared.any()) J.block<1, SharedErrors::kCount>(2 * end + k, 6) = u.transpose().lazyProduct(F);

@@ -98,7 +98,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     if (!consensus()) return StatusCode::kNoConsensus;
     if (round > 0 && !changed) break;
     problem.start(sets, references, shared, kernels, T);
-    estimate.lm = solver.solve(problem, lm);
+    estimate.lm = solving.solve(lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -120,6 +120,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 }
 
 }  // namespace
+
+LmSummary MotionSolver::solve(const LmOptions& options) { return solver.solve(problem, options); }
 
 void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                      const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,

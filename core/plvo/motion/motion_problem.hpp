@@ -89,6 +89,7 @@ class MotionProblem {
 struct MotionSolver {
   MotionProblem problem;
   LevenbergMarquardt<6> solver;
+  LmSummary solve(const LmOptions& options);
 };
 
 }  // namespace plvo

@@ -35,7 +35,7 @@ Symmetric3 sum_of_covariances(const Matrix3& R, const Matrix3& Sigma, const Matr
 }
 
 // By cofactors: one division, and covariances of measurements are far from singular.
-Symmetric3 inverse(const Symmetric3& m) {
+inline Symmetric3 inverse(const Symmetric3& m) {
   const double xx = m.yy * m.zz - m.yz * m.yz;
   const double xy = m.xz * m.yz - m.xy * m.zz;
   const double xz = m.xy * m.yz - m.xz * m.yy;
@@ -132,11 +132,8 @@ double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, con
     const Point3d& reference = reference_[matches_[i].reference];
     const Point3d& current = current_[matches_[i].current];
     Vector3 p = current.p;
-    Matrix<3, SharedErrors::kCount> F = Matrix<3, SharedErrors::kCount>::Zero();
-    if (shared.any()) {
-      F = shared.fields(current.p);
-      p -= F.lazyProduct(shared.value);
-    }
+    const Matrix<3, SharedErrors::kCount> F = shared.fields(current.p);
+    if (shared.any()) p -= F.lazyProduct(shared.value);
     const Vector3 e = p - T * reference.p;
     Symmetric3 W = inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma));
     Vector3 We = W * e;

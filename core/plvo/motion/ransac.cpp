@@ -175,7 +175,7 @@ void Ransac::refine(Se3& T) {
     LmOptions options;
     options.max_iterations = kRefinementSteps;
     options.step_tolerance = 1e-4;
-    (void)solver_.solver.solve(solver_.problem, options);
+    (void)solver_.solve(options);
     T = solver_.problem.T_current_reference();
   }
   inliers_ = kept_inliers;

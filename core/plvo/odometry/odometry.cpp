@@ -48,6 +48,9 @@ Status explain_loss(const MotionEstimate& motion, const TrackResult& result, con
 
 }  // namespace
 
+// Here, not in the header: a user's program need not hold its code once more.
+Odometry::Odometry() = default;
+
 Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
                       const Limits& limits) {
   // In place: another one on the stack, to be copied from, would be all that the stack of a board holds.
@@ -67,9 +70,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
     return {StatusCode::kInvalidArgument, "config: side_by_side needs Limits::cores = 2"};
   if (memory.size() < required_bytes(limits))
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
-        .append(static_cast<std::int64_t>(required_bytes(limits)))
+        .append(static_cast<std::ptrdiff_t>(required_bytes(limits)))
         .append(" bytes for these Limits, got ")
-        .append(static_cast<std::int64_t>(memory.size()));
+        .append(static_cast<std::ptrdiff_t>(memory.size()));
   arena_ = Arena(memory);
   std::array<FrameFeatures, kFrames> features;
   rooms_.carve(arena_, limits, features);
@@ -184,9 +187,9 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   const Frame& last = frame(last_);
   const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
   if (sensed_.known()) return sensed_.T_current_last() * T_last_reference;
-  const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
-  if (!(last.motion_ns > 0 && elapsed / last.motion_ns < kLongestPrediction)) return T_last_reference;
-  return boxplus(Se3{}, static_cast<double>(elapsed) * 1e-9 * last.velocity) * T_last_reference;
+  const auto elapsed = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns));
+  if (!(elapsed < kLongestPrediction * static_cast<double>(last.motion_ns))) return T_last_reference;
+  return boxplus(Se3{}, elapsed * 1e-9 * last.velocity) * T_last_reference;
 }
 
 PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {

@@ -102,6 +102,7 @@ constexpr std::size_t required_bytes(const Limits& limits) {
 
 class Odometry {
  public:
+  Odometry();
   // Checks everything once, carves `memory`, builds the tables. kOutOfMemory says how many bytes are needed.
   Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config = {},
               const Limits& limits = Limits::vga());

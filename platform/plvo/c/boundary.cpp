@@ -7,11 +7,11 @@ namespace plvo::c {
 
 Status too_small(const char* for_what, std::size_t needed, std::size_t bytes) {
   return Status(StatusCode::kOutOfMemory, "init needs a block of ")
-      .append(static_cast<std::int64_t>(needed))
+      .append(static_cast<std::ptrdiff_t>(needed))
       .append(" bytes ")
       .append(for_what)
       .append(", got ")
-      .append(static_cast<std::int64_t>(bytes));
+      .append(static_cast<std::ptrdiff_t>(bytes));
 }
 
 std::span<std::byte> aligned_part(void* memory, std::size_t bytes) {

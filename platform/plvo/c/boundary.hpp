@@ -50,16 +50,16 @@ Status check_struct(const Struct* given, const char* name) {
   if (given->struct_size < kFirstSize<Struct>)
     return Status(StatusCode::kInvalidArgument, name)
         .append(".struct_size is ")
-        .append(static_cast<std::int64_t>(given->struct_size))
+        .append(static_cast<std::ptrdiff_t>(given->struct_size))
         .append("; set it to sizeof(plvo_")
         .append(name)
         .append(")");
   if (given->struct_size > sizeof(Struct))
     return Status(StatusCode::kInvalidArgument, name)
         .append(".struct_size is ")
-        .append(static_cast<std::int64_t>(given->struct_size))
+        .append(static_cast<std::ptrdiff_t>(given->struct_size))
         .append(" and this library knows ")
-        .append(static_cast<std::int64_t>(sizeof(Struct)))
+        .append(static_cast<std::ptrdiff_t>(sizeof(Struct)))
         .append(" bytes: the program was compiled for a newer plvo");
   return {};
 }

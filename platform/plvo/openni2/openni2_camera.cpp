@@ -165,7 +165,7 @@ Status OpenNi2Camera::Impl::choose_model(const StreamFormat& colour) {
   model.readout_s = options.readout_s.value_or(kinect ? kKinectReadout_s : 0);
   Status warning(StatusCode::kInvalidArgument,
                  "no calibration given: intrinsics guessed from the field of view (fx ");
-  warning.append(static_cast<std::int64_t>(model.pinhole.fx + 0.5))
+  warning.append(static_cast<std::ptrdiff_t>(model.pinhole.fx + 0.5))
       .append(
           " px, no lens); expect a few per cent of error "
           "in every distance, or give a calibration");

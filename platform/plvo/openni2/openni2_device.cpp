@@ -203,7 +203,7 @@ Status OpenNi2Device::create_stream(openni::VideoStream& stream, openni::SensorT
   if (!to_format(sensor, mode.getPixelFormat(), format.format)) {
     return Status(StatusCode::kUnsupported, name)
         .append(" comes in a pixel format that plvo does not read: ")
-        .append(static_cast<std::int64_t>(mode.getPixelFormat()));
+        .append(static_cast<std::ptrdiff_t>(mode.getPixelFormat()));
   }
   return {};
 }

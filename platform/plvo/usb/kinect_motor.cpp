@@ -152,7 +152,7 @@ Status KinectMotor::audio_command(std::uint32_t command, std::uint32_t argument,
   if (moved != 12 || get_le32(&reply[0]) != kReplyMagic || get_le32(&reply[4]) != tag ||
       get_le32(&reply[8]) != 0) {
     return Status(StatusCode::kDamaged, "the Kinect's audio device refused a command, status ")
-        .append(static_cast<std::int64_t>(get_le32(&reply[8])));
+        .append(static_cast<std::ptrdiff_t>(get_le32(&reply[8])));
   }
   return {};
 }

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Some sources of the core are compiled for size, the others for speed. Of a function that both kinds emit (a template, an
+inline function) the linker keeps one copy, perhaps the slow one: there may be none. Arguments: nm, the archive, the names of
+the sources that are compiled for size."""
+import pathlib
+import subprocess
+import sys
+
+
+def shared(nm_lines, small):
+    """Functions in members of both kinds, from lines `archive:member:address W name`."""
+    seen = {True: set(), False: set()}
+    for line in nm_lines:
+        where, _, symbol = line.partition(" ")
+        kind, _, name = symbol.partition(" ")
+        if kind == "W":
+            member = where.split(":")[-2]
+            seen[member.removesuffix(".o") in small].add(name)
+    return sorted(seen[True] & seen[False])
+
+
+def main():
+    nm, archive, *sources = sys.argv[1:]
+    lines = subprocess.run([nm, "-A", "-C", "--defined-only", archive], capture_output=True, text=True, check=True).stdout.splitlines()
+    small = {pathlib.Path(source).name for source in sources}
+    found = shared(lines, small)
+    for name in found:
+        print(f"compiled for size and for speed: {name}")
+    print(f"{len(lines)} functions and objects, {len(found)} of both kinds")
+    return 1 if found or not lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
