@@ -16,6 +16,7 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
                             const SequenceOptions& options) {
   folder_ = folder;
   next_ = 0;
+  whole_ = {};
   if (Status status = read_sequence_index(folder, options, index_); !status.ok()) return status;
   if (Status status = choose_range(options); !status.ok()) return status;
   ImageInfo colour, depth;
@@ -25,6 +26,7 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
   if (Status status = calibration.validate(colour.width, colour.height); !status.ok()) return status;
   calibration_.camera.width = colour.width;
   calibration_.camera.height = colour.height;
+  if (Status status = choose_scale(colour, options.scale_down); !status.ok()) return status;
   calibration_.has_size = true;
   if (index_.numbered && !calibration.depth_scale_given) {
     calibration_.depth_units_per_metre = 1000;
@@ -95,6 +97,21 @@ Status RecordedCamera::choose_registration(const ImageInfo& colour, const ImageI
                       colour.width, colour.height, depth.width, depth.height)};
 }
 
+Status RecordedCamera::choose_scale(const ImageInfo& colour, int scale_down) {
+  const int factor = scale_down != 0 ? scale_down : least_reduction(colour.width, colour.height);
+  whole_ = {factor, colour.width, colour.height};
+  if (Status status = check_reduction(factor, colour.width, colour.height); !status.ok()) return status;
+  calibration_.camera = reduced(calibration_.camera, factor);
+  registers_ |= factor > 1;
+  remark_.clear();
+  if (scale_down == 0 && factor > 1)
+    remark_ = fmt::format(
+        "the images of {}x{} are larger than plvo takes: they are scaled down by {}, to {}x{}, and the "
+        "calibration with them",
+        colour.width, colour.height, factor, model().width, model().height);
+  return {};
+}
+
 void RecordedCamera::allocate() {
   std::uintmax_t largest = 0;
   for (const ImagePair& pair : index_.pairs) {
@@ -108,10 +125,13 @@ void RecordedCamera::allocate() {
   const std::size_t pixels =
       static_cast<std::size_t>(model().width) * static_cast<std::size_t>(model().height);
   colour_.assign(pixels * 3, 0);
+  if (whole_.factor > 1)
+    whole_colour_.assign(3 * static_cast<std::size_t>(whole_.width) * static_cast<std::size_t>(whole_.height),
+                         0);
   depth_.assign(pixels, 0);
   if (registers_) {
     raw_depth_.assign(static_cast<std::size_t>(depth_width_) * static_cast<std::size_t>(depth_height_), 0);
-    registration_.init(model(), calibration_.depth_camera, depth_width_, depth_height_,
+    registration_.init(model(), whole_, calibration_.depth_camera, depth_width_, depth_height_,
                        1 / calibration_.depth_units_per_metre);
   }
   // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
@@ -126,13 +146,16 @@ Status RecordedCamera::next(RgbdFrame& frame) {
   frame.stamp_ns = pair.colour.stamp_ns;  // also of a frame that turns out to be damaged
   frame.depth_stamp_ns = pair.depth.stamp_ns;
   const auto [width, height] = std::pair(model().width, model().height);
-  Status status = decoder_.decode_rgb(folder_ / pair.colour.file, width, height, colour_);
+  std::vector<std::uint8_t>& colour = whole_.factor > 1 ? whole_colour_ : colour_;
+  Status status = decoder_.decode_rgb(folder_ / pair.colour.file, whole_.width, whole_.height, colour);
   std::vector<std::uint16_t>& depth = registers_ ? raw_depth_ : depth_;
   if (status.ok())
     status = decoder_.decode_depth(folder_ / pair.depth.file, depth_width_, depth_height_, depth);
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
 
   if (index_.numbered) std::replace(depth.begin(), depth.end(), kNoDepthInMillimetres, std::uint16_t{0});
+  if (whole_.factor > 1)
+    reduce_rgb(whole_colour_.data(), whole_.width, whole_.factor, width, height, colour_.data());
   if (registers_) registration_.warp(raw_depth_.data(), depth_.data());
   frame.colour = {colour_.data(), width, height, width * std::ptrdiff_t{3}, PixelFormat::kRgb8};
   frame.depth = {depth_.data(), width, height, width, 1.0 / calibration_.depth_units_per_metre};

@@ -7,6 +7,7 @@
 
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/live/live_camera.hpp"
+#include "plvo/replay/image_reduction.hpp"
 #include "plvo/replay/numbered_index.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr NumberRange kTolerance_s = positive(3600);
+constexpr std::uint64_t kMostScale = 16;
 
 bool parse_count(std::string_view text, std::size_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -28,6 +30,7 @@ SequenceOptions sequence_options(const CameraOptions& options) {
   sequence.associations = options.associations;
   sequence.tolerance_ns = static_cast<std::int64_t>(options.tolerance_s * 1e9);
   sequence.frames_per_s = options.rate_hz;
+  sequence.scale_down = options.scale;
   sequence.first_frame = options.frames.first;
   sequence.end_frame = options.frames.end;
   return sequence;
@@ -49,13 +52,20 @@ Status open_folder(const CameraOptions& options, Log& log, OpenedCamera& opened)
   if (Status status = find_calibration(options.calibration, folder, calibration, guess); !status.ok())
     return status;
   auto camera = std::make_unique<RecordedCamera>();
-  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) return status;
-  for (const std::string& sentence : {index.remark, guess})
+  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) {
+    const WholeImage& whole = camera->whole_image();
+    if (options.scale != 0 && whole.width > 0 &&
+        !check_reduction(options.scale, whole.width, whole.height).ok())
+      refuse("--scale", status.message());
+    return status;
+  }
+  for (const std::string& sentence : {index.remark, guess, camera->remark()})
     if (!sentence.empty()) log.write(LogLevel::kWarning, sentence);
   for (const std::string& sentence : camera->calibration().assumptions())
     log.write(LogLevel::kWarning, sentence);
   opened.frame_count = camera->frame_count();
   opened.unpaired_images = index.unpaired_colour;
+  opened.scaled_down_by = camera->whole_image().factor;
   opened.name = sequence_name(folder);
   std::error_code error;
   if (fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty()) {
@@ -164,6 +174,11 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   group.number("--tolerance", options.tolerance_s, kTolerance_s, "SECONDS",
                "Colour and depth whose stamps differ by more are no pair (default 0.02)");
   add_rate_option(group, options.rate_hz);
+  group.whole(
+      "--scale", options.scale, 1, kMostScale,
+      "Scale the images down by this factor, and the calibration, which is that of the whole images, "
+      "with them: for less time a frame (default 1; images above 2047 pixels a side: as little as they "
+      "need)");
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
 }
@@ -175,7 +190,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
     if (!options.sequence.empty())
       refuse("--camera", "sim and a recorded sequence (" + options.sequence + ") exclude each other");
     refuse_group(command, kCalibrationGroup, why);
-    refuse_options(command, {"--associations", "--tolerance", "--rate"}, why);
+    refuse_options(command, {"--associations", "--tolerance", "--rate", "--scale"}, why);
     if (options.frames.first != 0)
       refuse("--frames", "a simulated walk starts at frame 0: give the number of frames, such as 100");
     if (options.frames.end != FrameRange().end && options.frames.end > kMostSimulatedFrames)
@@ -185,9 +200,11 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
   if (options.sequence.empty())
     refuse_command("a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
   refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
-  if (is_oni_file(options.sequence))
+  if (is_oni_file(options.sequence)) {
+    refuse_options(command, {"--scale"}, "is for folders of images, not for an .oni file");
     return refuse_options(command, {"--associations", "--tolerance", "--rate", "--depth-scale"},
                           "does not apply to an .oni file, which has pairs, stamps and units of its own");
+  }
   if (options.associations.empty() && is_numbered_folder(options.sequence))
     return refuse_options(command, {"--tolerance"},
                           "does not apply to numbered frames: one number is a pair");

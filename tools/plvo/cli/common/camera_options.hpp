@@ -62,6 +62,7 @@ struct CameraOptions {
   std::string associations;
   double tolerance_s = 0.02;
   double rate_hz = SequenceOptions().frames_per_s;
+  int scale = SequenceOptions().scale_down;
   CalibrationOptions calibration;
   SimulatorArguments simulator;
 };
@@ -76,6 +77,7 @@ struct OpenedCamera {
   std::string name;                        // for people
   std::optional<std::size_t> frame_count;  // where it is known
   std::size_t unpaired_images = 0;         // colour images without depth
+  int scaled_down_by = 1;                  // the images
   // The true poses, where there are any: from a file beside the images, or from the simulator
   // at these stamps.
   std::function<Status(const std::vector<std::int64_t>& stamps_ns, eval::Trajectory& truth)> ground_truth;
