@@ -11,10 +11,10 @@ PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev l
 PLVO_PACKAGES_PYTHON="pybind11-dev python3-dev python3-numpy"
 
 # The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages, a counter of
-# instructions, ROS's own writer of bags.
+# instructions, ROS's own writer of bags, Slurm.
 PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON python3-pytest python3-matplotlib googletest libgtest-dev clang
   libclang-rt-dev clang-format clang-tidy umockdev libumockdev-dev chromium fonts-liberation valgrind
-  librosbag-storage-dev"
+  librosbag-storage-dev slurm-wlm"
 
 # The boards: cross compilers, and processors that are emulated.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi
