@@ -72,6 +72,31 @@ TEST(CSequence, GivesNumberedFrames) {
   plvo_sequence_close(sequence);
 }
 
+TEST(CSequence, ScalesDownWhatIsTooLarge) {
+  const test::TemporaryFolder folder;
+  const test::TinyFrame large(0, 2400, 1000);
+  CameraModel camera = test::tiny_camera();
+  camera.width = 2400;
+  camera.height = 1000;
+  camera.pinhole = {2000, 2000, 1199.5, 499.5};
+  TumWriter writer;
+  ASSERT_TRUE(writer.open(folder.path(), camera, 5000).ok());
+  ASSERT_TRUE(writer.write(large.frame).ok());
+  plvo_sequence* sequence = nullptr;
+  const plvo_status status = plvo_sequence_open(folder.path().c_str(), nullptr, &sequence);
+  ASSERT_EQ(status.code, PLVO_OK) << status.message;
+  plvo_camera small = empty_camera();
+  ASSERT_EQ(plvo_sequence_camera(sequence, &small).code, PLVO_OK);
+  EXPECT_EQ(small.width, 1200);
+  EXPECT_EQ(small.cx, 599.5);
+  plvo_frame frame = {};
+  frame.struct_size = sizeof frame;
+  EXPECT_EQ(plvo_sequence_next(sequence, &frame).code, PLVO_OK);
+  EXPECT_EQ(frame.height, 500);
+  EXPECT_EQ(frame.colour_stride_bytes, 3600);
+  plvo_sequence_close(sequence);
+}
+
 TEST(CSequence, ADamagedImageCostsItsFrame) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder.path(), 3).ok());

@@ -14,8 +14,8 @@ namespace plvo {
 
 inline plvo_camera c_camera(const CameraModel& model) { return c::to_c(model); }
 inline plvo_limits c_limits(const Limits& limits) {
-  return {sizeof(plvo_limits), limits.width,      limits.height,     limits.keypoints,
-          limits.segments,     limits.references, limits.line_bands, limits.kept_keyframes};
+  return {sizeof(plvo_limits), limits.width,      limits.height,         limits.keypoints, limits.segments,
+          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores};
 }
 inline plvo_frame c_frame(const RgbdFrame& frame) {
   plvo_frame result = {};

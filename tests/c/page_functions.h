@@ -5,6 +5,7 @@
 
 #include "plvo/c/imu.h"
 #include "plvo/c/plvo.h"
+#include "plvo/c/thread_pair.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,6 +22,9 @@ plvo_status start_imu(plvo_imu** imu);
 void on_sample(plvo_imu* imu, int64_t stamp_ns, const double rate[3], const double force[3]);
 plvo_status track_with_imu(plvo_odometry* odometry, plvo_imu* imu, const plvo_frame* frame,
                            plvo_result* result);
+plvo_status start_on_two_cores(plvo_thread_pair* pair, const plvo_camera* camera,
+                               void (*feed)(void* watchdog, int32_t stage), void* watchdog,
+                               plvo_odometry** odometry);
 
 #ifdef __cplusplus
 }

@@ -3,9 +3,11 @@
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import threading
 import warnings
+import zlib
 
 import numpy as np
 import pytest
@@ -239,6 +241,33 @@ def test_numbered_frames_are_a_sequence_too(walk, tmp_path):
     listed = frames_of(walk, 5)[1]
     for (_, colour, depth), expected in zip(frames, listed[:2] + listed[3:]):
         assert np.array_equal(colour, expected.colour) and np.array_equal(depth, expected.depth)
+
+
+def png(array):
+    """Of 8-bit RGB or 16-bit grey."""
+    grey = array.ndim == 2
+    rows = array.astype(">u2" if grey else np.uint8)
+    header = struct.pack(">IIBBBBB", array.shape[1], array.shape[0], 16 if grey else 8, 0 if grey else 2, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + row.tobytes() for row in rows), 1)
+    chunks = ((b"IHDR", header), (b"IDAT", pixels), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
+    )
+
+
+def test_images_above_the_limit_are_scaled_down(walk, tmp_path):
+    """Each pixel as a block of 8; down by 2 it is one of 4."""
+    frame = frames_of(walk, 1)[1][0]
+    for name, image in (("rgb", frame.colour), ("depth", frame.depth)):
+        (tmp_path / f"{name}.png").write_bytes(png(image.repeat(8, 0).repeat(8, 1)))
+        (tmp_path / f"{name}.txt").write_text(f"1.0 {name}.png\n")
+    camera = plvo.Camera(2560, 1920, 2100, 2100, 1279.5, 959.5, depth_units_per_metre=5000)
+    with pytest.warns(RuntimeWarning, match="2560x1920 are larger than plvo takes: they are scaled down by 2, to 1280x960"):
+        sequence = plvo.Sequence(tmp_path, camera)
+    assert (sequence.camera.width, sequence.camera.fx, sequence.camera.cx) == (1280, 1050, 639.5)
+    small = next(sequence)
+    assert np.array_equal(small.colour, frame.colour.repeat(4, 0).repeat(4, 1))
+    assert np.array_equal(small.depth, frame.depth.repeat(4, 0).repeat(4, 1))
 
 
 def test_what_is_assumed_is_warned_of(walk, tmp_path):

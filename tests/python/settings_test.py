@@ -58,3 +58,21 @@ def test_run_holds_a_budget_against_the_processor_time(walk):
     results = list(plvo.run(walk, config=plvo.Config(frame_budget_ns=1)))
     assert [r.feature_step for r in results] == [(i + 2) // 3 for i in range(24)]
     assert results[-1].points.matched < list(plvo.run(walk))[-1].points.matched
+
+
+def test_two_cores_give_the_same_bits(walk):
+    def run(cores):
+        return [(r.T_world_camera, r.covariance, r.points.inliers) for r in plvo.run(walk, cores=cores)]
+
+    threads = len(os.listdir("/proc/self/task"))
+    odometry = plvo.Odometry(plvo.Sequence(walk).camera, cores=2)
+    assert len(os.listdir("/proc/self/task")) == threads + 1, "it has a second thread"
+    del odometry
+    assert len(os.listdir("/proc/self/task")) == threads
+    one, two = run(1), run(2)
+    assert len(one) == len(two) == 24
+    for a, b in zip(one, two):
+        assert all(np.array_equal(x, y) for x, y in zip(a, b))
+    for wrong in (0, 3):
+        with pytest.raises(plvo.Error, match="Limits::cores"):
+            plvo.Odometry(plvo.Sequence(walk).camera, cores=wrong)

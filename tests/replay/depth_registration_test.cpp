@@ -39,7 +39,7 @@ struct Pair {
   }
   std::vector<std::uint16_t> registered(const std::vector<std::uint16_t>& image) const {
     DepthRegistration registration;
-    registration.init(colour, depth, width, height, kUnit_m);
+    registration.init(colour, {1, colour.width, colour.height}, depth, width, height, kUnit_m);
     std::vector<std::uint16_t> out(static_cast<std::size_t>(colour.width * colour.height), 7);
     registration.warp(image.data(), out.data());
     return out;
@@ -120,6 +120,37 @@ TEST(DepthRegistration, NothingStaysNothing) {
   const std::vector<std::uint16_t> none(static_cast<std::size_t>(pair.width * pair.height), 0);
   const std::vector<std::uint16_t> out = pair.registered(none);
   EXPECT_EQ(std::count(out.begin(), out.end(), 0), 320 * 240);
+}
+
+// A plane that slants right and down, in images that were scaled down by even and odd factors, with a
+// few columns and rows left over: depth of colour's size, and of half of it.
+TEST(DepthRegistration, ScaledDownItIsOneOfThePixelsInTheMiddleAndDoesNotMove) {
+  const auto plane = [](double u, double v) { return 2000 + 6 * u - 4 * v; };
+  for (const int factor : {2, 3, 4})
+    for (const int size : {1, 2}) {
+      const WholeImage whole{factor, 122, 86};
+      const CameraModel colour = {whole.width / factor, whole.height / factor, {100, 100, 30, 20}, {}};
+      const int width = whole.width / size, height = whole.height / size;
+      std::vector<std::uint16_t> depth;
+      for (int v = 0; v < height; ++v)
+        for (int u = 0; u < width; ++u) depth.push_back(static_cast<std::uint16_t>(plane(u, v)));
+      DepthRegistration registration;
+      registration.init(colour, whole, {}, width, height, kUnit_m);
+      std::vector<std::uint16_t> out(static_cast<std::size_t>(colour.width * colour.height));
+      registration.warp(depth.data(), out.data());
+      double sum = 0, worst = 0;
+      for (int y = 0; y < colour.height; ++y)
+        for (int x = 0; x < colour.width; ++x) {
+          // The middle of the colour pixel, in depth's pixels.
+          const double u = (x + 0.5) * factor * width / whole.width - 0.5;
+          const double v = (y + 0.5) * factor * height / whole.height - 0.5;
+          const double error = out[static_cast<std::size_t>(y * colour.width + x)] - plane(u, v);
+          sum += error;
+          worst = std::max(worst, std::abs(error));
+        }
+      EXPECT_LE(worst, 0.5 * (6 + 4) + 1e-9) << factor << ' ' << size;
+      EXPECT_NEAR(sum / (colour.width * colour.height), 0, 0.3) << factor << ' ' << size;
+    }
 }
 
 TEST(DepthRegistration, OneViewHasOneShape) {

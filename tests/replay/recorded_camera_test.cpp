@@ -133,6 +133,91 @@ TEST(RecordedCamera, SmallerDepthOfOneViewIsEnlarged) {
           << x << ' ' << y;
 }
 
+// Each pixel of a tiny sequence as a block: scaled down by the same factor it is what it was, and so is its
+// camera.
+void write_magnified(const fs::path& folder, int factor) {
+  const TinyFrame small(0);
+  TinyFrame large(0, factor * test::kTinyWidth, factor * test::kTinyHeight);
+  for (int y = 0; y < factor * test::kTinyHeight; ++y)
+    for (int x = 0; x < factor * test::kTinyWidth; ++x) {
+      const auto to = static_cast<std::size_t>(y * factor * test::kTinyWidth + x);
+      const auto from = static_cast<std::size_t>(y / factor * test::kTinyWidth + x / factor);
+      large.depth[to] = small.depth[from];
+      for (std::size_t c = 0; c < 3; ++c) large.rgb[3 * to + c] = small.rgb[3 * from + c];
+    }
+  CameraModel camera = test::tiny_camera();
+  camera.width *= factor;
+  camera.height *= factor;
+  camera.pinhole = {80.0 * factor, 80.0 * factor, 48.0 * factor - 0.5, 32.0 * factor - 0.5};
+  TumWriter writer;
+  ASSERT_TRUE(writer.open(folder, camera, 5000).ok());
+  ASSERT_TRUE(writer.write(large.frame).ok());
+}
+
+TEST(RecordedCamera, ScalesDownWhatOneAsksFor) {
+  const TemporaryFolder folder;
+  write_magnified(folder.path(), 3);
+  SequenceOptions options;
+  options.scale_down = 3;
+  RecordedCamera camera;
+  const Status status = open(camera, folder.path(), options);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(camera.remark(), "") << "nothing that nobody asked for";
+  EXPECT_EQ(camera.model().width, 96);
+  EXPECT_EQ(camera.model().pinhole.cx, 47.5);
+  EXPECT_EQ(camera.model().pinhole.fy, 80);
+  EXPECT_EQ(camera.whole_image().width, 288);
+  const TinyFrame expected(0);
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.colour.width, 96);
+  EXPECT_EQ(frame.depth.height, 64);
+  EXPECT_TRUE(std::equal(expected.rgb.begin(), expected.rgb.end(), frame.colour.data));
+  EXPECT_TRUE(std::equal(expected.depth.begin(), expected.depth.end(), frame.depth.data));
+  options.scale_down = 5;
+  EXPECT_TRUE(says(open(camera, folder.path(), options), "scaled down by 5 are 57x38, and plvo takes 64x64"));
+}
+
+TEST(RecordedCamera, ScalesDownWhatIsTooLarge) {
+  const TemporaryFolder folder;
+  write_magnified(folder.path(), 22);
+  RecordedCamera camera;
+  const Status status = open(camera, folder.path());
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(camera.model().width, 1056);
+  EXPECT_EQ(camera.model().height, 704);
+  EXPECT_EQ(camera.calibration().camera.pinhole.fx, 880);
+  EXPECT_EQ(camera.remark(),
+            "the images of 2112x1408 are larger than plvo takes: they are scaled down by 2, to 1056x704, and "
+            "the calibration with them");
+  const TinyFrame expected(0);
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  for (int y = 0; y < 704; y += 10)
+    for (int x = 0; x < 1056; x += 10)
+      ASSERT_EQ(frame.depth.data[y * frame.depth.stride + x],
+                expected.depth[static_cast<std::size_t>(y / 11 * 96 + x / 11)]);
+}
+
+// Depth keeps its own size and camera; colour's is the smaller one.
+TEST(RecordedCamera, ScaledDownWithADepthCameraOfItsOwn) {
+  const TemporaryFolder folder;
+  write_magnified(folder.path(), 3);
+  const TinyFrame expected(0);
+  ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", expected.frame.depth).ok());
+  Calibration calibration;
+  ASSERT_TRUE(read_calibration(folder / "calibration.txt", calibration).ok());
+  calibration.depth_camera = {.known = true, .pinhole = {80, 80, 47.5, 31.5}};
+  SequenceOptions options;
+  options.scale_down = 3;
+  RecordedCamera camera;
+  const Status status = camera.open(folder.path(), calibration, options);
+  ASSERT_TRUE(status.ok()) << status.message();
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_TRUE(std::equal(expected.depth.begin(), expected.depth.end(), frame.depth.data));
+}
+
 // The names do not say it, the images do.
 TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
   const TemporaryFolder folder;

@@ -70,6 +70,11 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
     expect_usage(std::string(command) + " --base-camera 0 0 0 -0.5 0.5 -0.5 0.5",
                  "changes what is written: add --out, --covariance, --motions or --stream");
   }
+  for (const char* factor : {"0", "-1", "17", "1.5", "half"})
+    expect_usage("run x --scale " + std::string(factor),
+                 "--scale: expected a whole number from 1 to 16, not '" + std::string(factor) + "'");
+  expect_usage("run --camera sim --scale 2", "is for recorded sequences, not for the simulated camera");
+  expect_usage("run x.oni --scale 2", "--scale: is for folders of images, not for an .oni file");
   expect_usage("run x --frames 4:1",
                "--frames: expected a number of frames such as 20, or a range such as 10:20");
   expect_usage("run x --frames 0", "--frames: expected");

@@ -19,7 +19,7 @@ if(CMAKE_CROSSCOMPILING)
   set(needed "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libspng0, libturbojpeg0, libyaml-cpp0.7")
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed}")
   set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
-    "${needed}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+    "${needed}, libbz2-1.0, libfreenect0.5, liblz4-1, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
 else()
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -5,7 +5,7 @@
 
 # What plvo is linked with on a board.
 PLVO_PACKAGES_BOARD="libc6-dev libstdc++-12-dev libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev libyaml-cpp-dev
-  nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev"
+  nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev liblz4-dev"
 
 # make_sysroot ARCHITECTURE FOLDER: nothing when it is complete.
 make_sysroot() {

@@ -13,6 +13,11 @@
 
 struct plvo_odometry {
   plvo::Odometry odometry;
+  // The caller's functions, which the core's own call.
+  void (*stage_hook)(void* context, std::int32_t stage) = nullptr;
+  void* stage_hook_context = nullptr;
+  void (*side_by_side)(void* runner, plvo_task here, plvo_task beside) = nullptr;
+  void* runner = nullptr;
 };
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
               "nobody ends it: the caller takes the memory back");
@@ -30,8 +35,8 @@ using plvo::c::vector3;
 constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
 
 plvo_limits to_c(const plvo::Limits& limits) {
-  return {sizeof(plvo_limits), limits.width,      limits.height,     limits.keypoints,
-          limits.segments,     limits.references, limits.line_bands, limits.kept_keyframes};
+  return {sizeof(plvo_limits), limits.width,      limits.height,         limits.keypoints, limits.segments,
+          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores};
 }
 
 plvo_config default_config() {
@@ -57,6 +62,7 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
       .references = whole.references != 0 ? whole.references : limits.references,
       .line_bands = whole.line_bands != 0 ? whole.line_bands : limits.line_bands,
       .kept_keyframes = whole.kept_keyframes,
+      .cores = whole.cores != 0 ? whole.cores : limits.cores,
   };
   return limits.validate();
 }
@@ -94,6 +100,29 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
   if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
   if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
   return {};
+}
+
+// The functions of a config that was taken. Called with the handle, they call the caller's own.
+void take_functions(const plvo_config* given, plvo_odometry& handle, plvo::Config& config) {
+  plvo_config whole = default_config();
+  if (given == nullptr || !plvo::c::take_struct(given, whole, "config").ok()) return;
+  handle.stage_hook = whole.stage_hook;
+  handle.stage_hook_context = whole.stage_hook_context;
+  handle.side_by_side = whole.side_by_side;
+  handle.runner = whole.side_by_side_runner;
+  if (handle.stage_hook != nullptr)
+    config.stage_hook = {[](void* self, plvo::Stage stage) {
+                           const auto& own = *static_cast<const plvo_odometry*>(self);
+                           own.stage_hook(own.stage_hook_context, static_cast<std::int32_t>(stage));
+                         },
+                         &handle};
+  if (handle.side_by_side != nullptr)
+    config.side_by_side = {
+        [](void* self, plvo::Task here, plvo::Task beside) {
+          const auto& own = *static_cast<const plvo_odometry*>(self);
+          own.side_by_side(own.runner, {here.call, here.context}, {beside.call, beside.context});
+        },
+        &handle};
 }
 
 Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {
@@ -249,6 +278,7 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
 
   const std::span<std::byte> block = plvo::c::aligned_part(memory, bytes);
   auto* handle = new (block.data()) plvo_odometry;
+  take_functions(config, *handle, known_config);
   const std::span<std::byte> rest = block.subspan(kHandleBytes);
   const Status status = handle->odometry.init(rest, model, known_config, known_limits);
   if (status.ok()) *odometry = handle;

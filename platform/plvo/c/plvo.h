@@ -14,8 +14,9 @@
  * newer than the caller takes the defaults for what it lacks; one that is older refuses the struct and says
  * so. Units: metres, radians, nanoseconds, pixels. The camera looks along z, x is right and y down. Threads:
  * an odometry is used by one thread at a time; several odometries do not know each other. No function
- * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory`. imu.h makes
- * priors of a gyro and an accelerometer, sequence.h reads recorded folders. */
+ * throws, and none keeps a pointer to what it was given but plvo_init, which keeps `memory` and what the
+ * config's functions are called with. imu.h makes priors of a gyro and an accelerometer, thread_pair.h is a
+ * second core, sequence.h reads recorded folders. */
 #ifndef PLVO_C_PLVO_H
 #define PLVO_C_PLVO_H
 
@@ -90,6 +91,7 @@ typedef struct plvo_limits {
   int32_t references;          /* frames that one is matched with, 1 or 2; 0: the default, 2 */
   int32_t line_bands;          /* of the image, searched for segments one by one, 1 to 8; 0: the default, 1 */
   int32_t kept_keyframes;      /* after a loss, 0 to 4 */
+  int32_t cores;               /* 2: room for plvo_config.side_by_side; 0: the default, 1 */
 } plvo_limits;
 
 /* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have
@@ -103,6 +105,14 @@ enum {
   PLVO_REFERENCE_KEYFRAME,
   PLVO_REFERENCE_BOTH
 };
+
+enum { PLVO_STAGE_IMAGE = 0, PLVO_STAGE_POINTS, PLVO_STAGE_LINES, PLVO_STAGE_MATCHING, PLVO_STAGE_MOTION };
+
+/* A function and what it is called with. */
+typedef struct plvo_task {
+  void (*call)(void* context);
+  void* context;
+} plvo_task;
 
 typedef struct plvo_config {
   uint32_t struct_size;
@@ -118,6 +128,15 @@ typedef struct plvo_config {
    * the preset. */
   int32_t budget_patience_frames;
   double budget_spare_share;
+  /* Called when a stage of a frame (PLVO_STAGE_…) is over, several times a frame for matching and motion:
+   * where a watchdog is fed between stages. It may not call the odometry. NULL: nothing is. */
+  void (*stage_hook)(void* context, int32_t stage);
+  void* stage_hook_context;
+  /* A second core, where there is one: does both, `here` on the calling thread, and returns when both are
+   * done; called several times a frame. It needs plvo_limits.cores = 2. The results are the same bits.
+   * plvo_thread_pair_run (thread_pair.h) is one. NULL: one thing after the other. */
+  void (*side_by_side)(void* runner, plvo_task here, plvo_task beside);
+  void* side_by_side_runner;
 } plvo_config;
 
 /* Each sets struct_size and the defaults. `size` is sizeof of the struct. */
@@ -149,8 +168,6 @@ typedef struct plvo_frame {
 enum { PLVO_INITIALISING = 0, PLVO_TRACKING, PLVO_LOST, PLVO_PREDICTED };
 /* "initialising", "tracking", "lost", "predicted"; "unknown" for another number. Never NULL. */
 PLVO_API const char* plvo_state_name(int32_t state);
-
-enum { PLVO_STAGE_IMAGE = 0, PLVO_STAGE_POINTS, PLVO_STAGE_LINES, PLVO_STAGE_MATCHING, PLVO_STAGE_MOTION };
 
 typedef struct plvo_counts {
   int32_t detected;   /* in this frame, before the selection */

@@ -11,21 +11,22 @@ extern "C" {
 #endif
 
 /* A calibration by name (tum-fr1, tum-fr2, tum-fr3, 7scenes, kinect-v1-default) or from a file of any form
- * that plvo reads. camera->struct_size must be set (plvo_camera_init). A file that names no image size leaves width and
- * height as they are. metres_per_unit, of the depth, may be NULL. */
+ * that plvo reads. camera->struct_size must be set (plvo_camera_init). A file that names no image size leaves
+ * width and height as they are. metres_per_unit, of the depth, may be NULL. */
 PLVO_API plvo_status plvo_camera_builtin(const char* name, plvo_camera* camera, double* metres_per_unit);
 PLVO_API plvo_status plvo_camera_read(const char* file, plvo_camera* camera, double* metres_per_unit);
 
 typedef struct plvo_sequence plvo_sequence;
 
-/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second. `calibration`: a file, or a
- * name as above, or NULL: the calibration in the folder (calibration.txt, calibration.yaml, camera.yaml, or the
- * intrinsics beside numbered frames), or the TUM camera that the folder's name speaks of. On failure *sequence
- * is NULL. What is opened is closed by plvo_sequence_close. */
+/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second. `calibration`: a file, or
+ * a name as above, or NULL: the calibration in the folder (calibration.txt, calibration.yaml, camera.yaml, or
+ * the intrinsics beside numbered frames), or the TUM camera that the folder's name speaks of. On failure
+ * *sequence is NULL. What is opened is closed by plvo_sequence_close. */
 PLVO_API plvo_status plvo_sequence_open(const char* folder, const char* calibration,
                                         plvo_sequence** sequence);
 
-/* The camera that the frames obey, and how many pairs of images there are. */
+/* The camera that the frames obey, and how many pairs of images there are. Images above 2047 pixels a side
+ * are scaled down by the smallest whole factor that fits, and the camera is that of the small ones. */
 PLVO_API plvo_status plvo_sequence_camera(const plvo_sequence* sequence, plvo_camera* camera);
 PLVO_API size_t plvo_sequence_frame_count(const plvo_sequence* sequence);
 

@@ -3,13 +3,12 @@
 // throws becomes a status here.
 #include "plvo/c/sequence.h"
 
-#include <exception>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "plvo/c/boundary.hpp"
+#include "plvo/c/guarded.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
 
@@ -21,21 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using plvo::Status;
-using plvo::StatusCode;
+using plvo::c::guarded;
+using plvo::c::missing;
 using plvo::c::to_c;
-
-template <typename Work>
-plvo_status guarded(Work work) noexcept {
-  try {
-    return to_c(work());
-  } catch (const std::bad_alloc&) {
-    return to_c(Status(StatusCode::kOutOfMemory, "the machine has no memory left"));
-  } catch (const std::exception& error) {
-    return to_c(Status(StatusCode::kIo, error.what()));
-  }
-}
-
-Status missing(const char* what) { return Status(StatusCode::kInvalidArgument, what).append(" is NULL"); }
 
 Status give_calibration(const plvo::Calibration& calibration, plvo_camera* camera, double* metres_per_unit) {
   plvo_camera whole = to_c(calibration.camera);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The odometry for Python, in a block of its own; other threads run while it tracks.
+// The odometry for Python, in a block of its own; other threads run while it tracks. The second of two cores
+// never meets the interpreter. There is no stage hook: see docs/python.md.
 #include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "plvo/host/thread_pair.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
@@ -34,15 +36,21 @@ struct OwnLimits {
 
 class Tracker {
  public:
-  Tracker(const Calibration& camera, const Settings& settings, const OwnLimits& own)
+  Tracker(const Calibration& camera, const Settings& settings, const OwnLimits& own, int cores)
       : metres_per_unit_(1.0 / camera.depth_units_per_metre) {
     Limits limits = settings.limits;
+    limits.cores = cores;
     limits.width = camera.camera.width;
     limits.height = camera.camera.height;
     own.put_into(limits);
     throw_unless_ok(limits.validate());
     memory_.resize(required_bytes(limits));
-    throw_unless_ok(odometry_.init(memory_, camera.camera, settings.config, limits));
+    Config config = settings.config;
+    if (cores > 1) {
+      pair_ = std::make_unique<ThreadPair>();
+      config.side_by_side = pair_->side_by_side();
+    }
+    throw_unless_ok(odometry_.init(memory_, camera.camera, config, limits));
   }
 
   TrackResult track(const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
@@ -91,6 +99,7 @@ class Tracker {
   }
 
   std::vector<std::byte> memory_;
+  std::unique_ptr<ThreadPair> pair_;
   Odometry odometry_;
   double metres_per_unit_;
   std::atomic_flag busy_;
@@ -120,14 +129,14 @@ void bind_odometry(py::module_& module) {
   py::class_<Tracker>(module, "Odometry")
       .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
                        const py::object& segments, const py::object& references, const py::object& line_bands,
-                       const py::object& kept_keyframes) {
+                       const py::object& kept_keyframes, int cores) {
              return std::make_unique<Tracker>(
                  camera, config.is_none() ? Settings() : config.cast<Settings>(),
-                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes});
+                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes}, cores);
            }),
            "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
            "segments"_a = py::none(), "references"_a = py::none(), "line_bands"_a = py::none(),
-           "kept_keyframes"_a = py::none())
+           "kept_keyframes"_a = py::none(), "cores"_a = Limits().cores)
       .def(
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,

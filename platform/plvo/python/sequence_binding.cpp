@@ -44,6 +44,7 @@ class Sequence {
     throw_unless_ok(read_sequence_index(folder, {}, index));
     if (!index.remark.empty()) warn(index.remark);
     throw_unless_ok(camera_.open(folder, calibration_for(folder, camera)));
+    if (!camera_.remark().empty()) warn(camera_.remark());
     if (py::isinstance<Calibration>(camera)) return;
     for (const std::string& sentence : calibration().assumptions()) warn(sentence);
   }

@@ -8,12 +8,16 @@
 namespace plvo {
 namespace {
 
-// The depth pixel that covers the middle of each colour pixel.
-std::vector<int> covering(int colour, int depth) {
+// The depth pixel that covers the middle of each of `colour` pixels, which are `factor` of `whole` ones wide.
+// turn: 0 or 1, the one before or after a middle that lies between two.
+std::vector<int> covering(int colour, int factor, int whole, int depth, int turn) {
   std::vector<int> index(static_cast<std::size_t>(colour));
-  for (int i = 0; i < colour; ++i)
+  for (int i = 0; i < colour; ++i) {
+    const std::int64_t middle = (2 * std::int64_t{i} + 1) * factor * depth;
+    const std::int64_t unit = 2 * std::int64_t{whole};
     index[static_cast<std::size_t>(i)] =
-        static_cast<int>((2 * std::int64_t{i} + 1) * depth / (2 * std::int64_t{colour}));
+        static_cast<int>(middle / unit - (middle % unit == 0 && turn == 0 ? 1 : 0));
+  }
   return index;
 }
 
@@ -25,16 +29,18 @@ bool DepthRegistration::same_view(int colour_width, int colour_height, int depth
   return std::abs(difference) <= colour_width;
 }
 
-void DepthRegistration::init(const CameraModel& colour, const DepthCamera& depth, int depth_width,
-                             int depth_height, double metres_per_unit) {
+void DepthRegistration::init(const CameraModel& colour, const WholeImage& whole, const DepthCamera& depth,
+                             int depth_width, int depth_height, double metres_per_unit) {
   colour_ = colour;
   depth_ = depth;
   T_camera_depth_ = {to_rotation({depth.qx, depth.qy, depth.qz, depth.qw}), {depth.tx, depth.ty, depth.tz}};
   width_ = depth_width;
   height_ = depth_height;
   metres_per_unit_ = metres_per_unit;
-  column_ = covering(colour.width, depth_width);
-  row_ = covering(colour.height, depth_height);
+  for (int turn = 0; turn < 2; ++turn) {
+    column_[turn] = covering(colour.width, whole.factor, whole.width, depth_width, turn);
+    row_[turn] = covering(colour.height, whole.factor, whole.height, depth_height, turn);
+  }
 }
 
 void DepthRegistration::warp(const std::uint16_t* depth, std::uint16_t* registered) const {
@@ -46,9 +52,12 @@ void DepthRegistration::warp(const std::uint16_t* depth, std::uint16_t* register
 }
 
 void DepthRegistration::warp_same_view(const std::uint16_t* depth, std::uint16_t* registered) const {
-  for (const int row : row_) {
-    const std::uint16_t* from = depth + static_cast<std::ptrdiff_t>(row) * width_;
-    for (const int column : column_) *registered++ = from[column];
+  for (int y = 0; y < colour_.height; ++y) {
+    for (int x = 0; x < colour_.width; ++x) {
+      const int turn = (x + y) & 1;
+      const std::ptrdiff_t row = row_[turn][static_cast<std::size_t>(y)];
+      *registered++ = depth[row * width_ + column_[turn][static_cast<std::size_t>(x)]];
+    }
   }
 }
 

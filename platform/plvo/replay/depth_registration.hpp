@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth images of another size, or of another camera, as the colour camera would have seen them.
 //   same view   depth is registered to colour, only smaller or larger: each colour pixel gets the depth pixel
-//               that covers its middle.
+//               that covers its middle. Where the middle lies between two, pixels get the one before and the
+//               one after in turns, so that the whole does not move by half a depth pixel.
 //   own camera  each depth pixel is taken to 3D by depth's pinhole, moved to the colour camera, and imaged by
 //               it with its lens, as large as it is seen from there; where several land on one pixel the
 //               nearest wins. Pixels that no depth pixel lands on stay 0.
@@ -13,6 +14,7 @@
 
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/math/se3.hpp"
+#include "plvo/replay/image_reduction.hpp"
 
 namespace plvo {
 
@@ -30,8 +32,9 @@ class DepthRegistration {
   static bool same_view(int colour_width, int colour_height, int depth_width, int depth_height);
 
   // Takes all memory. depth.known false: the same view. metres_per_unit: of the depth images.
-  void init(const CameraModel& colour, const DepthCamera& depth, int depth_width, int depth_height,
-            double metres_per_unit);
+  // colour: the camera of the images that depth is for; whole: from what those were scaled down.
+  void init(const CameraModel& colour, const WholeImage& whole, const DepthCamera& depth, int depth_width,
+            int depth_height, double metres_per_unit);
 
   // depth: depth_width × depth_height; registered: of colour's size; rows without gaps; they must not
   // overlap.
@@ -46,7 +49,8 @@ class DepthRegistration {
   Se3 T_camera_depth_;
   int width_ = 0, height_ = 0;  // of depth
   double metres_per_unit_ = 0.001;
-  std::vector<int> column_, row_;  // of the depth pixel, for each column and row of colour
+  // Of the depth pixel, for each column and row of colour: by turns.
+  std::vector<int> column_[2], row_[2];
 };
 
 }  // namespace plvo

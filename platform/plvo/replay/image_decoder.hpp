@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "plvo/base/status.hpp"
-#include "plvo/image/undistortion.hpp"
 
 namespace plvo {
 
-inline constexpr int kMaxImageSide = UndistortionMap::kMaxSide;  // px: what the core can take
+inline constexpr int kMaxImageSide = 4096;  // px of a file; what the core cannot take is made smaller
 inline constexpr std::uintmax_t kMaxImageBytes = 64u << 20;  // of a file; no image of that size has as many
 
 struct ImageInfo {

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace plvo {
 
@@ -16,21 +15,21 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
                             const SequenceOptions& options) {
   folder_ = folder;
   next_ = 0;
+  fit_ = {};
   if (Status status = read_sequence_index(folder, options, index_); !status.ok()) return status;
   if (Status status = choose_range(options); !status.ok()) return status;
   ImageInfo colour, depth;
   if (Status status = find_image_sizes(colour, depth); !status.ok()) return status;
-  calibration_ = calibration;
-  if (Status status = choose_registration(colour, depth); !status.ok()) return status;
-  if (Status status = calibration.validate(colour.width, colour.height); !status.ok()) return status;
-  calibration_.camera.width = colour.width;
-  calibration_.camera.height = colour.height;
-  calibration_.has_size = true;
+  depth_size_ = {depth.width, depth.height};
+  Calibration known = calibration;
   if (index_.numbered && !calibration.depth_scale_given) {
-    calibration_.depth_units_per_metre = 1000;
-    calibration_.depth_scale_given = true;
+    known.depth_units_per_metre = 1000;
+    known.depth_scale_given = true;
   }
-  allocate();
+  if (Status status = fit_.init(known, {colour.width, colour.height}, depth_size_, options.scale_down);
+      !status.ok())
+    return status;
+  warm_up();
   return {};
 }
 
@@ -78,24 +77,7 @@ Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
       .append(first_failure.message());
 }
 
-Status RecordedCamera::choose_registration(const ImageInfo& colour, const ImageInfo& depth) {
-  depth_width_ = depth.width;
-  depth_height_ = depth.height;
-  const bool same_size = colour.width == depth.width && colour.height == depth.height;
-  registers_ = calibration_.depth_camera.known || !same_size;
-  if (same_size || calibration_.depth_camera.known) return {};
-  // The calibration must be known to be colour's: that of a smaller depth image would be read without a word.
-  if (calibration_.has_size &&
-      DepthRegistration::same_view(colour.width, colour.height, depth.width, depth.height))
-    return {};
-  return {StatusCode::kInvalidArgument,
-          fmt::format("colour is {}x{} but depth is {}x{}; export colour at the size of depth, or say in the "
-                      "calibration width and height of colour, where both have one view, or depth's camera: "
-                      "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
-                      colour.width, colour.height, depth.width, depth.height)};
-}
-
-void RecordedCamera::allocate() {
+void RecordedCamera::warm_up() {
   std::uintmax_t largest = 0;
   for (const ImagePair& pair : index_.pairs) {
     for (const std::string& file : {pair.colour.file, pair.depth.file}) {
@@ -105,15 +87,6 @@ void RecordedCamera::allocate() {
     }
   }
   decoder_.reserve(largest);
-  const std::size_t pixels =
-      static_cast<std::size_t>(model().width) * static_cast<std::size_t>(model().height);
-  colour_.assign(pixels * 3, 0);
-  depth_.assign(pixels, 0);
-  if (registers_) {
-    raw_depth_.assign(static_cast<std::size_t>(depth_width_) * static_cast<std::size_t>(depth_height_), 0);
-    registration_.init(model(), calibration_.depth_camera, depth_width_, depth_height_,
-                       1 / calibration_.depth_units_per_metre);
-  }
   // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
   RgbdFrame first;
   [[maybe_unused]] const Status told_again_by_the_first_call = next(first);
@@ -125,17 +98,15 @@ Status RecordedCamera::next(RgbdFrame& frame) {
   const ImagePair& pair = index_.pairs[next_++];
   frame.stamp_ns = pair.colour.stamp_ns;  // also of a frame that turns out to be damaged
   frame.depth_stamp_ns = pair.depth.stamp_ns;
-  const auto [width, height] = std::pair(model().width, model().height);
-  Status status = decoder_.decode_rgb(folder_ / pair.colour.file, width, height, colour_);
-  std::vector<std::uint16_t>& depth = registers_ ? raw_depth_ : depth_;
+  const WholeImage& whole = fit_.whole_image();
+  Status status = decoder_.decode_rgb(folder_ / pair.colour.file, whole.width, whole.height, fit_.colour());
   if (status.ok())
-    status = decoder_.decode_depth(folder_ / pair.depth.file, depth_width_, depth_height_, depth);
+    status =
+        decoder_.decode_depth(folder_ / pair.depth.file, depth_size_.width, depth_size_.height, fit_.depth());
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
-
-  if (index_.numbered) std::replace(depth.begin(), depth.end(), kNoDepthInMillimetres, std::uint16_t{0});
-  if (registers_) registration_.warp(raw_depth_.data(), depth_.data());
-  frame.colour = {colour_.data(), width, height, width * std::ptrdiff_t{3}, PixelFormat::kRgb8};
-  frame.depth = {depth_.data(), width, height, width, 1.0 / calibration_.depth_units_per_metre};
+  if (index_.numbered)
+    std::replace(fit_.depth().begin(), fit_.depth().end(), kNoDepthInMillimetres, std::uint16_t{0});
+  fit_.fit(frame);
   return {};
 }
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded folder as a camera. Every buffer is made by open(): one colour image, one depth image, and
-// the bytes of the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
+// A recorded folder as a camera. Every buffer is made by open(): the pixels (frame_fit.hpp) and the bytes of
+// the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/replay/calibration.hpp"
+#include "plvo/replay/frame_fit.hpp"
 #include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/sequence_index.hpp"
 
@@ -20,35 +22,32 @@ class RecordedCamera final : public RgbdCamera {
   // Finds the frames, checks the first readable pair (sizes, bits) and the calibration against it. What the
   // calibration leaves unsaid, the layout says: numbered frames have depth in millimetres. All of what
   // read_sequence_index returns, and kInvalidArgument for an empty frame range, depth of which nobody says
-  // how it goes with colour, 8-bit depth, or a calibration that does not fit.
+  // how it goes with colour, 8-bit depth, a calibration that does not fit (the images in the files), or a
+  // scale_down that does not.
   Status open(const std::filesystem::path& folder, const Calibration& calibration,
               const SequenceOptions& options = {});
 
-  CameraModel model() const override { return calibration_.camera; }
+  CameraModel model() const override { return calibration().camera; }
   // kDamaged, with the file and why, for a pair that cannot be decoded; the next call goes on after it.
   Status next(RgbdFrame& frame) override;
 
   std::size_t frame_count() const { return index_.pairs.size(); }  // in the chosen range
   const SequenceIndex& index() const { return index_; }
-  const Calibration& calibration() const { return calibration_; }  // in force; with the size of the images
+  // Of these three see FrameFit.
+  const Calibration& calibration() const { return fit_.calibration(); }
+  const WholeImage& whole_image() const { return fit_.whole_image(); }
+  const std::string& remark() const { return fit_.remark(); }
 
  private:
   Status choose_range(const SequenceOptions& options);
   Status find_image_sizes(ImageInfo& colour, ImageInfo& depth);
-  // Depth of its own size or camera; refused where the calibration does not say how it goes with colour.
-  Status choose_registration(const ImageInfo& colour, const ImageInfo& depth);
-  void allocate();
+  void warm_up();
 
   std::filesystem::path folder_;
   SequenceIndex index_;
-  Calibration calibration_;
   ImageDecoder decoder_;
-  std::vector<std::uint8_t> colour_;
-  std::vector<std::uint16_t> depth_;
-  int depth_width_ = 0, depth_height_ = 0;  // of the files
-  bool registers_ = false;
-  DepthRegistration registration_;
-  std::vector<std::uint16_t> raw_depth_;  // where it registers
+  FrameFit fit_;
+  ImageSize depth_size_;  // of the files
   std::size_t next_ = 0;
 };
 

@@ -39,6 +39,7 @@ struct SequenceOptions {
   std::int64_t tolerance_ns = 20'000'000;  // largest difference of the stamps in a pair
   std::filesystem::path associations;      // instead of rgb.txt and depth.txt
   double frames_per_s = 30;                // of numbered frames, which have no stamps
+  int scale_down = 0;                      // image_reduction.hpp; 0: by as little as the images need
   std::size_t first_frame = 0;             // of the pairs: [first_frame, end_frame)
   std::size_t end_frame = std::numeric_limits<std::size_t>::max();
 };

@@ -13,11 +13,12 @@ __all__ = [
 ]
 
 
-def run(folder, camera=None, config=None, *, imu=False):
-    """Tracks a recorded folder: a Result for each frame. imu: with the folder's gyroscope.txt and accelerometer.txt. A budget
-    of config's is held against the processor time of this thread; results then depend on the machine."""
+def run(folder, camera=None, config=None, *, imu=False, cores=1):
+    """Tracks a recorded folder: a Result for each frame. imu: with the folder's gyroscope.txt and accelerometer.txt. cores: 2
+    for a second thread; the same bits. A budget of config's is held against the processor time of this thread; results then
+    depend on the machine."""
     sequence = Sequence(folder, camera)
-    odometry = Odometry(sequence.camera, config)
+    odometry = Odometry(sequence.camera, config, cores=cores)
     readings = RecordedImu(folder) if imu else None
     for frame in sequence:
         began_ns = _time.thread_time_ns()

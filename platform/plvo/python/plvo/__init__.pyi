@@ -213,7 +213,7 @@ class RecordedImu:
     def learn(self, result: Result) -> None: ...
 
 class Odometry:
-    """Frames in, poses out. What is None of the limits is the preset's."""
+    """Frames in, poses out. What is None of the limits is the preset's. cores: 2 for a second thread; the same bits."""
 
     def __init__(
         self,
@@ -225,6 +225,7 @@ class Odometry:
         references: int | None = None,
         line_bands: int | None = None,
         kept_keyframes: int | None = None,
+        cores: int = 1,
     ) -> None: ...
     def track(
         self,
@@ -262,7 +263,7 @@ class Sequence:
     def __next__(self) -> Frame: ...
 
 def run(
-    folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None, *, imu: bool = False
+    folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None, *, imu: bool = False, cores: int = 1
 ) -> Iterator[Result]: ...
 def evaluate(
     truth: _Path,

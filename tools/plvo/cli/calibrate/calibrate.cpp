@@ -102,6 +102,11 @@ class Calibrate {
     for (const std::string& recording : options_.recordings) {
       OpenedCamera opened;
       if (Status status = open(recording, opened); !status.ok()) return status;
+      if (opened.scaled_down_by > 1)
+        return Status(StatusCode::kInvalidArgument,
+                      fmt::format("{} has larger images than plvo takes; record a smaller mode of the same "
+                                  "camera to calibrate it",
+                                  recording));
       const CameraModel model = opened.camera->model();
       if (names_.empty()) calibration_.camera = model;
       if (model.width != calibration_.camera.width || model.height != calibration_.camera.height)

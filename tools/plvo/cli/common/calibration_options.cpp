@@ -72,6 +72,15 @@ void check_calibration_options(const CLI::App& command) {
 Status find_calibration(const CalibrationOptions& options, const fs::path& folder, Calibration& calibration,
                         std::string& guess) {
   guess.clear();
+  const auto own = [&folder, &guess](Calibration& found) {
+    return folder.empty() ? Status(StatusCode::kNotFound, "no sequence")
+                          : sequence_calibration(folder, found, guess);
+  };
+  return find_calibration(options, own, calibration);
+}
+
+Status find_calibration(const CalibrationOptions& options, const std::function<Status(Calibration&)>& own,
+                        Calibration& calibration) {
   const bool any_pinhole = options.fx || options.fy || options.cx || options.cy;
   const bool all_pinhole = options.fx && options.fy && options.cx && options.cy;
   Status status;
@@ -80,8 +89,7 @@ Status find_calibration(const CalibrationOptions& options, const fs::path& folde
   } else if (!options.model_name.empty()) {
     status = builtin_calibration(options.model_name, calibration);
   } else if (!all_pinhole) {
-    status = folder.empty() ? Status(StatusCode::kNotFound, "no sequence")
-                            : sequence_calibration(folder, calibration, guess);
+    status = own(calibration);
     if (status.code() == StatusCode::kNotFound)
       status = {
           StatusCode::kInvalidArgument,

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_recording.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/replay/numbered_index.hpp"
 #include "plvo/replay/recorded_camera.hpp"
@@ -17,6 +18,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr NumberRange kTolerance_s = positive(3600);
+constexpr std::uint64_t kMostScale = 16;
+
+constexpr const char* kBagGroup = "ROS bag";
+
+OptionGroup::Reader read_topic(std::string& topic) {
+  return [&topic](const std::string& text) -> std::string {
+    if (text.empty()) return expected("the name of a topic", text);
+    topic = text;
+    return {};
+  };
+}
 
 bool parse_count(std::string_view text, std::size_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -28,6 +40,7 @@ SequenceOptions sequence_options(const CameraOptions& options) {
   sequence.associations = options.associations;
   sequence.tolerance_ns = static_cast<std::int64_t>(options.tolerance_s * 1e9);
   sequence.frames_per_s = options.rate_hz;
+  sequence.scale_down = options.scale;
   sequence.first_frame = options.frames.first;
   sequence.end_frame = options.frames.end;
   return sequence;
@@ -49,13 +62,17 @@ Status open_folder(const CameraOptions& options, Log& log, OpenedCamera& opened)
   if (Status status = find_calibration(options.calibration, folder, calibration, guess); !status.ok())
     return status;
   auto camera = std::make_unique<RecordedCamera>();
-  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) return status;
-  for (const std::string& sentence : {index.remark, guess})
+  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) {
+    refuse_scale(options.scale, camera->whole_image(), status);
+    return status;
+  }
+  for (const std::string& sentence : {index.remark, guess, camera->remark()})
     if (!sentence.empty()) log.write(LogLevel::kWarning, sentence);
   for (const std::string& sentence : camera->calibration().assumptions())
     log.write(LogLevel::kWarning, sentence);
   opened.frame_count = camera->frame_count();
   opened.unpaired_images = index.unpaired_colour;
+  opened.scaled_down_by = camera->whole_image().factor;
   opened.name = sequence_name(folder);
   std::error_code error;
   if (fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty()) {
@@ -126,6 +143,11 @@ Status open_oni(const CameraOptions& options, Log& log, OpenedCamera& opened) {
 
 }  // namespace
 
+void refuse_scale(int scale, const WholeImage& whole, const Status& failure) {
+  if (scale != 0 && whole.width > 0 && !check_reduction(scale, whole.width, whole.height).ok())
+    refuse("--scale", failure.message());
+}
+
 bool parse_frame_range(const std::string& text, FrameRange& range) {
   const std::size_t colon = text.find(':');
   const std::string_view all = text;
@@ -149,8 +171,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   OptionGroup group(command);
   group.path("sequence", options.sequence,
              "What was recorded: a folder with rgb.txt and depth.txt (TUM layout) or with numbered frames "
-             "(7-Scenes, ScanNet), or an .oni file",
-             "DIR|FILE.oni");
+             "(7-Scenes, ScanNet), an .oni file, or a ROS 1 bag",
+             "DIR|FILE.oni|FILE.bag");
   group.choice("--camera", options.simulated, Choices<bool>{{"sim", true}},
                "The simulated camera, instead of a recorded sequence");
   group.add("--frames", "N|FIRST:END",
@@ -164,6 +186,19 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   group.number("--tolerance", options.tolerance_s, kTolerance_s, "SECONDS",
                "Colour and depth whose stamps differ by more are no pair (default 0.02)");
   add_rate_option(group, options.rate_hz);
+  group.whole(
+      "--scale", options.scale, 1, kMostScale,
+      "Scale the images down by this factor, and the calibration, which is that of the whole images, "
+      "with them: for less time a frame (default 1; images above 2047 pixels a side: as little as they "
+      "need)");
+  OptionGroup bag(command, kBagGroup);
+  bag.add("--colour-topic", "TOPIC",
+          "Of sensor_msgs/Image (default /camera/rgb/image_color, or the only one)",
+          read_topic(options.topics.colour));
+  bag.add("--depth-topic", "TOPIC", "Of sensor_msgs/Image (default /camera/depth/image, or the only one)",
+          read_topic(options.topics.depth));
+  bag.add("--info-topic", "TOPIC", "Of sensor_msgs/CameraInfo (default camera_info beside colour)",
+          read_topic(options.topics.info));
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
 }
@@ -175,7 +210,8 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
     if (!options.sequence.empty())
       refuse("--camera", "sim and a recorded sequence (" + options.sequence + ") exclude each other");
     refuse_group(command, kCalibrationGroup, why);
-    refuse_options(command, {"--associations", "--tolerance", "--rate"}, why);
+    refuse_group(command, kBagGroup, why);
+    refuse_options(command, {"--associations", "--tolerance", "--rate", "--scale"}, why);
     if (options.frames.first != 0)
       refuse("--frames", "a simulated walk starts at frame 0: give the number of frames, such as 100");
     if (options.frames.end != FrameRange().end && options.frames.end > kMostSimulatedFrames)
@@ -185,9 +221,15 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
   if (options.sequence.empty())
     refuse_command("a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
   refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
-  if (is_oni_file(options.sequence))
+  if (is_bag_file(options.sequence))
+    return refuse_options(command, {"--associations", "--rate"},
+                          "does not apply to a ROS bag, which has pairs and stamps of its own");
+  refuse_group(command, kBagGroup, "is for a ROS bag (FILE.bag)");
+  if (is_oni_file(options.sequence)) {
+    refuse_options(command, {"--scale"}, "is for folders of images, not for an .oni file");
     return refuse_options(command, {"--associations", "--tolerance", "--rate", "--depth-scale"},
                           "does not apply to an .oni file, which has pairs, stamps and units of its own");
+  }
   if (options.associations.empty() && is_numbered_folder(options.sequence))
     return refuse_options(command, {"--tolerance"},
                           "does not apply to numbered frames: one number is a pair");
@@ -199,7 +241,7 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   files.reads(options.associations);
   files.reads(options.simulator.trajectory);
   if (options.simulated) return;
-  if (is_oni_file(options.sequence)) return files.reads(options.sequence);
+  if (is_oni_file(options.sequence) || is_bag_file(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
   for (const char* name :
        {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
@@ -216,6 +258,10 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
 
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   if (options.simulated) return open_simulator(options, opened);
+  if (is_bag_file(options.sequence)) {
+    opened.name = sequence_name(options.sequence);
+    return open_bag(options, sequence_options(options), log, opened);
+  }
   return is_oni_file(options.sequence) ? open_oni(options, log, opened) : open_folder(options, log, opened);
 }
 

@@ -19,6 +19,7 @@
 #include "plvo/hal/log.hpp"
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/replay/calibration.hpp"
+#include "plvo/replay/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/sequence_index.hpp"
 
@@ -39,8 +40,11 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
 // Refuses what contradicts itself.
 void check_calibration_options(const CLI::App& command);
 
-// What the flags say; without any, the sequence's own (see sequence_calibration, also for guess).
-// kInvalidArgument, naming the ways to give one, when there is none at all.
+// What the flags say; without any of them that says all, the recording's own. kInvalidArgument, naming the
+// ways to give one, where `own` says kNotFound.
+Status find_calibration(const CalibrationOptions& options, const std::function<Status(Calibration&)>& own,
+                        Calibration& calibration);
+// The same where the own one is that of a folder (see sequence_calibration, also for guess).
 Status find_calibration(const CalibrationOptions& options, const std::filesystem::path& folder,
                         Calibration& calibration, std::string& guess);
 
@@ -55,13 +59,20 @@ bool parse_frame_range(const std::string& text, FrameRange& range);
 inline constexpr NumberRange kNumberedRates_hz = {0.1, 1000};
 CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz);
 
+// Of a ROS bag; empty: plvo chooses.
+struct BagTopics {
+  std::string colour, depth, info;
+};
+
 struct CameraOptions {
   bool simulated = false;
-  std::string sequence;  // a folder or an .oni file, where it is not simulated
+  std::string sequence;  // a folder, an .oni file or a .bag file, where it is not simulated
   FrameRange frames;
   std::string associations;
   double tolerance_s = 0.02;
   double rate_hz = SequenceOptions().frames_per_s;
+  int scale = SequenceOptions().scale_down;
+  BagTopics topics;
   CalibrationOptions calibration;
   SimulatorArguments simulator;
 };
@@ -76,12 +87,15 @@ struct OpenedCamera {
   std::string name;                        // for people
   std::optional<std::size_t> frame_count;  // where it is known
   std::size_t unpaired_images = 0;         // colour images without depth
+  int scaled_down_by = 1;                  // the images
   // The true poses, where there are any: from a file beside the images, or from the simulator
   // at these stamps.
   std::function<Status(const std::vector<std::int64_t>& stamps_ns, eval::Trajectory& truth)> ground_truth;
   // What a gyro and an accelerometer beside the camera read; empty where there can be none.
   std::function<Status(ImuRecording& recording)> inertial;
 };
+// Where opening failed for a --scale that the images do not allow: wrong usage.
+void refuse_scale(int scale, const WholeImage& whole, const Status& failure);
 // log: for what the camera has to say; it must outlive the camera.
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_recording.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 
 namespace plvo::cli {
@@ -47,6 +48,8 @@ void check_imu_options(const CLI::App& command, const ImuOptions& options, const
   if (camera.simulated) refuse_options(command, {"--imu-axes"}, "is for recorded sequences");
   if (!camera.simulated && is_oni_file(camera.sequence))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
+  if (!camera.simulated && is_bag_file(camera.sequence))
+    refuse_options(command, {"--imu"}, "does not apply to a ROS bag, of which images alone are read");
 }
 
 Status open_imu(const ImuOptions& options, const OpenedCamera& camera, Log& log,

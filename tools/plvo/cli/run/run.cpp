@@ -84,6 +84,7 @@ class Run {
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
     summary_->unpaired_images = opened_.unpaired_images;
+    summary_->image = {opened_.camera->model().width, opened_.camera->model().height, opened_.scaled_down_by};
     history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
                                             opened_.frame_count.value_or(kUnknownFrameCount));
     for (const std::string& file : {options_.report, options_.summary})

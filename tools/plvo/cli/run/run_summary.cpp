@@ -10,6 +10,9 @@ namespace plvo::cli {
 SummaryRows RunSummary::rows() const {
   SummaryRows rows = {{"frames", fmt::format("{}{}", frames(), interrupted ? " (interrupted)" : "")}};
   const auto add = [&rows](const SummaryRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  const std::string scaled =
+      image.scaled_down_by > 1 ? fmt::format(", scaled down by {}", image.scaled_down_by) : "";
+  rows.emplace_back("images", fmt::format("{}x{}{}", image.width, image.height, scaled));
   add(frame_rows());
   rows.emplace_back("damaged", fmt::format("{}", damaged()));
   if (unpaired_images > 0) rows.emplace_back("colour without depth", fmt::format("{}", unpaired_images));
@@ -34,6 +37,8 @@ std::string RunSummary::to_text() const {
 
 nlohmann::ordered_json RunSummary::to_json() const {
   nlohmann::ordered_json json = TrackSummary::to_json();
+  json["image"] = {
+      {"width", image.width}, {"height", image.height}, {"scaled_down_by", image.scaled_down_by}};
   json["unpaired_images"] = unpaired_images;
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   return json;

@@ -18,6 +18,10 @@ class RunSummary : public TrackSummary {
   nlohmann::ordered_json to_json() const;
 
   // Set by the run.
+  struct Image {
+    int width = 0, height = 0;
+    int scaled_down_by = 1;
+  } image;  // as it is tracked
   std::size_t unpaired_images = 0;
   std::optional<eval::Evaluation> evaluation;  // where there is ground truth
 };

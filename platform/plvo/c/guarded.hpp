@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rooms that use the heap and files throw becomes a status before it reaches C.
+#pragma once
+
+#include <exception>
+#include <new>
+
+#include "plvo/c/boundary.hpp"
+
+namespace plvo::c {
+
+template <typename Work>
+plvo_status guarded(Work work) noexcept {
+  try {
+    return to_c(work());
+  } catch (const std::bad_alloc&) {
+    return to_c(Status(StatusCode::kOutOfMemory, "the machine has no memory left"));
+  } catch (const std::exception& error) {
+    return to_c(Status(StatusCode::kIo, error.what()));
+  }
+}
+
+inline Status missing(const char* what) {
+  return Status(StatusCode::kInvalidArgument, what).append(" is NULL");
+}
+
+}  // namespace plvo::c

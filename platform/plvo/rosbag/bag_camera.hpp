@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ROS 1 bag as a camera: sensor_msgs/Image of colour and of depth, paired by the stamps in their headers as
+// those of TUM folders are, and sensor_msgs/CameraInfo as the calibration.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plvo/hal/rgbd_camera.hpp"
+#include "plvo/replay/frame_fit.hpp"
+#include "plvo/replay/sequence_index.hpp"
+#include "plvo/rosbag/bag_file.hpp"
+
+namespace plvo {
+
+// An empty name: TUM's (/camera/rgb/image_color, /camera/depth/image) where the bag has it, else the one
+// topic whose encoding is of that kind; camera_info beside colour.
+struct BagTopicNames {
+  std::string colour, depth, camera_info;
+};
+
+class BagCamera final : public RgbdCamera {
+ public:
+  // Reads the bag once and chooses its topics. All of what BagFile::open returns; kNotFound for a topic that
+  // is not there (and which are), kInvalidArgument where several could be meant, kUnsupported for compressed
+  // images and encodings that are not read.
+  Status index(const std::filesystem::path& path, const BagTopicNames& names);
+
+  // Of the first camera_info. kNotFound where there is none; else as parse_camera_info.
+  Status own_calibration(Calibration& calibration);
+
+  // After index(). calibration: of the colour images as recorded; its unit of depth counts for nothing, for
+  // the encoding says it: metres, or millimetres if units_per_metre does not say otherwise. As
+  // RecordedCamera::open.
+  Status open(const Calibration& calibration, const std::optional<double>& units_per_metre,
+              const SequenceOptions& options);
+
+  CameraModel model() const override { return fit_.calibration().camera; }
+  // kDamaged, with the topic and why, for a pair that cannot be read; the next call goes on after it.
+  Status next(RgbdFrame& frame) override;
+
+  std::size_t frame_count() const { return pairs_.size(); }
+  std::size_t unpaired_colour() const { return unpaired_colour_; }
+  const Calibration& calibration() const { return fit_.calibration(); }
+  const WholeImage& whole_image() const { return fit_.whole_image(); }
+  // Sentences for whoever runs it.
+  std::vector<std::string> remarks() const;
+
+ private:
+  using Messages = std::vector<BagMessage>;
+
+  Status choose_images(const std::string& wanted, bool depth, std::size_t& topic);
+  Status choose_info(const std::string& wanted);
+  Status encoding_of(std::size_t topic, std::string& encoding);
+  std::string topics_in_words() const;
+  // By stamp; of equal ones the first.
+  Messages messages_of(std::size_t topic);
+  Status pair_up(const SequenceOptions& options);
+  Status find_sizes(ImageSize& colour, ImageSize& depth, bool& metres);
+  Status read_colour(const BagMessage& message);
+  Status read_depth(const BagMessage& message);
+
+  BagFile bag_;
+  std::size_t colour_topic_ = 0, depth_topic_ = 0;
+  std::optional<std::size_t> info_topic_;
+  std::vector<std::pair<BagMessage, BagMessage>> pairs_;
+  std::size_t unpaired_colour_ = 0, repeated_ = 0;
+  FrameFit fit_;
+  ImageSize colour_size_, depth_size_;
+  std::string depth_encoding_;
+  std::vector<unsigned char> bytes_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace plvo

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// sensor_msgs/Image and sensor_msgs/CameraInfo of ROS 1, from the bytes of a message, and an image's pixels
+// as plvo has them: colour as RGB, depth in whole units (REP 118: 16UC1 is millimetres, 32FC1 metres).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "plvo/base/status.hpp"
+#include "plvo/replay/calibration.hpp"
+
+namespace plvo {
+
+// Looks into the bytes that it was parsed from.
+struct ImageMessage {
+  std::int64_t stamp_ns = 0;
+  int width = 0, height = 0;
+  std::string_view encoding;
+  bool big_endian = false;
+  std::size_t step = 0;  // bytes from one row to the next
+  std::span<const unsigned char> data;
+};
+
+// kDamaged where the bytes end early, or there are fewer pixels than the size says; kInvalidArgument for an
+// image larger than a recording's may be (image_decoder.hpp).
+Status parse_image(std::span<const unsigned char> bytes, ImageMessage& image);
+
+// Camera and size. kDamaged where the bytes end early, kUnsupported for a lens that plvo does not know,
+// kInvalidArgument for numbers that cannot be (a camera that is not calibrated has a K of zeros).
+Status parse_camera_info(std::span<const unsigned char> bytes, Calibration& calibration);
+
+bool is_colour_encoding(std::string_view encoding);  // rgb8, bgr8, mono8
+bool is_depth_encoding(std::string_view encoding);   // 16UC1, 32FC1
+
+// What metres are multiplied by to become whole units: as TUM's own PNGs of the same recordings have it.
+inline constexpr double kFloatDepthUnitsPerMetre = kTumDepthUnitsPerMetre;
+
+// rgb: width·height·3. kUnsupported, naming the encoding, for one that is not of colour.
+Status colour_pixels(const ImageMessage& image, std::span<std::uint8_t> rgb);
+// depth: width·height. Of 32FC1, what is no number, not positive or beyond 16 bits is no depth.
+Status depth_pixels(const ImageMessage& image, std::span<std::uint16_t> depth);
+
+}  // namespace plvo

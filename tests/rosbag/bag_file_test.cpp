@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// The container: whole, compressed, cut off at any byte, damaged, and of another kind.
+#include "plvo/rosbag/bag_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bag_writer.hpp"
+#include "says.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+using test::BagWriter;
+using test::says;
+using test::TemporaryFolder;
+using test::write_file;
+
+std::string image_of(int number) {
+  return test::image_message(number * 1'000'000'000LL, 4, 1, "rgb8", 12,
+                             std::string(12, static_cast<char>('a' + number)));
+}
+
+// Six images and six of another type, two of each in a chunk.
+BagWriter small_bag(const std::string& compression) {
+  BagWriter writer;
+  writer.connection(3, "/camera/rgb/image_color", "sensor_msgs/Image");
+  writer.connection(9, "/imu", "sensor_msgs/Imu");
+  for (int i = 0; i < 6; ++i) {
+    writer.message(3, 50 + i, image_of(i));
+    writer.message(9, 50 + i, "any bytes");
+    if (i % 2 == 1) writer.end_chunk(compression);
+  }
+  return writer;
+}
+
+TEST(BagFile, GivesTheMessagesWhateverTheyArePackedIn) {
+  const TemporaryFolder folder;
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    write_file(folder / "a.bag", small_bag(compression).file());
+    BagFile bag;
+    const Status status = bag.open(folder / "a.bag");
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(bag.remark(), "") << compression;
+    ASSERT_EQ(bag.topics().size(), 2u);
+    EXPECT_EQ(bag.topics()[0].name, "/camera/rgb/image_color");
+    EXPECT_EQ(bag.topics()[0].type, "sensor_msgs/Image");
+    EXPECT_EQ(bag.topics()[0].messages, 6u);
+    EXPECT_EQ(bag.topics()[1].messages, 6u);
+    ASSERT_EQ(bag.messages().size(), 6u) << "the places of images alone";
+    std::vector<unsigned char> bytes;
+    // Backwards, so that chunks are unpacked again.
+    for (int i = 5; i >= 0; --i) {
+      const BagMessage& message = bag.messages()[static_cast<std::size_t>(i)];
+      EXPECT_EQ(message.stamp_ns, i * 1'000'000'000LL) << "of the header";
+      ASSERT_TRUE(bag.read(message, bytes).ok());
+      EXPECT_EQ(std::string(bytes.begin(), bytes.end()), image_of(i)) << compression << i;
+    }
+  }
+}
+
+TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
+  const TemporaryFolder folder;
+  const std::string whole = small_bag("none").file();
+  std::size_t last = 0;
+  for (std::size_t size = 13; size < whole.size(); size += 3) {
+    write_file(folder / "a.bag", whole.substr(0, size));
+    BagFile bag;
+    ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+    EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short; what lies before byte ") ||
+                (bag.remark().empty() && bag.messages().size() == 6))
+        << size << bag.remark();
+    // All whose last byte is still there, and no others.
+    std::size_t expected = 0;
+    for (int i = 0; i < 6; ++i) {
+      const std::size_t start = whole.find(image_of(i));
+      expected += start + image_of(i).size() <= size ? 1 : 0;
+    }
+    ASSERT_EQ(bag.messages().size(), expected) << size;
+    std::vector<unsigned char> bytes;
+    for (const BagMessage& message : bag.messages()) ASSERT_TRUE(bag.read(message, bytes).ok());
+    last = expected;
+  }
+  EXPECT_EQ(last, 6u);
+  // A compressed piece that is cut is lost; those before are not.
+  for (const char* compression : {"bz2", "lz4"}) {
+    const std::string packed = small_bag(compression).file();
+    write_file(folder / "a.bag", packed.substr(0, packed.rfind("compression=") + 100));
+    BagFile bag;
+    ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+    EXPECT_EQ(bag.messages().size(), 4u) << compression;
+    EXPECT_NE(bag.remark(), "");
+  }
+}
+
+TEST(BagFile, ARecorderThatDiedLeavesWhatItWrote) {
+  const TemporaryFolder folder;
+  BagWriter writer = small_bag("none");
+  writer.message(3, 99, image_of(6));
+  writer.message(3, 99, image_of(7));
+  write_file(folder / "a.bag", writer.file(false));
+  BagFile bag;
+  ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+  EXPECT_EQ(bag.messages().size(), 8u);
+  EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short")) << bag.remark();
+}
+
+// Any byte may be any other: nothing is read beyond what there is (the sanitizers watch), and what is given
+// is whole.
+TEST(BagFile, DamageCostsWhatIsDamaged) {
+  const TemporaryFolder folder;
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    const std::string whole = small_bag(compression).file();
+    std::size_t most = 0;
+    for (std::size_t i = 13; i < whole.size(); i += 13) {
+      for (const char byte : {'\0', '\xff', static_cast<char>(whole[i] ^ 1)}) {
+        std::string damaged = whole;
+        damaged[i] = byte;
+        write_file(folder / "a.bag", damaged);
+        BagFile bag;
+        ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+        std::vector<unsigned char> bytes;
+        for (const BagMessage& message : bag.messages()) ASSERT_TRUE(bag.read(message, bytes).ok());
+        most = std::max(most, bag.messages().size());
+      }
+    }
+    EXPECT_EQ(most, 6u);
+  }
+}
+
+TEST(BagFile, APieceThatDoesNotUnpackIsLeftOut) {
+  const TemporaryFolder folder;
+  for (const char* compression : {"bz2", "lz4"}) {
+    std::string file = small_bag(compression).file();
+    const std::size_t second = file.find("compression=", file.find("compression=") + 1);
+    for (std::size_t i = 60; i < 80; ++i) file[second + i] = 'x';
+    write_file(folder / "a.bag", file);
+    BagFile bag;
+    ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+    EXPECT_EQ(bag.messages().size(), 4u) << compression;
+    EXPECT_EQ(bag.remark(), "1 damaged pieces of a.bag are left out") << compression;
+  }
+}
+
+// A chunk of a few bytes that says it becomes 4 GB.
+TEST(BagFile, AClaimIsNotBelieved) {
+  const TemporaryFolder folder;
+  std::string file = small_bag("bz2").file();
+  file.replace(file.find("size=") + 5, 4, "\xff\xff\xff\xff");
+  write_file(folder / "a.bag", file);
+  BagFile bag;
+  ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+  EXPECT_EQ(bag.messages().size(), 0u) << "the connections were in the first piece";
+  EXPECT_NE(bag.remark(), "");
+}
+
+TEST(BagFile, WhatIsNoBagIsRefusedInWords) {
+  const TemporaryFolder folder;
+  BagFile bag;
+  EXPECT_EQ(bag.open(folder / "none.bag").code(), StatusCode::kNotFound);
+  EXPECT_TRUE(says(bag.open(folder.path()), "is not a regular file"));
+  EXPECT_TRUE(says(bag.open("/dev/zero"), "is not a regular file"));
+  write_file(folder / "a.bag", "");
+  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "is not a ROS 1 bag"));
+  write_file(folder / "a.bag", "SQLite format 3 and so on");
+  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "is not a ROS 1 bag"));
+  write_file(folder / "a.bag", "#ROSRECORD V1.2\n and so on");
+  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "of another version than 2.0; rosbag migrate"));
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// `plvo run` of a ROS 1 bag: the bytes of the folder that it was made of, whoever wrote the bag; and what is
+// wrong with it in words.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bag_writer.hpp"
+#include "command.hpp"
+#include "library_writer.hpp"
+#include "plvo/replay/recorded_camera.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::read_file;
+using test::RecordedMessage;
+using test::run_command;
+using test::TemporaryFolder;
+using test::write_file;
+
+const std::string kPlvo = PLVO_BINARY;
+constexpr int kFrames = 6;
+constexpr const char* kImage = "sensor_msgs/Image";
+constexpr const char* kColour = "/camera/rgb/image_color";
+constexpr const char* kDepth = "/camera/depth/image";
+constexpr const char* kInfo = "/camera/rgb/camera_info";
+
+const fs::path& walk() {
+  static const TemporaryFolder folder;
+  static const fs::path made = [] {
+    const CommandResult r =
+        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --quiet --frames " +
+                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
+    EXPECT_EQ(r.exit_code, 0) << r.err;
+    return folder / "walk";
+  }();
+  return made;
+}
+
+// What a driver would have published while the walk was recorded.
+std::vector<RecordedMessage> published(bool metres) {
+  Calibration calibration;
+  EXPECT_TRUE(read_calibration(walk() / "calibration.txt", calibration).ok());
+  RecordedCamera camera;
+  EXPECT_TRUE(camera.open(walk(), calibration).ok());
+  std::vector<RecordedMessage> messages;
+  RgbdFrame frame;
+  while (camera.next(frame).ok()) {
+    const std::int64_t late = frame.stamp_ns + 40'000'000;
+    messages.push_back(
+        {kInfo, "sensor_msgs/CameraInfo", test::camera_info_message(frame.stamp_ns, camera.model()), late});
+    messages.push_back({kDepth, kImage, test::depth_message(frame, metres), late});
+    messages.push_back({kColour, kImage, test::colour_message(frame), late});
+    messages.push_back({"/imu", "sensor_msgs/Imu", "not looked at", late});
+  }
+  EXPECT_EQ(messages.size(), 4U * kFrames);
+  return messages;
+}
+
+std::string bag_of(const std::vector<RecordedMessage>& messages, const std::string& compression) {
+  test::BagWriter writer;
+  std::vector<std::string> topics;
+  for (const RecordedMessage& message : messages) {
+    const auto known = std::find(topics.begin(), topics.end(), message.topic);
+    const auto number = static_cast<std::uint32_t>(known - topics.begin());
+    if (known == topics.end()) {
+      topics.push_back(message.topic);
+      writer.connection(number, message.topic, message.type);
+    }
+    writer.message(number, message.received_ns, message.data);
+    if (message.topic == "/imu") writer.end_chunk(compression);
+  }
+  return writer.file();
+}
+
+class CliBag : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  CommandResult run(const std::string& more) const {
+    return run_command(kPlvo + " run " + path("walk.bag") + ' ' + more);
+  }
+  void write(const std::vector<RecordedMessage>& messages, const std::string& compression = "none") const {
+    write_file(folder_ / "walk.bag", bag_of(messages, compression));
+  }
+  void run_folder() const {
+    const CommandResult r = run_command(kPlvo + " run " + walk().string() + " --quiet --out " +
+                                        path("folder") + " --covariance " + path("folder_c"));
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+  }
+  void expect_the_folders_bytes(const std::string& options) const {
+    const CommandResult r =
+        run("--readout 0 --quiet --out " + path("bag") + " --covariance " + path("bag_c") + ' ' + options);
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    EXPECT_EQ(r.err, "");
+    EXPECT_EQ(read_file(folder_ / "bag"), read_file(folder_ / "folder"));
+    EXPECT_EQ(read_file(folder_ / "bag_c"), read_file(folder_ / "folder_c"));
+  }
+  void expect_refused(const std::string& options, int exit_code, const std::string& words) const {
+    const CommandResult r = run(options);
+    EXPECT_EQ(r.exit_code, exit_code) << r.out << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliBag, GivesTheBytesOfTheFolder) {
+  run_folder();
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    write(published(true), compression);
+    expect_the_folders_bytes("");
+  }
+  write(published(false));
+  expect_the_folders_bytes("--depth-scale 5000");  // whole units, of which ROS would have a thousand a metre
+  expect_refused("--quiet --imu", 2, "--imu: does not apply to a ROS bag, of which images alone are read");
+}
+
+TEST_F(CliBag, OfRossOwnLibraryToo) {
+#ifdef PLVO_HAVE_LIBROSBAG
+  run_folder();
+  std::string error;
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    ASSERT_TRUE(test::write_bag_with_library(path("walk.bag"), compression, published(true), error)) << error;
+    expect_the_folders_bytes("");
+  }
+#else
+  GTEST_SKIP() << "SKIPPED: built without librosbag-storage-dev";
+#endif
+}
+
+TEST_F(CliBag, CutShortItRunsToTheCut) {
+  run_folder();
+  const std::string whole = bag_of(published(true), "none");
+  write_file(folder_ / "walk.bag", whole.substr(0, whole.size() * 7 / 10));
+  const CommandResult r = run("--readout 0 --json " + path("j") + " --out " + path("t"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_NE(r.err.find("warning: walk.bag is cut short; what lies before byte "), std::string::npos) << r.err;
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "j"))["frames"], 4);
+  EXPECT_TRUE(read_file(folder_ / "folder").starts_with(read_file(folder_ / "t")))
+      << "the same poses until there";
+}
+
+TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
+  run_folder();
+  std::vector<RecordedMessage> messages = published(true);
+  for (RecordedMessage& message : messages)
+    if (message.topic != "/imu")
+      message.topic = message.topic == kColour
+                          ? "/front/image"
+                          : (message.topic == kDepth ? "/front/z" : "/front/camera_info");
+  write(messages);
+  expect_the_folders_bytes("");  // the only ones of their kind
+  // A second camera: now one has to say which.
+  const std::size_t count = messages.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (messages[i].topic == "/front/image") {
+      messages.insert(messages.begin(), messages[i]);
+      messages.front().topic = "/back/image";
+      break;
+    }
+  write(messages);
+  expect_refused("", 1,
+                 "several topics could be colour: choose with --colour-topic; the bag has /back/image, "
+                 "/front/z, /front/image");
+  expect_the_folders_bytes(
+      "--colour-topic /front/image --depth-topic /front/z --info-topic /front/camera_info");
+  expect_refused("--colour-topic /side/image", 1,
+                 "there are no images on /side/image; the bag has /back/image");
+  expect_refused("--colour-topic /front/image --info-topic /x", 1,
+                 "there is no camera_info on /x; the bag has");
+  // Colour that has none beside it, and no word on the calibration.
+  expect_refused("--colour-topic /back/image", 1, "no calibration: give --calibration FILE");
+}
+
+TEST_F(CliBag, WhatCannotBeReadIsSaid) {
+  std::vector<RecordedMessage> messages = published(true);
+  for (RecordedMessage& message : messages)
+    if (message.topic == kColour) message.type = "sensor_msgs/CompressedImage";
+  write(messages);
+  expect_refused("", 1, "/camera/rgb/image_color holds compressed images (sensor_msgs/CompressedImage)");
+  messages = published(true);
+  for (RecordedMessage& message : messages)
+    if (message.topic == kColour)
+      message.data =
+          test::image_message(message.received_ns, 160, 120, "yuv422", 320, std::string(320 * 120, 'x'));
+  write(messages);
+  expect_refused("", 1, "the encoding 'yuv422' is not read; rgb8, bgr8 and mono8 are");
+  messages = published(true);
+  write(messages);
+  expect_refused("--depth-scale 1000", 1, "the depth of this bag is in metres");
+  expect_refused("--tolerance 0.02 --frames 90:", 1, "the frame range is empty; the bag has frames 0:6");
+  expect_refused("--scale 2", 2, "--scale: images of 160x120 scaled down by 2 are 80x60");
+  expect_refused("--rate 30", 2, "does not apply to a ROS bag");
+  expect_refused("--colour-topic ''", 2, "--colour-topic: expected the name of a topic");
+  expect_refused("--out " + path("walk.bag"), 2, "is an input, which would be overwritten");
+  const CommandResult folder = run_command(kPlvo + " run " + walk().string() + " --depth-topic /x");
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_NE(folder.err.find("--depth-topic: is for a ROS bag"), std::string::npos) << folder.err;
+  // One image that is damaged costs its frame.
+  messages = published(true);
+  messages[4 + 2].data.resize(1000);
+  write(messages);
+  const CommandResult r = run("--readout 0 --json " + path("j"));
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_NE(r.err.find("frame 1 skipped: /camera/rgb/image_color: the message ends early"), std::string::npos)
+      << r.err;
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "j"))["damaged"], 1);
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages as ROS puts them on the wire; and of each, every beginning that is cut off.
+#include "plvo/rosbag/messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "bag_writer.hpp"
+#include "says.hpp"
+
+namespace plvo {
+namespace {
+
+using test::camera_info_message;
+using test::image_message;
+using test::says;
+
+std::vector<unsigned char> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+TEST(Messages, ImagesOfColour) {
+  // Two rows of two pixels and a byte that belongs to none.
+  const std::string rows = "abcdef_ABCDEF_";
+  for (const auto& [encoding, expected] :
+       {std::pair<const char*, std::string>{"rgb8", "abcdefABCDEF"}, {"bgr8", "cbafedCBAFED"}}) {
+    const auto bytes = bytes_of(image_message(1'500'000'007, 2, 2, encoding, 7, rows));
+    ImageMessage image;
+    const Status status = parse_image(bytes, image);
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(image.stamp_ns, 1'500'000'007);
+    std::vector<std::uint8_t> rgb(12);
+    ASSERT_TRUE(colour_pixels(image, rgb).ok());
+    EXPECT_EQ(std::string(rgb.begin(), rgb.end()), expected);
+  }
+  const auto grey = bytes_of(image_message(0, 3, 1, "mono8", 3, "xyz"));
+  ImageMessage image;
+  ASSERT_TRUE(parse_image(grey, image).ok());
+  std::vector<std::uint8_t> rgb(9);
+  ASSERT_TRUE(colour_pixels(image, rgb).ok());
+  EXPECT_EQ(std::string(rgb.begin(), rgb.end()), "xxxyyyzzz");
+}
+
+TEST(Messages, ImagesOfDepth) {
+  ImageMessage image;
+  std::vector<std::uint16_t> depth(2);
+  for (const bool big_endian : {false, true}) {
+    const auto whole = bytes_of(
+        image_message(0, 2, 1, "16UC1", 4, big_endian ? "\x12\x34\x56\x78" : "\x34\x12\x78\x56", big_endian));
+    ASSERT_TRUE(parse_image(whole, image).ok());
+    ASSERT_TRUE(depth_pixels(image, depth).ok());
+    EXPECT_EQ(depth, (std::vector<std::uint16_t>{0x1234, 0x5678}));
+  }
+  std::string rows;
+  for (const float metres : {1.2345F, 0.00012F, -1.0F, 13.2F, std::bit_cast<float>(0x7fc00000u),
+                             std::bit_cast<float>(0x7f800000u), 13.107F, 0.0F})
+    rows += test::wire_u32(std::bit_cast<std::uint32_t>(metres));
+  const auto metres = bytes_of(image_message(0, 8, 1, "32FC1", 32, rows));
+  ASSERT_TRUE(parse_image(metres, image).ok());
+  depth.resize(8);
+  ASSERT_TRUE(depth_pixels(image, depth).ok());
+  // Rounded to a fifth of a millimetre; no depth is none, and so is what 16 bits do not hold.
+  EXPECT_EQ(depth, (std::vector<std::uint16_t>{6173, 1, 0, 0, 0, 0, 65535, 0}));
+}
+
+TEST(Messages, OtherEncodingsAreNamed) {
+  ImageMessage image;
+  std::uint16_t depth = 0;
+  std::uint8_t rgb[3] = {};
+  const auto bytes = bytes_of(image_message(0, 1, 1, "bayer_rggb8", 1, "x"));
+  ASSERT_TRUE(parse_image(bytes, image).ok());
+  EXPECT_TRUE(says(colour_pixels(image, rgb), "'bayer_rggb8' is not read; rgb8, bgr8 and mono8 are"));
+  EXPECT_TRUE(says(depth_pixels(image, {&depth, 1}), "'bayer_rggb8' is not read; 16UC1 and 32FC1 are"));
+}
+
+TEST(Messages, SizesAreComparedWithWhatIsThere) {
+  ImageMessage image;
+  const std::string row = "abcdef";
+  EXPECT_TRUE(says(parse_image(bytes_of(image_message(0, 2, 2, "rgb8", 6, row)), image),
+                   "an image of 2x2 has 6 bytes in rows of 6: too few"));
+  EXPECT_TRUE(says(parse_image(bytes_of(image_message(0, 2, 1, "rgb8", 5, row)), image), "too few"));
+  EXPECT_TRUE(says(parse_image(bytes_of(image_message(0, 0, 1, "rgb8", 6, row)), image), "0x1; at most"));
+  EXPECT_TRUE(
+      says(parse_image(bytes_of(image_message(0, -1, 1, "rgb8", 6, row)), image), "at most 4096x4096"));
+  EXPECT_TRUE(
+      says(parse_image(bytes_of(image_message(0, 4096, 4096, "rgb8", 0xffffffff, row)), image), "too few"));
+}
+
+TEST(Messages, CameraInfoIsACalibration) {
+  const CameraModel camera = {640, 480, {525, 526, 319, 239}, {}};
+  Calibration calibration;
+  Status status = parse_camera_info(
+      bytes_of(camera_info_message(0, camera, "plumb_bob", {0.1, -0.2, 0.001, 0.002, 0.3})), calibration);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_TRUE(calibration.has_size);
+  EXPECT_EQ(calibration.camera.height, 480);
+  EXPECT_EQ(calibration.camera.pinhole.fy, 526);
+  EXPECT_EQ(calibration.camera.pinhole.cx, 319);
+  EXPECT_EQ(calibration.camera.distortion.k3, 0.3);
+  EXPECT_FALSE(calibration.readout_given) << "ROS does not say how the shutter rolls";
+  status =
+      parse_camera_info(bytes_of(camera_info_message(0, camera, "equidistant", {0.1, 0, 0, 0})), calibration);
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(calibration.camera.distortion.model, LensModel::kEquidistant);
+  EXPECT_TRUE(says(parse_camera_info(bytes_of(camera_info_message(0, camera, "omni", {1, 2})), calibration),
+                   "'omni' is not supported"));
+  EXPECT_TRUE(
+      says(parse_camera_info(bytes_of(camera_info_message(0, {640, 480, {0, 0, 0, 0}, {}})), calibration),
+           "not calibrated"));
+}
+
+TEST(Messages, CutOffAnywhereTheyAreRefused) {
+  const std::string image = image_message(5, 4, 2, "rgb8", 12, std::string(24, 'x'));
+  for (std::size_t size = 0; size < image.size(); ++size) {
+    ImageMessage parsed;
+    EXPECT_FALSE(parse_image(bytes_of(image.substr(0, size)), parsed).ok()) << size;
+  }
+  const std::string info = camera_info_message(0, {640, 480, {525, 525, 320, 240}, {}});
+  const std::size_t end_of_K = test::header_message(0).size() + 4 + 4 + 4 + 9 + 4 + 8 * (5 + 9);
+  for (std::size_t size = 0; size < info.size(); ++size) {
+    Calibration calibration;
+    EXPECT_EQ(parse_camera_info(bytes_of(info.substr(0, size)), calibration).ok(), size >= end_of_K) << size;
+  }
+  // A count of coefficients that no message has room for.
+  std::string wild = info;
+  wild.replace(end_of_K - 8 * 14 - 4, 4, "\xff\xff\xff\xff");
+  Calibration calibration;
+  EXPECT_EQ(parse_camera_info(bytes_of(wild), calibration).code(), StatusCode::kDamaged);
+}
+
+}  // namespace
+}  // namespace plvo
