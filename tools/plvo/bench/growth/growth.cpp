@@ -15,13 +15,13 @@
 namespace plvo::bench {
 namespace {
 
-struct Arguments {
+struct GrowthArguments {
   GrowthOptions growth;
   std::vector<std::string> folders;
   std::string scene = "desk";
 };
 
-Status run_growth(const Arguments& arguments) {
+Status run_growth(const GrowthArguments& arguments) {
   GrowthOptions options = arguments.growth;
   if (Status status = parse_scene(arguments.scene, options.scene); !status.ok()) return status;
   std::vector<NamedFolder> recorded;
@@ -39,7 +39,7 @@ Status run_growth(const Arguments& arguments) {
 }  // namespace
 
 void add_growth(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<GrowthArguments>();
   GrowthOptions& options = arguments->growth;
   CLI::App* command = app.add_subcommand(
       "growth", "How a frame's cost grows: with the image, the room for features, hard images, along a walk");
