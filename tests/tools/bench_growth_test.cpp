@@ -15,7 +15,8 @@ using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 
-const std::string kGrowth = std::string(PLVO_BENCH_BINARY) + " growth --frames 3 --walk-frames 3 --repeats 1";
+const std::string kGrowth =
+    std::string(PLVO_BENCH_BINARY) + " growth --frames 3 --walk-frames 3 --repeats 1 --jobs 2";
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -46,10 +47,9 @@ double number(const Rows& rows, std::size_t row, const std::string& column) {
   return 0;
 }
 
-TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImageAndTheMoreFeaturesItHas) {
+TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
   const TemporaryFolder folder;
-  const CommandResult run =
-      run_command(kGrowth + " --tables sizes,segments,walks --out " + (folder / "out").string());
+  const CommandResult run = run_command(kGrowth + " --tables sizes,walks --out " + (folder / "out").string());
   if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(read_file(folder / "out" / "growth.md"), run.out);
@@ -71,13 +71,6 @@ TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImageAndTheMoreFeaturesItHas) {
     for (const char* column : {"image", "points", "lines", "matching", "motion", "rest"})
       sum += number(sizes, row, column);
     EXPECT_NEAR(sum, number(sizes, row, "all"), 0.31) << run.out;
-  }
-
-  const Rows segments = rows_below(run.out, "Room for segments");
-  ASSERT_EQ(segments.size(), 1U + 6) << run.out;
-  for (std::size_t row = 1; row < 6; ++row) {
-    EXPECT_LE(number(segments, row, "segments"), std::stod(segments[row][0]));
-    EXPECT_LT(number(segments, row, "lines"), number(segments, row + 1, "lines")) << run.out;
   }
 
   const Rows walks = rows_below(run.out, "Frames of a walk");
