@@ -309,18 +309,18 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
     }
     Linearized at;
     Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
-    double last_size = std::numeric_limits<double>::infinity();
+    double last_m = std::numeric_limits<double>::infinity();
     bool halfway = false;
     for (int step = 0; step < kMaxLandmarkSteps; ++step) {
       if (!linearize_line(reference_[matches_[i].reference], current, T, landmark, at))
         return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
       q = T.R.lazyProduct(landmark.q);
       const Landmark next = moved(landmark, at);
-      const double size = at.y.cwiseAbs().maxCoeff();
-      halfway = halfway || size > kContraction * last_size;
+      const double moved_m = at.y.cwiseAbs().maxCoeff();
+      halfway = halfway || moved_m > kContraction * last_m;
       landmark = halfway ? between(landmark, next) : next;
-      last_size = size;
-      if (size <= kLandmarkTolerance) break;
+      last_m = moved_m;
+      if (moved_m <= kLandmarkTolerance) break;
     }
     candidates_[i] = landmark;
 

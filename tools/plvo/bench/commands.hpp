@@ -34,5 +34,9 @@ void add_sequences(CLI::App& app, int& exit_code);
 void add_lighting(CLI::App& app, int& exit_code);
 // stages [DIR]
 void add_stages(CLI::App& app, int& exit_code);
+// growth [DIR…]
+void add_growth(CLI::App& app, int& exit_code);
+// detectors [DIR…]
+void add_detectors(CLI::App& app, int& exit_code);
 
 }  // namespace plvo::bench

@@ -65,6 +65,8 @@ int main(int argc, char** argv) {
   plvo::bench::add_sequences(app, exit_code);
   plvo::bench::add_lighting(app, exit_code);
   plvo::bench::add_stages(app, exit_code);
+  plvo::bench::add_growth(app, exit_code);
+  plvo::bench::add_detectors(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -14,9 +14,8 @@
 #include "plvo/bench/jobs/campaign.hpp"
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/lighting/lighting_table.hpp"
+#include "plvo/bench/sequences/rendered_walk.hpp"
 #include "plvo/bench/systems/system.hpp"
-#include "plvo/simulator/simulated_camera.hpp"
-#include "plvo/simulator/tum_folder.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -64,25 +63,14 @@ Status list_walks(const LightingOptions& options, std::vector<Walk>& walks) {
   return {};
 }
 
-// Renders beside its place and moves it there when it is whole.
 Status render(const Walk& walk, const fs::path& folder) {
-  std::error_code error;
-  if (fs::is_directory(folder, error)) return {};
   SimulatorOptions options;
   options.seed = static_cast<std::uint64_t>(walk.seed);
   options.frames = walk.frames;
   options.threads = 1;  // --jobs is for more
   if (Status status = parse_scene(walk.site, options.scene); !status.ok()) return status;
   if (Status status = parse_light(walk.light, options.light); !status.ok()) return status;
-  std::unique_ptr<SimulatedCamera> camera;
-  if (Status status = SimulatedCamera::create(options, camera); !status.ok()) return status;
-  const fs::path part = folder.string() + ".part";
-  fs::remove_all(part, error);
-  fs::create_directories(folder.parent_path(), error);
-  if (Status status = write_tum_folder(*camera, part.string()); !status.ok()) return status;
-  fs::rename(part, folder, error);
-  if (error) return {StatusCode::kIo, fmt::format("{}: {}", folder.string(), error.message())};
-  return {};
+  return render_walk(options, folder);
 }
 
 std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& systems,

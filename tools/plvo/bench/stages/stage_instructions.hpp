@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instructions of plvo's stages, counted by valgrind's callgrind: the same in every run, however busy the
-// machine is.
+// Instructions of plvo's stages and of the steps in them, out of a profile of callgrind.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
+#include <array>
+#include <cstdint>
 
-#include "plvo/base/status.hpp"
+#include "plvo/bench/stages/callgrind_costs.hpp"
 #include "plvo/bench/table.hpp"
+#include "plvo/odometry/track_result.hpp"
 
 namespace plvo::bench {
 
-// Runs `command`, which tracks through track_counted, under callgrind; its profile stays in out for
-// callgrind_annotate. kNotFound without valgrind.
-Status count_instructions(const std::vector<std::string>& command, const std::filesystem::path& out,
-                          const std::string& name, std::size_t frames, Table& table);
+// Each step's, of the mean of so many frames.
+Table instructions_table(const CallgrindCosts& costs, std::size_t frames);
+
+// What no stage accounts for is the rest of `all`.
+struct StageInstructions {
+  std::array<std::uint64_t, kStageCount> stage{};
+  std::uint64_t all = 0;
+};
+StageInstructions stage_instructions(const CallgrindCosts& costs);
 
 }  // namespace plvo::bench

@@ -45,13 +45,16 @@ void fill(Replacement replacement, int index, int width, int height, std::vector
 
 }  // namespace
 
-Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Replacement replacement,
+Status measure_stages(const NamedFolder& sequence, const JobOptions& options, const StageSetting& setting,
                       StageTimes& times) {
   RecordedCamera camera;
   if (Status status = open(sequence, options, camera); !status.ok()) return status;
   Limits limits;
   limits.width = camera.model().width;
   limits.height = camera.model().height;
+  limits.keypoints = setting.keypoints;
+  limits.segments = setting.segments;
+  if (Status status = limits.validate(); !status.ok()) return status;
   Config config;
   config.stage_clock = posix_thread_cpu_ns;
   std::vector<std::byte> memory(required_bytes(limits) + kArenaAlignment);
@@ -64,8 +67,8 @@ Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Re
     if (status.code() == StatusCode::kEndOfStream) return {};
     if (status.code() == StatusCode::kDamaged) continue;
     if (!status.ok()) return status;
-    if (replacement != Replacement::kRecorded) {
-      fill(replacement, index, limits.width, limits.height, replaced);
+    if (setting.replacement != Replacement::kRecorded) {
+      fill(setting.replacement, index, limits.width, limits.height, replaced);
       frame.colour = {replaced.data(), limits.width, limits.height, limits.width, PixelFormat::kGray8};
     }
     if (index == 0) {
@@ -77,6 +80,8 @@ Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Re
     times.frame_ms.push_back(static_cast<double>(posix_thread_cpu_ns() - start) * 1e-6);
     for (std::size_t stage = 0; stage < kStageCount; ++stage)
       times.stage_ms[stage].push_back(static_cast<double>(result.stage_ns[stage]) * 1e-6);
+    times.points.push_back(result.points.with_depth);
+    times.segments.push_back(result.lines.detected - result.lines.dropped);
     times.lost += result.state == TrackState::kLost ? 1 : 0;
   }
 }

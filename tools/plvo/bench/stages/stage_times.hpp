@@ -8,6 +8,7 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/bench/jobs/job.hpp"
+#include "plvo/odometry/config.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo::bench {
@@ -16,14 +17,21 @@ namespace plvo::bench {
 // stays as it is.
 enum class Replacement : std::uint8_t { kRecorded, kNoise, kStripes, kCheckerboard };
 
+struct StageSetting {
+  Replacement replacement = Replacement::kRecorded;
+  int keypoints = Limits{}.keypoints;  // room for so many
+  int segments = Limits{}.segments;
+};
+
 struct StageTimes {
   std::array<std::vector<double>, kStageCount> stage_ms;  // of each frame but the first
   std::vector<double> frame_ms;
+  std::vector<double> points, segments;  // of each frame, those kept
   int lost = 0;
 };
 
 // Decoding is outside of the timed part. The first frame, which has no motion, is left out.
-Status measure_stages(const NamedFolder& sequence, const JobOptions& options, Replacement replacement,
+Status measure_stages(const NamedFolder& sequence, const JobOptions& options, const StageSetting& setting,
                       StageTimes& times);
 
 }  // namespace plvo::bench

@@ -3,6 +3,7 @@
 // instructions of each step, over the same frames: of a folder, or of a walk that is rendered once.
 #include <fmt/core.h>
 
+#include <fstream>
 #include <map>
 #include <memory>
 
@@ -10,11 +11,12 @@
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/sequences/named_folder.hpp"
+#include "plvo/bench/sequences/rendered_walk.hpp"
+#include "plvo/bench/stages/callgrind_run.hpp"
 #include "plvo/bench/stages/stage_instructions.hpp"
 #include "plvo/bench/stages/stage_times.hpp"
 #include "plvo/bench/table.hpp"
 #include "plvo/eval/statistics.hpp"
-#include "plvo/simulator/tum_folder.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -25,24 +27,10 @@ struct StagesOptions {
   std::string folder;
   fs::path out;
   JobOptions measuring;
-  Replacement replacement = Replacement::kRecorded;
+  StageSetting setting;
   bool instructions = false;
+  bool without_table = false;
 };
-
-Status render_walk(const fs::path& folder, std::size_t frames) {
-  std::error_code error;
-  if (fs::is_directory(folder, error)) return {};
-  SimulatorOptions options;
-  options.frames = static_cast<int>(frames);
-  std::unique_ptr<SimulatedCamera> camera;
-  if (Status status = SimulatedCamera::create(options, camera); !status.ok()) return status;
-  const fs::path part = folder.string() + ".part";
-  fs::remove_all(part, error);
-  if (Status status = write_tum_folder(*camera, part.string()); !status.ok()) return status;
-  fs::rename(part, folder, error);
-  if (error) return {StatusCode::kIo, fmt::format("{}: {}", folder.string(), error.message())};
-  return {};
-}
 
 Table times_table(const StageTimes& times) {
   Table table;
@@ -57,44 +45,48 @@ Table times_table(const StageTimes& times) {
   return table;
 }
 
+Status count_instructions(const NamedFolder& sequence, const StagesOptions& options, const fs::path& profile,
+                          CallgrindCosts& costs) {
+  std::vector<std::string> command;
+  if (Status status = callgrind_command(sequence, options.measuring, options.setting, profile,
+                                        ProfileOf::kAllFrames, command);
+      !status.ok())
+    return status;
+  const auto ended = [](std::size_t, bool, std::size_t) {};
+  if (run_commands({command}, 1, ended) != 0) return {StatusCode::kIo, "the run under valgrind failed"};
+  std::ifstream file(profile);
+  costs = read_callgrind(file);
+  if (costs.total == 0)
+    return {StatusCode::kDamaged, fmt::format("{}: nothing was counted", profile.string())};
+  return {};
+}
+
 Status run_stages(const StagesOptions& options) {
   if (Status status = make_out(options.out); !status.ok()) return status;
   NamedFolder sequence;
   if (options.folder.empty()) {
     const std::string name = fmt::format("walk_{}f", options.measuring.frames);
     sequence = {options.out / name, name, ""};
-    if (Status status = render_walk(sequence.folder, options.measuring.frames); !status.ok()) return status;
+    SimulatorOptions walk;
+    walk.frames = static_cast<int>(options.measuring.frames);
+    if (Status status = render_walk(walk, sequence.folder); !status.ok()) return status;
   } else {
     std::vector<NamedFolder> named;
     if (Status status = name_folders({options.folder}, named); !status.ok()) return status;
     sequence = named.front();
   }
   StageTimes times;
-  if (Status status = measure_stages(sequence, options.measuring, options.replacement, times); !status.ok())
+  if (Status status = measure_stages(sequence, options.measuring, options.setting, times); !status.ok())
     return status;
+  if (options.without_table) return {};
   if (times.frame_ms.empty()) return {StatusCode::kTooFewFeatures, "there is only one frame"};
   std::string text = fmt::format("{}: {} frames, {} lost\n\n{}", sequence.sequence, times.frame_ms.size(),
                                  times.lost, to_markdown(times_table(times)));
   if (options.instructions) {
-    std::vector<std::string> command = {
-        own_program(),
-        "stages",
-        sequence.camera_model.empty() ? sequence.folder.string()
-                                      : fmt::format("{}={}", sequence.folder.string(), sequence.camera_model),
-        "--out",
-        options.out.string(),
-        "--image",
-        std::to_string(static_cast<int>(options.replacement)),
-        "--frames",
-        std::to_string(options.measuring.frames)};
-    if (!options.measuring.camera_model.empty())
-      command.insert(command.end(), {"--camera-model", options.measuring.camera_model});
-    Table table;
-    if (Status status =
-            count_instructions(command, options.out, sequence.sequence, times.frame_ms.size(), table);
-        !status.ok())
-      return status;
-    text += '\n' + to_markdown(table);
+    const fs::path profile = options.out / (sequence.sequence + ".callgrind");
+    CallgrindCosts costs;
+    if (Status status = count_instructions(sequence, options, profile, costs); !status.ok()) return status;
+    text += '\n' + to_markdown(instructions_table(costs, times.frame_ms.size()));
   }
   fmt::print("{}", text);
   return write_text(options.out / "stages.md", text);
@@ -119,10 +111,19 @@ void add_stages(CLI::App& app, int& exit_code) {
   command->add_flag("--instructions", options->instructions,
                     "Count the instructions of each step, under valgrind (slow)");
   command
-      ->add_option("--image", options->replacement,
+      ->add_option("--image", options->setting.replacement,
                    "own (default), or what is hardest: noise, stripes, checkerboard")
       ->transform(CLI::CheckedTransformer(replacements).description(""))
       ->type_name("WHAT");
+  command
+      ->add_option("--keypoints", options->setting.keypoints,
+                   fmt::format("Room for so many (default {})", options->setting.keypoints))
+      ->type_name("NUMBER");
+  command
+      ->add_option("--segments", options->setting.segments,
+                   fmt::format("Room for so many (default {})", options->setting.segments))
+      ->type_name("NUMBER");
+  command->add_flag("--without-table", options->without_table, "As callgrind runs it")->group("");
   add_measuring_options(*command, options->measuring);
   command->callback([options, &exit_code] { exit_code = finish(run_stages(*options)); });
 }

@@ -6,7 +6,10 @@
 
 namespace plvo::bench {
 
+// Patterns of callgrind: two, since it takes one option for each.
 inline constexpr const char* kCountedFunction = "plvo::bench::track_counted(*";
+inline constexpr const char* kFrameEnd =
+    "plvo::bench::track_counted(plvo::Odometry&, plvo::RgbdFrame const&)";
 
 // Never inlined, where sources are joined either.
 [[gnu::noinline]] TrackResult track_counted(Odometry& odometry, const RgbdFrame& frame);

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// plvo_bench growth as the user runs it, over walks of a few frames.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "command.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+using test::CommandResult;
+using test::read_file;
+using test::run_command;
+using test::TemporaryFolder;
+
+const std::string kGrowth =
+    std::string(PLVO_BENCH_BINARY) + " growth --frames 3 --walk-frames 3 --repeats 1 --jobs 2";
+
+using Rows = std::vector<std::vector<std::string>>;
+
+// The rows of numbers of the table below that title, without what is around the cells.
+Rows rows_below(const std::string& text, const std::string& title) {
+  Rows rows;
+  const std::size_t begin = text.find('\n' + title + "\n\n|");
+  if (begin == std::string::npos) return rows;
+  std::stringstream lines(text.substr(begin + title.size() + 3));
+  for (std::string line; std::getline(lines, line) && line.starts_with("| ");) {
+    std::vector<std::string> cells;
+    std::stringstream stream(line.substr(2));
+    for (std::string cell; std::getline(stream, cell, '|');) {
+      const std::size_t last = cell.find_last_not_of(' ');
+      const std::size_t first = cell.find_first_not_of(' ');
+      cells.push_back(last == std::string::npos ? "" : cell.substr(first, last + 1 - first));
+    }
+    rows.push_back(cells);
+    if (rows.size() == 1) std::getline(lines, line);  // the rule below the header
+  }
+  return rows;
+}
+
+double number(const Rows& rows, std::size_t row, const std::string& column) {
+  for (std::size_t i = 0; i < rows.at(0).size(); ++i)
+    if (rows[0][i] == column) return std::stod(rows.at(row).at(i));
+  ADD_FAILURE() << "no column " << column;
+  return 0;
+}
+
+TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
+  const TemporaryFolder folder;
+  const CommandResult run = run_command(kGrowth + " --tables sizes,walks --out " + (folder / "out").string());
+  if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(read_file(folder / "out" / "growth.md"), run.out);
+
+  const Rows sizes = rows_below(run.out, "Image size");
+  ASSERT_EQ(sizes.size(), 1U + 4) << run.out;
+  EXPECT_EQ(sizes[3][0], "640×480");
+  EXPECT_EQ(number(sizes, 3, "× default"), 1);
+  EXPECT_LT(number(sizes, 1, "keypoints"), number(sizes, 2, "keypoints")) << "the room of Limits::qvga";
+  for (std::size_t row = 1; row < 4; ++row) {
+    for (const char* column : {"image", "lines", "all", "× default"})
+      EXPECT_LE(number(sizes, row, column), number(sizes, row + 1, column)) << run.out;
+    EXPECT_GT(number(sizes, row, "CPU ×"), 0);
+  }
+  // Four times the pixels, four times the reading of them.
+  EXPECT_NEAR(number(sizes, 4, "image") / number(sizes, 3, "image"), 4, 0.3);
+  for (std::size_t row = 1; row <= 4; ++row) {
+    double sum = 0;
+    for (const char* column : {"image", "points", "lines", "matching", "motion", "rest"})
+      sum += number(sizes, row, column);
+    EXPECT_NEAR(sum, number(sizes, row, "all"), 0.31) << run.out;
+  }
+
+  const Rows walks = rows_below(run.out, "Frames of a walk");
+  ASSERT_EQ(walks.size(), 1U + 1) << run.out;
+  EXPECT_EQ(number(walks, 1, "frames"), 2);
+  EXPECT_GE(number(walks, 1, "p99"), number(walks, 1, "median"));
+  EXPECT_GE(number(walks, 1, "most"), number(walks, 1, "p99"));
+  EXPECT_NEAR(number(walks, 1, "median"), number(sizes, 3, "all"), 0.11) << "the same frames";
+  EXPECT_NE(run.out.find("\n- rendered walk, p99 / median: "), std::string::npos) << run.out;
+}
+
+TEST(BenchGrowth, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  const std::string out = " --out " + (folder / "out").string();
+  const CommandResult table = run_command(kGrowth + " --tables sizes,moons" + out);
+  EXPECT_EQ(table.exit_code, 1);
+  EXPECT_NE(table.err.find("\"moons\"; choose of: sizes"), std::string::npos) << table.err;
+  const CommandResult scene = run_command(kGrowth + " --scene moon" + out);
+  EXPECT_EQ(scene.exit_code, 1);
+  EXPECT_NE(scene.err.find("corridor"), std::string::npos) << scene.err;
+  EXPECT_EQ(run_command(kGrowth + " /no/such/folder" + out).exit_code, 1);
+  EXPECT_EQ(run_command(kGrowth).exit_code, 2);
+  EXPECT_EQ(run_command(kGrowth + " --frames 1" + out).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace plvo

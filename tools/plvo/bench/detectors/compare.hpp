@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// All detectors over the views of one sequence.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plvo/bench/detectors/score.hpp"
+
+namespace plvo::bench {
+
+struct NamedScore {
+  std::string detector;
+  Score score;
+};
+
+struct DetectorComparison {
+  std::vector<NamedScore> segments, points;  // ours first
+};
+
+DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorRooms& rooms,
+                                     const ScoreOptions& options);
+
+// CPU time over that of `ours`: the median over the views of the ratio within a view.
+double time_ratio(const Score& score, const Score& ours);
+
+}  // namespace plvo::bench

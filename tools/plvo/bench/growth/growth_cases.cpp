@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/bench/growth/growth_cases.hpp"
+
+#include <fmt/core.h>
+
+#include <sstream>
+
+namespace plvo::bench {
+namespace {
+
+// What is wanted of a frame.
+constexpr double kMostOfVga = 1 / 3.5;   // for a quarter of its pixels
+constexpr double kMostOfHardImages = 3;  // the worst frame, of the median of the walk's own
+constexpr double kMostOfMedian = 1.6;    // the 99 % quantile of a walk
+
+class Planner {
+ public:
+  using Of = GrowthPlan::Bound::Of;
+
+  Planner(const GrowthOptions& options, GrowthPlan& plan) : options_(options), plan_(plan) {
+    add_case(1, {}, options.frames);
+  }
+
+  void add_sizes() {
+    StageSetting small;
+    small.keypoints = Limits::qvga().keypoints;
+    small.segments = Limits::qvga().segments;
+    GrowthTable table{"Image size", "size", {}};
+    table.rows.push_back({"320×240, room of Limits::qvga", add_case(0.5, small, options_.frames)});
+    table.rows.push_back({"320×240", add_case(0.5, {}, options_.frames)});
+    for (const GrowthTable::Row& row : table.rows)
+      plan_.bounds.push_back({row.name + " / 640×480", row.measured, Of::kMeanOfUsual, kMostOfVga});
+    table.rows.push_back({"640×480", 0});
+    table.rows.push_back({"1280×960", add_case(2, {}, options_.frames)});
+    plan_.tables.push_back(table);
+  }
+
+  void add_rooms(const char* title, const char* entry, int StageSetting::*room,
+                 const std::vector<int>& sizes) {
+    GrowthTable table{title, entry, {}};
+    for (const int size : sizes) {
+      StageSetting setting;
+      const bool usual = setting.*room == size;
+      setting.*room = size;
+      table.rows.push_back({std::to_string(size) + (usual ? " (default)" : ""),
+                            usual ? 0 : add_case(1, setting, options_.frames)});
+    }
+    plan_.tables.push_back(table);
+  }
+
+  void add_images() {
+    GrowthTable table{"Images that are hard on a detector", "images", {{"of the walk", 0}}};
+    const auto image = [&](const char* name, Replacement replacement) {
+      StageSetting setting;
+      setting.replacement = replacement;
+      const std::size_t measured = add_case(1, setting, options_.frames);
+      table.rows.push_back({name, measured});
+      plan_.bounds.push_back({fmt::format("{}, worst frame / the walk's median", name), measured,
+                              Of::kWorstOfUsual, kMostOfHardImages});
+    };
+    image("noise", Replacement::kNoise);
+    image("stripes", Replacement::kStripes);
+    image("checkerboard", Replacement::kCheckerboard);
+    plan_.tables.push_back(table);
+  }
+
+  void add_walks(const std::vector<NamedFolder>& recorded) {
+    plan_.walks = {"Frames of a walk", "sequence", {}};
+    const auto add = [&](const std::string& name, std::size_t measured) {
+      plan_.walks.rows.push_back({name, measured});
+      plan_.bounds.push_back({name + ", p99 / median", measured, Of::kP99OfMedian, kMostOfMedian});
+    };
+    add("rendered walk", add_case(1, {}, options_.walk_frames));
+    for (const NamedFolder& sequence : recorded) {
+      plan_.cases.push_back({sequence, options_.walk_frames, {}, {}});
+      add(sequence.sequence, plan_.cases.size() - 1);
+    }
+  }
+
+ private:
+  std::size_t add_case(double scale, const StageSetting& setting, std::size_t frames) {
+    SimulatorOptions walk;
+    walk.scene = options_.scene;
+    walk.frames = static_cast<int>(frames);
+    walk.camera = scaled(walk.camera, scale);
+    const std::string folder = fmt::format("{}_{}x{}_{}f", to_string(walk.scene), walk.camera.width,
+                                           walk.camera.height, walk.frames);
+    plan_.cases.push_back({{options_.out / folder, folder, ""}, frames, setting, walk});
+    return plan_.cases.size() - 1;
+  }
+
+  const GrowthOptions& options_;
+  GrowthPlan& plan_;
+};
+
+}  // namespace
+
+CameraModel scaled(const CameraModel& camera, double scale) {
+  CameraModel result = camera;
+  result.width = static_cast<int>(camera.width * scale);
+  result.height = static_cast<int>(camera.height * scale);
+  // (0, 0) is the centre of the first pixel.
+  result.pinhole = {camera.pinhole.fx * scale, camera.pinhole.fy * scale,
+                    (camera.pinhole.cx + 0.5) * scale - 0.5, (camera.pinhole.cy + 0.5) * scale - 0.5};
+  return result;
+}
+
+Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>& recorded, GrowthPlan& plan) {
+  Planner planner(options, plan);
+  std::stringstream tables(options.tables);
+  for (std::string table; std::getline(tables, table, ',');) {
+    if (table == "sizes") {
+      planner.add_sizes();
+    } else if (table == "points") {
+      planner.add_rooms("Room for points", "Limits::keypoints", &StageSetting::keypoints,
+                        {100, 200, Limits{}.keypoints, 1000, 2000});
+    } else if (table == "segments") {
+      planner.add_rooms("Room for segments", "Limits::segments", &StageSetting::segments,
+                        {20, 50, 100, 200, Limits{}.segments, 400});
+    } else if (table == "images") {
+      planner.add_images();
+    } else if (table == "walks") {
+      planner.add_walks(recorded);
+    } else {
+      return {
+          StatusCode::kInvalidArgument,
+          fmt::format("there is no table \"{}\"; choose of: sizes, points, segments, images, walks", table)};
+    }
+  }
+  return {};
+}
+
+}  // namespace plvo::bench

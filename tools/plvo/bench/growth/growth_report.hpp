@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of growth, and whether what is wanted of it is held.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plvo/bench/growth/growth_measure.hpp"
+
+namespace plvo::bench {
+
+// Markdown. results: one for each case of the plan.
+std::string growth_report(const GrowthPlan& plan, const std::vector<GrowthResult>& results);
+
+}  // namespace plvo::bench
