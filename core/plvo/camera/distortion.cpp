@@ -81,11 +81,11 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
   const double distance = sqrt(target.squaredNorm());
   if (!(distance > 1e-9)) return target;
   // Newton's method for the angle, kept between what is too small and what is too large.
-  constexpr int kSteps = 24;
+  constexpr int kRadialSteps = 24;
   double least = 0;
   double most = kPi / 2 - 1e-4;
   double theta = distance < most ? distance : most;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kRadialSteps; ++i) {
     const double error = fisheye(lens, theta) - distance;
     (error > 0 ? most : least) = theta;
     theta -= error / fisheye_slope(lens, theta);
@@ -100,17 +100,17 @@ Status folds_at(double theta, const char* what, const char* degrees_from_the_axi
       .append(degrees_from_the_axis);
 }
 
-constexpr int kSteps = 512;           // along the radius, less than 1 px each
+constexpr int kRadialSteps = 512;     // along the radius, less than 1 px each
 constexpr double kLeastSlope = 0.02;  // of what is imaged, by r and by θ
 
 Status check_rational(const Distortion& lens, double radius) {
   // From step to step, so that a pole is seen too.
   double before = 0;
-  for (int i = 1; i <= kSteps; ++i) {
-    const double r = radius * i / kSteps;
+  for (int i = 1; i <= kRadialSteps; ++i) {
+    const double r = radius * i / kRadialSteps;
     const double s = r * r;
     const double imaged = r * cubic(1, lens.k1, lens.k2, lens.k3, s) / cubic(1, lens.k4, lens.k5, lens.k6, s);
-    if (!(imaged - before >= kLeastSlope * radius / kSteps))
+    if (!(imaged - before >= kLeastSlope * radius / kRadialSteps))
       return folds_at(
           atan2(r, 1), "the rational distortion folds the image ",
           " degrees from the axis; check k1 k2 p1 p2 k3 k4 k5 k6 and their order, or calibrate again "
@@ -122,8 +122,8 @@ Status check_rational(const Distortion& lens, double radius) {
 
 Status check_equidistant(const Distortion& lens, double radius) {
   const double widest = atan2(radius, 1);
-  for (int i = 1; i <= kSteps; ++i) {
-    const double theta = widest * i / kSteps;
+  for (int i = 1; i <= kRadialSteps; ++i) {
+    const double theta = widest * i / kRadialSteps;
     if (!(fisheye_slope(lens, theta) >= kLeastSlope))
       return folds_at(
           theta, "the equidistant distortion folds the image ",

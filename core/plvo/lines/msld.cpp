@@ -9,7 +9,7 @@ namespace plvo {
 
 namespace {
 
-constexpr std::size_t kRows = kMsldBands * kMsldRowsPerBand;
+constexpr std::size_t kMsldRows = kMsldBands * kMsldRowsPerBand;
 constexpr std::size_t kSums = 4 * kMsldBands;
 constexpr double kClip = 0.4;  // of a normalised half's component: no single strong edge may decide
 
@@ -24,24 +24,24 @@ constexpr double gaussian(double x) {
 }
 
 // A band takes its own rows and, falling linearly to the next band's centre, its neighbours' nearer rows:
-// kReach rows to either side of its centre. The Gaussian over the whole region has half its half width for
-// SD, so that an error in the segment's place changes little at the rim.
-constexpr int kReach = kMsldRowsPerBand - 1;
+// kMsldReach rows to either side of its centre. The Gaussian over the whole region has half its half width
+// for SD, so that an error in the segment's place changes little at the rim.
+constexpr int kMsldReach = kMsldRowsPerBand - 1;
 static_assert(kMsldRowsPerBand % 2 == 1, "a band's centre is a row");
-using BandWeights = std::array<float, 2 * kReach + 1>;
+using BandWeights = std::array<float, 2 * kMsldReach + 1>;
 
-constexpr std::array<BandWeights, kMsldBands> make_weights() {
+constexpr std::array<BandWeights, kMsldBands> make_msld_weights() {
   std::array<BandWeights, kMsldBands> weights{};
   for (int band = 0; band < kMsldBands; ++band)
-    for (int o = -kReach; o <= kReach; ++o) {
+    for (int o = -kMsldReach; o <= kMsldReach; ++o) {
       const double row = (band - kMsldBands / 2) * kMsldRowsPerBand + o;
       const double share = 1.0 - (o < 0 ? -o : o) / static_cast<double>(kMsldRowsPerBand);
-      weights[static_cast<std::size_t>(band)][static_cast<std::size_t>(o + kReach)] =
-          static_cast<float>(share * gaussian(row / (0.5 * kRows)));
+      weights[static_cast<std::size_t>(band)][static_cast<std::size_t>(o + kMsldReach)] =
+          static_cast<float>(share * gaussian(row / (0.5 * kMsldRows)));
     }
   return weights;
 }
-constexpr std::array<BandWeights, kMsldBands> kWeights = make_weights();
+constexpr std::array<BandWeights, kMsldBands> kMsldWeights = make_msld_weights();
 
 // Positions in the image in 1/65536 px.
 constexpr int kPositionBits = 16;
@@ -66,7 +66,7 @@ Region make_region(double scale, const Segment& segment) {
   const double step = length / region.columns;
   // Half a pixel is added, so that truncation rounds to the nearest pixel.
   const Vector2 first =
-      segment.a * scale + 0.5 * step * u - 0.5 * (kRows - 1.0) * kMsldRowPitch_px * n + Vector2(0.5, 0.5);
+      segment.a * scale + 0.5 * step * u - 0.5 * (kMsldRows - 1.0) * kMsldRowPitch_px * n + Vector2(0.5, 0.5);
   region.x = to_fixed(first.x());
   region.y = to_fixed(first.y());
   region.ux = to_fixed(step * u.x());
@@ -82,7 +82,7 @@ Region make_region(double scale, const Segment& segment) {
 bool inside(const Region& region, GrayView image) {
   for (int corner = 0; corner < 4; ++corner) {
     const int c = corner % 2 == 0 ? 0 : region.columns - 1;
-    const int r = corner / 2 == 0 ? 0 : static_cast<int>(kRows) - 1;
+    const int r = corner / 2 == 0 ? 0 : static_cast<int>(kMsldRows) - 1;
     const int x = (region.x + c * region.ux + r * region.nx) >> kPositionBits;
     const int y = (region.y + c * region.uy + r * region.ny) >> kPositionBits;
     if (x < 1 || y < 1 || x >= image.width - 1 || y >= image.height - 1) return false;
@@ -97,11 +97,11 @@ struct Sums {
 
 // The gradients of one column, each as four non-negative parts: towards the brighter side, away from it,
 // along the segment, against it. A margin of zero rows on both sides stands for the rows beyond the region.
-using Column = std::array<std::array<float, 4>, kRows + 2 * kReach>;
+using Column = std::array<std::array<float, 4>, kMsldRows + 2 * kMsldReach>;
 
 template <bool kInside>
 void read_column(GrayView image, const Region& region, std::int32_t x, std::int32_t y, Column& column) {
-  for (std::size_t r = kReach; r < kRows + kReach; ++r) {
+  for (std::size_t r = kMsldReach; r < kMsldRows + kMsldReach; ++r) {
     const int px = x >> kPositionBits, py = y >> kPositionBits;
     x += region.nx;
     y += region.ny;
@@ -123,9 +123,9 @@ void read_column(GrayView image, const Region& region, std::int32_t x, std::int3
 void add_column(const Column& column, Sums& sums) {
   for (std::size_t band = 0; band < kMsldBands; ++band) {
     std::array<float, 4> V{};
-    for (std::size_t o = 0; o < 2 * kReach + 1; ++o)
+    for (std::size_t o = 0; o < 2 * kMsldReach + 1; ++o)
       for (std::size_t k = 0; k < 4; ++k)
-        V[k] += kWeights[band][o] * column[band * kMsldRowsPerBand + kMsldRowsPerBand / 2 + o][k];
+        V[k] += kMsldWeights[band][o] * column[band * kMsldRowsPerBand + kMsldRowsPerBand / 2 + o][k];
     for (std::size_t k = 0; k < 4; ++k) {
       sums.first[4 * band + k] += V[k];
       sums.second[4 * band + k] += V[k] * V[k];

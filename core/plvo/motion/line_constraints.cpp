@@ -20,7 +20,8 @@ constexpr double kMinLengthSigmas = 4;
 // vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
 constexpr double kLandmarkTolerance = 1e-4;
-// A step that is longer than this share of the one before it does not converge.
+// From the third step on, one that is longer than this share of the one before it does not converge: the
+// first knows no weights yet, and the second brings them in.
 constexpr double kContraction = 0.5;
 
 bool is_measurement(const Line3d& line) {
@@ -317,7 +318,7 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
       q = T.R.lazyProduct(landmark.q);
       const Landmark next = moved(landmark, at);
       const double moved_m = at.y.cwiseAbs().maxCoeff();
-      halfway = halfway || moved_m > kContraction * last_m;
+      halfway = halfway || (step > 1 && moved_m > kContraction * last_m);
       landmark = halfway ? between(landmark, next) : next;
       last_m = moved_m;
       if (moved_m <= kLandmarkTolerance) break;

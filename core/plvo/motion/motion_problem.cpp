@@ -24,8 +24,8 @@ MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionRefer
 
 namespace {
 
-constexpr int kSize = JointInformation::kSize;
-using Joint = Matrix<kSize, kSize>;
+constexpr int kJointSize = JointInformation::kSize;
+using Joint = Matrix<kJointSize, kJointSize>;
 
 // Of a set's n inliers, whose residuals correlate by ρ: n / (1 + (n − 1) ρ) independent ones, times what each
 // weighs, as a share of n.
@@ -38,16 +38,16 @@ double share_of(const ConstraintSet& set) {
 // H ← (H⁻¹ + S)⁻¹ on the motion's part of H, S = L Lᵀ, the gradient and the cost with it: what is left when a
 // motion of covariance S between the two frames is minimised over.
 double convolve(const Matrix6& L, JointInformation& sum) {
-  const Matrix<kSize, 6> HL = sum.H.block<kSize, 6>(0, 0).lazyProduct(L);
+  const Matrix<kJointSize, 6> HL = sum.H.block<kJointSize, 6>(0, 0).lazyProduct(L);
   const Matrix6 M = Matrix6::Identity() + L.transpose().lazyProduct(HL.block<6, 6>(0, 0));
   Cholesky<6> cholesky;
   if (!cholesky.factor(M)) return 0;
   const Vector6 Lg = L.transpose().lazyProduct(sum.g.head<6>());
   const Vector6 x = cholesky.solve(Lg);
-  const Matrix<6, kSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
+  const Matrix<6, kJointSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
   sum.H -= HL.lazyProduct(gain);
-  for (int c = 0; c < kSize; ++c)
-    for (int r = c + 1; r < kSize; ++r) sum.H(r, c) = sum.H(c, r) = 0.5 * (sum.H(r, c) + sum.H(c, r));
+  for (int c = 0; c < kJointSize; ++c)
+    for (int r = c + 1; r < kJointSize; ++r) sum.H(r, c) = sum.H(c, r) = 0.5 * (sum.H(r, c) + sum.H(c, r));
   sum.g -= HL.lazyProduct(x);
   return -0.5 * Lg.dot(x);
 }
@@ -141,8 +141,8 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   if (references_[r].covariance.trace() > 0) cost = convolve(B.lazyProduct(root_[r]), of_reference_);
   // Aᵀ H A with A the identity but for Q above the diagonal: a shift of columns, then of rows.
   Joint& H = of_reference_.H;
-  H.block<kSize, 3>(0, 3) += H.block<kSize, 3>(0, 0).lazyProduct(Q).eval();
-  H.block<3, kSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kSize>(0, 0)).eval();
+  H.block<kJointSize, 3>(0, 3) += H.block<kJointSize, 3>(0, 0).lazyProduct(Q).eval();
+  H.block<3, kJointSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kJointSize>(0, 0)).eval();
   of_reference_.g.segment<3>(3) += Q.transpose().lazyProduct(of_reference_.g.head<3>());
   return cost;
 }

@@ -16,7 +16,7 @@ constexpr double kMedian4 = 3.3567;
 // SD's gate of inliers: noise twice as large as modelled must be able to show.
 constexpr double kFarthestPoint = 45;
 constexpr double kFarthestLine = 53;
-constexpr std::size_t kLeast = 12;
+constexpr std::size_t kLeastMatches = 12;
 // One frame may not say more than this, and the scales stay within these bounds.
 constexpr double kMostOfAFrame = 4;
 constexpr double kLeastScale = 0.04;
@@ -25,7 +25,7 @@ constexpr double kLeastSharedScale = 0.0025;
 constexpr double kMostScale = 25;
 
 double median_over(FixedVector<double>& values, double expected) {
-  if (values.size() < kLeast) return 1;
+  if (values.size() < kLeastMatches) return 1;
   double* const middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle / expected;

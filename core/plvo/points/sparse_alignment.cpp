@@ -19,7 +19,7 @@ constexpr double kGreyNoise = 2;
 constexpr double kAlike = 0.1;
 constexpr double kLeastGain = 0.3;
 constexpr double kMostGain = 3;
-constexpr double kNearest_m = 0.1;
+constexpr double kNearestSeen_m = 0.1;
 constexpr int kReadBits = 4;  // positions are read on a grid of 1/16 px
 
 using Numbers = std::array<std::int16_t, kAlignmentPixels>;
@@ -46,7 +46,7 @@ double about_means(const Numbers& a, double sum_a, const Numbers& b, double sum_
 
 // False for a window that shows nothing.
 bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
-  constexpr std::int16_t kUnit = static_cast<std::int16_t>(kUnits);
+  constexpr std::int16_t kEighths = static_cast<std::int16_t>(kUnits);
   for (int row = 0; row < kAlignmentSide; ++row) {
     const std::uint8_t* p = image.row(y - kReach + row) + x - kReach;
     Lanes here, left, right, above, below;
@@ -56,9 +56,9 @@ bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
     load_bytes(p - image.stride, above);
     load_bytes(p + image.stride, below);
     const auto first = static_cast<std::size_t>(row * kAlignmentSide);
-    store(here * kUnit, &window.value[first]);
-    store((right - left) * std::int16_t{kUnit / 2}, &window.gx[first]);
-    store((below - above) * std::int16_t{kUnit / 2}, &window.gy[first]);
+    store(here * kEighths, &window.value[first]);
+    store((right - left) * std::int16_t{kEighths / 2}, &window.gx[first]);
+    store((below - above) * std::int16_t{kEighths / 2}, &window.gy[first]);
   }
   window.sum_value = sum_of(window.value);
   window.sum_gx = sum_of(window.gx);
@@ -184,7 +184,7 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     if (!(p.z() > 0)) continue;
     const Vector3 turned = T.R * p;
     const Vector3 q = turned + T.t;
-    if (!(q.z() > kNearest_m)) continue;
+    if (!(q.z() > kNearestSeen_m)) continue;
     const GrayView image = pyramid.level(window.level);
     const double scale = 1.0 / (1 << window.level);
     const Vector2 expected = scale * project(pinhole, exposure.as_seen(q)) - window.centre;

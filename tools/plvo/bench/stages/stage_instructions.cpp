@@ -29,7 +29,7 @@ const std::vector<Row>& rows() {
       {Stage::kLines, "describe", {"plvo::describe_segment("}},
       {Stage::kLines, "depths", {"void plvo::sample_segment<"}},
       {Stage::kLines, "3D", {"plvo::fit_line3d("}},
-      {Stage::kMatching, "by image", {"plvo::ReferenceTracking::align("}},
+      {Stage::kMatching, "by image", {"plvo::align_step(", "plvo::SparseAlignment::"}},
       {Stage::kMatching, "by descriptor", {"plvo::track_by_descriptor("}},
       {Stage::kMatching, "registration", {"plvo::track_by_motion("}},
       {Stage::kMatching, "lines", {"plvo::match_predicted_lines("}},
