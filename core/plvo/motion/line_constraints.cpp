@@ -20,8 +20,7 @@ constexpr double kMinLengthSigmas = 4;
 // vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
 constexpr int kMaxLandmarkSteps = 4;
 constexpr double kLandmarkTolerance = 1e-4;
-// From the third step on, one that is longer than this share of the one before it does not converge: the
-// first knows no weights yet, and the second brings them in.
+// A step back that is longer than this share of the one before it does not converge.
 constexpr double kContraction = 0.5;
 
 bool is_measurement(const Line3d& line) {
@@ -173,6 +172,10 @@ LineConstraints::Landmark between(const LineConstraints::Landmark& last,
   return result;
 }
 
+bool turns_back(const Vector4& last_y, const Vector4& y) {
+  return last_y.dot(y) < 0 && y.squaredNorm() > kContraction * kContraction * last_y.squaredNorm();
+}
+
 LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
   return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
 }
@@ -310,18 +313,17 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
     }
     Linearized at;
     Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
-    double last_m = std::numeric_limits<double>::infinity();
+    Vector4 last_y = Vector4::Zero();
     bool halfway = false;
     for (int step = 0; step < kMaxLandmarkSteps; ++step) {
       if (!linearize_line(reference_[matches_[i].reference], current, T, landmark, at))
         return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
       q = T.R.lazyProduct(landmark.q);
       const Landmark next = moved(landmark, at);
-      const double moved_m = at.y.cwiseAbs().maxCoeff();
-      halfway = halfway || (step > 1 && moved_m > kContraction * last_m);
+      halfway = halfway || turns_back(last_y, at.y);
       landmark = halfway ? between(landmark, next) : next;
-      last_m = moved_m;
-      if (moved_m <= kLandmarkTolerance) break;
+      last_y = at.y;
+      if (at.y.cwiseAbs().maxCoeff() <= kLandmarkTolerance) break;
     }
     candidates_[i] = landmark;
 
