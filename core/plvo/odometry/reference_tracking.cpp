@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/base/build.hpp"
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/stage_timer.hpp"
 
@@ -121,7 +122,7 @@ bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& cu
                               Se3& T_current_reference, TrackResult& result) const {
   const Config& config = current.extraction.config();
   const CameraModel& camera = current.extraction.camera();
-  if (!alignment_.holds(reference.features->stamp_ns)) return false;
+  if (!kPointsBuilt || !alignment_.holds(reference.features->stamp_ns)) return false;
   const StageTimer timer(config, result, Stage::kMatching);
   const ScratchScope scope(scratch);
   const PointFeatures& features = reference.features->points;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
 
