@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "library_writer.hpp"
 #include "plvo/replay/recorded_camera.hpp"
+#include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -30,17 +31,7 @@ constexpr const char* kColour = "/camera/rgb/image_color";
 constexpr const char* kDepth = "/camera/depth/image";
 constexpr const char* kInfo = "/camera/rgb/camera_info";
 
-const fs::path& walk() {
-  static const TemporaryFolder folder;
-  static const fs::path made = [] {
-    const CommandResult r =
-        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --quiet --frames " +
-                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
-    EXPECT_EQ(r.exit_code, 0) << r.err;
-    return folder / "walk";
-  }();
-  return made;
-}
+const fs::path& walk() { return test::simulated_walk<kFrames>(kPlvo); }
 
 // What a driver would have published while the walk was recorded.
 std::vector<RecordedMessage> published(bool metres) {

@@ -2,9 +2,10 @@
 // plvo_bench detectors as the user runs it, over a few rendered frames.
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <vector>
 
 #include "command.hpp"
+#include "table_cells.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -22,9 +23,8 @@ std::vector<double> row_of(const std::string& text, const std::string& begin) {
   std::vector<double> numbers;
   const std::size_t at = text.find("\n| " + begin + " | ");
   if (at == std::string::npos) return numbers;
-  std::stringstream cells(
-      text.substr(at + begin.size() + 6, text.find('\n', at + 1) - at - begin.size() - 6));
-  for (std::string cell; std::getline(cells, cell, '|');)
+  const std::size_t rest = at + 3 + begin.size();
+  for (const std::string& cell : test::cells_of(text.substr(rest, text.find('\n', rest) - rest)))
     if (cell.find_first_of("0123456789") != std::string::npos) numbers.push_back(std::stod(cell));
   return numbers;
 }

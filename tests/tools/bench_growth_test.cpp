@@ -5,11 +5,13 @@
 #include <sstream>
 
 #include "command.hpp"
+#include "table_cells.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
+using test::cells_of;
 using test::CommandResult;
 using test::read_file;
 using test::run_command;
@@ -20,21 +22,14 @@ const std::string kGrowth =
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// The rows of numbers of the table below that title, without what is around the cells.
+// The rows of numbers of the table below that title, its header first.
 Rows rows_below(const std::string& text, const std::string& title) {
   Rows rows;
   const std::size_t begin = text.find('\n' + title + "\n\n|");
   if (begin == std::string::npos) return rows;
   std::stringstream lines(text.substr(begin + title.size() + 3));
   for (std::string line; std::getline(lines, line) && line.starts_with("| ");) {
-    std::vector<std::string> cells;
-    std::stringstream stream(line.substr(2));
-    for (std::string cell; std::getline(stream, cell, '|');) {
-      const std::size_t last = cell.find_last_not_of(' ');
-      const std::size_t first = cell.find_first_not_of(' ');
-      cells.push_back(last == std::string::npos ? "" : cell.substr(first, last + 1 - first));
-    }
-    rows.push_back(cells);
+    rows.push_back(cells_of(line));
     if (rows.size() == 1) std::getline(lines, line);  // the rule below the header
   }
   return rows;

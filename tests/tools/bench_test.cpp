@@ -10,6 +10,7 @@
 
 #include "command.hpp"
 #include "numbered_sequence.hpp"
+#include "table_cells.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -17,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using test::cells_of;
 using test::CommandResult;
 using test::read_file;
 using test::run_command;
@@ -237,20 +239,6 @@ TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
   EXPECT_NEAR(value(planes[0]), 12.2, 2) << table.out;
   EXPECT_EQ(run_command(std::string(PLVO_STATISTICS_BINARY) + " /no/such/folder").exit_code, 1);
   EXPECT_EQ(run_command(PLVO_STATISTICS_BINARY).exit_code, 2);
-}
-
-// The cells of a row of a table, without what is around them.
-std::vector<std::string> cells_of(const std::string& row) {
-  std::vector<std::string> cells;
-  std::stringstream stream(row);
-  std::string cell;
-  std::getline(stream, cell, '|');
-  while (std::getline(stream, cell, '|')) {
-    const std::size_t first = cell.find_first_not_of(' ');
-    cells.push_back(first == std::string::npos ? ""
-                                               : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
-  }
-  return cells;
 }
 
 // The rows of instructions name functions of the core: one that is renamed would count nothing.

@@ -10,6 +10,7 @@
 #include "plvo/host/trajectory_reader.hpp"
 #include "plvo/replay/image_decoder.hpp"
 #include "plvo/replay/image_writer.hpp"
+#include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -25,17 +26,7 @@ using test::write_file;
 const std::string kPlvo = PLVO_BINARY;
 constexpr int kFrames = 4;
 
-const fs::path& master_sequence() {
-  static const TemporaryFolder folder;
-  static const fs::path sequence = [] {
-    const CommandResult made =
-        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --frames " +
-                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
-    EXPECT_EQ(made.exit_code, 0) << made.err;
-    return folder / "walk";
-  }();
-  return sequence;
-}
+const fs::path& master_sequence() { return test::simulated_walk<kFrames>(kPlvo); }
 
 class CliOutputs : public ::testing::Test {
  protected:

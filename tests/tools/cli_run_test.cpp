@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "plvo/replay/image_writer.hpp"
+#include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
 
@@ -35,17 +36,7 @@ bool contains(const std::string& text, std::string_view words) {
 }
 
 // A walk through a simulated room, made once; each test works on its own copy.
-const fs::path& master_sequence() {
-  static const TemporaryFolder folder;
-  static const fs::path sequence = [] {
-    const CommandResult made =
-        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --frames " +
-                    std::to_string(kFrames) + " --out " + (folder / "walk").string());
-    EXPECT_EQ(made.exit_code, 0) << made.err;
-    return folder / "walk";
-  }();
-  return sequence;
-}
+const fs::path& master_sequence() { return test::simulated_walk<kFrames>(kPlvo); }
 
 class CliRun : public ::testing::Test {
  protected:

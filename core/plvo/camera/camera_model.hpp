@@ -42,6 +42,9 @@ struct CameraModel {
   Status validate() const;
 };
 
+// No sensor sees what is nearer along z, and where it would be seen changes without bound: m.
+inline constexpr double kNearestSeen_m = 0.1;
+
 // Projects p (camera frame, metres) to pixels with the pinhole alone. p.z() must be positive.
 Vector2 project(const Pinhole& pinhole, const Vector3& p);
 

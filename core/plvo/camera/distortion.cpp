@@ -81,11 +81,11 @@ Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
   const double distance = sqrt(target.squaredNorm());
   if (!(distance > 1e-9)) return target;
   // Newton's method for the angle, kept between what is too small and what is too large.
-  constexpr int kRadialSteps = 24;
+  constexpr int kNewtonSteps = 24;
   double least = 0;
   double most = kPi / 2 - 1e-4;
   double theta = distance < most ? distance : most;
-  for (int i = 0; i < kRadialSteps; ++i) {
+  for (int i = 0; i < kNewtonSteps; ++i) {
     const double error = fisheye(lens, theta) - distance;
     (error > 0 ? most : least) = theta;
     theta -= error / fisheye_slope(lens, theta);

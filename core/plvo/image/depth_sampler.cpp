@@ -84,7 +84,6 @@ bool DepthSampler::locate(Vector2& pixel) const {
   // rotation's, the same for every depth.
   constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
-  constexpr double kNearest_m = 0.1;
   const Pinhole& pinhole = exposure_.pinhole();
   double depth_m = kUnknownDepth_m;
   Vector2 located = pixel;
@@ -93,7 +92,7 @@ bool DepthSampler::locate(Vector2& pixel) const {
     if (read > 0) depth_m = read;
     const Vector3 p =
         exposure_.at_depth_time(back_project(pinhole, pixel.x(), pixel.y(), depth_m), pixel.y(), located.y());
-    if (!(p.z() > kNearest_m)) return false;
+    if (!(p.z() > kNearestSeen_m)) return false;
     located = project(pinhole, p);
     if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
       return false;

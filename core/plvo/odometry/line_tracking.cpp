@@ -10,12 +10,11 @@ namespace {
 // nothing matches.
 Segment predict(const Pinhole& pinhole, const Exposure& exposure, const Segment& segment, const Line3d& line,
                 const Se3& T_current_reference) {
-  constexpr double kNearest_m = 0.1;
   constexpr double kNowhere_px = -1e5;
   Segment predicted = segment;
   const Vector3 a = exposure.as_seen(T_current_reference * line.a);
   const Vector3 b = exposure.as_seen(T_current_reference * line.b);
-  if (a.z() > kNearest_m && b.z() > kNearest_m) {
+  if (a.z() > kNearestSeen_m && b.z() > kNearestSeen_m) {
     predicted.a = project(pinhole, a);
     predicted.b = project(pinhole, b);
   } else {

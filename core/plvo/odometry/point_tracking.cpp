@@ -18,10 +18,9 @@ double registered_sigma_px(const PointConfig& config, const Alignment& alignment
 
 // Where the reference keypoint's 3D point is seen after the motion.
 Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
-  constexpr double kNearest_m = 0.1;
   if (!(point.p.z() > 0)) return {};
   const Vector3 p = view.exposure.as_seen(T_current_reference * point.p);
-  if (!(p.z() > kNearest_m)) return {};
+  if (!(p.z() > kNearestSeen_m)) return {};
   const Vector2 pixel = project(view.pinhole, p);
   const GrayView image = view.pyramid.level(0);
   if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height)) return {};

@@ -18,7 +18,6 @@ constexpr double kGreyNoise = 2;
 constexpr double kAlike = 0.1;
 constexpr double kLeastGain = 0.3;
 constexpr double kMostGain = 3;
-constexpr double kNearestSeen_m = 0.1;
 constexpr int kReadBits = 4;  // positions are read on a grid of 1/16 px
 
 using Numbers = std::array<std::int16_t, kAlignmentPixels>;

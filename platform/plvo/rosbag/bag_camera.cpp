@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "plvo/replay/stamp_pairs.hpp"
-#include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
 namespace {
@@ -49,14 +48,18 @@ std::string BagCamera::topics_in_words() const {
   return text;
 }
 
+Status BagCamera::read_image(const BagMessage& message, ImageMessage& image) {
+  Status status = bag_.read(message, bytes_);
+  return status.ok() ? parse_image(bytes_, image) : status;
+}
+
 Status BagCamera::encoding_of(std::size_t topic, std::string& encoding) {
   encoding.clear();
   Status failure(StatusCode::kNotFound, "no message");
   for (const BagMessage& message : bag_.messages()) {
     if (message.topic != topic) continue;
     ImageMessage image;
-    failure = bag_.read(message, bytes_);
-    if (failure.ok()) failure = parse_image(bytes_, image);
+    failure = read_image(message, image);
     if (!failure.ok()) continue;
     encoding = image.encoding;
     return {};
@@ -172,12 +175,10 @@ Status BagCamera::find_sizes(ImageSize& colour, ImageSize& depth, bool& metres) 
   Status first_failure;
   for (const auto& pair : pairs_) {
     ImageMessage image;
-    Status status = bag_.read(pair.first, bytes_);
-    if (status.ok()) status = parse_image(bytes_, image);
+    Status status = read_image(pair.first, image);
     if (status.ok() && !is_colour_encoding(image.encoding)) status = colour_pixels(image, {});
     colour = {image.width, image.height};
-    if (status.ok()) status = bag_.read(pair.second, bytes_);
-    if (status.ok()) status = parse_image(bytes_, image);
+    if (status.ok()) status = read_image(pair.second, image);
     if (status.ok() && !is_depth_encoding(image.encoding)) status = depth_pixels(image, {});
     depth = {image.width, image.height};
     if (status.ok()) {
@@ -208,8 +209,7 @@ Status BagCamera::open(const Calibration& calibration, const std::optional<doubl
 
 Status BagCamera::read_colour(const BagMessage& message) {
   ImageMessage image;
-  Status status = bag_.read(message, bytes_);
-  if (status.ok()) status = parse_image(bytes_, image);
+  Status status = read_image(message, image);
   if (status.ok() && (image.width != colour_size_.width || image.height != colour_size_.height))
     status = {StatusCode::kDamaged, fmt::format("{}x{} where {}x{} is expected", image.width, image.height,
                                                 colour_size_.width, colour_size_.height)};
@@ -218,8 +218,7 @@ Status BagCamera::read_colour(const BagMessage& message) {
 
 Status BagCamera::read_depth(const BagMessage& message) {
   ImageMessage image;
-  Status status = bag_.read(message, bytes_);
-  if (status.ok()) status = parse_image(bytes_, image);
+  Status status = read_image(message, image);
   if (status.ok() && (image.width != depth_size_.width || image.height != depth_size_.height ||
                       image.encoding != depth_encoding_))
     status = {StatusCode::kDamaged,

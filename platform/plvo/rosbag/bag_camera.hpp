@@ -13,6 +13,7 @@
 #include "plvo/replay/frame_fit.hpp"
 #include "plvo/replay/sequence_index.hpp"
 #include "plvo/rosbag/bag_file.hpp"
+#include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
 
@@ -54,6 +55,7 @@ class BagCamera final : public RgbdCamera {
 
   Status choose_images(const std::string& wanted, bool depth, std::size_t& topic);
   Status choose_info(const std::string& wanted);
+  Status read_image(const BagMessage& message, ImageMessage& image);
   Status encoding_of(std::size_t topic, std::string& encoding);
   std::string topics_in_words() const;
   // By stamp; of equal ones the first.
