@@ -25,6 +25,14 @@ TEST(Pinhole, ProjectInvertsBackProject) {
   EXPECT_GT(back_project(k, k.cx, k.cy + 1, 2).y(), 0) << "y points down";
 }
 
+TEST(Pinhole, DerivativeOfProjectMatchesDifferences) {
+  const Pinhole k{517.3, 516.5, 318.6, 255.3};
+  for (const Vector3& p : {Vector3(0.3, -0.2, 0.8), Vector3(-1.5, 1, 4)}) {
+    const auto J = numeric_jacobian<2, 3>([&](const Vector3& x) { return project(k, x); }, p, 1e-5);
+    EXPECT_LT((project_derivative(k, p) - J).norm(), 1e-6 * J.norm());
+  }
+}
+
 TEST(Distortion, FollowsBrownAndConrady) {
   // One term at a time, at (0.3, −0.2): r² = 0.13.
   const Vector2 ideal(0.3, -0.2);

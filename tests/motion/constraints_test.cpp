@@ -163,7 +163,7 @@ TEST_P(Joint, EliminationEqualsTheDenseSolve) {
   const Vector6 difference = boxminus(T, joint.T);
   for (int i = 0; i < 6; ++i) {
     const double sigma = std::sqrt(C(i, i));
-    EXPECT_NEAR(difference[i] / sigma, 0, 1e-3) << "ξ[" << i << "], in SDs";
+    EXPECT_NEAR(difference[i] / sigma, 0, 3e-3) << "ξ[" << i << "], in SDs";
     for (int j = 0; j < 6; ++j)
       EXPECT_NEAR(C_eliminated(i, j) / (sigma * std::sqrt(C(j, j))), C(i, j) / (sigma * std::sqrt(C(j, j))),
                   1e-3);
@@ -200,7 +200,7 @@ TEST(LineResidual, MahalanobisDistanceIsThatOfTheBestLandmark) {
     bench.points.clear();
     bench.load(pair);
     test::flag_all(bench.lines[0]);
-    bench.lines[0].begin();
+    bench.lines[0].begin(pair.truth, {});
     JointInformation sum;
     const double cost = bench.lines[0].linearize(pair.truth, {}, RobustKernel(RobustLoss::kNone, 4), sum);
     const double s = bench.lines[0].mahalanobis_squared(0, pair.truth, 1e9);
@@ -208,8 +208,7 @@ TEST(LineResidual, MahalanobisDistanceIsThatOfTheBestLandmark) {
   }
 }
 
-// Gradient of the eliminated cost against central differences of it, landmarks re-optimised at every
-// evaluation; for every kind and every loss.
+// Gradient of the eliminated cost against central differences of it; for every kind and every loss.
 class Gradient : public ::testing::TestWithParam<std::tuple<int, RobustLoss>> {};
 
 TEST_P(Gradient, IsThatOfTheEliminatedCost) {
@@ -224,15 +223,11 @@ TEST_P(Gradient, IsThatOfTheEliminatedCost) {
   Vector6 offset;
   offset << 0.006, -0.003, 0.009, 0.0015, 0.0024, -0.0015;  // far enough for the losses to bend
   const Se3 T = boxplus(pair.truth, offset);
+  set.begin(T, {});
   const auto evaluate = [&](const Se3& at, Vector6& g) {
-    double cost = 0;
-    set.begin();
-    for (int i = 0; i < 4; ++i) {  // landmarks to their optimum
-      JointInformation sum;
-      cost = set.linearize(at, {}, kernel, sum);
-      g = sum.g.head<6>();
-      set.accept();
-    }
+    JointInformation sum;
+    const double cost = set.linearize(at, {}, kernel, sum);
+    g = sum.g.head<6>();
     return cost;
   };
   Vector6 g, unused;
@@ -242,7 +237,7 @@ TEST_P(Gradient, IsThatOfTheEliminatedCost) {
     const double numeric = (evaluate(boxplus(T, h * Vector6::Unit(j)), unused) -
                             evaluate(boxplus(T, -h * Vector6::Unit(j)), unused)) /
                            (2 * h);
-    EXPECT_NEAR(g[j], numeric, 1e-4 * g.norm()) << j;
+    EXPECT_NEAR(g[j], numeric, 1e-6 * g.norm()) << j;
   }
 }
 INSTANTIATE_TEST_SUITE_P(KindsAndLosses, Gradient,

@@ -264,10 +264,9 @@ class PlaneSamples final : public ConstraintSet {
     const double r = residual(samples_[i], T) / samples_[i].sigma;
     return r * r;
   }
-  void begin() override {}
-  void accept() override {}
+  void begin(const Se3&, const SharedErrors&) override {}
   double linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
-                   JointInformation& sum) override {
+                   JointInformation& sum) const override {
     double cost = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (inliers_[i] == 0) continue;

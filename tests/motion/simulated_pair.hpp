@@ -167,18 +167,23 @@ inline void flag_all(ConstraintSet& set) {
   for (std::size_t i = 0; i < set.size(); ++i) set.inliers()[i] = set.usable(i) ? 1 : 0;
 }
 
-// Maximum likelihood over every match, from a start near the truth, without RANSAC.
+// Maximum likelihood over every match, from a start near the truth, without RANSAC: solves with weights held
+// at where the last one ended, until that does not matter.
 inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& start, RobustLoss loss,
                             Se3& T, Matrix6& H) {
   bench.points.clear();
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  MotionProblem problem(bench.sets, MotionReferences{}, {}, MotionProblem::make_kernels(bench.sets, loss),
-                        start);
   LevenbergMarquardt<6> solver;
-  const LmSummary summary = solver.solve(problem);
-  T = problem.T_current_reference();
+  LmSummary summary;
+  T = start;
+  for (int solve = 0; solve < 4; ++solve) {
+    MotionProblem problem(bench.sets, MotionReferences{}, {}, MotionProblem::make_kernels(bench.sets, loss),
+                          T);
+    summary = solver.solve(problem);
+    T = problem.T_current_reference();
+  }
   H = solver.hessian();
   return summary;
 }

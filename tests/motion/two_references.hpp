@@ -76,7 +76,6 @@ struct Linearization {
   Matrix6 H;
   Vector6 g;
 };
-inline constexpr int kLandmarkRounds = 8;
 inline Linearization linearize(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                                const Se3& T, bool marginalise = true, const Vector6& step = Vector6::Zero()) {
   MotionReferences judged = references;
@@ -84,11 +83,6 @@ inline Linearization linearize(std::span<ConstraintSet* const> sets, const Motio
     for (MotionReference& reference : judged) reference.covariance.setZero();
   MotionProblem problem(sets, judged, {}, MotionProblem::make_kernels(sets, RobustLoss::kNone), T);
   Linearization out;
-  // The lines' landmarks take a few rounds to their optimum.
-  for (int round = 0; round < kLandmarkRounds; ++round) {
-    out.cost = problem.linearize(Vector6::Zero(), out.H, out.g);
-    problem.accept();
-  }
   out.cost = problem.linearize(step, out.H, out.g);
   return out;
 }
@@ -98,13 +92,18 @@ struct Solution {
   Se3 T;
   Matrix6 H;
 };
+// Solves with weights held at where the last one ended, until that does not matter.
 inline Solution solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                       const Se3& start) {
-  MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, RobustLoss::kHuber), start);
   LevenbergMarquardt<6> solver;
   Solution solution;
-  solution.summary = solver.solve(problem);
-  solution.T = problem.T_current_reference();
+  solution.T = start;
+  for (int round = 0; round < 4; ++round) {
+    MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, RobustLoss::kHuber),
+                          solution.T);
+    solution.summary = solver.solve(problem);
+    solution.T = problem.T_current_reference();
+  }
   solution.H = solver.hessian();
   return solution;
 }

@@ -19,12 +19,13 @@ using test::solve;
 using test::TwoReferences;
 
 TEST(TwoReferences, WithAnExactPoseAreOneProblem) {
-  // Points are eliminated exactly wherever T is; lines have settled landmarks near the truth only.
+  // Points are eliminated exactly wherever T is; the landmarks of lines settle to second order in the
+  // noise, near the truth.
   struct Case {
     int points, lines;
     double away, tolerance;
   };
-  for (const Case& c : {Case{40, 0, 1, 1e-10}, Case{20, 15, 0, 1e-7}})
+  for (const Case& c : {Case{40, 0, 1, 1e-10}, Case{20, 15, 0, 5e-4}})
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       TwoReferences two(seed, c.points, c.lines);
       TwoReferences one(seed, c.points, c.lines);
@@ -52,9 +53,9 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
     const Solution y = solve(sets_one, MotionReferences{}, start);
     ASSERT_TRUE(converged(x.summary.status));
     ASSERT_TRUE(converged(y.summary.status));
-    // As near as the lines' landmarks are settled.
-    EXPECT_LT(boxminus(x.T, y.T).cwiseAbs().maxCoeff(), 1e-6);
-    EXPECT_LT(difference(x.H, y.H), 1e-4);
+    // As near as the lines' landmarks are settled: to second order in the noise.
+    EXPECT_LT(boxminus(x.T, y.T).cwiseAbs().maxCoeff(), 5e-6);
+    EXPECT_LT(difference(x.H, y.H), 1e-2);
 
     // And so in the whole estimator, consensus included.
     const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, 5, nullptr, two.arena);

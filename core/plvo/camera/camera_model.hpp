@@ -48,6 +48,9 @@ inline constexpr double kNearestSeen_m = 0.1;
 // Projects p (camera frame, metres) to pixels with the pinhole alone. p.z() must be positive.
 Vector2 project(const Pinhole& pinhole, const Vector3& p);
 
+// Its derivative by p, px/m.
+Matrix<2, 3> project_derivative(const Pinhole& pinhole, const Vector3& p);
+
 // Equation (1): the point at pixel (u, v) with depth d (metres along z).
 Vector3 back_project(const Pinhole& pinhole, double u, double v, double d);
 

@@ -59,14 +59,14 @@ class ConstraintSet {
   // Any value above `cutoff` may be returned as soon as it is known to be above.
   virtual double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const = 0;
 
-  // Refinement. begin() sets the landmarks of the inliers back to their measurements. linearize() then moves
-  // candidate landmarks to their optimum for T and the shared errors' value, adds their Schur complement on
-  // (ξ, β) to `sum` (over the inliers; what belongs to β only if there are any) and returns ½ Σ ρ there;
-  // accept() keeps the candidates. Time is linear in size().
-  virtual void begin() = 0;
+  // Refinement. begin() prepares for motions about T: what a set holds constant over one solve (weights,
+  // places of landmarks) it takes there; an inlier that cannot be weighed there is none any more.
+  // linearize() moves the other parts of the landmarks to their optimum for T and the shared errors' value,
+  // adds their Schur complement on (ξ, β) to `sum` (over the inliers; what belongs to β only if there are
+  // any) and returns ½ Σ ρ there. Time is linear in size().
+  virtual void begin(const Se3& T, const SharedErrors& shared) = 0;
   virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                           JointInformation& sum) = 0;
-  virtual void accept() = 0;
+                           JointInformation& sum) const = 0;
 
   // Which of the references the matches are with (motion_problem.hpp), 0 unless said otherwise; ρ, the
   // correlation between the residuals of any two matches: errors that the features of a scene share do not

@@ -3,8 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
-#include <utility>
 
 #include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
@@ -16,12 +14,9 @@ namespace {
 // A segment must be longer than this many SDs of its ends, or its direction is not known well enough to
 // linearise.
 constexpr double kMinLengthSigmas = 4;
-// Gauss–Newton steps of one landmark per linearisation, and the step (m) below which the next would be in
-// vain: the eliminated cost accounts for the last step but for its square over the length of a segment.
-constexpr int kMaxLandmarkSteps = 4;
-constexpr double kLandmarkTolerance = 1e-4;
-// A step back that is longer than this share of the one before it does not converge.
-constexpr double kContraction = 0.5;
+// Squared, of four offsets (99 % of χ²(4)): what lies farther off is no noise, and tells nothing of the noise
+// along the line.
+constexpr double kNoise = 13.3;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
@@ -106,28 +101,28 @@ struct Interpolation {
   }
 };
 
-// λ − C_le w, the correction held within a quarter of the segment: far from the solution the offsets are no
-// noise, and what they predict along the line is no position.
-Vector2 corrected(const EndOffsets& offsets, const Vector4& w) {
-  const double length = offsets.lambda[1] - offsets.lambda[0];
-  const double limit = 0.25 * (length < 0 ? -length : length);
-  const Vector2 correction = offsets.C_le.lazyProduct(w);
-  return offsets.lambda - correction.cwiseMin(limit).cwiseMax(-limit);
-}
+// A line through q along d, in reference coordinates, and what the offsets of the segments from it weigh in
+// each frame, which places their ends along it: w_current = W c and w_reference = −Nᵀ W c.
+struct Landmark {
+  Vector3 q, d;
+  Vector4 w_reference, w_current;
+};
 
-// One match at (T, landmark): everything the elimination needs.
-struct Linearized {
+// One match at (T, landmark).
+struct Observed {
   Cholesky<4> W;         // factor of C' + N C Nᵀ
-  Vector4 c, w;          // c = e' − N e, w = W c
+  Vector4 offset;        // N e
+  Vector4 w;             // W (e' − N e)
   Vector4 w_reference;   // −Nᵀ w
+  double noise = 1;      // what may be noise of it
   Vector4 y;             // the landmark's best displacement across the line at its stations
   Vector2 stations;      // λ_A, λ_B of the reference frame
   Vector2 ends;          // λ'_A, λ'_B of the current frame
   Matrix3 G, G_current;  // line frames
 };
 
-bool linearize_line(const Line3d& reference, const Line3d& current, const Se3& T,
-                    const LineConstraints::Landmark& landmark, Linearized& at) {
+bool observe_both(const Line3d& reference, const Line3d& current, const Se3& T, const Landmark& landmark,
+                  Observed& at) {
   at.G = frame_along(landmark.d);
   at.G_current = T.R.lazyProduct(at.G);
   const EndOffsets first = observe(reference, landmark.q, at.G);
@@ -136,70 +131,57 @@ bool linearize_line(const Line3d& reference, const Line3d& current, const Se3& T
   // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
   // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference:
   // those of the last step serve, and agree with their own step when it converges.
-  at.stations = corrected(first, landmark.w_reference);
-  at.ends = corrected(second, landmark.w_current);
+  at.stations = first.lambda - Vector2(first.C_le.lazyProduct(landmark.w_reference));
+  at.ends = second.lambda - Vector2(second.C_le.lazyProduct(landmark.w_current));
   const Interpolation N(at.stations, at.ends);
 
-  at.c = second.e - N * first.e;
+  at.offset = N * first.e;
   if (!at.W.factor(second.C + N.sandwich(first.C))) return false;
-  at.w = at.W.solve(at.c);
+  const Vector4 c = second.e - at.offset;
+  at.w = at.W.solve(c);
+  const double squared = c.dot(at.w);
+  at.noise = squared > kNoise ? kNoise / squared : 1;
   at.w_reference = -N.transpose_times(at.w);
   at.y = first.e - Vector4(first.C.lazyProduct(at.w_reference));
   return true;
 }
 
-LineConstraints::Landmark moved(const LineConstraints::Landmark& landmark, const Linearized& at) {
+Landmark moved(const Landmark& landmark, const Observed& at) {
   const Matrix<3, 2> U = at.G.block<3, 2>(0, 0);
   const Vector3 at_a = U.lazyProduct(at.y.head<2>());
   const Vector3 at_b = U.lazyProduct(at.y.tail<2>());
   const Vector3 slope = (at_b - at_a) / (at.stations[1] - at.stations[0]);
-  LineConstraints::Landmark result;
+  Landmark result;
   result.q = landmark.q + at_a - at.stations[0] * slope;
   result.d = landmark.d + slope;
   result.d *= 1 / sqrt(result.d.squaredNorm());
-  result.w_reference = at.w_reference;
-  result.w_current = at.w;
+  result.w_reference = at.noise * at.w_reference;
+  result.w_current = at.noise * at.w;
   return result;
 }
 
-// `next` with weights halfway: where the ends' places along the line and the weights chase each other, two
-// values in turns, the solution lies between them.
-LineConstraints::Landmark between(const LineConstraints::Landmark& last,
-                                  const LineConstraints::Landmark& next) {
-  LineConstraints::Landmark result = next;
-  result.w_reference = 0.5 * (last.w_reference + next.w_reference);
-  result.w_current = 0.5 * (last.w_current + next.w_current);
-  return result;
-}
-
-bool turns_back(const Vector4& last_y, const Vector4& y) {
-  return last_y.dot(y) < 0 && y.squaredNorm() > kContraction * kContraction * last_y.squaredNorm();
-}
-
-LineConstraints::Landmark measured_landmark(const LineConstraints::Reference& reference) {
-  return {reference.q, reference.frame.col(2), Vector4::Zero(), Vector4::Zero()};
-}
-
-// Columns of the motion and of the shared errors, and one of nothing to make the number even.
+// Columns of the motion, of the shared errors, and of the residual: an even number.
 constexpr int kPairs = (JointInformation::kSize + 1) / 2;
-using Jacobian = Matrix<4, 2 * kPairs>;
+static_assert(JointInformation::kSize % 2 == 1);
+using Columns = Matrix<4, 2 * kPairs>;
 
-// H += weight · Jᵀ W⁻¹ J, two columns at a time; of its lower triangle at least.
-void add_information(const Cholesky<4>& W, const Jacobian& J, int pairs, double weight,
-                     Pair (&H)[2 * kPairs][kPairs]) {
-  Pair whitened[4][kPairs];
+// Columns ← L⁻¹ columns, two at a time.
+void whiten(const Cholesky<4>& L, const Columns& columns, int pairs, Pair (&whitened)[4][kPairs]) {
   for (int pair = 0; pair < pairs; ++pair) {
     Pair column[4];
-    for (int k = 0; k < 4; ++k) column[k] = Pair{J(k, 2 * pair), J(k, 2 * pair + 1)};
-    W.solve_lower(column);
+    for (int k = 0; k < 4; ++k) column[k] = Pair{columns(k, 2 * pair), columns(k, 2 * pair + 1)};
+    L.solve_lower(column);
     for (int k = 0; k < 4; ++k) whitened[k][pair] = column[k];
   }
+}
+
+// H += weight · Aᵀ A, A whitened columns; of its lower triangle at least.
+void add_products(const Pair (&A)[4][kPairs], int pairs, double weight, Pair (&H)[2 * kPairs][kPairs]) {
   for (int r = 0; r < 2 * pairs; ++r) {
     double row[4];
-    for (int k = 0; k < 4; ++k) row[k] = weight * whitened[k][r / 2][r % 2];
+    for (int k = 0; k < 4; ++k) row[k] = weight * A[k][r / 2][r % 2];
     for (int pair = 0; 2 * pair <= r; ++pair)
-      H[r][pair] += row[0] * whitened[0][pair] + row[1] * whitened[1][pair] + row[2] * whitened[2][pair] +
-                    row[3] * whitened[3][pair];
+      H[r][pair] += row[0] * A[0][pair] + row[1] * A[1][pair] + row[2] * A[2][pair] + row[3] * A[3][pair];
   }
 }
 
@@ -213,8 +195,7 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
       matches_(matches.first(inliers_.size())),
       usable_(workspace.usable.first(inliers_.size())),
       references_(workspace.references.first(inliers_.size())),
-      landmarks_(workspace.landmarks.first(inliers_.size())),
-      candidates_(workspace.candidates.first(inliers_.size())) {
+      held_(workspace.held.first(inliers_.size())) {
   if constexpr (!kLinesBuilt) return;  // there are no matches
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const Match& match = matches_[i];
@@ -286,68 +267,81 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   return cholesky.solve_lower(offsets.e).squaredNorm();
 }
 
-void LineConstraints::begin() {
+void LineConstraints::begin(const Se3& T, const SharedErrors& shared) {
   if constexpr (!kLinesBuilt) return;
   for (std::size_t i = 0; i < matches_.size(); ++i)
-    if (inliers_[i] != 0) landmarks_[i] = measured_landmark(references_[i]);
+    if (inliers_[i] != 0 && !hold(i, T, shared)) inliers_[i] = 0;
 }
 
-void LineConstraints::accept() { std::swap(landmarks_, candidates_); }
+bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shared) {
+  Line3d current = current_[matches_[i].current];
+  if (shared.any()) {
+    current.a -= shared.shift(current.a);
+    current.b -= shared.shift(current.b);
+  }
+  // From the measured line one Gauss–Newton step to the best one: another would move it by the square of the
+  // first over the segment's length.
+  const Line3d& reference = reference_[matches_[i].reference];
+  const Landmark measured{references_[i].q, references_[i].frame.col(2), Vector4::Zero(), Vector4::Zero()};
+  Observed at;
+  if (!observe_both(reference, current, T, measured, at)) return false;
+  const Landmark landmark = moved(measured, at);
+  if (!observe_both(reference, current, T, landmark, at)) return false;
+  Held& held = held_[i];
+  for (int end = 0; end < 2; ++end) {
+    held.ends[end] = landmark.q + at.ends[end] * landmark.d;
+    held.across[end] = at.G_current.col(end);
+  }
+  held.offset = at.offset;
+  held.W = at.W;
+  return true;
+}
 
 double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                                  JointInformation& sum) {
+                                  JointInformation& sum) const {
   if constexpr (!kLinesBuilt) return 0;
-  constexpr int kSize = JointInformation::kSize;
-  const int size = shared.any() ? kSize : 6;
+  const int size = shared.any() ? JointInformation::kSize : 6;
+  const int pairs = size / 2 + 1;
   double cost = 0;
-  const int pairs = shared.any() ? kPairs : 3;
-  Pair H_sum[2 * kPairs][kPairs] = {};  // two columns each; the lower triangle
-  Vector<kSize> g_sum = Vector<kSize>::Zero();
+  Pair H[2 * kPairs][kPairs] = {};  // two columns each; the lower triangle; the last row holds −g
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
-    Landmark landmark = landmarks_[i];
-    Line3d current = current_[matches_[i].current];
-    if (shared.any()) {
-      current.a -= shared.shift(current.a);
-      current.b -= shared.shift(current.b);
-    }
-    Linearized at;
-    Vector3 q = Vector3::Zero();  // R Q of the line that `at` was linearised about
-    Vector4 last_y = Vector4::Zero();
-    bool halfway = false;
-    for (int step = 0; step < kMaxLandmarkSteps; ++step) {
-      if (!linearize_line(reference_[matches_[i].reference], current, T, landmark, at))
-        return std::numeric_limits<double>::infinity();  // the solver takes it for a step that failed
-      q = T.R.lazyProduct(landmark.q);
-      const Landmark next = moved(landmark, at);
-      halfway = halfway || turns_back(last_y, at.y);
-      landmark = halfway ? between(landmark, next) : next;
-      last_y = at.y;
-      if (at.y.cwiseAbs().maxCoeff() <= kLandmarkTolerance) break;
-    }
-    candidates_[i] = landmark;
-
-    double weight = 1;
-    cost += 0.5 * kernel(at.c.dot(at.w), weight);
+    const Held& held = held_[i];
+    const Line3d& current = current_[matches_[i].current];
     // −∂c/∂(ξ, β), one row per end and direction u across: [uᵀ, (S × u)ᵀ, uᵀ F], S the end's place on the
-    // line less t.
-    Jacobian J = Jacobian::Zero();
+    // line less t; and c.
+    Columns columns;
+    columns.col(2 * pairs - 1).setZero();
     for (int end = 0; end < 2; ++end) {
-      const Vector3 S = q + at.ends[end] * at.G_current.col(2);
-      const Matrix<3, SharedErrors::kCount> F = shared.fields(S + T.t);
+      const Vector3& measured = end == 0 ? current.a : current.b;
+      const Vector3 S = T.R.lazyProduct(held.ends[end]);
+      Vector3 off = measured - T.t - S;
+      if (shared.any()) {
+        const Matrix<3, SharedErrors::kCount> F = shared.fields(measured);
+        off -= F.lazyProduct(shared.value);
+        for (int k = 0; k < 2; ++k)
+          columns.block<1, SharedErrors::kCount>(2 * end + k, 6) = held.across[k].transpose().lazyProduct(F);
+      }
       for (int k = 0; k < 2; ++k) {
-        const Vector3 u = at.G_current.col(k);
-        if (shared.any()) J.block<1, SharedErrors::kCount>(2 * end + k, 6) = u.transpose().lazyProduct(F);
-        J.block<1, 3>(2 * end + k, 0) = u.transpose();
-        J.block<1, 3>(2 * end + k, 3) = S.cross(u).transpose();
+        const Vector3& u = held.across[k];
+        const int row = 2 * end + k;
+        columns.block<1, 3>(row, 0) = u.transpose();
+        columns.block<1, 3>(row, 3) = S.cross(u).transpose();
+        columns(row, size) = u.dot(off) - held.offset[row];
       }
     }
-    for (int r = 0; r < size; ++r) g_sum[r] -= weight * J.col(r).dot(at.w);
-    add_information(at.W, J, pairs, weight, H_sum);
+    Pair whitened[4][kPairs];
+    whiten(held.W, columns, pairs, whitened);
+    double squared = 0;
+    for (const auto& row : whitened) squared += row[size / 2][size % 2] * row[size / 2][size % 2];
+    double weight = 1;
+    cost += 0.5 * kernel(squared, weight);
+    add_products(whitened, pairs, weight, H);
   }
-  for (int r = 0; r < size; ++r)
-    for (int c = 0; c < size; ++c) sum.H(r, c) += r >= c ? H_sum[r][c / 2][c % 2] : H_sum[c][r / 2][r % 2];
-  sum.g += g_sum;
+  for (int r = 0; r < size; ++r) {
+    for (int c = 0; c < size; ++c) sum.H(r, c) += r >= c ? H[r][c / 2][c % 2] : H[c][r / 2][r % 2];
+    sum.g[r] -= H[size][r / 2][r % 2];
+  }
   return cost;
 }
 

@@ -19,22 +19,22 @@
 //   c = e' − N e,   W = (C' + N C Nᵀ)⁻¹,   Schur complement J_ξᵀ W J_ξ,   gradient −J_ξᵀ W c,
 // with C = Vᵀ Λ V: one 4×4 Cholesky per line. Neither U nor the stations influence the result; tests/motion
 // proves it against a dense solve with 6-parameter landmarks and gauges of its own.
+//
+// A solve holds W, N, U and the landmark's points at the ends as they are best for the motion it begins with,
+// and so minimises squares of constant weights, which every step lowers; the next begins where it ended
+// (iteratively reweighted least squares). At a motion that two solves in a row give, the gradient is that of
+// the joint problem: the landmark is at its optimum there.
 #pragma once
 
 #include "plvo/base/match.hpp"
 #include "plvo/camera/observation.hpp"
+#include "plvo/math/cholesky.hpp"
 #include "plvo/motion/constraint_set.hpp"
 
 namespace plvo {
 
 class LineConstraints final : public ConstraintSet {
  public:
-  // In reference coordinates. w_current = W c and w_reference = −Nᵀ W c at the last linearisation: what the
-  // offsets weigh in each frame, which places the ends along the line.
-  struct Landmark {
-    Vector3 q, d;
-    Vector4 w_reference, w_current;
-  };
   // What RANSAC needs of the reference measurement again and again.
   struct Reference {
     Vector3 q;           // middle of the segment
@@ -42,17 +42,23 @@ class LineConstraints final : public ConstraintSet {
     double half_length;  // m; the ends are q ± half_length · d
     Matrix4 C;           // Vᵀ Λ V
   };
+  // What stays as it is while the motion moves: the landmark, where along it the ends are, and the weights.
+  struct Held {
+    Vector3 ends[2];    // points of the landmark, in reference coordinates
+    Vector3 across[2];  // U, in current coordinates
+    Vector4 offset;     // N e
+    Cholesky<4> W;      // factor of C' + N C Nᵀ
+  };
   struct Workspace {
     std::span<std::uint8_t> inliers, usable;
     std::span<Reference> references;
-    std::span<Landmark> landmarks, candidates;
+    std::span<Held> held;
     template <typename Memory>
     static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
       return {memory.template take<std::uint8_t>("motion: line inliers", max_matches),
               memory.template take<std::uint8_t>("motion: usable lines", max_matches),
               memory.template take<Reference>("motion: reference lines", max_matches),
-              memory.template take<Landmark>("motion: line landmarks", max_matches),
-              memory.template take<Landmark>("motion: line candidates", max_matches)};
+              memory.template take<Held>("motion: lines held", max_matches)};
     }
   };
 
@@ -69,20 +75,18 @@ class LineConstraints final : public ConstraintSet {
   // With the reference measurement as the landmark: equal to the eliminated residual to first order in the
   // noise.
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin() override;
+  void begin(const Se3& T, const SharedErrors& shared) override;
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                   JointInformation& sum) override;
-  void accept() override;
-
-  // The landmarks of the inliers after a refinement.
-  std::span<const Landmark> landmarks() const { return landmarks_; }
+                   JointInformation& sum) const override;
 
  private:
+  bool hold(std::size_t i, const Se3& T, const SharedErrors& shared);
+
   std::span<const Line3d> reference_, current_;
   std::span<const Match> matches_;
   std::span<std::uint8_t> usable_;
   std::span<Reference> references_;
-  std::span<Landmark> landmarks_, candidates_;
+  std::span<Held> held_;
 };
 
 }  // namespace plvo

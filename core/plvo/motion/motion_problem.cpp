@@ -84,8 +84,9 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   gain_.setZero();
   candidate_gain_.setZero();
   for (Matrix6& information : information_) information.setZero();
+  const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    sets_[kind]->begin();
+    sets_[kind]->begin(motions[sets_[kind]->reference()], shared);
     share_[kind] = share_of(*sets_[kind]);
   }
   for (std::size_t r = 1; r < kMaxReferences; ++r) root_[r] = root(references_[r].covariance);
@@ -117,7 +118,7 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   of_reference_.set_zero();
   double cost = 0;
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    ConstraintSet& set = *sets_[kind];
+    const ConstraintSet& set = *sets_[kind];
     if (set.reference() != r) continue;
     any = true;
     of_kind_.set_zero();
@@ -185,7 +186,6 @@ void MotionProblem::accept() {
   inverse_ = candidate_inverse_;
   gain_ = candidate_gain_;
   information_ = candidate_information_;
-  for (ConstraintSet* set : sets_) set->accept();
 }
 
 }  // namespace plvo

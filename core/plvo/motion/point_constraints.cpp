@@ -119,7 +119,7 @@ void mirror_shared(JointInformation& sum) {
 }  // namespace
 
 double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                                   JointInformation& sum) {
+                                   JointInformation& sum) const {
   if constexpr (!kPointsBuilt) return 0;
   double cost = 0;
   Matrix3 H_vv = Matrix3::Zero();

@@ -11,7 +11,7 @@ PriorConstraint::PriorConstraint(const Se3& T_sensed, const Matrix6& covariance,
 }
 
 double PriorConstraint::linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
-                                  JointInformation& sum) {
+                                  JointInformation& sum) const {
   if (inliers_[0] == 0) return 0;
   const Vector6 r = boxminus(T, T_sensed_);
   // ∂ log(Exp(ω) Exp(φ)) / ∂ω at 0, to the fourth order in φ.

@@ -21,10 +21,9 @@ class PriorConstraint final : public ConstraintSet {
   bool usable(std::size_t) const override { return usable_; }
   Primitive primitive(std::size_t) const override { return {}; }
   double mahalanobis_squared(std::size_t, const Se3&, double) const override { return 0; }
-  void begin() override {}
+  void begin(const Se3&, const SharedErrors&) override {}
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                   JointInformation& sum) override;
-  void accept() override {}
+                   JointInformation& sum) const override;
 
  private:
   Se3 T_sensed_;

@@ -40,10 +40,7 @@ PointResidual residual_of(const Pinhole& pinhole, const Point3d& reference, cons
                           const Se3& T) {
   const Vector3 p = T * reference.p;
   const Matrix3 Sigma = T.R * reference.Sigma * T.R.transpose() + current.Sigma;
-  const double fx = pinhole.fx / p.z();
-  const double fy = pinhole.fy / p.z();
-  Matrix<2, 3> J;
-  J << fx, 0, -fx * p.x() / p.z(), 0, fy, -fy * p.y() / p.z();
+  const Matrix<2, 3> J = project_derivative(pinhole, p);
   const Matrix2 S = J * Sigma * J.transpose();
   const Vector2 e = project(pinhole, p) - project(pinhole, current.p);
   const double d = p.z() - current.p.z();

@@ -44,14 +44,10 @@ void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, do
 // What a small patch around reference point p becomes, taken to face the camera there: by the derivative of
 // its projection after the motion.
 PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current_reference) {
-  const Vector3 q = T_current_reference * p;
-  Matrix<2, 3> J;
-  J << pinhole.fx / q.z(), 0, -pinhole.fx * q.x() / (q.z() * q.z()), 0, pinhole.fy / q.z(),
-      -pinhole.fy * q.y() / (q.z() * q.z());
   Matrix<3, 2> facing = T_current_reference.R.block<3, 2>(0, 0);
   facing.col(0) *= p.z() / pinhole.fx;
   facing.col(1) *= p.z() / pinhole.fy;
-  return {J * facing};
+  return {project_derivative(pinhole, T_current_reference * p) * facing};
 }
 
 // Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.

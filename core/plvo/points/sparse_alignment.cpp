@@ -201,9 +201,7 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     // From where it is expected, on the image: what was read lies `weighted` beyond the window, on the grid.
     const Vector2 grid = Vector2(x, y) / kGrid - expected;
     const Vector2 wanted = window.information * grid - found.weighted;
-    Matrix<2, 3> D;
-    D << pinhole.fx, 0, -pinhole.fx * q.x() / q.z(), 0, pinhole.fy, -pinhole.fy * q.y() / q.z();
-    D *= scale / q.z();
+    const Matrix<2, 3> D = scale * project_derivative(pinhole, q);
     Matrix<2, 6> J;
     J.block<2, 3>(0, 0) = D;
     J.block<2, 3>(0, 3) = -D * skew(turned);
