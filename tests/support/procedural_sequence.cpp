@@ -17,45 +17,106 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return h ^ (h >> 15);
 }
 
-std::int32_t floor_to_int(double x) {
-  const auto truncated = static_cast<std::int32_t>(x);
-  return x < truncated ? truncated - 1 : truncated;
-}
+// A surface coordinate in units of `size`, counted from so far before the room that it is positive, and to
+// cut off the fraction is to round down.
+constexpr std::int32_t kBefore = 64;
+double units(double coordinate, double size) { return coordinate * (1 / size) + kBefore; }
 
-// Grey level of a wall at the surface coordinates (s, t): tiles of two sizes, and a dark strip every 0.9 m.
-int wall_grey(std::uint32_t wall, double s, double t) {
-  const double along = s / 0.9 - floor_to_int(s / 0.9);
-  if (along < 0.045) return 24;
-  const auto cell = [&](double size, std::uint32_t salt) {
-    return hash(wall * 16 + salt, static_cast<std::uint32_t>(floor_to_int(s / size)),
-                static_cast<std::uint32_t>(floor_to_int(t / size)));
+// Grey levels of the walls: tiles of two sizes, and a dark strip every 0.9 m. Remembers the last answer:
+// neighbours mostly lie on the same tile.
+class Walls {
+ public:
+  // At the surface coordinates (s, t).
+  int grey(std::uint32_t wall, double s, double t) {
+    const double strips = units(s, 0.9);
+    if (strips - static_cast<std::int32_t>(strips) < 0.045) return 24;
+    const Tiles tiles{
+        wall,
+        {static_cast<std::int32_t>(units(s, 0.31)), static_cast<std::int32_t>(units(t, 0.31))},
+        {static_cast<std::int32_t>(units(s, 0.085)), static_cast<std::int32_t>(units(t, 0.085))}};
+    if (tiles != last_) {
+      last_ = tiles;
+      grey_ = grey_of(tiles);
+    }
+    return grey_;
+  }
+
+ private:
+  struct Tiles {
+    std::uint32_t wall = ~0U;
+    std::int32_t large[2] = {}, small[2] = {};
+    bool operator==(const Tiles&) const = default;
   };
-  int grey = 90 + static_cast<int>(cell(0.31, 1) % 70);
-  const std::uint32_t small = cell(0.085, 2);
-  if (small % 5 == 0) grey += static_cast<int>(small >> 8) % 120 - 60;
-  return std::clamp(grey, 10, 245);
-}
 
-struct Hit {
-  double distance;  // in units of the ray
-  int grey;
+  static int grey_of(const Tiles& tiles) {
+    const auto hash_of = [&](const std::int32_t(&cell)[2], std::uint32_t salt) {
+      return hash(tiles.wall * 16 + salt, static_cast<std::uint32_t>(cell[0] - kBefore),
+                  static_cast<std::uint32_t>(cell[1] - kBefore));
+    };
+    int grey = 90 + static_cast<int>(hash_of(tiles.large, 1) % 70);
+    const std::uint32_t small = hash_of(tiles.small, 2);
+    if (small % 5 == 0) grey += static_cast<int>(small >> 8) % 120 - 60;
+    return std::clamp(grey, 10, 245);
+  }
+
+  Tiles last_;
+  int grey_ = 0;
 };
 
-Hit cast(const Vector3& origin, const Vector3& ray) {
-  int axis = 0;
-  double nearest = 1e9;
-  for (int k = 0; k < 3; ++k) {
-    if (ray(k) == 0) continue;
-    const double d = ((ray(k) > 0 ? kHigh(k) : kLow(k)) - origin(k)) / ray(k);
-    if (d < nearest) {
-      nearest = d;
-      axis = k;
+// The room around one place of the camera.
+class View {
+ public:
+  explicit View(const Vector3& origin) : origin_{origin.x(), origin.y(), origin.z()} {
+    for (int k = 0; k < 3; ++k) {
+      to_low_[k] = kLow(k) - origin(k);
+      to_high_[k] = kHigh(k) - origin(k);
     }
   }
-  const Vector3 p = origin + nearest * ray;
-  const auto wall = static_cast<std::uint32_t>(2 * axis + (ray(axis) > 0 ? 1 : 0));
-  return {nearest, wall_grey(wall, p((axis + 1) % 3), p((axis + 2) % 3))};
-}
+
+  // The wall that a ray meets: the axis across it, and how far away it is, in units of the ray.
+  struct Hit {
+    int axis = 0;
+    double distance = 0;
+  };
+  Hit cast(const Vector3& ray) const {
+    Hit nearest{0, 1e9};
+    for (int k = 0; k < 3; ++k) {
+      if (ray(k) == 0) continue;
+      const double d = distance(ray, k);
+      if (d < nearest.distance) nearest = {k, d};
+    }
+    return nearest;
+  }
+
+  // Of a ray beside one that met the wall across `axis`: most meet the same.
+  int grey(const Vector3& ray, int axis) {
+    double d = distance(ray, axis);
+    double s = 0, t = 0;
+    if (!meets(ray, axis, d, s, t)) {
+      const Hit hit = cast(ray);
+      axis = hit.axis;
+      (void)meets(ray, axis, hit.distance, s, t);
+    }
+    return walls_.grey(static_cast<std::uint32_t>(2 * axis + (ray(axis) > 0 ? 1 : 0)), s, t);
+  }
+
+ private:
+  double distance(const Vector3& ray, int axis) const {
+    return (ray(axis) > 0 ? to_high_[axis] : to_low_[axis]) / ray(axis);
+  }
+  // (s, t): where the ray is at distance d, along the two other axes; false if that is outside the room.
+  bool meets(const Vector3& ray, int axis, double d, double& s, double& t) const {
+    const int i = axis < 2 ? axis + 1 : 0;
+    const int j = i < 2 ? i + 1 : 0;
+    s = origin_[i] + d * ray(i);
+    t = origin_[j] + d * ray(j);
+    return s > kLow(i) && s < kHigh(i) && t > kLow(j) && t < kHigh(j);
+  }
+
+  double origin_[3];
+  double to_low_[3], to_high_[3];
+  Walls walls_;
+};
 
 }  // namespace
 
@@ -89,15 +150,17 @@ Se3 ProceduralRenderer::T_world_camera(int i) {
 
 RgbdFrame ProceduralRenderer::render(int i) {
   const Se3 T = T_world_camera(i);
-  const double quarter_x = 0.25 / camera_.pinhole.fx;
-  const double quarter_y = 0.25 / camera_.pinhole.fy;
+  View view(T.t);
+  // Four samples a pixel, so that edges have a place below the pixel.
+  Vector3 offsets[4];
+  for (int sample = 0; sample < 4; ++sample)
+    offsets[sample] = T.R * Vector3((sample % 2 == 0 ? -0.25 : 0.25) / camera_.pinhole.fx,
+                                    (sample < 2 ? -0.25 : 0.25) / camera_.pinhole.fy, 0);
   for (std::size_t k = 0; k < rays_.size(); ++k) {
-    // Four samples a pixel, so that edges have a place below the pixel.
+    const Vector3 ray = T.R * rays_[k];
+    const View::Hit hit = view.cast(ray);
     int grey = 0;
-    for (int sample = 0; sample < 4; ++sample) {
-      const Vector3 offset((sample % 2 == 0 ? -1 : 1) * quarter_x, (sample < 2 ? -1 : 1) * quarter_y, 0);
-      grey += cast(T.t, T.R * (rays_[k] + offset)).grey;
-    }
+    for (const Vector3& offset : offsets) grey += view.grey(ray + offset, hit.axis);
     const std::uint32_t noise = hash(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 7);
     grey = std::clamp((grey + 2) / 4 + static_cast<int>(noise % 5) - 2, 0, 255);
     for (int channel = 0; channel < 3; ++channel)
@@ -105,8 +168,7 @@ RgbdFrame ProceduralRenderer::render(int i) {
           static_cast<std::uint8_t>(std::max(0, grey - 3 * channel));
 
     // The ray has z = 1, so its parameter is the depth. Far things and one pixel in 64 have none.
-    const double z = cast(T.t, T.R * rays_[k]).distance;
-    const auto millimetres = static_cast<int>(z * 1000 + 0.5);
+    const auto millimetres = static_cast<int>(hit.distance * 1000 + 0.5);
     const int step = 1 + millimetres * millimetres / 1'200'000;
     const int jitter = static_cast<int>((noise >> 8) % 3) - 1;
     const bool hole = millimetres > 4000 || (noise >> 16) % 64 == 0;

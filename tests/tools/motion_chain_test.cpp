@@ -30,10 +30,13 @@ Se3 truth_at(std::int64_t stamp_ns) {
 }
 
 // Motion capture at 100 Hz, at stamps that are nobody else's.
-Trajectory ground_truth() {
-  Trajectory truth;
-  for (std::int64_t t = -3'000'000; t < (kFrames + 2) * kFrame_ns; t += 10'000'000)
-    truth.poses.push_back({t, truth_at(t)});
+const Trajectory& ground_truth() {
+  static const Trajectory truth = [] {
+    Trajectory poses;
+    for (std::int64_t t = -3'000'000; t < (kFrames + 2) * kFrame_ns; t += 10'000'000)
+      poses.poses.push_back({t, truth_at(t)});
+    return poses;
+  }();
   return truth;
 }
 
