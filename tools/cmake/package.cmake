@@ -16,10 +16,10 @@ set(CPACK_COMPONENTS_ALL library development tools)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 if(CMAKE_CROSSCOMPILING)
   # What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot.
-  set(needed "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libspng0, libturbojpeg0, libyaml-cpp0.7")
+  set(needed "libbz2-1.0, libc6 (>= 2.36), libfmt9, libgcc-s1, liblz4-1, libspng0, libstdc++6 (>= 12), libturbojpeg0, libyaml-cpp0.7")
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed}")
   set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
-    "${needed}, libbz2-1.0, libfreenect0.5, liblz4-1, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+    "${needed}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
 else()
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
