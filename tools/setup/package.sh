@@ -53,7 +53,7 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" --version >&2
   "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
-  sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$work/track_folder.c"
+  tools/setup/page_program.sh docs/c.md c >"$work/track_folder.c"
   "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
     -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
   "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
@@ -77,7 +77,7 @@ mmdebstrap --quiet --variant=apt bookworm "$root" "${sources[@]}" >&2
 mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
 cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
-sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$root/try/track_folder.c"
+tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
 say "installed, used and purged; the packages:"
 printf '%s\n' "${debs[@]}"
