@@ -38,6 +38,16 @@ def test_run_gives_the_bits_of_the_folder(walk, bag):
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
+def test_imu_in_axes_of_its_own_is_that_of_the_command_line(bag, tmp_path):
+    words = ["--imu", "--imu-axes", "x,-y,-z", "--quiet", "--covariance", tmp_path / "c"]
+    subprocess.run([os.environ["PLVO_BINARY"], "run", bag, *words], check=True, stderr=subprocess.DEVNULL)
+    covariances = np.loadtxt(tmp_path / "c")[:, 1:]
+    results = list(plvo.run(bag, imu=True, R_camera_imu=np.diag([1, -1, -1])))
+    assert np.allclose([r.covariance.ravel() for r in results if r.has_pose], covariances, rtol=1e-9, atol=0)
+    assert not np.array_equal(results[-1].covariance, list(plvo.run(bag, imu=True))[-1].covariance)
+
+
+@pytest.mark.filterwarnings("ignore:the calibration does not say")
 def test_imu_gives_the_bits_of_the_folder(walk, bag):
     with_imu = list(plvo.run(walk, imu=True))
     assert_same(plvo.run(bag, imu=True), with_imu)

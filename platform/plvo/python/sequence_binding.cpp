@@ -7,8 +7,9 @@
 
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
-#include "plvo/python/recorded.hpp"
+#include "plvo/python/topics.hpp"
 #include "plvo/recording/recording.hpp"
+#include "plvo/replay/recorded_imu.hpp"
 
 namespace plvo::python {
 
@@ -62,10 +63,14 @@ class Sequence {
     }
   }
   const Calibration& calibration() const { return recording_.calibration(); }
-  std::unique_ptr<RecordedImu> imu() {
+  std::unique_ptr<RecordedImu> imu(const py::object& R_camera_imu) {
     ImuRecording samples;
     throw_unless_ok(recording_.read_imu(samples));
-    return recorded_imu(std::move(samples));
+    ImuConfig config;
+    if (!R_camera_imu.is_none()) config.R_camera_imu = matrix_of<3, 3>(R_camera_imu, "R_camera_imu");
+    auto imu = std::make_unique<RecordedImu>();
+    throw_unless_ok(imu->init(std::move(samples), config));
+    return imu;
   }
   std::size_t length() const { return recording_.frame_count(); }
 
@@ -81,7 +86,7 @@ void bind_sequence(py::module_& module) {
       .def(py::init<const py::object&, const py::object&, const py::object&>(), "recording"_a,
            "camera"_a = py::none(), py::kw_only(), "topics"_a = py::none())
       .def_property_readonly("camera", &Sequence::calibration)
-      .def("imu", &Sequence::imu)
+      .def("imu", &Sequence::imu, py::kw_only(), "R_camera_imu"_a = py::none())
       .def("__len__", &Sequence::length)
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [frame_type](const py::object& self) {

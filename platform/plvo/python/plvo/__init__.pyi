@@ -260,7 +260,7 @@ class Sequence:
     ) -> None: ...
     @property
     def camera(self) -> Camera: ...
-    def imu(self) -> RecordedImu:
+    def imu(self, *, R_camera_imu: _Array | None = None) -> RecordedImu:
         """gyroscope.txt and accelerometer.txt of the folder, or sensor_msgs/Imu of the bag."""
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[Frame]: ...
@@ -272,6 +272,7 @@ def run(
     config: Config | None = None,
     *,
     imu: bool = False,
+    R_camera_imu: _Array | None = None,
     cores: int = 1,
     topics: dict[_Topic, str] | None = None,
 ) -> Iterator[Result]: ...

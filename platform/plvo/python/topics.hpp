@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Python says of recordings, for the bindings that read them.
+// Topics of a ROS 1 bag as Python names them.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <utility>
 
 #include "plvo/python/bindings.hpp"
-#include "plvo/replay/recorded_imu.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo::python {
@@ -31,12 +29,6 @@ inline BagTopicNames bag_topics(const py::object& given) {
     *name = value.cast<std::string>();
   }
   return names;
-}
-
-inline std::unique_ptr<RecordedImu> recorded_imu(ImuRecording samples) {
-  auto imu = std::make_unique<RecordedImu>();
-  throw_unless_ok(imu->init(std::move(samples), ImuConfig()));
-  return imu;
 }
 
 }  // namespace plvo::python
