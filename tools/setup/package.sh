@@ -63,6 +63,15 @@ if [ $# -gt 0 ]; then
   exit
 fi
 
+packages_of() { sed 's/([^)]*)//g; s/ //g' | tr , '\n' | sort; }
+for pair in library:libplvo0 tools:plvo-tools; do
+  deb=$(echo "$build/${pair#*:}"_*_"$architecture".deb)
+  if ! diff <(dpkg-deb -f "$deb" Depends | packages_of) <(packages_of <"$build/packaging/needed_by_${pair%:*}") >&2; then
+    say "what packages for other architectures depend on (tools/cmake/package.cmake) is not what ${pair#*:} needs here"
+    exit 1
+  fi
+done
+
 if [ "$(id -u)" -ne 0 ]; then
   say "to try them in a clean root: sudo $0"
   printf '%s\n' "${debs[@]}"
