@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a ROS bag, of which every message is read and taken for an image and for a camera_info; and
-// any bytes as a message.
+// Any bytes as a ROS bag, of which every message is read and taken for an image, for a camera_info and for
+// readings of an IMU; and any bytes as a message.
 #include <string_view>
 #include <vector>
 
@@ -22,6 +22,9 @@ void check_message(std::span<const unsigned char> bytes) {
     (void)colour_pixels(image, rgb);
     (void)depth_pixels(image, depth);
   }
+  ImuMessage imu;
+  const Status readings = parse_imu(bytes, imu);
+  fuzz::require(readings.ok() || !std::string_view(readings.message()).empty());
   Calibration calibration;
   const Status info = parse_camera_info(bytes, calibration);
   fuzz::require(info.ok() || !std::string_view(info.message()).empty());

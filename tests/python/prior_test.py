@@ -37,7 +37,7 @@ def test_run_with_imu_gives_the_poses_of_the_command_line(covered, tmp_path):
 
 def test_samples_one_by_one_are_those_of_the_folder(covered):
     gyro, accelerometer = (np.loadtxt(covered / f"{name}.txt") for name in ("gyroscope", "accelerometer"))
-    recorded, imu = plvo.RecordedImu(covered), plvo.Imu()
+    recorded, imu = plvo.Sequence(covered).imu(), plvo.Imu()
     for stamp, *rate in gyro[:60]:
         assert imu.add_gyro(round(stamp * 1e6) * 1000, rate)
     for stamp, *force in accelerometer[:60]:

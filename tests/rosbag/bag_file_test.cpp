@@ -25,7 +25,7 @@ std::string image_of(int number) {
 BagWriter small_bag(const std::string& compression) {
   BagWriter writer;
   writer.connection(3, "/camera/rgb/image_color", "sensor_msgs/Image");
-  writer.connection(9, "/imu", "sensor_msgs/Imu");
+  writer.connection(9, "/tf", "tf2_msgs/TFMessage");
   for (int i = 0; i < 6; ++i) {
     writer.message(3, 50 + i, image_of(i));
     writer.message(9, 50 + i, "any bytes");

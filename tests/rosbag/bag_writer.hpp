@@ -14,6 +14,7 @@
 
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/math/types.hpp"
 
 namespace plvo::test {
 
@@ -72,6 +73,21 @@ inline std::string camera_info_message(std::int64_t stamp_ns, const CameraModel&
   for (const double r : {1, 0, 0, 0, 1, 0, 0, 0, 1}) text += wire_f64(r);
   for (int i = 0; i < 12; ++i) text += wire_f64(0);
   return text + std::string(4 + 4 + 4 * 4 + 1, '\0');  // binning and region of interest
+}
+
+// What is not there has a covariance that begins with -1, as ROS has it.
+inline std::string imu_message(std::int64_t stamp_ns, const Vector3& rate, bool has_rate,
+                               const Vector3& force, bool has_force) {
+  const auto covariance = [](bool there) {
+    std::string text = wire_f64(there ? 0.01 : -1);
+    for (int i = 1; i < 9; ++i) text += wire_f64(0);
+    return text;
+  };
+  const auto vector = [](const Vector3& v) { return wire_f64(v.x()) + wire_f64(v.y()) + wire_f64(v.z()); };
+  std::string orientation;
+  for (const double q : {0, 0, 0, 1}) orientation += wire_f64(q);
+  return header_message(stamp_ns) + orientation + covariance(false) + vector(rate) + covariance(has_rate) +
+         vector(force) + covariance(has_force);
 }
 
 class BagWriter {

@@ -3,13 +3,10 @@
 // wrong with it in words.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "bag_writer.hpp"
+#include "bag_of_folder.hpp"
 #include "command.hpp"
-#include "library_writer.hpp"
-#include "plvo/replay/recorded_camera.hpp"
 #include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 
@@ -26,48 +23,10 @@ using test::write_file;
 
 const std::string kPlvo = PLVO_BINARY;
 constexpr int kFrames = 6;
-constexpr const char* kImage = "sensor_msgs/Image";
-constexpr const char* kColour = "/camera/rgb/image_color";
-constexpr const char* kDepth = "/camera/depth/image";
-constexpr const char* kInfo = "/camera/rgb/camera_info";
 
 const fs::path& walk() { return test::simulated_walk<kFrames>(kPlvo); }
 
-// What a driver would have published while the walk was recorded.
-std::vector<RecordedMessage> published(bool metres) {
-  Calibration calibration;
-  EXPECT_TRUE(read_calibration(walk() / "calibration.txt", calibration).ok());
-  RecordedCamera camera;
-  EXPECT_TRUE(camera.open(walk(), calibration).ok());
-  std::vector<RecordedMessage> messages;
-  RgbdFrame frame;
-  while (camera.next(frame).ok()) {
-    const std::int64_t late = frame.stamp_ns + 40'000'000;
-    messages.push_back(
-        {kInfo, "sensor_msgs/CameraInfo", test::camera_info_message(frame.stamp_ns, camera.model()), late});
-    messages.push_back({kDepth, kImage, test::depth_message(frame, metres), late});
-    messages.push_back({kColour, kImage, test::colour_message(frame), late});
-    messages.push_back({"/imu", "sensor_msgs/Imu", "not looked at", late});
-  }
-  EXPECT_EQ(messages.size(), 4U * kFrames);
-  return messages;
-}
-
-std::string bag_of(const std::vector<RecordedMessage>& messages, const std::string& compression) {
-  test::BagWriter writer;
-  std::vector<std::string> topics;
-  for (const RecordedMessage& message : messages) {
-    const auto known = std::find(topics.begin(), topics.end(), message.topic);
-    const auto number = static_cast<std::uint32_t>(known - topics.begin());
-    if (known == topics.end()) {
-      topics.push_back(message.topic);
-      writer.connection(number, message.topic, message.type);
-    }
-    writer.message(number, message.received_ns, message.data);
-    if (message.topic == "/imu") writer.end_chunk(compression);
-  }
-  return writer.file();
-}
+std::vector<RecordedMessage> published(bool metres) { return test::published(walk(), metres); }
 
 class CliBag : public ::testing::Test {
  protected:
@@ -76,7 +35,7 @@ class CliBag : public ::testing::Test {
     return run_command(kPlvo + " run " + path("walk.bag") + ' ' + more);
   }
   void write(const std::vector<RecordedMessage>& messages, const std::string& compression = "none") const {
-    write_file(folder_ / "walk.bag", bag_of(messages, compression));
+    write_file(folder_ / "walk.bag", test::bag_of(messages, compression));
   }
   void run_folder() const {
     const CommandResult r = run_command(kPlvo + " run " + walk().string() + " --quiet --out " +
@@ -108,7 +67,6 @@ TEST_F(CliBag, GivesTheBytesOfTheFolder) {
   }
   write(published(false));
   expect_the_folders_bytes("--depth-scale 5000");  // whole units, of which ROS would have a thousand a metre
-  expect_refused("--quiet --imu", 2, "--imu: does not apply to a ROS bag, of which images alone are read");
 }
 
 TEST_F(CliBag, OfRossOwnLibraryToo) {
@@ -126,7 +84,7 @@ TEST_F(CliBag, OfRossOwnLibraryToo) {
 
 TEST_F(CliBag, CutShortItRunsToTheCut) {
   run_folder();
-  const std::string whole = bag_of(published(true), "none");
+  const std::string whole = test::bag_of(published(true), "none");
   write_file(folder_ / "walk.bag", whole.substr(0, whole.size() * 7 / 10));
   const CommandResult r = run("--readout 0 --json " + path("j") + " --out " + path("t"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
@@ -140,10 +98,10 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
   run_folder();
   std::vector<RecordedMessage> messages = published(true);
   for (RecordedMessage& message : messages)
-    if (message.topic != "/imu")
-      message.topic = message.topic == kColour
+    if (message.topic != test::kNotRead)
+      message.topic = message.topic == test::kTumColour
                           ? "/front/image"
-                          : (message.topic == kDepth ? "/front/z" : "/front/camera_info");
+                          : (message.topic == test::kTumDepth ? "/front/z" : "/front/camera_info");
   write(messages);
   expect_the_folders_bytes("");  // the only ones of their kind
   // A second camera: now one has to say which.
@@ -155,9 +113,10 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
       break;
     }
   write(messages);
-  expect_refused("", 1,
-                 "several topics could be colour: choose with --colour-topic; the bag has /back/image, "
-                 "/front/z, /front/image");
+  expect_refused(
+      "", 1,
+      "several topics could be colour: choose with --colour-topic or topics.colour; the bag has /back/image, "
+      "/front/z, /front/image");
   expect_the_folders_bytes(
       "--colour-topic /front/image --depth-topic /front/z --info-topic /front/camera_info");
   expect_refused("--colour-topic /side/image", 1,
@@ -171,12 +130,12 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
 TEST_F(CliBag, WhatCannotBeReadIsSaid) {
   std::vector<RecordedMessage> messages = published(true);
   for (RecordedMessage& message : messages)
-    if (message.topic == kColour) message.type = "sensor_msgs/CompressedImage";
+    if (message.topic == test::kTumColour) message.type = "sensor_msgs/CompressedImage";
   write(messages);
   expect_refused("", 1, "/camera/rgb/image_color holds compressed images (sensor_msgs/CompressedImage)");
   messages = published(true);
   for (RecordedMessage& message : messages)
-    if (message.topic == kColour)
+    if (message.topic == test::kTumColour)
       message.data =
           test::image_message(message.received_ns, 160, 120, "yuv422", 320, std::string(320 * 120, 'x'));
   write(messages);

@@ -108,6 +108,23 @@ TEST(Messages, CameraInfoIsACalibration) {
            "not calibrated"));
 }
 
+TEST(Messages, ReadingsOfAnImu) {
+  const Vector3 rate(0.1, -0.2, 0.3), force(1, -9, 2);
+  ImuMessage imu;
+  ASSERT_TRUE(parse_imu(bytes_of(test::imu_message(7, rate, true, force, true)), imu).ok());
+  EXPECT_EQ(imu.stamp_ns, 7);
+  ASSERT_TRUE(imu.rate && imu.force);
+  EXPECT_EQ(*imu.rate, rate);
+  EXPECT_EQ(*imu.force, force);
+  ASSERT_TRUE(parse_imu(bytes_of(test::imu_message(8, rate, false, force, true)), imu).ok());
+  EXPECT_FALSE(imu.rate) << "its covariance says that it is not there";
+  EXPECT_TRUE(imu.force);
+  const std::string whole = test::imu_message(9, rate, true, force, true);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_EQ(parse_imu(bytes_of(whole.substr(0, size)), imu).code(), StatusCode::kDamaged) << size;
+  EXPECT_EQ(imu.stamp_ns, 8) << "a damaged one changes nothing";
+}
+
 TEST(Messages, CutOffAnywhereTheyAreRefused) {
   const std::string image = image_message(5, 4, 2, "rgb8", 12, std::string(24, 'x'));
   for (std::size_t size = 0; size < image.size(); ++size) {

@@ -14,12 +14,17 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL library development tools)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+# What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot. package.sh compares the two.
+set(needed_by_library "libbz2-1.0, libc6 (>= 2.36), libfmt9, libgcc-s1, liblz4-1, libspng0, libstdc++6 (>= 12), libturbojpeg0,
+  libyaml-cpp0.7")
+set(needed_by_tools "${needed_by_library}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+foreach(component library tools)
+  string(REGEX REPLACE "\n *" " " needed_by_${component} "${needed_by_${component}}")
+  file(WRITE ${PROJECT_BINARY_DIR}/packaging/needed_by_${component} "${needed_by_${component}}\n")
+endforeach()
 if(CMAKE_CROSSCOMPILING)
-  # What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot.
-  set(needed "libc6 (>= 2.36), libgcc-s1, libstdc++6 (>= 12), libfmt9, libspng0, libturbojpeg0, libyaml-cpp0.7")
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed}")
-  set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
-    "${needed}, libbz2-1.0, libfreenect0.5, liblz4-1, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed_by_library}")
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "${needed_by_tools}")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
 else()
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -27,11 +27,16 @@ plvo --version >&2
 plvo simulate --out walk --frames 20 --size 320x240 --quiet
 plvo run walk --quiet --out run.txt
 grep -v '^#' run.txt | cut -d' ' -f2- >run.poses
+echo "no bag" >no.bag
+if plvo run no.bag 2>no.bag.words; then exit 1; fi
+grep -q "is not a ROS 1 bag" no.bag.words  # bags were not left out when the packages were built
 
 step "C, by pkg-config: the same poses"
 # shellcheck disable=SC2046  # a list of words
 gcc -std=c11 -Wall track_folder.c $(pkg-config --cflags --libs plvo) -o track_folder
 ./track_folder walk | cut -d' ' -f2- | cmp - run.poses
+if ./track_folder no.bag 2>no.bag.words; then exit 1; fi
+grep -q "is not a ROS 1 bag" no.bag.words
 
 step "C++, by find_package and by pkg-config"
 cmake -S consumer -B consumer-build >/dev/null

@@ -53,7 +53,7 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" --version >&2
   "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
-  sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$work/track_folder.c"
+  tools/setup/page_program.sh docs/c.md c >"$work/track_folder.c"
   "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
     -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
   "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
@@ -62,6 +62,15 @@ if [ $# -gt 0 ]; then
   printf '%s\n' "${debs[@]}"
   exit
 fi
+
+packages_of() { sed 's/([^)]*)//g; s/ //g' | tr , '\n' | sort; }
+for pair in library:libplvo0 tools:plvo-tools; do
+  deb=$(echo "$build/${pair#*:}"_*_"$architecture".deb)
+  if ! diff <(dpkg-deb -f "$deb" Depends | packages_of) <(packages_of <"$build/packaging/needed_by_${pair%:*}") >&2; then
+    say "what packages for other architectures depend on (tools/cmake/package.cmake) is not what ${pair#*:} needs here"
+    exit 1
+  fi
+done
 
 if [ "$(id -u)" -ne 0 ]; then
   say "to try them in a clean root: sudo $0"
@@ -77,7 +86,7 @@ mmdebstrap --quiet --variant=apt bookworm "$root" "${sources[@]}" >&2
 mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
 cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
-sed -n '/^```c$/,/^```$/{/^```/d;p}' docs/c.md >"$root/try/track_folder.c"
+tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
 say "installed, used and purged; the packages:"
 printf '%s\n' "${debs[@]}"

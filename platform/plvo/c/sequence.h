@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recorded sequences and calibrations for C: a TUM folder as a camera. Unlike the odometry, these read files
- * and take memory from the heap. C99. */
+/* Recorded sequences and calibrations for C: a folder or a ROS 1 bag as a camera. Unlike the odometry, these
+ * read files and take memory from the heap. C99. */
 #ifndef PLVO_C_SEQUENCE_H
 #define PLVO_C_SEQUENCE_H
 
@@ -18,12 +18,25 @@ PLVO_API plvo_status plvo_camera_read(const char* file, plvo_camera* camera, dou
 
 typedef struct plvo_sequence plvo_sequence;
 
-/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second. `calibration`: a file, or
- * a name as above, or NULL: the calibration in the folder (calibration.txt, calibration.yaml, camera.yaml, or
- * the intrinsics beside numbered frames), or the TUM camera that the folder's name speaks of. On failure
- * *sequence is NULL. What is opened is closed by plvo_sequence_close. */
-PLVO_API plvo_status plvo_sequence_open(const char* folder, const char* calibration,
-                                        plvo_sequence** sequence);
+/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second, or a ROS 1 bag, FILE.bag.
+ * `calibration`: a file, or a name as above, or NULL: the calibration in the folder (calibration.txt,
+ * calibration.yaml, camera.yaml, or the intrinsics beside numbered frames), or the TUM camera that the
+ * folder's name speaks of; of a bag its camera_info. On failure *sequence is NULL. What is opened is closed
+ * by plvo_sequence_close. PLVO_UNSUPPORTED for a bag if the library was built without them. */
+PLVO_API plvo_status plvo_sequence_open(const char* path, const char* calibration, plvo_sequence** sequence);
+
+/* Of a bag. NULL: TUM's topics (/camera/rgb/image_color, /camera/depth/image), else the only one with such
+ * images; camera_info beside colour. */
+typedef struct plvo_bag_topics {
+  uint32_t struct_size; /* plvo_bag_topics topics = {sizeof topics}; */
+  const char* colour;
+  const char* depth;
+  const char* camera_info;
+} plvo_bag_topics;
+
+/* As plvo_sequence_open, with the topics to read; topics may be NULL. */
+PLVO_API plvo_status plvo_sequence_open_bag(const char* file, const char* calibration,
+                                            const plvo_bag_topics* topics, plvo_sequence** sequence);
 
 /* The camera that the frames obey, and how many pairs of images there are. Images above 2047 pixels a side
  * are scaled down by the smallest whole factor that fits, and the camera is that of the small ones. */

@@ -3,22 +3,23 @@
 // throws becomes a status here.
 #include "plvo/c/sequence.h"
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "plvo/c/boundary.hpp"
 #include "plvo/c/guarded.hpp"
-#include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
+#include "plvo/recording/recording.hpp"
+
+template <>
+inline constexpr std::size_t plvo::c::kFirstSize<plvo_bag_topics> =
+    plvo::c::end_of(offsetof(plvo_bag_topics, camera_info), &plvo_bag_topics::camera_info);
 
 struct plvo_sequence {
-  plvo::RecordedCamera camera;
+  plvo::Recording camera;
 };
 
 namespace {
 
-namespace fs = std::filesystem;
 using plvo::Status;
 using plvo::c::guarded;
 using plvo::c::missing;
@@ -35,13 +36,25 @@ Status give_calibration(const plvo::Calibration& calibration, plvo_camera* camer
   return {};
 }
 
-Status find_calibration(const fs::path& folder, const char* named, plvo::Calibration& calibration) {
-  std::string guess;
-  if (named == nullptr) return plvo::sequence_calibration(folder, calibration, guess);
+Status find_calibration(const char* named, const plvo::OwnCalibration& own, plvo::Calibration& calibration) {
+  if (named == nullptr) return own(calibration);
   for (std::string_view name : plvo::builtin_calibration_names())
     if (name == named) return plvo::builtin_calibration(name, calibration);
   return plvo::read_calibration(named, calibration);
 }
+
+Status open(const char* path, const char* calibration, const plvo::BagTopicNames& topics,
+            plvo_sequence** sequence) {
+  const auto choose = [calibration](const plvo::OwnCalibration& own, plvo::Calibration& found) {
+    return find_calibration(calibration, own, found);
+  };
+  auto opened = std::make_unique<plvo_sequence>();
+  if (Status status = opened->camera.open(path, choose, {{}, topics, {}}); !status.ok()) return status;
+  *sequence = opened.release();
+  return {};
+}
+
+std::string text_or_none(const char* text) { return text == nullptr ? "" : text; }
 
 }  // namespace
 
@@ -65,20 +78,28 @@ plvo_status plvo_camera_read(const char* file, plvo_camera* camera, double* metr
   });
 }
 
-plvo_status plvo_sequence_open(const char* folder, const char* calibration, plvo_sequence** sequence) {
+plvo_status plvo_sequence_open(const char* path, const char* calibration, plvo_sequence** sequence) {
   return guarded([&]() -> Status {
     if (sequence == nullptr) return missing("sequence");
     *sequence = nullptr;
-    if (folder == nullptr) return missing("folder");
-    // A folder that is no sequence should be told so before a missing calibration is.
-    plvo::SequenceIndex index;
-    if (Status status = plvo::read_sequence_index(folder, {}, index); !status.ok()) return status;
-    plvo::Calibration found;
-    if (Status status = find_calibration(folder, calibration, found); !status.ok()) return status;
-    auto opened = std::make_unique<plvo_sequence>();
-    if (Status status = opened->camera.open(folder, found); !status.ok()) return status;
-    *sequence = opened.release();
-    return {};
+    if (path == nullptr) return missing("path");
+    return open(path, calibration, {}, sequence);
+  });
+}
+
+plvo_status plvo_sequence_open_bag(const char* file, const char* calibration, const plvo_bag_topics* topics,
+                                   plvo_sequence** sequence) {
+  return guarded([&]() -> Status {
+    if (sequence == nullptr) return missing("sequence");
+    *sequence = nullptr;
+    if (file == nullptr) return missing("file");
+    if (!plvo::is_bag_file(file)) return plvo::c::refuse("file: the name of a ROS 1 bag ends in .bag");
+    plvo_bag_topics known = {};
+    if (topics != nullptr)
+      if (Status status = plvo::c::take_struct(topics, known, "bag_topics"); !status.ok()) return status;
+    const plvo::BagTopicNames names = {
+        text_or_none(known.colour), text_or_none(known.depth), text_or_none(known.camera_info), {}, {}};
+    return open(file, calibration, names, sequence);
   });
 }
 

@@ -285,7 +285,8 @@ Status OpenNi2Camera::Impl::timeout() {
   const bool depth = seen_in_call[FramePairer::kDepth];
   Status status(StatusCode::kTimeout, "");
   if (colour && depth) {
-    status.append("colour and depth come, but their stamps lie ").append(pairer.last_miss_us() / 1000);
+    status.append("colour and depth come, but their stamps lie ");
+    status.append(static_cast<std::ptrdiff_t>(pairer.last_miss_us() / 1000));
     status.append(" ms apart: no pair within half a frame for ");
   } else if (colour) {
     status.append("the depth stream stopped, colour goes on: nothing for ");

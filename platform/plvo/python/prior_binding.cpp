@@ -55,14 +55,6 @@ class Imu {
   ImuIntegrator integrator_;
 };
 
-std::unique_ptr<RecordedImu> read_imu(const py::object& folder) {
-  ImuRecording recording;
-  throw_unless_ok(read_imu_files(path_text(folder), recording));
-  auto imu = std::make_unique<RecordedImu>();
-  throw_unless_ok(imu->init(std::move(recording), ImuConfig()));
-  return imu;
-}
-
 template <int Rows, int Columns>
 py::object copy_of(const Matrix<Rows, Columns>& matrix) {
   std::vector<py::ssize_t> shape{Rows};
@@ -158,7 +150,6 @@ void bind_prior(py::module_& module) {
                              [](Imu& imu) { return copy_of(imu.integrator().gyro_offset_variance()); });
 
   py::class_<RecordedImu>(module, "RecordedImu")
-      .def(py::init(&read_imu), "folder"_a)
       .def("prior", &RecordedImu::prior, "stamp_ns"_a)
       .def("learn", &RecordedImu::learn, "result"_a);
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recorded sequences for Python; what they assume, and damaged images, are warnings.
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
-#include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
+#include "plvo/python/topics.hpp"
+#include "plvo/recording/recording.hpp"
+#include "plvo/replay/recorded_imu.hpp"
 
 namespace plvo::python {
 
@@ -18,33 +21,29 @@ void warn(const std::string& text) {
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-Calibration calibration_for(const std::filesystem::path& folder, const py::object& camera) {
-  Calibration found;
-  std::string guess;
-  if (camera.is_none()) {
-    throw_unless_ok(sequence_calibration(folder, found, guess));
-  } else if (py::isinstance<Calibration>(camera)) {
-    return camera.cast<Calibration>();
-  } else {
+CalibrationChoice choice_of(const py::object& camera) {
+  return [&camera](const OwnCalibration& own, Calibration& calibration) -> Status {
+    if (camera.is_none()) return own(calibration);
+    if (py::isinstance<Calibration>(camera)) {
+      calibration = camera.cast<Calibration>();
+      return {};
+    }
     const std::string name = path_text(camera);
-    Status status = builtin_calibration(name, found);
-    if (status.code() == StatusCode::kNotFound) status = read_calibration(name, found);
-    throw_unless_ok(status);
-  }
-  if (!guess.empty()) warn(guess);
-  return found;
+    const Status status = builtin_calibration(name, calibration);
+    return status.code() == StatusCode::kNotFound ? read_calibration(name, calibration) : status;
+  };
 }
 
 class Sequence {
  public:
-  Sequence(const py::object& path, const py::object& camera) {
-    const std::filesystem::path folder = path_text(path);
-    // A folder that is no sequence should be told so before a missing calibration is.
-    SequenceIndex index;
-    throw_unless_ok(read_sequence_index(folder, {}, index));
-    if (!index.remark.empty()) warn(index.remark);
-    throw_unless_ok(camera_.open(folder, calibration_for(folder, camera)));
-    if (!camera_.remark().empty()) warn(camera_.remark());
+  Sequence(const py::object& path, const py::object& camera, const py::object& topics) {
+    const std::filesystem::path recording = path_text(path);
+    RecordingOptions options;
+    options.topics = bag_topics(topics);
+    if (!topics.is_none() && !is_bag_file(recording))
+      throw py::value_error("topics: they are for a ROS bag (FILE.bag)");
+    throw_unless_ok(recording_.open(recording, choice_of(camera), options));
+    for (const std::string& sentence : recording_.remarks()) warn(sentence);
     if (py::isinstance<Calibration>(camera)) return;
     for (const std::string& sentence : calibration().assumptions()) warn(sentence);
   }
@@ -55,7 +54,7 @@ class Sequence {
       Status status;
       {
         const py::gil_scoped_release others_may_run;
-        status = camera_.next(frame);
+        status = recording_.next(frame);
       }
       if (status.ok()) return true;
       if (status.code() == StatusCode::kEndOfStream) return false;
@@ -63,11 +62,20 @@ class Sequence {
       warn(status.message());
     }
   }
-  const Calibration& calibration() const { return camera_.calibration(); }
-  std::size_t length() const { return camera_.frame_count(); }
+  const Calibration& calibration() const { return recording_.calibration(); }
+  std::unique_ptr<RecordedImu> imu(const py::object& R_camera_imu) {
+    ImuRecording samples;
+    throw_unless_ok(recording_.read_imu(samples));
+    ImuConfig config;
+    if (!R_camera_imu.is_none()) config.R_camera_imu = matrix_of<3, 3>(R_camera_imu, "R_camera_imu");
+    auto imu = std::make_unique<RecordedImu>();
+    throw_unless_ok(imu->init(std::move(samples), config));
+    return imu;
+  }
+  std::size_t length() const { return recording_.frame_count(); }
 
  private:
-  RecordedCamera camera_;
+  Recording recording_;
 };
 
 }  // namespace
@@ -75,8 +83,10 @@ class Sequence {
 void bind_sequence(py::module_& module) {
   const py::object frame_type = namedtuple(module, "Frame", "colour depth stamp_ns depth_stamp_ns");
   py::class_<Sequence>(module, "Sequence")
-      .def(py::init<const py::object&, const py::object&>(), "folder"_a, "camera"_a = py::none())
+      .def(py::init<const py::object&, const py::object&, const py::object&>(), "recording"_a,
+           "camera"_a = py::none(), py::kw_only(), "topics"_a = py::none())
       .def_property_readonly("camera", &Sequence::calibration)
+      .def("imu", &Sequence::imu, py::kw_only(), "R_camera_imu"_a = py::none())
       .def("__len__", &Sequence::length)
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [frame_type](const py::object& self) {

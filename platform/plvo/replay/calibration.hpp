@@ -49,8 +49,8 @@ struct Calibration {
 Status read_calibration(const std::filesystem::path& path, Calibration& calibration);
 
 // The calibration that lies beside a recorded sequence: the first that is there of calibration.txt,
-// calibration.yaml, camera.yaml, and of what ScanNet's exports have, intrinsic/intrinsic_depth.txt (the
-// images must have one size, which is that of depth) and intrinsic/intrinsic_color.txt.
+// calibration.yaml, camera.yaml, and of what ScanNet's exports have, intrinsic/intrinsic_depth.txt and
+// intrinsic/intrinsic_color.txt (of images of one size; both cameras are read by scannet_cameras.hpp).
 std::optional<std::filesystem::path> calibration_file_in(const std::filesystem::path& folder);
 
 // tum-fr1, tum-fr2, tum-fr3 (the values the benchmark publishes), 7scenes (as its page says),

@@ -115,28 +115,6 @@ std::string gaps(const std::vector<std::uint32_t>& numbers) {
       numbers.front(), numbers.back(), missing, first);
 }
 
-// A 4×4 matrix; usable: all its numbers are finite.
-Status read_pose(const fs::path& path, Se3& pose, bool& usable) {
-  std::string content;
-  if (Status status = read_text_file(path, kMaxPoseBytes, content); !status.ok()) return status;
-  std::istringstream stream(content);
-  const std::vector<TableRow> rows = parse_table(stream);
-  std::vector<double> matrix;
-  for (const TableRow& row : rows) {
-    std::vector<double> numbers(4);
-    if (row.words.size() != numbers.size()) break;
-    if (Status status = parse_numbers(path, row, 0, numbers); !status.ok()) return status;
-    matrix.insert(matrix.end(), numbers.begin(), numbers.end());
-  }
-  if (rows.size() != 4 || matrix.size() != 16)
-    return {StatusCode::kDamaged, fmt::format("{}: expected four rows of four numbers", path.string())};
-  usable = std::all_of(matrix.begin(), matrix.end(), [](double value) { return std::isfinite(value); });
-  if (!usable) return {};
-  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
-    return row_error(path, rows[3], "the last row of a pose must be 0 0 0 1");
-  return matrix_pose(path, rows[0], matrix, pose);
-}
-
 }  // namespace
 
 bool is_numbered_folder(const fs::path& folder) { return layout_of(folder).has_value(); }
@@ -170,13 +148,34 @@ Status read_numbered_index(const fs::path& folder, double frames_per_s, Sequence
   return {};
 }
 
+Status read_matrix_pose(const fs::path& path, Se3& pose, bool& usable) {
+  std::string content;
+  if (Status status = read_text_file(path, kMaxPoseBytes, content); !status.ok()) return status;
+  std::istringstream stream(content);
+  const std::vector<TableRow> rows = parse_table(stream);
+  std::vector<double> matrix;
+  for (const TableRow& row : rows) {
+    std::vector<double> numbers(4);
+    if (row.words.size() != numbers.size()) break;
+    if (Status status = parse_numbers(path, row, 0, numbers); !status.ok()) return status;
+    matrix.insert(matrix.end(), numbers.begin(), numbers.end());
+  }
+  if (rows.size() != 4 || matrix.size() != 16)
+    return {StatusCode::kDamaged, fmt::format("{}: expected four rows of four numbers", path.string())};
+  usable = std::all_of(matrix.begin(), matrix.end(), [](double value) { return std::isfinite(value); });
+  if (!usable) return {};
+  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
+    return row_error(path, rows[3], "the last row of a pose must be 0 0 0 1");
+  return matrix_pose(path, rows[0], matrix, pose);
+}
+
 Status read_numbered_poses(const fs::path& folder, const std::vector<StampedFile>& files,
                            Trajectory& trajectory) {
   trajectory = {};
   for (const StampedFile& file : files) {
     StampedPose pose{file.stamp_ns, {}};
     bool usable = false;
-    if (Status status = read_pose(folder / file.file, pose.T_world_camera, usable); !status.ok())
+    if (Status status = read_matrix_pose(folder / file.file, pose.T_world_camera, usable); !status.ok())
       return status;
     if (usable) {
       trajectory.poses.push_back(pose);

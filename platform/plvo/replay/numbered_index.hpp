@@ -21,7 +21,11 @@ bool is_numbered_folder(const std::filesystem::path& folder);
 // kInvalidArgument when no number has both images.
 Status read_numbered_index(const std::filesystem::path& folder, double frames_per_s, SequenceIndex& index);
 
-// kDamaged, naming the file, for what is no such matrix; else as read_text_file. At least one pose must be
+// A 4×4 matrix. usable: all its numbers are finite. kDamaged, naming the file, for what is no rigid motion;
+// else as read_text_file.
+Status read_matrix_pose(const std::filesystem::path& path, Se3& pose, bool& usable);
+
+// As read_matrix_pose. At least one pose must be
 // finite (kInvalidArgument).
 Status read_numbered_poses(const std::filesystem::path& folder, const std::vector<StampedFile>& files,
                            Trajectory& trajectory);

@@ -86,7 +86,7 @@ void RecordedCamera::warm_up() {
       if (!error && bytes <= kMaxImageBytes) largest = std::max(largest, bytes);
     }
   }
-  decoder_.reserve(largest);
+  decoder_.reserve(static_cast<std::size_t>(largest));
   // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
   RgbdFrame first;
   [[maybe_unused]] const Status told_again_by_the_first_call = next(first);

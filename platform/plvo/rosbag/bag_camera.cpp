@@ -6,13 +6,12 @@
 #include <algorithm>
 
 #include "plvo/replay/stamp_pairs.hpp"
+#include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
 namespace {
 
-constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressedImage = "sensor_msgs/CompressedImage";
-constexpr const char* kCameraInfo = "sensor_msgs/CameraInfo";
 constexpr const char* kTumColour = "/camera/rgb/image_color";
 constexpr const char* kTumDepth = "/camera/depth/image";
 
@@ -34,7 +33,7 @@ Status BagCamera::index(const std::filesystem::path& path, const BagTopicNames& 
 
 std::string BagCamera::topics_in_words() const {
   std::vector<std::string> names;
-  for (const char* type : {kImage, kCompressedImage, kCameraInfo})
+  for (const char* type : {kImageType, kCompressedImage, kCameraInfoType})
     for (const BagTopic& topic : bag_.topics())
       if (topic.type == type) names.push_back(topic.name);
   if (names.empty()) return "the bag has no images";
@@ -68,14 +67,14 @@ Status BagCamera::encoding_of(std::size_t topic, std::string& encoding) {
 }
 
 Status BagCamera::choose_images(const std::string& wanted, bool depth, std::size_t& chosen) {
-  const char* option = depth ? "--depth-topic" : "--colour-topic";
+  const char* kind = depth ? "depth" : "colour";
   const std::string preferred = depth ? kTumDepth : kTumColour;
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < bag_.topics().size(); ++i) {
     const BagTopic& topic = bag_.topics()[i];
     if (!wanted.empty() && topic.name == wanted && topic.type == kCompressedImage)
       return compressed(topic.name);
-    if (topic.type != kImage) continue;
+    if (topic.type != kImageType) continue;
     if (topic.name == (wanted.empty() ? preferred : wanted)) {
       chosen = i;
       return {};
@@ -88,14 +87,15 @@ Status BagCamera::choose_images(const std::string& wanted, bool depth, std::size
   if (!wanted.empty())
     return {StatusCode::kNotFound, fmt::format("there are no images on {}; {}", wanted, topics_in_words())};
   if (candidates.size() > 1)
-    return {StatusCode::kInvalidArgument, fmt::format("several topics could be {}: choose with {}; {}",
-                                                      depth ? "depth" : "colour", option, topics_in_words())};
+    return {StatusCode::kInvalidArgument,
+            fmt::format("several topics could be {0}: choose with --{0}-topic or topics.{0}; {1}", kind,
+                        topics_in_words())};
   if (candidates.empty()) {
     for (const BagTopic& topic : bag_.topics())
       if (topic.type == kCompressedImage && (topic.name.find("depth") != std::string::npos) == depth)
         return compressed(topic.name);
     return {StatusCode::kNotFound,
-            fmt::format("no topic has images of {} ({}); {}", depth ? "depth" : "colour",
+            fmt::format("no topic has images of {} ({}); {}", kind,
                         depth ? "16UC1 or 32FC1" : "rgb8, bgr8 or mono8", topics_in_words())};
   }
   chosen = candidates.front();
@@ -108,14 +108,14 @@ Status BagCamera::choose_info(const std::string& wanted) {
   info_topic_.reset();
   for (std::size_t i = 0; i < bag_.topics().size(); ++i) {
     const BagTopic& topic = bag_.topics()[i];
-    if (topic.type == kCameraInfo && topic.name == (wanted.empty() ? beside : wanted)) info_topic_ = i;
+    if (topic.type == kCameraInfoType && topic.name == (wanted.empty() ? beside : wanted)) info_topic_ = i;
   }
   if (wanted.empty() || info_topic_) return {};
   return {StatusCode::kNotFound, fmt::format("there is no camera_info on {}; {}", wanted, topics_in_words())};
 }
 
 Status BagCamera::own_calibration(Calibration& calibration) {
-  Status failure(StatusCode::kNotFound, "the bag has no camera_info beside colour");
+  Status failure(StatusCode::kNotFound, "the bag has no camera_info beside colour: give a calibration");
   for (const BagMessage& message : bag_.messages()) {
     if (!info_topic_ || message.topic != *info_topic_) continue;
     failure = bag_.read(message, bytes_);

@@ -13,15 +13,11 @@
 #include "plvo/replay/frame_fit.hpp"
 #include "plvo/replay/sequence_index.hpp"
 #include "plvo/rosbag/bag_file.hpp"
+#include "plvo/rosbag/bag_imu.hpp"
+#include "plvo/rosbag/bag_topics.hpp"
 #include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
-
-// An empty name: TUM's (/camera/rgb/image_color, /camera/depth/image) where the bag has it, else the one
-// topic whose encoding is of that kind; camera_info beside colour.
-struct BagTopicNames {
-  std::string colour, depth, camera_info;
-};
 
 class BagCamera final : public RgbdCamera {
  public:
@@ -32,6 +28,11 @@ class BagCamera final : public RgbdCamera {
 
   // Of the first camera_info. kNotFound where there is none; else as parse_camera_info.
   Status own_calibration(Calibration& calibration);
+
+  // As read_bag_imu, of which names has its own.
+  Status read_imu(const BagTopicNames& names, ImuRecording& recording) {
+    return read_bag_imu(bag_, names, recording);
+  }
 
   // After index(). calibration: of the colour images as recorded; its unit of depth counts for nothing, for
   // the encoding says it: metres, or millimetres if units_per_metre does not say otherwise. As

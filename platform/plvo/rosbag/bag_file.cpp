@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "plvo/rosbag/messages.hpp"
 #include "plvo/rosbag/wire_reader.hpp"
 
 namespace plvo {
@@ -24,7 +25,7 @@ constexpr std::size_t kMaxTopics = 10'000;
 enum Op : std::uint8_t { kMessageData = 2, kFileHeader = 3, kChunkOp = 5, kConnection = 7 };
 
 bool has_stamp(std::string_view type) {
-  return type == "sensor_msgs/Image" || type == "sensor_msgs/CameraInfo";
+  return type == kImageType || type == kCameraInfoType || type == kImuType;
 }
 
 // name=value, each after its length.

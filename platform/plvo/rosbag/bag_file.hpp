@@ -34,8 +34,9 @@ struct BagMessage {
 
 class BagFile {
  public:
-  // Reads all of it once. Kept are the places of images and camera_infos; others are counted. kNotFound,
-  // kInvalidArgument (not a regular file), kDamaged (not a bag), kUnsupported (another version, encryption).
+  // Reads all of it once. Kept are the places of images, camera_infos and IMU readings; others are counted.
+  // kNotFound, kInvalidArgument (not a regular file), kDamaged (not a bag), kUnsupported (another version,
+  // encryption).
   Status open(const std::filesystem::path& path);
 
   const std::vector<BagTopic>& topics() const { return topics_; }

@@ -98,6 +98,22 @@ Status parse_camera_info(std::span<const unsigned char> bytes, Calibration& cali
   return {};
 }
 
+Status parse_imu(std::span<const unsigned char> bytes, ImuMessage& imu) {
+  WireReader wire(bytes);
+  ImuMessage found;
+  found.stamp_ns = take_header(wire);
+  constexpr std::size_t kOrientation = 4 + 9, kRestOfCovariance = 8;
+  wire.take(kOrientation * sizeof(double));
+  for (std::optional<Vector3>* reading : {&found.rate, &found.force}) {
+    const double x = wire.f64(), y = wire.f64(), z = wire.f64();
+    if (wire.f64() != -1) *reading = Vector3(x, y, z);
+    wire.take(kRestOfCovariance * sizeof(double));
+  }
+  if (!wire.ok()) return {StatusCode::kDamaged, kCutOff};
+  imu = found;
+  return {};
+}
+
 Status colour_pixels(const ImageMessage& image, std::span<std::uint8_t> rgb) {
   if (!is_colour_encoding(image.encoding)) return unknown_encoding(image, "rgb8, bgr8 and mono8");
   const auto width = static_cast<std::size_t>(image.width);

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// sensor_msgs/Image and sensor_msgs/CameraInfo of ROS 1, from the bytes of a message, and an image's pixels
-// as plvo has them: colour as RGB, depth in whole units (REP 118: 16UC1 is millimetres, 32FC1 metres).
+// sensor_msgs/Image, CameraInfo and Imu of ROS 1, from the bytes of a message, and an image's pixels as plvo
+// has them: colour as RGB, depth in whole units (REP 118: 16UC1 is millimetres, 32FC1 metres).
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "plvo/base/status.hpp"
+#include "plvo/math/types.hpp"
 #include "plvo/replay/calibration.hpp"
 
 namespace plvo {
+
+inline constexpr const char* kImageType = "sensor_msgs/Image";
+inline constexpr const char* kCameraInfoType = "sensor_msgs/CameraInfo";
+inline constexpr const char* kImuType = "sensor_msgs/Imu";
 
 // Looks into the bytes that it was parsed from.
 struct ImageMessage {
@@ -29,6 +35,15 @@ Status parse_image(std::span<const unsigned char> bytes, ImageMessage& image);
 // Camera and size. kDamaged where the bytes end early, kUnsupported for a lens that plvo does not know,
 // kInvalidArgument for numbers that cannot be (a camera that is not calibrated has a K of zeros).
 Status parse_camera_info(std::span<const unsigned char> bytes, Calibration& calibration);
+
+// Nothing in place of what the sensor says it does not have, by a covariance that begins with -1.
+struct ImuMessage {
+  std::int64_t stamp_ns = 0;
+  std::optional<Vector3> rate, force;  // rad/s, m/s²
+};
+
+// kDamaged where the bytes end early.
+Status parse_imu(std::span<const unsigned char> bytes, ImuMessage& imu);
 
 bool is_colour_encoding(std::string_view encoding);  // rgb8, bgr8, mono8
 bool is_depth_encoding(std::string_view encoding);   // 16UC1, 32FC1

@@ -10,6 +10,7 @@ __version__: str
 
 _Array = NDArray[Any] | _ListLike[Any]
 _Path = str | bytes | PathLike[str] | PathLike[bytes]
+_Topic = Literal["colour", "depth", "camera_info", "gyro", "accelerometer"]
 
 class Error(Exception):
     """What went wrong, and what to do."""
@@ -206,9 +207,8 @@ class Imu:
     def gyro_offset_variance(self) -> NDArray[float64]: ...
 
 class RecordedImu:
-    """gyroscope.txt and accelerometer.txt of a folder."""
+    """What a gyro and an accelerometer recorded beside the images: Sequence.imu()."""
 
-    def __init__(self, folder: _Path) -> None: ...
     def prior(self, stamp_ns: int) -> MotionPrior: ...
     def learn(self, result: Result) -> None: ...
 
@@ -253,17 +253,28 @@ class Frame(NamedTuple):
     depth_stamp_ns: int
 
 class Sequence:
-    """A recorded folder, frame by frame, once."""
+    """A recorded folder or ROS 1 bag, frame by frame, once."""
 
-    def __init__(self, folder: _Path, camera: Camera | _Path | None = None) -> None: ...
+    def __init__(
+        self, recording: _Path, camera: Camera | _Path | None = None, *, topics: dict[_Topic, str] | None = None
+    ) -> None: ...
     @property
     def camera(self) -> Camera: ...
+    def imu(self, *, R_camera_imu: _Array | None = None) -> RecordedImu:
+        """gyroscope.txt and accelerometer.txt of the folder, or sensor_msgs/Imu of the bag."""
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[Frame]: ...
     def __next__(self) -> Frame: ...
 
 def run(
-    folder: _Path, camera: Camera | _Path | None = None, config: Config | None = None, *, imu: bool = False, cores: int = 1
+    recording: _Path,
+    camera: Camera | _Path | None = None,
+    config: Config | None = None,
+    *,
+    imu: bool = False,
+    R_camera_imu: _Array | None = None,
+    cores: int = 1,
+    topics: dict[_Topic, str] | None = None,
 ) -> Iterator[Result]: ...
 def evaluate(
     truth: _Path,

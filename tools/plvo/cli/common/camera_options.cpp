@@ -6,10 +6,10 @@
 #include <charconv>
 
 #include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/bag_recording.hpp"
 #include "plvo/cli/live/live_camera.hpp"
+#include "plvo/recording/recording.hpp"
 #include "plvo/replay/numbered_index.hpp"
-#include "plvo/replay/recorded_camera.hpp"
+#include "plvo/replay/sequence_calibration.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
 namespace plvo::cli {
@@ -51,37 +51,36 @@ std::string sequence_name(const fs::path& path) {
   return (normal.filename().empty() ? normal.parent_path() : normal).filename().string();
 }
 
-Status open_folder(const CameraOptions& options, Log& log, OpenedCamera& opened) {
-  const fs::path folder = options.sequence;
-  const SequenceOptions sequence = sequence_options(options);
-  // A folder that is no sequence should be told so before a missing calibration is.
-  SequenceIndex index;
-  if (Status status = read_sequence_index(folder, sequence, index); !status.ok()) return status;
-  Calibration calibration;
-  std::string guess;
-  if (Status status = find_calibration(options.calibration, folder, calibration, guess); !status.ok())
-    return status;
-  auto camera = std::make_unique<RecordedCamera>();
-  if (Status status = camera->open(folder, calibration, sequence); !status.ok()) {
-    refuse_scale(options.scale, camera->whole_image(), status);
+// Where opening failed for a --scale that the images do not allow: wrong usage.
+void refuse_scale(int scale, const WholeImage& whole, const Status& failure) {
+  if (scale != 0 && whole.width > 0 && !check_reduction(scale, whole.width, whole.height).ok())
+    refuse("--scale", failure.message());
+}
+
+Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& opened) {
+  const RecordingOptions how = {sequence_options(options), options.topics, options.calibration.depth_scale};
+  const auto choose = [&options](const OwnCalibration& own, Calibration& calibration) {
+    return find_calibration(options.calibration, own, calibration);
+  };
+  auto recording = std::make_shared<Recording>();
+  if (Status status = recording->open(options.sequence, choose, how); !status.ok()) {
+    refuse_scale(options.scale, recording->whole_image(), status);
     return status;
   }
-  for (const std::string& sentence : {index.remark, guess, camera->remark()})
-    if (!sentence.empty()) log.write(LogLevel::kWarning, sentence);
-  for (const std::string& sentence : camera->calibration().assumptions())
+  for (const std::string& sentence : recording->remarks()) log.write(LogLevel::kWarning, sentence);
+  for (const std::string& sentence : recording->calibration().assumptions())
     log.write(LogLevel::kWarning, sentence);
-  opened.frame_count = camera->frame_count();
-  opened.unpaired_images = index.unpaired_colour;
-  opened.scaled_down_by = camera->whole_image().factor;
-  opened.name = sequence_name(folder);
-  std::error_code error;
-  if (fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty()) {
-    opened.ground_truth = [folder, sequence](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
-      return read_ground_truth(folder, sequence, truth);
+  opened.frame_count = recording->frame_count();
+  opened.unpaired_images = recording->unpaired_colour();
+  opened.scaled_down_by = recording->whole_image().factor;
+  opened.name = sequence_name(options.sequence);
+  if (recording->has_ground_truth())
+    opened.ground_truth = [path = options.sequence, sequence = how.sequence](const std::vector<std::int64_t>&,
+                                                                             eval::Trajectory& truth) {
+      return read_ground_truth(path, sequence, truth);
     };
-  }
-  opened.inertial = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
-  opened.camera = std::move(camera);
+  opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
+  opened.camera = recording;
   return {};
 }
 
@@ -143,11 +142,6 @@ Status open_oni(const CameraOptions& options, Log& log, OpenedCamera& opened) {
 
 }  // namespace
 
-void refuse_scale(int scale, const WholeImage& whole, const Status& failure) {
-  if (scale != 0 && whole.width > 0 && !check_reduction(scale, whole.width, whole.height).ok())
-    refuse("--scale", failure.message());
-}
-
 bool parse_frame_range(const std::string& text, FrameRange& range) {
   const std::size_t colon = text.find(':');
   const std::string_view all = text;
@@ -198,7 +192,12 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   bag.add("--depth-topic", "TOPIC", "Of sensor_msgs/Image (default /camera/depth/image, or the only one)",
           read_topic(options.topics.depth));
   bag.add("--info-topic", "TOPIC", "Of sensor_msgs/CameraInfo (default camera_info beside colour)",
-          read_topic(options.topics.info));
+          read_topic(options.topics.camera_info));
+  bag.add("--gyro-topic", "TOPIC", "Of sensor_msgs/Imu, for --imu (default the only one with turn rates)",
+          read_topic(options.topics.gyro));
+  bag.add("--accelerometer-topic", "TOPIC",
+          "Of sensor_msgs/Imu, for --imu (default the only one with accelerations)",
+          read_topic(options.topics.accelerometer));
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
 }
@@ -246,7 +245,7 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   for (const char* name :
        {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
     files.reads(folder / name);
-  files.reads(calibration_file_in(folder).value_or(fs::path()));
+  for (const fs::path& file : calibration_files_in(folder)) files.reads(file);
   SequenceIndex index;
   if (!files.may_overwrite() || !read_sequence_index(folder, sequence_options(options), index).ok()) return;
   for (const ImagePair& pair : index.pairs) {
@@ -258,11 +257,8 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
 
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened) {
   if (options.simulated) return open_simulator(options, opened);
-  if (is_bag_file(options.sequence)) {
-    opened.name = sequence_name(options.sequence);
-    return open_bag(options, sequence_options(options), log, opened);
-  }
-  return is_oni_file(options.sequence) ? open_oni(options, log, opened) : open_folder(options, log, opened);
+  return is_oni_file(options.sequence) ? open_oni(options, log, opened)
+                                       : open_recording(options, log, opened);
 }
 
 }  // namespace plvo::cli

@@ -22,6 +22,7 @@
 #include "plvo/replay/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/sequence_index.hpp"
+#include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo::cli {
 
@@ -59,11 +60,6 @@ bool parse_frame_range(const std::string& text, FrameRange& range);
 inline constexpr NumberRange kNumberedRates_hz = {0.1, 1000};
 CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz);
 
-// Of a ROS bag; empty: plvo chooses.
-struct BagTopics {
-  std::string colour, depth, info;
-};
-
 struct CameraOptions {
   bool simulated = false;
   std::string sequence;  // a folder, an .oni file or a .bag file, where it is not simulated
@@ -72,7 +68,7 @@ struct CameraOptions {
   double tolerance_s = 0.02;
   double rate_hz = SequenceOptions().frames_per_s;
   int scale = SequenceOptions().scale_down;
-  BagTopics topics;
+  BagTopicNames topics;
   CalibrationOptions calibration;
   SimulatorArguments simulator;
 };
@@ -94,8 +90,6 @@ struct OpenedCamera {
   // What a gyro and an accelerometer beside the camera read; empty where there can be none.
   std::function<Status(ImuRecording& recording)> inertial;
 };
-// Where opening failed for a --scale that the images do not allow: wrong usage.
-void refuse_scale(int scale, const WholeImage& whole, const Status& failure);
 // log: for what the camera has to say; it must outlive the camera.
 Status open_camera(const CameraOptions& options, Log& log, OpenedCamera& opened);
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/bag_recording.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 
 namespace plvo::cli {
@@ -32,9 +31,10 @@ bool parse_imu_axes(const std::string& text, Matrix3& R_camera_imu) {
 
 void add_imu_options(CLI::App& command, ImuOptions& options) {
   OptionGroup group(command);
-  group.flag(
-      "--imu", options.used,
-      "With gyroscope.txt (rad/s) and accelerometer.txt (m/s^2) of the folder, 'stamp x y z' per line");
+  group.flag("--imu", options.used,
+             "With gyroscope.txt (rad/s) and accelerometer.txt (m/s^2) of the folder, 'stamp x y z' per "
+             "line, or with "
+             "sensor_msgs/Imu of the ROS bag");
   group.add("--imu-axes", "AXES",
             "Which of their axes point right, down and forward (default x,y,z; of a Kinect: x,-y,z)",
             [&options](const std::string& text) -> std::string {
@@ -44,12 +44,12 @@ void add_imu_options(CLI::App& command, ImuOptions& options) {
 }
 
 void check_imu_options(const CLI::App& command, const ImuOptions& options, const CameraOptions& camera) {
-  if (!options.used) refuse_options(command, {"--imu-axes"}, "is for --imu: add it, or leave this away");
+  if (!options.used)
+    refuse_options(command, {"--imu-axes", "--gyro-topic", "--accelerometer-topic"},
+                   "is for --imu: add it, or leave this away");
   if (camera.simulated) refuse_options(command, {"--imu-axes"}, "is for recorded sequences");
   if (!camera.simulated && is_oni_file(camera.sequence))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
-  if (!camera.simulated && is_bag_file(camera.sequence))
-    refuse_options(command, {"--imu"}, "does not apply to a ROS bag, of which images alone are read");
 }
 
 Status open_imu(const ImuOptions& options, const OpenedCamera& camera, Log& log,
@@ -63,8 +63,8 @@ Status open_imu(const ImuOptions& options, const OpenedCamera& camera, Log& log,
     log.write(LogLevel::kWarning, "no accelerometer: nothing holds roll and pitch");
   if (recording.ignored > 0)
     log.write(LogLevel::kWarning,
-              fmt::format("{} readings of gyro and accelerometer left out: not later than the one before, or "
-                          "not finite",
+              fmt::format("{} readings of gyro and accelerometer left out: damaged, not finite, or not "
+                          "later than the one before",
                           recording.ignored));
   ImuConfig config;
   config.R_camera_imu = options.R_camera_imu;

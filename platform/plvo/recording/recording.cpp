@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/recording/recording.hpp"
+
+#include <utility>
+
+#include "plvo/replay/recorded_camera.hpp"
+#include "plvo/replay/sequence_calibration.hpp"
+#ifdef PLVO_HAVE_ROSBAG
+#include "plvo/rosbag/bag_camera.hpp"
+#endif
+
+namespace plvo {
+
+namespace fs = std::filesystem;
+
+bool is_bag_file(const fs::path& path) { return path.extension() == ".bag"; }
+
+Status Recording::open(const fs::path& path, const CalibrationChoice& choose,
+                       const RecordingOptions& options) {
+  *this = Recording();
+  return is_bag_file(path) ? open_bag(path, choose, options) : open_folder(path, choose, options);
+}
+
+Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& choose,
+                              const RecordingOptions& options) {
+  // A folder that is no sequence should be told so before a missing calibration is.
+  SequenceIndex index;
+  if (Status status = read_sequence_index(folder, options.sequence, index); !status.ok()) return status;
+  Calibration calibration;
+  std::string guess;
+  const auto own = [&](Calibration& found) { return sequence_calibration(folder, found, guess); };
+  if (Status status = choose(own, calibration); !status.ok()) return status;
+  auto camera = std::make_shared<RecordedCamera>();
+  const Status status = camera->open(folder, calibration, options.sequence);
+  whole_image_ = camera->whole_image();
+  if (!status.ok()) return status;
+  calibration_ = camera->calibration();
+  frame_count_ = camera->frame_count();
+  unpaired_colour_ = index.unpaired_colour;
+  for (const std::string& sentence : {index.remark, guess, camera->remark()})
+    if (!sentence.empty()) remarks_.push_back(sentence);
+  std::error_code error;
+  has_ground_truth_ = fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty();
+  read_imu_ = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
+  camera_ = std::move(camera);
+  return {};
+}
+
+#ifdef PLVO_HAVE_ROSBAG
+
+Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose,
+                           const RecordingOptions& options) {
+  auto camera = std::make_shared<BagCamera>();
+  if (Status status = camera->index(path, options.topics); !status.ok()) return status;
+  Calibration calibration;
+  const auto own = [&camera](Calibration& found) { return camera->own_calibration(found); };
+  if (Status status = choose(own, calibration); !status.ok()) return status;
+  const Status status = camera->open(calibration, options.depth_units_per_metre, options.sequence);
+  whole_image_ = camera->whole_image();
+  if (!status.ok()) return status;
+  calibration_ = camera->calibration();
+  frame_count_ = camera->frame_count();
+  unpaired_colour_ = camera->unpaired_colour();
+  remarks_ = camera->remarks();
+  read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {
+    return camera->read_imu(topics, recording);
+  };
+  camera_ = std::move(camera);
+  return {};
+}
+
+#else
+
+Status Recording::open_bag(const fs::path&, const CalibrationChoice&, const RecordingOptions&) {
+  return {StatusCode::kUnsupported,
+          "this plvo was built without ROS bags: sudo apt install libbz2-dev liblz4-dev, then configure and "
+          "build again"};
+}
+
+#endif
+
+}  // namespace plvo
