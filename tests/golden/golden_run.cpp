@@ -55,14 +55,19 @@ void print_stages(const FeatureView& view, const TrackResult& result, TextLine& 
     line.space().hex(stage.value() >> 32, 8);
 }
 
+bool prepare(int width, int height, const GoldenMemory& memory, ProceduralRenderer& sequence,
+             void (*print)(std::string_view)) {
+  if (sequence.init(width, height, memory.frames)) return true;
+  print("too little memory for the frames");
+  return false;
+}
+
 bool run(const GoldenCase& golden, const GoldenMemory& memory, ProceduralRenderer& sequence,
          void (*print)(std::string_view)) {
   // The rays of a size are computed once: on an emulated board that takes as long as frames do.
   if (sequence.camera().width != golden.limits.width &&
-      !sequence.init(golden.limits.width, golden.limits.height, memory.frames)) {
-    print("too little memory for the frames");
+      !prepare(golden.limits.width, golden.limits.height, memory, sequence, print))
     return false;
-  }
   CameraModel camera = sequence.camera();
   camera.readout_s = golden.readout_s;
   camera.depth_timing = golden.depth_timing;
@@ -86,8 +91,8 @@ bool run(const GoldenCase& golden, const GoldenMemory& memory, ProceduralRendere
 }
 
 // The bytes that the renderer makes: when they differ, everything does.
-void print_input(const GoldenMemory& memory, ProceduralRenderer& sequence, void (*print)(std::string_view)) {
-  if (!sequence.init(320, 240, memory.frames)) return;
+bool print_input(const GoldenMemory& memory, ProceduralRenderer& sequence, void (*print)(std::string_view)) {
+  if (!prepare(320, 240, memory, sequence, print)) return false;
   Fingerprint input;
   const RgbdFrame first = sequence.render(0);
   for (int i = 0; i < 320 * 240; ++i) {
@@ -95,6 +100,7 @@ void print_input(const GoldenMemory& memory, ProceduralRenderer& sequence, void 
     input.add(static_cast<int>(first.depth.data[i]));
   }
   print(TextLine().text("input ").hex(input.value(), 16).view());
+  return true;
 }
 
 }  // namespace
@@ -102,7 +108,7 @@ void print_input(const GoldenMemory& memory, ProceduralRenderer& sequence, void 
 bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std::string_view only) {
   print("run frame state x_um y_um z_um image points lines matching motion result");
   ProceduralRenderer sequence;
-  print_input(memory, sequence, print);
+  if (!print_input(memory, sequence, print)) return false;
   Config points, lines, keyframe, lost;
   points.features = Features::kPoints;
   lines.features = Features::kLines;

@@ -167,25 +167,37 @@ inline void flag_all(ConstraintSet& set) {
   for (std::size_t i = 0; i < set.size(); ++i) set.inliers()[i] = set.usable(i) ? 1 : 0;
 }
 
-// Maximum likelihood over every match, from a start near the truth, without RANSAC: solves with weights held
-// at where the last one ended, until that does not matter.
+struct Solution {
+  LmSummary summary;
+  Se3 T;
+  Matrix6 H;
+};
+// Solves with weights held at where the last one ended, until that does not matter.
+inline Solution settle(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+                       RobustLoss loss, const Se3& start) {
+  LevenbergMarquardt<6> solver;
+  Solution solution;
+  solution.T = start;
+  for (int solve = 0; solve < 4; ++solve) {
+    MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, loss), solution.T);
+    solution.summary = solver.solve(problem);
+    solution.T = problem.T_current_reference();
+  }
+  solution.H = solver.hessian();
+  return solution;
+}
+
+// Maximum likelihood over every match, from a start near the truth, without RANSAC.
 inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& start, RobustLoss loss,
                             Se3& T, Matrix6& H) {
   bench.points.clear();
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  LevenbergMarquardt<6> solver;
-  LmSummary summary;
-  T = start;
-  for (int solve = 0; solve < 4; ++solve) {
-    MotionProblem problem(bench.sets, MotionReferences{}, {}, MotionProblem::make_kernels(bench.sets, loss),
-                          T);
-    summary = solver.solve(problem);
-    T = problem.T_current_reference();
-  }
-  H = solver.hessian();
-  return summary;
+  const Solution solution = settle(bench.sets, MotionReferences{}, loss, start);
+  T = solution.T;
+  H = solution.H;
+  return solution.summary;
 }
 
 inline double nees(const Se3& estimate, const Se3& truth, const Matrix6& information) {

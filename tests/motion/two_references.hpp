@@ -87,25 +87,9 @@ inline Linearization linearize(std::span<ConstraintSet* const> sets, const Motio
   return out;
 }
 
-struct Solution {
-  LmSummary summary;
-  Se3 T;
-  Matrix6 H;
-};
-// Solves with weights held at where the last one ended, until that does not matter.
 inline Solution solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                       const Se3& start) {
-  LevenbergMarquardt<6> solver;
-  Solution solution;
-  solution.T = start;
-  for (int round = 0; round < 4; ++round) {
-    MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, RobustLoss::kHuber),
-                          solution.T);
-    solution.summary = solver.solve(problem);
-    solution.T = problem.T_current_reference();
-  }
-  solution.H = solver.hessian();
-  return solution;
+  return settle(sets, references, RobustLoss::kHuber, start);
 }
 
 // |A − B| where metres and radians, known well and known badly, weigh alike: in units of B's own diagonal.

@@ -90,9 +90,8 @@ class View {
 
   // Of a ray beside one that met the wall across `axis`: most meet the same.
   int grey(const Vector3& ray, int axis) {
-    double d = distance(ray, axis);
     double s = 0, t = 0;
-    if (!meets(ray, axis, d, s, t)) {
+    if (!meets(ray, axis, distance(ray, axis), s, t)) {
       const Hit hit = cast(ray);
       axis = hit.axis;
       (void)meets(ray, axis, hit.distance, s, t);

@@ -108,13 +108,12 @@ struct Landmark {
   Vector4 w_reference, w_current;
 };
 
-// One match at (T, landmark).
+// One match at (T, landmark). The weights only so far as the offsets may be noise.
 struct Observed {
   Cholesky<4> W;         // factor of C' + N C Nᵀ
   Vector4 offset;        // N e
   Vector4 w;             // W (e' − N e)
   Vector4 w_reference;   // −Nᵀ w
-  double noise = 1;      // what may be noise of it
   Vector4 y;             // the landmark's best displacement across the line at its stations
   Vector2 stations;      // λ_A, λ_B of the reference frame
   Vector2 ends;          // λ'_A, λ'_B of the current frame
@@ -129,8 +128,7 @@ bool observe_both(const Line3d& reference, const Line3d& current, const Se3& T, 
   const EndOffsets second = observe(current, T * landmark.q, at.G_current);
 
   // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
-  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference:
-  // those of the last step serve, and agree with their own step when it converges.
+  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference.
   at.stations = first.lambda - Vector2(first.C_le.lazyProduct(landmark.w_reference));
   at.ends = second.lambda - Vector2(second.C_le.lazyProduct(landmark.w_current));
   const Interpolation N(at.stations, at.ends);
@@ -139,10 +137,12 @@ bool observe_both(const Line3d& reference, const Line3d& current, const Se3& T, 
   if (!at.W.factor(second.C + N.sandwich(first.C))) return false;
   const Vector4 c = second.e - at.offset;
   at.w = at.W.solve(c);
-  const double squared = c.dot(at.w);
-  at.noise = squared > kNoise ? kNoise / squared : 1;
   at.w_reference = -N.transpose_times(at.w);
   at.y = first.e - Vector4(first.C.lazyProduct(at.w_reference));
+  const double squared = c.dot(at.w);
+  const double noise = squared > kNoise ? kNoise / squared : 1;
+  at.w *= noise;
+  at.w_reference *= noise;
   return true;
 }
 
@@ -155,8 +155,8 @@ Landmark moved(const Landmark& landmark, const Observed& at) {
   result.q = landmark.q + at_a - at.stations[0] * slope;
   result.d = landmark.d + slope;
   result.d *= 1 / sqrt(result.d.squaredNorm());
-  result.w_reference = at.noise * at.w_reference;
-  result.w_current = at.noise * at.w;
+  result.w_reference = at.w_reference;
+  result.w_current = at.w;
   return result;
 }
 

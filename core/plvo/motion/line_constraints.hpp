@@ -17,13 +17,13 @@
 // reference frame has derivative −I and that of the current frame −N, N linear interpolation between the
 // stations, and the elimination reads
 //   c = e' − N e,   W = (C' + N C Nᵀ)⁻¹,   Schur complement J_ξᵀ W J_ξ,   gradient −J_ξᵀ W c,
-// with C = Vᵀ Λ V: one 4×4 Cholesky per line. Neither U nor the stations influence the result; tests/motion
-// proves it against a dense solve with 6-parameter landmarks and gauges of its own.
+// with C = Vᵀ Λ V: one 4×4 Cholesky per line. U does not influence the result, the stations to second order
+// in the noise; tests/motion shows it against a dense solve with 6-parameter landmarks and gauges of its own.
 //
 // A solve holds W, N, U and the landmark's points at the ends as they are best for the motion it begins with,
 // and so minimises squares of constant weights, which every step lowers; the next begins where it ended
 // (iteratively reweighted least squares). At a motion that two solves in a row give, the gradient is that of
-// the joint problem: the landmark is at its optimum there.
+// the joint problem, as nearly as one step brings the landmark to its optimum there.
 #pragma once
 
 #include "plvo/base/match.hpp"

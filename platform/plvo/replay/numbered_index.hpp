@@ -25,8 +25,7 @@ Status read_numbered_index(const std::filesystem::path& folder, double frames_pe
 // else as read_text_file.
 Status read_matrix_pose(const std::filesystem::path& path, Se3& pose, bool& usable);
 
-// As read_matrix_pose. At least one pose must be
-// finite (kInvalidArgument).
+// As read_matrix_pose. At least one pose must be finite (kInvalidArgument).
 Status read_numbered_poses(const std::filesystem::path& folder, const std::vector<StampedFile>& files,
                            Trajectory& trajectory);
 

@@ -33,8 +33,7 @@ void add_imu_options(CLI::App& command, ImuOptions& options) {
   OptionGroup group(command);
   group.flag("--imu", options.used,
              "With gyroscope.txt (rad/s) and accelerometer.txt (m/s^2) of the folder, 'stamp x y z' per "
-             "line, or with "
-             "sensor_msgs/Imu of the ROS bag");
+             "line, or with sensor_msgs/Imu of the ROS bag");
   group.add("--imu-axes", "AXES",
             "Which of their axes point right, down and forward (default x,y,z; of a Kinect: x,-y,z)",
             [&options](const std::string& text) -> std::string {
