@@ -71,7 +71,7 @@ Detection detect(const DetectorFrame& frame, const DetectorConfig& options, std:
 
 int score(GrayView image, int x, int y) {
   std::uint8_t value = 0;
-  segment_test_row(image.row(y) + x, image.stride, 1, &value);
+  segment_test_row(image.row(y) + x, image.stride, 1, 0, &value);
   return value;
 }
 

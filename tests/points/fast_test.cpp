@@ -45,9 +45,16 @@ void expect_same(const GrayImage& owner) {
   const int width = image.width - 6;
   std::vector<std::uint8_t> scores(static_cast<std::size_t>(width));
   for (int y = 3; y < image.height - 3; ++y) {
-    segment_test_row(image.row(y) + 3, image.stride, width, scores.data());
-    for (int x = 3; x < image.width - 3; ++x)
-      ASSERT_EQ(scores[static_cast<std::size_t>(x - 3)], reference_score(image, x, y)) << x << " " << y;
+    for (const int floor : {0, 5, 60}) {
+      segment_test_row(image.row(y) + 3, image.stride, width, static_cast<std::uint8_t>(floor),
+                       scores.data());
+      for (int x = 3; x < image.width - 3; ++x) {
+        const int score = scores[static_cast<std::size_t>(x - 3)];
+        const int expected = reference_score(image, x, y);
+        ASSERT_TRUE(expected > floor ? score == expected : score <= floor)
+            << x << " " << y << ": " << score << " for " << expected << ", floor " << floor;
+      }
+    }
   }
 }
 
@@ -88,7 +95,7 @@ TEST(SegmentTest, EveryPatternOfTheCircle) {
     bool run = false;
     for (std::uint32_t start = 0; start < 16; ++start) run = run || ((twice >> start) & 0x1ffU) == 0x1ffU;
     std::uint8_t score = 0;
-    segment_test_row(image.view().row(3) + 3, 7, 1, &score);
+    segment_test_row(image.view().row(3) + 3, 7, 1, 0, &score);
     ASSERT_EQ(score, run ? brighter - 100 : 0) << bits;
   }
 }
@@ -97,13 +104,13 @@ TEST(SegmentTest, TheEndsOfTheScale) {
   GrayImage black(7, 7, 0, 0);
   black.view().at(3, 3) = 255;
   std::uint8_t score = 0;
-  segment_test_row(black.view().row(3) + 3, 7, 1, &score);
+  segment_test_row(black.view().row(3) + 3, 7, 1, 0, &score);
   EXPECT_EQ(score, 255);
   GrayImage white(7, 7, 0, 255);
-  segment_test_row(white.view().row(3) + 3, 7, 1, &score);
+  segment_test_row(white.view().row(3) + 3, 7, 1, 0, &score);
   EXPECT_EQ(score, 0) << "nothing is brighter or darker";
   white.view().at(3, 3) = 0;
-  segment_test_row(white.view().row(3) + 3, 7, 1, &score);
+  segment_test_row(white.view().row(3) + 3, 7, 1, 0, &score);
   EXPECT_EQ(score, 255);
 }
 

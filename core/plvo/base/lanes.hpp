@@ -1,31 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight 16-bit integers side by side, in the vector types of GCC and Clang: one register where a processor
-// has such, plain instructions where not, the same bits everywhere. Pass them by reference or inline: how
-// they travel by value differs between boards.
+// Eight 16-bit integers side by side, and four of 32 bits, in the vector types of GCC and Clang: one register
+// where a processor has such, plain instructions where not, the same bits everywhere. Pass them by reference
+// or inline: how they travel by value differs between boards. What is read in parts is put together in
+// registers: a wide load just behind narrower stores waits for them.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
 namespace plvo {
 
 using Lanes = std::int16_t __attribute__((vector_size(16)));
+using WideLanes = std::int32_t __attribute__((vector_size(16)));
 
-// Of eight bytes in memory.
-inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Lanes& lanes) {
+// Of eight bytes.
+inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Lanes& lanes) {
 #ifdef __SSE2__
   // Zeros between the bytes: one instruction, of the plain conversion GCC 12 makes five.
+  using Words = std::uint64_t __attribute__((vector_size(16)));
   using Bytes = std::uint8_t __attribute__((vector_size(16)));
-  Bytes eight = {};
-  std::memcpy(&eight, bytes, 8);
+  const Words words = {bytes, 0};
+  Bytes eight;
+  std::memcpy(&eight, &words, sizeof eight);
   const Bytes wide =
       __builtin_shufflevector(eight, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   std::memcpy(&lanes, &wide, sizeof lanes);
 #else
   using Bytes = std::uint8_t __attribute__((vector_size(8)));
   Bytes eight;
-  std::memcpy(&eight, bytes, sizeof eight);
+  std::memcpy(&eight, &bytes, sizeof eight);
   lanes = __builtin_convertvector(eight, Lanes);
+#endif
+}
+
+// Of eight bytes in memory.
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Lanes& lanes) {
+  std::uint64_t eight;
+  std::memcpy(&eight, bytes, sizeof eight);
+  widen_bytes(eight, lanes);
+}
+
+// Of four bytes at either place.
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* first, const std::uint8_t* second,
+                                                      Lanes& lanes) {
+  std::uint32_t four[2];
+  std::memcpy(&four[0], first, sizeof four[0]);
+  std::memcpy(&four[1], second, sizeof four[1]);
+  static_assert(std::endian::native == std::endian::little);
+  widen_bytes(four[0] | static_cast<std::uint64_t>(four[1]) << 32, lanes);
+}
+
+// Four numbers from either place.
+inline __attribute__((always_inline)) void load_halves(const std::int16_t* first, const std::int16_t* second,
+                                                       Lanes& lanes) {
+  using Words = std::uint64_t __attribute__((vector_size(16)));
+  std::uint64_t four[2];
+  std::memcpy(&four[0], first, sizeof four[0]);
+  std::memcpy(&four[1], second, sizeof four[1]);
+  const Words words = {four[0], four[1]};
+  std::memcpy(&lanes, &words, sizeof lanes);
+}
+
+// sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1], which must not pass 32 bits.
+inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {
+#ifdef __SSE2__
+  sums = __builtin_ia32_pmaddwd128(a, b);
+#else
+  for (int i = 0; i < 4; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
 #endif
 }
 

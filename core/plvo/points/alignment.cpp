@@ -202,7 +202,7 @@ constexpr auto kColumnWeights = [] {
 // Each pixel at a fraction of its own, two of them at once: down their four columns, then across.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
   constexpr std::int32_t kFraction = kOnePixel - 1;
-  Window values;
+  alignas(16) std::array<std::int32_t, 2 * kPixels> halves;  // of each pixel: two columns, and two
   for (std::size_t k = 0; k < kPixels; k += 2) {
     const std::uint8_t* p[2];
     const std::array<std::int16_t, kTaps>* down[2];
@@ -216,25 +216,21 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
     }
     Lanes sum = {};
     for (std::ptrdiff_t r = 0; r < kTaps; ++r) {
-      std::uint8_t row[2 * kTaps];
-      std::int16_t weights[2 * kTaps];
-      for (std::size_t i = 0; i < 2; ++i) {
-        std::memcpy(row + i * kTaps, p[i] + r * image.stride, kTaps);
-        std::memcpy(weights + i * kTaps, down[i] + r, sizeof *down[i]);
-      }
-      Lanes pixels, weight;
-      load_bytes(row, pixels);
-      std::memcpy(&weight, weights, sizeof weight);
-      sum += pixels * weight;
+      Lanes pixels, weights;
+      load_bytes(p[0] + r * image.stride, p[1] + r * image.stride, pixels);
+      load_halves(down[0][r].data(), down[1][r].data(), weights);
+      sum += pixels * weights;
     }
     sum = (sum + std::int16_t{4}) >> 3;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Weights& w = *across[i];
-      const std::size_t c = i * kTaps;
-      values[k + i] = static_cast<std::int16_t>(
-          (sum[c] * w[0] + sum[c + 1] * w[1] + sum[c + 2] * w[2] + sum[c + 3] * w[3] + 64) >> 7);
-    }
+    Lanes weights;
+    load_halves(across[0]->data(), across[1]->data(), weights);
+    WideLanes two;
+    dot_pairs(sum, weights, two);
+    std::memcpy(&halves[2 * k], &two, sizeof two);
   }
+  Window values;
+  for (std::size_t k = 0; k < kPixels; ++k)
+    values[k] = static_cast<std::int16_t>((halves[2 * k] + halves[2 * k + 1] + 64) >> 7);
   return values;
 }
 

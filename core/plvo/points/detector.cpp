@@ -14,7 +14,6 @@ namespace plvo {
 namespace {
 
 using Candidate = DetectionCandidate;
-constexpr int kTileStride = DetectionTile::kStride;
 
 struct Cell {
   int x0, y0, x1, y1;  // pixels of its level, half open
@@ -34,27 +33,30 @@ int contrast_threshold(GrayView image, const Cell& cell) {
   return (high - low) / 8;
 }
 
-// The segment test's scores in one cell and a rim of one pixel around it.
-class Tile {
+// The segment test's scores of one row of cells and a rim of one pixel around it. Those up to the noise floor
+// are not exact: no threshold is below it.
+class Band {
  public:
-  explicit Tile(DetectionTile& storage) : scores_(storage.scores) {}
+  explicit Band(std::span<std::uint8_t> storage) : scores_(storage) {}
 
-  void fill(GrayView image, const Cell& cell) {
-    cell_ = cell;
+  // Cells from row y0 to before row y1, from column x0 to before column x1.
+  void fill(GrayView image, const Cell& band, int noise_floor) {
+    x0_ = band.x0 - 1;
+    y0_ = band.y0 - 1;
     // Whole vectors: the pixels beyond the rim are computed and not looked at. The keypoints' margin keeps
     // them in the image's memory.
-    const int width = (cell.x1 - cell.x0 + 2 + 15) / 16 * 16;
-    for (int y = cell.y0 - 1; y <= cell.y1; ++y)
-      segment_test_row(image.row(y) + cell.x0 - 1, image.stride, width,
-                       scores_.data() + (y - cell.y0 + 1) * kTileStride);
+    stride_ = (band.x1 - band.x0 + 2 + 15) / 16 * 16;
+    for (int y = y0_; y <= band.y1; ++y)
+      segment_test_row(image.row(y) + x0_, image.stride, stride_, static_cast<std::uint8_t>(noise_floor),
+                       scores_.data() + (y - y0_) * stride_);
   }
 
   // Pixels of the cell that pass at this threshold.
-  int count_above(int threshold) const {
+  int count_above(const Cell& cell, int threshold) const {
     int count = 0;
-    for (int y = cell_.y0; y < cell_.y1; ++y) {
-      const std::uint8_t* line = at(cell_.x0, y);
-      for (int i = 0; i < cell_.x1 - cell_.x0; ++i) count += line[i] > threshold ? 1 : 0;
+    for (int y = cell.y0; y < cell.y1; ++y) {
+      const std::uint8_t* line = at(cell.x0, y);
+      for (int i = 0; i < cell.x1 - cell.x0; ++i) count += line[i] > threshold ? 1 : 0;
     }
     return count;
   }
@@ -73,19 +75,18 @@ class Tile {
   // Of equal neighbours the first is the maximum: the suppression has a total order.
   bool is_maximum(int x, int y) const {
     const std::uint8_t* s = at(x, y);
+    const std::uint8_t* above = s - stride_;
+    const std::uint8_t* below = s + stride_;
     const std::uint8_t centre = *s;
-    return s[-kTileStride - 1] < centre && s[-kTileStride] < centre && s[-kTileStride + 1] < centre &&
-           s[-1] < centre && s[1] <= centre && s[kTileStride - 1] <= centre && s[kTileStride] <= centre &&
-           s[kTileStride + 1] <= centre;
+    return above[-1] < centre && above[0] < centre && above[1] < centre && s[-1] < centre && s[1] <= centre &&
+           below[-1] <= centre && below[0] <= centre && below[1] <= centre;
   }
 
  private:
-  const std::uint8_t* at(int x, int y) const {
-    return scores_.data() + (y - cell_.y0 + 1) * kTileStride + (x - cell_.x0 + 1);
-  }
+  const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
-  Cell cell_{};
-  decltype(DetectionTile::scores)& scores_;
+  std::span<std::uint8_t> scores_;
+  int x0_ = 0, y0_ = 0, stride_ = 0;  // of the rim's first pixel, and from row to row
 };
 
 // The strongest of a cell, strongest first; a later equal never overtakes.
@@ -122,21 +123,19 @@ struct Search {
   int found = 0;
 };
 
-void search_cell(Search& search, Tile& tile, int level, const Cell& cell) {
+void search_cell(Search& search, const Band& band, int level, const Cell& cell) {
   const GrayView image = search.pyramid.level(level);
-  tile.fill(image, cell);
   // Half the threshold and half again, while the cell has too few: at most seven times.
   int threshold = std::max(search.options.noise_floor, contrast_threshold(image, cell));
   constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
-  while (threshold > search.options.noise_floor && tile.count_above(threshold) < kEnoughPixels)
+  while (threshold > search.options.noise_floor && band.count_above(cell, threshold) < kEnoughPixels)
     threshold = std::max(search.options.noise_floor, threshold / 2);
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int x = cell.x0; x < cell.x1; ++x) {
-      // The tile is computed in whole vectors: eight from any pixel of the cell on are there.
-      while (x + 8 <= cell.x1 && !tile.any_of_eight(x, y, threshold)) x += 8;
+      while (x + 8 <= cell.x1 && !band.any_of_eight(x, y, threshold)) x += 8;
       if (x == cell.x1) break;
-      if (tile.score(x, y) <= threshold || !tile.is_maximum(x, y)) continue;
+      if (band.score(x, y) <= threshold || !band.is_maximum(x, y)) continue;
       const auto strength = static_cast<float>(corner_strength(image, x, y));
       if (strength < static_cast<float>(search.options.min_strength)) continue;
       ++search.found;
@@ -148,15 +147,16 @@ void search_cell(Search& search, Tile& tile, int level, const Cell& cell) {
   for (std::size_t i = 0; i < best.size(); ++i) search.candidates.push_back(best.at(i));
 }
 
-void search_level(Search& search, Tile& tile, int level) {
+void search_level(Search& search, Band& band, int level) {
   const GrayView image = search.pyramid.level(level);
   const int size = search.options.cell_px;
+  const int right = image.width - kKeypointMargin;
+  if (right <= kKeypointMargin) return;
   for (int y = kKeypointMargin; y < image.height - kKeypointMargin; y += size) {
-    for (int x = kKeypointMargin; x < image.width - kKeypointMargin; x += size) {
-      const Cell cell{x, y, std::min(x + size, image.width - kKeypointMargin),
-                      std::min(y + size, image.height - kKeypointMargin)};
-      search_cell(search, tile, level, cell);
-    }
+    const int bottom = std::min(y + size, image.height - kKeypointMargin);
+    band.fill(image, {kKeypointMargin, y, right, bottom}, search.options.noise_floor);
+    for (int x = kKeypointMargin; x < right; x += size)
+      search_cell(search, band, level, {x, y, std::min(x + size, right), bottom});
   }
 }
 
@@ -241,18 +241,19 @@ double corner_strength(GrayView image, int x, int y) {
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
                                   const DetectorConfig& options, Arena& scratch, FixedVector<Keypoint>& out) {
   const ScratchScope scope(scratch);
+  const std::span<std::uint8_t> scores =
+      scratch.take<std::uint8_t>("keypoint scores", detection_band(pyramid.level(0).width, options.cell_px));
   std::size_t cells = 0;
   for (int level = 0; level < options.levels; ++level)
     cells += detection_cells(pyramid.level(level).width, pyramid.level(level).height, options.cell_px);
   FixedVector<Candidate> candidates(
       scratch.take<Candidate>("keypoint candidates", cells * kKeypointsPerCell));
-  const std::span<DetectionTile> storage = scratch.take<DetectionTile>("keypoint tile", 1);
   out.clear();
-  if (storage.empty() || candidates.capacity() == 0) return {};
+  if (scores.empty() || candidates.capacity() == 0) return {};
 
   Search search{pyramid, depth, options, candidates};
-  Tile tile(storage[0]);
-  for (int level = 0; level < options.levels; ++level) search_level(search, tile, level);
+  Band band(scores);
+  for (int level = 0; level < options.levels; ++level) search_level(search, band, level);
   const std::size_t kept = select_best_spread(candidates, out.capacity());
   for (std::size_t i = 0; i < kept; ++i) out.push_back(refine(pyramid, candidates[i]));
   out.add_dropped(candidates.size() - kept);

@@ -33,19 +33,13 @@ inline constexpr int kKeypointMargin = 17;
 // At most so many keypoints of one cell are considered at all.
 inline constexpr int kKeypointsPerCell = 16;
 
-// A corner that competes for a place, and the map of one cell's segment test scores with a rim of one pixel,
-// which the non-maximum suppression looks at.
+// A corner that competes for a place.
 struct DetectionCandidate {
   float strength;
   std::int16_t x, y;
   std::uint8_t level;
   std::uint8_t rank;  // among its cell's
 };
-struct DetectionTile {
-  static constexpr int kStride = (kMaxCell + 2 + 15) / 16 * 16;
-  std::array<std::uint8_t, kStride*(kMaxCell + 2)> scores;
-};
-
 // Cells of one level.
 constexpr std::size_t detection_cells(int width, int height, int cell_px) {
   const int columns = (width - 2 * kKeypointMargin + cell_px - 1) / cell_px;
@@ -53,10 +47,17 @@ constexpr std::size_t detection_cells(int width, int height, int cell_px) {
   return columns <= 0 || rows <= 0 ? 0 : static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
 }
 
+// The segment test's scores of a row of cells, with a rim of one pixel, which the non-maximum suppression
+// looks at; whole vectors of them.
+constexpr std::size_t detection_band(int width, int cell_px) {
+  return static_cast<std::size_t>((width + 15) / 16 * 16) * static_cast<std::size_t>(cell_px + 2);
+}
+
 // What detect_keypoints takes of the scratch, for the smallest cells and all levels.
 template <typename Memory>
 constexpr void reserve_detection(Memory& memory, int width, int height) {
   const ScratchScope scope(memory);
+  memory.template take<std::uint8_t>("keypoint scores", detection_band(width, kMaxCell));
   std::size_t cells = 0;
   for (int level = 0; level < Pyramid::kMaxLevels; ++level) {
     cells += detection_cells(width, height, kMinCell);
@@ -64,7 +65,6 @@ constexpr void reserve_detection(Memory& memory, int width, int height) {
     height = (height + 1) / 2;
   }
   memory.template take<DetectionCandidate>("keypoint candidates", cells * kKeypointsPerCell);
-  memory.template take<DetectionTile>("keypoint tile", 1);
 }
 
 struct DetectionSummary {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/points/fast.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 namespace plvo {
 namespace {
 
@@ -45,10 +48,15 @@ inline Byte best_run_of_nine(Byte p0, Byte p1, Byte p2, Byte p3, Byte p4, Byte p
                 Better(Better(run8, run10), Better(run12, run14)));
 }
 
-}  // namespace
+// By how much all of one run are brighter than the centre, or darker: differences that stop at zero.
+inline Byte contrast(Byte centre, Byte brightest, Byte darkest) {
+  const auto above = static_cast<Byte>(most(brightest, centre) - centre);
+  const auto below = static_cast<Byte>(centre - least(darkest, centre));
+  return most(above, below);
+}
 
-void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
-                      std::uint8_t* __restrict scores) {
+inline __attribute__((always_inline)) void score_pixels(const Byte* row, std::ptrdiff_t stride, int width,
+                                                        Byte* __restrict scores) {
   const Byte* up3 = row - 3 * stride;
   const Byte* up2 = row - 2 * stride;
   const Byte* up1 = row - stride;
@@ -65,11 +73,38 @@ void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
         best_run_of_nine<least, most>(p0, p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14, p15);
     const Byte darkest =
         best_run_of_nine<most, least>(p0, p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11, p12, p13, p14, p15);
-    // Differences that stop at zero.
-    const Byte centre = row[x];
-    const auto above = static_cast<Byte>(most(brightest, centre) - centre);
-    const auto below = static_cast<Byte>(centre - least(darkest, centre));
-    scores[x] = most(above, below);
+    scores[x] = contrast(row[x], brightest, darkest);
+  }
+}
+
+// At most so much: nine contiguous pixels hold one of the top and the bottom, and one of the left and the
+// right.
+void bound_pixels(const Byte* row, std::ptrdiff_t stride, int width, Byte* __restrict bounds) {
+  const Byte* up3 = row - 3 * stride;
+  const Byte* down3 = row + 3 * stride;
+  for (int x = 0; x < width; ++x) {
+    const Byte top = up3[x], bottom = down3[x], left = row[x - 3], right = row[x + 3];
+    bounds[x] = contrast(row[x], least(most(top, bottom), most(left, right)),
+                         most(least(top, bottom), least(left, right)));
+  }
+}
+
+}  // namespace
+
+void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width, std::uint8_t floor,
+                      std::uint8_t* __restrict scores) {
+  bound_pixels(row, stride, width, scores);
+  // Only blocks with a pixel that may pass are scored.
+  constexpr int kBlock = 16;
+  for (int x = 0; x < width; x += kBlock) {
+    const int size = std::min(kBlock, width - x);
+    Byte highest = 0;
+    for (int i = 0; i < size; ++i) highest = most(highest, scores[x + i]);
+    if (highest <= floor) continue;
+    if (size == kBlock)
+      score_pixels(row + x, stride, kBlock, scores + x);
+    else
+      score_pixels(row + x, stride, size, scores + x);
   }
 }
 

@@ -11,9 +11,10 @@
 namespace plvo {
 
 // scores[i]: the pixel row[i] passes the segment test for every threshold t < scores[i] (grey levels; 0: for
-// none). row points into an image of that stride with three pixels of margin on every side; scores does not
-// overlap it.
-void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
+// none). Nobody asks for thresholds below floor: where the score is not above it, any number up to it may
+// stand instead. row points into an image of that stride with three pixels of margin on every side; scores
+// does not overlap it.
+void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width, std::uint8_t floor,
                       std::uint8_t* __restrict scores);
 
 }  // namespace plvo

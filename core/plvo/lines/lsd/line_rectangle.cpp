@@ -2,7 +2,9 @@
 #include "plvo/lines/lsd/line_rectangle.hpp"
 
 #include <algorithm>
+#include <cstring>
 
+#include "plvo/base/lanes.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::lsd {
@@ -45,6 +47,49 @@ Moments weigh(const LevelLineField& field, std::span<const Pixel> pixels) {
   return moments;
 }
 
+struct Range {
+  std::int32_t low, high;
+  void take(std::int32_t value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+// Least and greatest x · dx + y · dy, in 2^-14 px: four pixels at once.
+Range range_along(std::span<const Pixel> pixels, std::int32_t dx, std::int32_t dy) {
+  static_assert(sizeof(Pixel) == 2 * sizeof(std::int16_t));
+  const auto along = [&](Pixel p) { return p.x * dx + p.y * dy; };
+  const std::int32_t first = along(pixels.front());
+  Range range{first, first};
+  const Lanes direction = Lanes{1, 0, 1, 0, 1, 0, 1, 0} * static_cast<std::int16_t>(dx) +
+                          Lanes{0, 1, 0, 1, 0, 1, 0, 1} * static_cast<std::int16_t>(dy);
+  WideLanes low = WideLanes{} + first;
+  WideLanes high = low;
+  std::size_t i = 0;
+  for (; i + 4 <= pixels.size(); i += 4) {
+    Lanes four;
+    std::memcpy(&four, &pixels[i], sizeof four);
+    WideLanes value;
+    dot_pairs(four, direction, value);
+    low = value < low ? value : low;
+    high = value > high ? value : high;
+  }
+  for (; i < pixels.size(); ++i) range.take(along(pixels[i]));
+  for (int lane = 0; lane < 4; ++lane) {
+    range.take(low[lane]);
+    range.take(high[lane]);
+  }
+  return range;
+}
+
+// From the centre, 2^-8 px, and the centre itself.
+Range about(Range range, std::int64_t centre_q22) {
+  const auto offset = [&](std::int64_t q14) {
+    return static_cast<std::int32_t>((q14 * 256 - centre_q22) >> kDirectionBits);
+  };
+  return {std::min(offset(range.low), 0), std::max(offset(range.high), 0)};
+}
+
 }  // namespace
 
 Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
@@ -78,14 +123,14 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
   r.dy = to_fixed(dy, 1 << kDirectionBits);
   // The smaller principal moment; rounding may take it below 0.
   r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (moments.xx + moments.yy - h) / moments.mass)), 256);
-  for (const Pixel& pixel : region.pixels) {
-    const std::int32_t l = r.along(pixel.x, pixel.y);
-    const std::int32_t t = r.across(pixel.x, pixel.y);
-    r.along_min = std::min(r.along_min, l);
-    r.along_max = std::max(r.along_max, l);
-    r.across_min = std::min(r.across_min, t);
-    r.across_max = std::max(r.across_max, t);
-  }
+  const std::int64_t x_q8 = r.x_q8;
+  const std::int64_t y_q8 = r.y_q8;
+  const Range along = about(range_along(region.pixels, r.dx, r.dy), x_q8 * r.dx + y_q8 * r.dy);
+  const Range across = about(range_along(region.pixels, -r.dy, r.dx), y_q8 * r.dx - x_q8 * r.dy);
+  r.along_min = along.low;
+  r.along_max = along.high;
+  r.across_min = across.low;
+  r.across_max = across.high;
   if (r.width_q8() < 256) {
     const std::int32_t missing = 256 - r.width_q8();
     r.across_min -= missing / 2;
