@@ -162,6 +162,23 @@ TEST_F(SparseAlignmentTest, SpreadsItsWindowsOverAllKeypoints) {
   EXPECT_GT(windows.back().keypoint, features_.keypoints.size() - 40);
 }
 
+// Whatever the number of keypoints is to the room: every one of them has a window here.
+TEST_F(SparseAlignmentTest, FillsTheRoomAndNoMore) {
+  const std::size_t keypoints = features_.keypoints.size();
+  for (std::size_t i = 0; i < keypoints; ++i) {
+    features_.keypoints[i] = features_.keypoints[keypoints / 2];
+    features_.patches[i] = features_.patches[keypoints / 2];
+  }
+  constexpr std::size_t kUntouched = 1 << 20;
+  for (std::size_t room = 0; room < kMostAlignmentWindows; ++room) {
+    room_[room].keypoint = kUntouched;
+    const auto windows = SparseAlignment::cut_fine(features_, std::span(room_).first(room));
+    ASSERT_LE(windows.size(), room);
+    ASSERT_GE(2 * windows.size(), room);
+    ASSERT_EQ(room_[room].keypoint, kUntouched) << room;
+  }
+}
+
 // The step in doubles, window by window: every number about its mean, the gain by regression, what it takes
 // of the gradients projected out, the projection differentiated numerically.
 Vector6 reference_step(std::span<const AlignmentWindow> windows, const PointFeatures& features,

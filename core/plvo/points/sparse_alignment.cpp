@@ -126,7 +126,7 @@ std::span<AlignmentWindow> cut(const PointFeatures& features, std::span<Alignmen
                                const Make& make) {
   std::size_t count = 0;
   const std::size_t keypoints = room.empty() ? 0 : features.keypoints.size();
-  const std::size_t step = keypoints / (room.size() + 1) + 1;
+  const std::size_t step = room.empty() ? 1 : (keypoints + room.size() - 1) / room.size();
   for (std::size_t i = 0; i < keypoints; i += step) {
     if (!make(i, room[count])) continue;
     room[count].keypoint = i;
