@@ -45,6 +45,12 @@ Keypoint keypoint_at(double u, double v, int level) {
   return keypoint;
 }
 
+// Depth is exposed with colour here.
+WindowMask own_surface_of(const DepthSampler& depth, const Keypoint& keypoint, double depth_m) {
+  const Vector2 centre(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
+  return own_surface(depth, centre, depth_m, keypoint.level);
+}
+
 WindowMask slow_mask(const Scene& scene, const Keypoint& keypoint, double depth_m) {
   constexpr int kRim = 2;
   const int step = 1 << keypoint.level;
@@ -92,7 +98,7 @@ TEST(OwnSurface, IsWhatItsDefinitionSays) {
     const Keypoint keypoint = keypoint_at(u, v, trial % 3);
     const double depth_m = scene.at(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
     if (depth_m == 0) continue;
-    const WindowMask mask = own_surface(sampler, keypoint, depth_m);
+    const WindowMask mask = own_surface_of(sampler, keypoint, depth_m);
     ASSERT_EQ(mask, slow_mask(scene, keypoint, depth_m))
         << "u " << u << ", v " << v << ", level " << trial % 3;
     ++(mask == kWholeWindow ? whole : count(mask) == 0 ? empty : partly);
@@ -109,21 +115,21 @@ TEST(OwnSurface, FarFromAnyEdgeItIsTheWholeWindow) {
     const int step = 1 << level;
     const int u = 40;
     const Scene scene([&](int x, int) { return x <= u + 5 * step ? 1.0 : 2.0; });
-    EXPECT_EQ(own_surface(scene.sampler(), keypoint_at(u, 40, level), 1.0), kWholeWindow) << level;
+    EXPECT_EQ(own_surface_of(scene.sampler(), keypoint_at(u, 40, level), 1.0), kWholeWindow) << level;
     // One column nearer it takes the window's last column away, and no more.
     WindowMask but_last;
     but_last.fill(0x7f);
-    EXPECT_EQ(own_surface(scene.sampler(), keypoint_at(u + step, 40, level), 1.0), but_last) << level;
+    EXPECT_EQ(own_surface_of(scene.sampler(), keypoint_at(u + step, 40, level), 1.0), but_last) << level;
   }
 }
 
 TEST(OwnSurface, WhatHasNoDepthIsAnotherSurface) {
   const Scene hole([](int x, int y) { return x == 40 && y == 40 ? 0.0 : 1.0; });
   // The hole and the rim around it: 25 pixels.
-  const WindowMask mask = own_surface(hole.sampler(), keypoint_at(40, 40, 0), 1.0);
+  const WindowMask mask = own_surface_of(hole.sampler(), keypoint_at(40, 40, 0), 1.0);
   EXPECT_EQ(count(mask), kWindowColumns * kWindowRows - 25);
   const Scene blind([](int, int) { return 0.0; });
-  EXPECT_EQ(own_surface(blind.sampler(), keypoint_at(40, 40, 0), 1.0), WindowMask{});
+  EXPECT_EQ(own_surface_of(blind.sampler(), keypoint_at(40, 40, 0), 1.0), WindowMask{});
 }
 
 TEST(OwnSurface, BesideTheImageThereIsNone) {
@@ -132,7 +138,7 @@ TEST(OwnSurface, BesideTheImageThereIsNone) {
   for (int level : {0, 1, 2})
     for (int u = 0; u < 7 << level; ++u) {
       const Keypoint keypoint = keypoint_at(u, 40, level);
-      ASSERT_EQ(own_surface(wall.sampler(), keypoint, 1.5), slow_mask(wall, keypoint, 1.5))
+      ASSERT_EQ(own_surface_of(wall.sampler(), keypoint, 1.5), slow_mask(wall, keypoint, 1.5))
           << "u " << u << ", level " << level;
     }
 }

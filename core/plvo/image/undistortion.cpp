@@ -10,7 +10,7 @@
 namespace plvo {
 namespace {
 
-using WideLanes = std::int32_t __attribute__((vector_size(32)));
+using Offsets = std::int32_t __attribute__((vector_size(32)));
 
 constexpr int kWeightBits = 7;  // of a position's fraction in the blend
 constexpr int kLaneBits = 10;   // of a position's fraction within a row of a cell
@@ -111,8 +111,8 @@ std::ptrdiff_t UndistortionMap::locate_plain(const Cell& c, int j, std::ptrdiff_
   constexpr std::int16_t kWeightMask = (1 << kWeightBits) - 1;
   const Lanes fx = (lane_x >> kToWeight) & kWeightMask;
   const Lanes fy = (lane_y >> kToWeight) & kWeightMask;
-  const WideLanes offset = __builtin_convertvector(
-      (lane_y >> kLaneBits) * static_cast<std::int16_t>(stride) + (lane_x >> kLaneBits), WideLanes);
+  const Offsets offset = __builtin_convertvector(
+      (lane_y >> kLaneBits) * static_cast<std::int16_t>(stride) + (lane_x >> kLaneBits), Offsets);
   const auto at = static_cast<std::size_t>(first);
   std::memcpy(&row.fx[at], &fx, sizeof fx);
   std::memcpy(&row.fy[at], &fy, sizeof fy);

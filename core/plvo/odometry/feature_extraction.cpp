@@ -137,8 +137,9 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
       // One whose window turns out to have no usable depth is at the camera's centre: "no 3D point".
       points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
                                        depth_scale * depth.sigma_m);
-      points.masks[i] =
-          depth.depth_m > 0 ? own_surface(depth_sampler, keypoint, depth.depth_m) : WindowMask{};
+      points.masks[i] = depth.depth_m > 0
+                            ? own_surface(depth_sampler, depth.located, depth.depth_m, keypoint.level)
+                            : WindowMask{};
     }
   });
 }

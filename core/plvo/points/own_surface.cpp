@@ -18,12 +18,9 @@ using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
 
 }  // namespace
 
-WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, double depth_m) {
-  const Vector2 pixel(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
-  Vector2 centre = pixel;
+WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double depth_m, int level) {
   WindowMask mask{};
-  if (!depth.locate(centre)) return mask;
-  const int step = 1 << keypoint.level;
+  const int step = 1 << level;
   // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
   const int centre_x = static_cast<int>(centre.x() + 0.5);
   const int centre_y = static_cast<int>(centre.y() + 0.5);

@@ -11,8 +11,9 @@
 
 namespace plvo {
 
-// depth_m: the keypoint's own, as sampled. A pixel without depth is taken to be another surface: beside an
-// edge it is, in a Kinect's shadow.
-WindowMask own_surface(const DepthSampler& depth, const Keypoint& keypoint, double depth_m);
+// centre: where the depth image shows the keypoint (DepthSample::located); depth_m: its depth, as sampled;
+// level: of the pyramid, at which the window's pixels are counted. A pixel without depth is taken to be
+// another surface: beside an edge it is, in a Kinect's shadow.
+WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double depth_m, int level);
 
 }  // namespace plvo

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -64,12 +65,17 @@ inline int alignment_level(const Rectangle& rectangle, Direction direction) {
   const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
   if (dot <= 0) return kNotAligned;
   const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
-  const std::int64_t turn = std::int64_t{cross < 0 ? -cross : cross} << 20;
-  int level = kNotAligned;
-  while (level + 1 < kPrecisionLevels &&
-         turn <= std::int64_t{kTangents_q20[static_cast<std::size_t>(level + 1)]} * dot) {
-    ++level;
-  }
+  const auto turn = static_cast<std::uint64_t>(cross < 0 ? -cross : cross) << 20;
+  const auto most = [&](int level) {
+    return static_cast<std::uint64_t>(kTangents_q20[static_cast<std::size_t>(level)]) *
+           static_cast<std::uint64_t>(dot);
+  };
+  if (turn > most(0)) return kNotAligned;
+  // A level halves the tangent, nearly: powers of two say it to within two, never too low.
+  int level = std::countl_zero(turn | 1) - std::countl_zero(most(0));
+  level = level < kPrecisionLevels - 1 ? level : kPrecisionLevels - 1;
+  level -= turn > most(level) ? 1 : 0;
+  level -= turn > most(level) ? 1 : 0;
   return level;
 }
 
