@@ -20,11 +20,13 @@ if(NOT Eigen3_VERSION VERSION_EQUAL PLVO_GOLDEN_EIGEN)
     "golden_test says whether the bits are the same")
 endif()
 
-# How the core is compiled. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
+# How the core is compiled. Loops over pixels are vectorised (plvo_vectorise); those over the three numbers of a point are
+# not: GCC 12 takes two of them together just behind the stores that made them one by one, and every such load waits for
+# both. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
 # processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
 # loops do not do so. golden_native_test holds this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
-  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize$<SEMICOLON>-fno-tree-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <cmath> <limits> <span> <Eigen/Core>)
 
 # plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target.
