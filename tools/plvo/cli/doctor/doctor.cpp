@@ -15,6 +15,7 @@
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/doctor/doctor_page.hpp"
 #include "plvo/host/line_file.hpp"
+#include "plvo/recording/recording.hpp"
 #include "plvo/usb/usb_bus.hpp"
 
 namespace plvo::cli {
@@ -86,6 +87,8 @@ int doctor_command(const DoctorOptions&) {
 
 void check(const CLI::App& command, const DoctorOptions& options) {
   check_live_camera_options(command, options.camera);
+  if (is_bag_file(options.camera.device))
+    refuse("--device", "a ROS bag is no sensor: plvo run FILE.bag tracks it");
   if (options.no_capture) {
     const char* why = "is for the capture, which --no-capture leaves out";
     refuse_options(command, {"--seconds", "--mode", "--device"}, why);
