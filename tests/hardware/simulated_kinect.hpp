@@ -60,7 +60,7 @@ class SimulatedKinect {
   void deny();
   void allow();
   void set_faults(const Faults& faults);
-  // By steady_clock: when the camera's clock showed this, while it has not wrapped.
+  // By steady_clock: when the camera's clock showed this, but for whole turns of its 32 bits.
   std::int64_t host_ns(std::int64_t stamp_ns) const;
   // The bus, and the Kinect's own hub on it, for what else hangs there.
   UMockdevTestbed* testbed() { return testbed_; }
