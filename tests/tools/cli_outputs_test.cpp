@@ -243,6 +243,44 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
 }
 
 // Each second pixel of the depth images, as a sensor with a smaller depth camera in the same place has them.
+// The simulator's z points up: what the truth knows of up is up in the level world, to the two degrees of an
+// accelerometer of 0.25 m/s² offset.
+TEST_F(CliOutputs, ALevelWorldByTheAccelerometer) {
+  const auto read = [&](const std::string& file) {
+    Trajectory trajectory;
+    EXPECT_TRUE(read_trajectory({path(file), TrajectoryFormat::kTum, {}}, trajectory).ok());
+    EXPECT_EQ(trajectory.poses.size(), std::size_t{kFrames});
+    return trajectory.poses;
+  };
+  ASSERT_EQ(run("--quiet --imu --level --out " + path("t")).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "t").find("turned level: gravity along y"), std::string::npos);
+  const auto truth = read("walk/groundtruth.txt"), level = read("t");
+  const Vector3 up(0, 0, 1);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const Vector3 down = level[i].T_world_camera.R * truth[i].T_world_camera.R.transpose() * -up;
+    EXPECT_LT((down - Vector3(0, 1, 0)).norm(), 0.1) << down.transpose();
+  }
+  // A camera that is mounted 20° askew: the base is level none the less.
+  const std::string mounted = " --base-camera 0.2 0 0.5 -0.576 0.576 -0.41 0.41";
+  ASSERT_EQ(run("--quiet --imu --level --out " + path("b") + mounted).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "b").find("turned level: gravity along -z"), std::string::npos);
+  const Se3 T_base_camera{to_rotation({-0.576, 0.576, -0.41, 0.41}), Vector3(0.2, 0, 0.5)};
+  const auto base = read("b");
+  EXPECT_LT(base[0].T_world_camera.t.norm(), 1e-8);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const Matrix3 R_odom_truth =
+        base[i].T_world_camera.R * T_base_camera.R * truth[i].T_world_camera.R.transpose();
+    EXPECT_LT((R_odom_truth * up - up).norm(), 0.1) << i;
+    EXPECT_LT(((base[i].T_world_camera.t - base[0].T_world_camera.t).norm()), 0.2);
+  }
+  expect_refused(run("--level --out " + path("t")), "--level: is by the accelerometer of --imu");
+  fs::remove(folder_ / "walk/accelerometer.txt");
+  const CommandResult none = run("--imu --level --out " + path("t"));
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.err.find("without an accelerometer nothing says where down is"), std::string::npos)
+      << none.err;
+}
+
 TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
   ImageDecoder decoder;

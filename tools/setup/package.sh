@@ -53,12 +53,15 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" --version >&2
   "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
-  tools/setup/page_program.sh docs/c.md c >"$work/track_folder.c"
-  "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
-    -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
-  "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
-  grep -v '^#' "$work/run.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
-  say "the command line and a C program with the shared library agree on $(wc -l <"$work/c.poses") poses"
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --imu --quiet --out "$work/imu.txt"
+  for program in 1:run 5:imu; do  # the two of the page, and what the command line says beside them
+    tools/setup/page_program.sh docs/c.md c "${program%:*}" >"$work/program.c"
+    "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/program.c" -L"$work/usr/lib/$triplet" -lplvo \
+      -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/program"
+    "${board[@]}" "$work/program" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
+    grep -v '^#' "$work/${program#*:}.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
+  done
+  say "the command line and two C programs with the shared library agree on $(wc -l <"$work/c.poses") poses each"
   printf '%s\n' "${debs[@]}"
   exit
 fi
@@ -87,6 +90,7 @@ mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
 cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
 tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
+tools/setup/page_program.sh docs/c.md c 5 >"$root/try/track_with_imu.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
 say "installed, used and purged; the packages:"
 printf '%s\n' "${debs[@]}"

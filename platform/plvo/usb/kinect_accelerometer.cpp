@@ -91,7 +91,7 @@ void KinectAccelerometer::fail(const Status& status) {
   if (said_failure_) return;
   said_failure_ = true;
   const Status words =
-      Status(status.code(), "no accelerometer, poses go on without gravity: ").append(status.message());
+      Status(status.code(), "no accelerometer, ").append(consequence_).append(": ").append(status.message());
   log_.write(LogLevel::kWarning, words.message());
 }
 

@@ -33,7 +33,8 @@ class KinectAccelerometer {
     std::uint64_t failures = 0;  // no answer, or no Kinect
   };
 
-  explicit KinectAccelerometer(Log& log) : log_(log) {}
+  // consequence: of a failure, for whoever reads the log.
+  KinectAccelerometer(Log& log, const char* consequence) : log_(log), consequence_(consequence) {}
   ~KinectAccelerometer() { stop(); }
   KinectAccelerometer(const KinectAccelerometer&) = delete;
   KinectAccelerometer& operator=(const KinectAccelerometer&) = delete;
@@ -54,8 +55,9 @@ class KinectAccelerometer {
   bool wait_until(std::int64_t host_ns);  // false: stop
 
   Log& log_;
+  const char* consequence_;
   std::thread thread_;
-  mutable std::mutex mutex_;  // all below
+  mutable std::mutex mutex_;  // stop_, waiting_ and counters_
   std::condition_variable wake_;
   bool stop_ = false;
   std::vector<KinectReading> waiting_;

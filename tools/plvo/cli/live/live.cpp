@@ -48,6 +48,7 @@ std::string check_stream(const std::string& text) {
 void add_outputs(CLI::App& command, LiveOptions& options) {
   add_output_options(command, options.outputs.files);
   OptionGroup group(command, kOutputGroup);
+  add_level_option(group, options.outputs.files.base);
   group.path("--json", options.summary, "The summary as JSON");
   group.path("--record", options.record,
              "Keep every captured frame: in a new folder that plvo run reads, or in a new .oni file",
@@ -90,6 +91,8 @@ void check(const CLI::App& command, LiveOptions& options) {
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   LiveOutputOptions& outputs = options.outputs;
   check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
+  check_level_option(command, options.imu);
+  options.odometry.level_world = outputs.files.base.level;
   FileRoles files;
   for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
   files.writes("--json", options.summary);

@@ -37,16 +37,21 @@ LiveAccelerometer::~LiveAccelerometer() = default;
 
 #ifdef PLVO_HAVE_USB
 
-Status LiveAccelerometer::start(const LiveCamera& camera) {
+Status LiveAccelerometer::start(const LiveCamera& camera, bool level) {
   const std::string uri = camera.uri();
-  if (uri.rfind(kKinectScheme, 0) != 0) {
+  const bool kinect = uri.rfind(kKinectScheme, 0) == 0;
+  if (!kinect && level)
+    return {StatusCode::kUnsupported,
+            "--level: of live sensors a Kinect v1 alone has an accelerometer that is read; leave it away"};
+  if (!kinect) {
     console_.write(LogLevel::kWarning,
                    "--imu: of live sensors a Kinect v1 alone has an accelerometer that is read; poses go on "
                    "without gravity");
     return {};
   }
   if (Status status = integrator_.init({}, memory_, kinect_config()); !status.ok()) return status;
-  sensor_ = std::make_unique<KinectAccelerometer>(console_);
+  sensor_ = std::make_unique<KinectAccelerometer>(
+      console_, level ? "the level world waits for it" : "poses go on without gravity");
   sensor_->start(uri.substr(kKinectScheme.size()));
   return {};
 }
@@ -82,7 +87,7 @@ class plvo::KinectAccelerometer {};
 
 namespace plvo::cli {
 
-Status LiveAccelerometer::start(const LiveCamera&) {
+Status LiveAccelerometer::start(const LiveCamera&, bool) {
   return {StatusCode::kUnsupported,
           "--imu: this plvo was built without libusb: sudo apt install libusb-1.0-0-dev, then configure and "
           "build again"};

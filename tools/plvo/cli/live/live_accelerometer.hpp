@@ -31,8 +31,8 @@ class LiveAccelerometer {
   ~LiveAccelerometer();
 
   // kUnsupported where plvo was built without libusb. A camera that has no accelerometer is warned of, and
-  // nothing comes then.
-  Status start(const LiveCamera& camera);
+  // nothing comes then; level: the world waits for it, so that this is kUnsupported, too.
+  Status start(const LiveCamera& camera, bool level);
   void stop();
 
   // Of each frame that is tracked or kept, in their order; arrival_ns by posix_monotonic_ns(). What the

@@ -56,7 +56,8 @@ Status LiveSession::open() {
     if (Status status = recording_.open(options_.record, *camera_, every); !status.ok()) return status;
   if (options_.imu) {
     if (keeps_imu) accelerometer_.keep_in(options_.record);
-    if (Status status = accelerometer_.start(*camera_); !status.ok()) return status;
+    if (Status status = accelerometer_.start(*camera_, options_.odometry.level_world); !status.ok())
+      return status;
   }
   summary_.camera_name = camera_->name();
   summary_.recording = options_.record;

@@ -71,7 +71,7 @@ Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const I
   if (!options.imu) return {};
   if (is_bag_file(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
   accelerometer.keep_in(options.path);
-  return accelerometer.start(camera);
+  return accelerometer.start(camera, false);
 }
 
 int record_command(const RecordOptions& options) {
