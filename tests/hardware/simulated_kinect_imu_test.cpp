@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "kinect_command.hpp"
+#include "plvo/host/trajectory_reader.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "simulated_motor.hpp"
@@ -81,6 +82,20 @@ TEST_F(KinectImu, GravityComesWithTheFrames) {
   EXPECT_EQ(json("j.json")["lost"], 0);
 }
 
+TEST_F(KinectImu, TheWorldIsLevelOnRequest) {
+  show_a_room();
+  kinect_.plug();
+  SimulatedMotor motor(kinect_, [] { return kTilted; });
+  motor.plug();
+  ASSERT_EQ(plvo({"live", "--imu", "--level", "--frames", "30", "--out", path("t"), "--quiet"}), 0) << err_;
+  EXPECT_NE(read_file(path("t")).find("turned level: gravity along y"), std::string::npos);
+  plvo::Trajectory trajectory;
+  ASSERT_TRUE(plvo::read_trajectory({path("t"), plvo::TrajectoryFormat::kTum, {}}, trajectory).ok());
+  ASSERT_GT(trajectory.poses.size(), 20U) << "from the first reading on";
+  const plvo::Vector3 down(0, 0.8, -0.6);
+  EXPECT_LT((trajectory.poses[0].T_world_camera.R * down - plvo::Vector3(0, 1, 0)).norm(), 2e-3);
+}
+
 // The accelerometer's first axis tells the time of the reading. What a frame gets is the mean of the readings
 // since the frame before: by the camera's clock, that is true to the 20 ms that are stated.
 TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
@@ -109,7 +124,8 @@ TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
   std::nth_element(errors_s.begin(), errors_s.begin() + static_cast<long>(errors_s.size() / 2),
                    errors_s.end());
   const double median_s = errors_s[errors_s.size() / 2];
-  std::printf("readings are stamped %+.1f ms early (median of %zu frames)\n", 1e3 * median_s, errors_s.size());
+  std::printf("readings are stamped %+.1f ms early (median of %zu frames)\n", 1e3 * median_s,
+              errors_s.size());
   EXPECT_LT(std::abs(median_s), 0.020);
 }
 

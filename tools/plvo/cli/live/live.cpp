@@ -22,7 +22,7 @@ constexpr const char* kLiveHelp =
     "  plvo live --out poses.txt --record walk    keep the poses and the images\n"
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
     "  plvo live --device walk.oni --out t.txt    a recording, every frame of it; walk.bag, too\n"
-    "  plvo live --imu                            with a Kinect's accelerometer, which holds roll and pitch\n"
+    "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"
     "\n"
     "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
 

@@ -27,7 +27,7 @@ constexpr const char* kRecordHelp =
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
     "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
     "  plvo record walk --device walk.oni    the one from the other\n"
-    "  plvo record walk --imu --device walk.bag    a folder of a ROS 1 bag, with its gyro and accelerometer\n"
+    "  plvo record walk --device walk.bag    a folder of a ROS 1 bag; --imu: with gyro, accelerometer\n"
     "\n"
     "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
 
