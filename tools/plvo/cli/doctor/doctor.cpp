@@ -106,7 +106,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App& command =
       add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kDoctorHelp);
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOni);
   OptionGroup group(command);
   group.number("--seconds", options->seconds, kSeconds, "SECONDS", "Capture only so long (default 3)");
   group.flag("--no-capture", options->no_capture, "Look, but do not open the camera");

@@ -110,7 +110,7 @@ void check(const CLI::App& command, LiveOptions& options) {
 void add_live(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kLiveHelp);
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
   OptionGroup group(command);
   group.flag(
       "--imu", options->imu,

@@ -23,13 +23,15 @@ bool parse_positive(std::string_view text, int& value) {
 
 }  // namespace
 
-void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, PlayedFiles files) {
+  const bool bags = files == PlayedFiles::kOniAndBags;
   OptionGroup group(command);
   group.path(
       "--device", options.device,
-      "A sensor by its OpenNI2 URI (plvo doctor lists them), an .oni file or a ROS 1 bag (default: the first "
-      "sensor)",
-      "URI|FILE.oni|FILE.bag");
+      fmt::format("A sensor by its OpenNI2 URI (plvo doctor lists them){} an .oni file{} (default: the "
+                  "first sensor)",
+                  bags ? "," : ", or", bags ? " or a ROS 1 bag" : ""),
+      bags ? "URI|FILE.oni|FILE.bag" : "URI|FILE.oni");
   group.add("--mode", "WIDTHxHEIGHT@FPS",
             "Size and rate of colour and depth, such as 640x480@30 (default), 320x240@30 or 320x240@60",
             [&options](const std::string& text) -> std::string {

@@ -20,7 +20,8 @@ struct LiveCameraOptions {
   BagTopicNames topics;
   CalibrationOptions calibration;
 };
-void add_live_camera_options(CLI::App& command, LiveCameraOptions& options);
+enum class PlayedFiles : std::uint8_t { kOni, kOniAndBags };  // in the place of a sensor
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, PlayedFiles files);
 // Refuses what does not apply to the device that was named.
 void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options);
 void add_inputs(const LiveCameraOptions& options, FileRoles& files);

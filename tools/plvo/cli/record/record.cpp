@@ -163,7 +163,7 @@ void add_record(CLI::App& app, int& exit_code) {
   OptionGroup group(command);
   require(group.path("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file",
                      "DIR|FILE.oni"));
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
   group.flag(
       "--imu", options->imu,
       "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the ROS bag");
