@@ -24,14 +24,12 @@ struct Tracked {
 std::vector<Tracked> tracked;
 std::atomic<int> tracks{0};
 }  // namespace
-extern "C" {
 plvo::TrackResult real_track(
     plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
     const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(
     plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
     const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-}
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 const plvo::MotionPrior& prior) {
   tracked.push_back({frame.stamp_ns, prior});

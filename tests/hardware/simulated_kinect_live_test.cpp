@@ -25,14 +25,12 @@
 namespace {
 std::atomic<std::int64_t> tracks{0}, allocations{0};
 }
-extern "C" {
 plvo::TrackResult real_track(
     plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
     const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(
     plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
     const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-}
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 const plvo::MotionPrior& prior) {
   const plvo::AllocationGuard guard;

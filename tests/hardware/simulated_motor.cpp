@@ -2,6 +2,7 @@
 #include "simulated_motor.hpp"
 
 #include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cerrno>
