@@ -78,6 +78,38 @@ TEST_F(CPage, TracksWithARotation) {
   }
 }
 
+// plvo_config.level_world, which joined the struct last: the first pose waits for gravity.
+TEST_F(CPage, ALevelWorld) {
+  Config level = Config::tiny();
+  level.level_world = true;
+  start(level);
+  config.level_world = 1;
+  const plvo_limits limits = c_limits(Limits::tiny());
+  ASSERT_EQ(plvo_init(block.data(), block.size(), &camera, &config, &limits, &c_odometry).code, PLVO_OK);
+  for (int i = 0; i < 4; ++i) {
+    const RgbdFrame frame = sequence.render(i);
+    MotionPrior prior;
+    plvo_prior c_prior;
+    plvo_prior_init(&c_prior, sizeof c_prior);
+    if (i > 0) {
+      prior.gravity = {Vector3(0.2, 0.9, 0.1), 1e-4 * Matrix3::Identity(), 0.02};
+      c_prior.has_gravity = 1;
+      for (int k = 0; k < 3; ++k) c_prior.down[k] = prior.gravity->down[k];
+      for (int k = 0; k < 9; k += 4) c_prior.gravity_covariance[k] = 1e-4;
+      c_prior.gravity_offset_sigma = 0.02;
+    }
+    const plvo_frame view = c_frame(frame);
+    plvo_result result = {};
+    result.struct_size = sizeof result;
+    const plvo_status status = plvo_track_with_prior(c_odometry, &view, &c_prior, &result);
+    EXPECT_EQ(status.code, i == 0 ? PLVO_NOT_FOUND : PLVO_OK) << status.message;
+    expect_same(odometry.track(frame, prior), result);
+    if (i == 1) {
+      EXPECT_NEAR(result.T_world_camera[5], 0.9 / Vector3(0.2, 0.9, 0.1).norm(), 1e-12) << "R(1, 1)";
+    }
+  }
+}
+
 // The same samples: the same priors, poses and offset, to the last bit.
 TEST_F(CPage, TracksWithAGyroAndAnAccelerometer) {
   std::vector<ImuSample> gyro(128), accelerometer(128);

@@ -11,4 +11,4 @@ int64_t now_ns(void) {
 #include "function_2_of_page.inc"
 #include "function_3_of_page.inc"
 #include "function_4_of_page.inc"
-#include "function_5_of_page.inc"
+#include "function_6_of_page.inc"

@@ -106,6 +106,15 @@ TEST_F(CliLiveFaults, UnplugAndReplug) {
   EXPECT_TRUE(contains(out(), "ended by a signal")) << out();
 }
 
+TEST_F(CliLiveFaults, ASensorWithoutAnAccelerometerIsTrackedWithoutGravity) {
+  const plvo::test::CommandResult r =
+      plvo("live --imu --mode 320x240 --frames 5 --json " + path("j.json") + " --record " + path("kept"));
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_EQ(count_of(r.err, "a Kinect v1 alone has an accelerometer that is read"), 1) << r.err;
+  EXPECT_EQ(summary()["frames"], 5);
+  EXPECT_FALSE(std::filesystem::exists(path("kept/accelerometer.txt")));
+}
+
 TEST_F(CliLiveFaults, SilenceOfOneStreamOrBoth) {
   start_live();
   for (const auto& [command, words] : {std::pair("stop depth", "the depth stream stopped"),

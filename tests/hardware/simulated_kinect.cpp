@@ -16,6 +16,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "simulated_usb.hpp"
+
 namespace plvo_test {
 namespace {
 
@@ -41,34 +43,6 @@ std::vector<std::uint8_t> hub_descriptors() {
           7,  5, 0x81, 3,    1, 0, 12};
 }
 
-std::string description(const std::string& sysfs, const std::string& node, int address,
-                        const std::vector<std::uint8_t>& descriptors) {
-  std::string hex;
-  for (const std::uint8_t byte : descriptors) {
-    char text[3];
-    std::snprintf(text, sizeof(text), "%02X", byte);
-    hex += text;
-  }
-  const std::string number = std::to_string(address);
-  return "P: " + sysfs.substr(4) + "\nN: " + node.substr(5) +
-         "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: DEVNAME=" + node +
-         "\nE: BUSNUM=1\nE: DEVNUM=" + number + "\nA: busnum=1\nA: devnum=" + number +
-         "\nA: bConfigurationValue=1\nA: speed=480\nH: descriptors=" + hex + "\n\n";
-}
-
-void add(UMockdevTestbed* testbed, const std::string& text) {
-  GError* error = nullptr;
-  if (umockdev_testbed_add_from_string(testbed, text.c_str(), &error) == FALSE) {
-    throw std::runtime_error(error->message);
-  }
-}
-
-std::string node_of(int address) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "/dev/bus/usb/001/%03d", address);
-  return text;
-}
-
 }  // namespace
 
 SimulatedKinect::SimulatedKinect() : testbed_(umockdev_testbed_new()) {
@@ -86,9 +60,9 @@ SimulatedKinect::SimulatedKinect() : testbed_(umockdev_testbed_new()) {
   }
   set_pictures(disparities, mosaics);
   const std::string root = "/sys/devices/pci0000:00/usb1";
-  add(testbed_, description(root, node_of(1), 1, hub_descriptors()));
+  add_to_testbed(testbed_, usb_description(root, usb_node(1), 1, hub_descriptors()));
   hub_ = root + "/1-1";
-  add(testbed_, description(hub_, node_of(2), 2, hub_descriptors()));
+  add_to_testbed(testbed_, usb_description(hub_, usb_node(2), 2, hub_descriptors()));
 }
 
 SimulatedKinect::~SimulatedKinect() {
@@ -128,8 +102,8 @@ void SimulatedKinect::plug(std::uint32_t ticks) {
   }
   ++address_;
   sysfs_ = hub_ + "/1-1.3";
-  node_ = node_of(address_);
-  add(testbed_, description(sysfs_, node_, address_, camera_descriptors()));
+  node_ = usb_node(address_);
+  add_to_testbed(testbed_, usb_description(sysfs_, node_, address_, camera_descriptors()));
   if (handler_ != nullptr) g_object_unref(handler_);
   handler_ = umockdev_ioctl_base_new();
   g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&SimulatedKinect::on_ioctl), this);
@@ -179,6 +153,12 @@ void SimulatedKinect::allow() { ::setfsuid(::geteuid()); }
 void SimulatedKinect::set_faults(const Faults& faults) {
   const std::lock_guard lock(mutex_);
   faults_ = faults;
+}
+
+std::int64_t SimulatedKinect::host_ns(std::int64_t stamp_ns) const {
+  const std::lock_guard lock(mutex_);
+  const auto plugged = std::chrono::duration_cast<std::chrono::nanoseconds>(plugged_.time_since_epoch());
+  return plugged.count() + stamp_ns - static_cast<std::int64_t>(first_ticks_) * 50 / 3;
 }
 
 std::uint64_t SimulatedKinect::skipped() const {

@@ -60,6 +60,11 @@ class SimulatedKinect {
   void deny();
   void allow();
   void set_faults(const Faults& faults);
+  // By steady_clock: when the camera's clock showed this, but for whole turns of its 32 bits.
+  std::int64_t host_ns(std::int64_t stamp_ns) const;
+  // The bus, and the Kinect's own hub on it, for what else hangs there.
+  UMockdevTestbed* testbed() { return testbed_; }
+  const std::string& hub() const { return hub_; }
   // Frames of either stream that were not sent because this machine was too slow for simulator and client
   // together.
   std::uint64_t skipped() const;

@@ -43,6 +43,32 @@ TEST(RobotBase, ARobotThatTurnsOnTheSpotStaysThere) {
   EXPECT_LT((base.T_world_camera.R - turned.R).norm(), 1e-12);
 }
 
+// A camera mounted askew on a robot that stands on a slope: in the level world odom's z points up, its origin
+// is the base, and its x points where the base does, seen from above.
+TEST(RobotBase, OfALevelWorldOdomIsLevel) {
+  Matrix3 R_up_optical;  // body axes of the optical ones, both level
+  R_up_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Se3 T_up_base{rotation_exp({0, 0, 0.7}) * rotation_exp({0.1, -0.2, 0}), Vector3(5, 6, 7)};
+  const Se3 T_world_up{R_up_optical.transpose(), Vector3(-1, 2, 0.5)};
+  TrackResult result;
+  result.T_world_camera = T_world_up * T_up_base * tilted();
+  const Se3 T_odom_world = level_odom(result.T_world_camera, tilted());
+  const TrackResult base = result_of_base(result, tilted(), T_odom_world);
+  EXPECT_LT(base.T_world_camera.t.norm(), 1e-12);
+  EXPECT_LT(
+      (base.T_world_camera.R.transpose() * Vector3(0, 0, 1) - T_up_base.R.transpose() * Vector3(0, 0, 1))
+          .norm(),
+      1e-12)
+      << "up is up, seen from the base";
+  EXPECT_NEAR(base.T_world_camera.R(1, 0), 0, 1e-12);
+  EXPECT_GT(base.T_world_camera.R(0, 0), 0.9) << "ahead";
+  // One metre up the hill.
+  const Se3 T_up_later{T_up_base.R, T_up_base.t + Vector3(0, 0, 1)};
+  result.T_world_camera = T_world_up * T_up_later * tilted();
+  const TrackResult later = result_of_base(result, tilted(), T_odom_world);
+  EXPECT_LT((later.T_world_camera.t - Vector3(0, 0, 1)).norm(), 1e-12);
+}
+
 TEST(RobotBase, TheMotionIsThatOfTheBase) {
   const Se3 T_odom_before{rotation_exp({0.1, -0.2, 0.3}), Vector3(1, 2, 0)};
   const Se3 T_odom_now{rotation_exp({0.1, -0.1, 0.5}), Vector3(1.2, 2.1, 0)};

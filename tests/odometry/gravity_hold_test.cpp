@@ -108,6 +108,86 @@ TEST(GravityHold, IsADenseKalmanStep) {
   EXPECT_LT((hold_after.covariance() - after.block<6, 6>(12, 12)).norm(), 1e-6 * P.norm());
 }
 
+TEST(GravityHold, AReadingLevelsTheWorld) {
+  const Vector3 y(0, 1, 0);
+  for (const Vector3& down :
+       {Vector3(0, 1, 0), Vector3(0.1, 0.9, 0.2), Vector3(-0.7, 0.1, 0.4), Vector3(0, 0, 1),
+        Vector3(0, 0, -1), Vector3(0.2, -0.9, 0.1), Vector3(0, -1, 0), Vector3(1, -1e-9, 0)}) {
+    GravityPrior reading;
+    reading.down = 3 * down;
+    reading.covariance = Matrix3::Identity() * 1e-4;
+    reading.offset_sigma = 0.02;
+    HeldPose pose;
+    GravityHold hold;
+    hold.level(reading, pose);
+    const Matrix3& R = pose.T_world_camera.R;
+    EXPECT_TRUE(is_rotation(R));
+    EXPECT_LT((R * down.normalized() - y).norm(), 1e-12) << down.transpose();
+    EXPECT_EQ(pose.T_world_camera.t, Vector3(0, 0, 0));
+    EXPECT_TRUE(hold.known());
+    EXPECT_EQ(hold.down_in_world(), y);
+    // Roll and pitch as unsure as the reading, the heading, which makes the world, not at all.
+    const Matrix3 C = pose.covariance.block<3, 3>(3, 3);
+    EXPECT_NEAR(C(0, 0), 5e-4, 1e-15);
+    EXPECT_NEAR(C(2, 2), 5e-4, 1e-15);
+    EXPECT_EQ(C(1, 1), 0);
+    EXPECT_EQ((pose.covariance.block<3, 6>(0, 0).norm()), 0);
+    // The camera looks where it looked, unless straight up or down: the turn is about a horizontal axis,
+    // after a roll of one that hangs upside down.
+    const bool hangs = down.y() < 0;
+    const Matrix3 roll = hangs ? Matrix3(Vector3(-1, -1, 1).asDiagonal()) : Matrix3(Matrix3::Identity());
+    EXPECT_NEAR(rotation_log(R * roll).y(), 0, 1e-12) << down.transpose();
+  }
+}
+
+// A cheap accelerometer in a camera that turns to and fro: the tilt is off by what it says at the first pose,
+// and by what it says after more readings, which is less.
+TEST(GravityHold, ALevelWorldIsAsLevelAsItSays) {
+  constexpr double kNoise = 0.05, kOffset = 0.02, kStep = 1e-3;
+  constexpr int kWalks = 400, kReadings = 60;
+  const Vector3 y(0, 1, 0);
+  Gaussian random(11);
+  double nees_first = 0, nees_last = 0, first = 0, last = 0;
+  for (int walk = 0; walk < kWalks; ++walk) {
+    Matrix3 R_true = rotation_exp(normal3(random, 0.4));
+    const Vector3 offset = normal3(random, kOffset);
+    const auto reading = [&] {
+      GravityPrior prior;
+      prior.down = R_true.transpose() * y + offset + normal3(random, kNoise);
+      prior.covariance = Matrix3::Identity() * (kNoise * kNoise);
+      prior.offset_sigma = kOffset;
+      return prior;
+    };
+    HeldPose pose;
+    GravityHold hold;
+    hold.level(reading(), pose);
+    const auto look = [&](double& tilt, double& nees) {
+      // R_true = Exp(ω) R: what of ω lies across y.
+      const Vector3 off = pose.T_world_camera.R * R_true.transpose() * y - y;
+      const Vector2 omega(-off.z(), off.x());
+      Matrix2 C;
+      C << pose.covariance(3, 3), pose.covariance(3, 5), pose.covariance(5, 3), pose.covariance(5, 5);
+      tilt += omega.squaredNorm() / kWalks;
+      nees += omega.dot(Vector2(C.inverse() * omega)) / kWalks;
+    };
+    look(first, nees_first);
+    for (int i = 0; i < kReadings; ++i) {
+      const Matrix3 R_now_before = rotation_exp({0.2 * std::sin(0.3 * i), 0.1, 0.15 * std::cos(0.2 * i)});
+      HeldPose from = pose;
+      pose = advance(from, {R_now_before, Vector3::Zero()}, diagonal(1e-3, kStep));
+      R_true = R_true * (rotation_exp(normal3(random, kStep)) * R_now_before).transpose();
+      hold.read(reading(), from, pose);
+      EXPECT_EQ(hold.down_in_world(), y) << "this is what the world is made by";
+    }
+    look(last, nees_last);
+  }
+  // 2 degrees of freedom over 400 walks: SD 0.1 of the mean.
+  EXPECT_NEAR(nees_first, 2, 0.4);
+  EXPECT_NEAR(nees_last, 2, 0.4);
+  EXPECT_NEAR(std::sqrt(first), std::sqrt(2.0) * std::hypot(kNoise, kOffset), 0.01);
+  EXPECT_LT(std::sqrt(last), 0.4 * std::sqrt(first));
+}
+
 TEST(GravityHold, AJoltIsLeftOut) {
   HeldPose pose;
   pose.covariance = diagonal(0.01, 0.001);

@@ -224,6 +224,56 @@ TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
   EXPECT_LT(angle_between(upright.T_world_camera.R, truth(6).R), 0.02);
 }
 
+// What the sequence calls its world hangs askew in the level one.
+TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
+  const Matrix3 R_level_truth = rotation_exp({0.3, 0, -0.2});
+  const auto down = [&](int i, const Vector3& error, double sigma) {
+    MotionPrior prior;
+    const Vector3 y(0, 1, 0);
+    prior.gravity = {truth(i).R.transpose() * R_level_truth.transpose() * y + error,
+                     sigma * sigma * Matrix3::Identity(), 0};
+    return prior;
+  };
+  Config config;
+  config.level_world = true;
+  Instance instance(config), plain;
+  for (int i = 0; i < 3; ++i) {
+    const TrackResult waiting = instance.track(i);
+    EXPECT_EQ(waiting.state, TrackState::kInitialising);
+    EXPECT_EQ(waiting.status.code(), StatusCode::kNotFound);
+    EXPECT_NE(std::string(waiting.status.message()).find("waiting for gravity"), std::string::npos);
+  }
+  TrackResult first = instance.track(3, down(3, {0.05, 0, 0.04}, 0.06));
+  ASSERT_EQ(first.state, TrackState::kInitialising);
+  ASSERT_TRUE(first.status.ok()) << first.status.message();
+  const Vector3 y(0, 1, 0);
+  const auto tilt = [&](int i, const TrackResult& result) {
+    return (result.T_world_camera.R * truth(i).R.transpose() * R_level_truth.transpose() * y - y).norm();
+  };
+  EXPECT_NEAR(tilt(3, first), 0.06, 0.01) << "as wrong as the reading";
+  EXPECT_GT(worst(first.pose_covariance, 3), 0.003);
+  // The motion is what it is without; the tilt is put right by better readings.
+  (void)plain.track(3);
+  for (int i = 4; i < kFrames; ++i) {
+    const TrackResult result = instance.track(i, down(i, Vector3::Zero(), 0.01));
+    const TrackResult expected = plain.track(i);
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    EXPECT_LT(boxminus(result.T_camera_reference, expected.T_camera_reference).norm(), 2e-4) << i;
+    if (i == kFrames - 1) {
+      EXPECT_LT(tilt(i, result), 0.01);
+      EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
+    }
+  }
+  // A pose that was set comes before it, and reset() begins anew.
+  instance.odometry.reset();
+  EXPECT_EQ(instance.track(0).status.code(), StatusCode::kNotFound);
+  const Se3 mine{rotation_exp({0.1, 0.2, 0.3}), {1, 2, 3}};
+  ASSERT_TRUE(instance.odometry.set_pose(mine, Matrix6::Zero()).ok());
+  const TrackResult set = instance.track(1);
+  EXPECT_TRUE(set.status.ok()) << set.status.message();
+  EXPECT_LT(boxminus(set.T_world_camera, mine).norm(), 1e-12);
+}
+
 TEST(OdometryReset, IsAsAfterInit) {
   Instance fresh, used;
   for (int i = 0; i < 8; ++i) (void)used.track(i);

@@ -87,6 +87,15 @@ def test_topics_by_name(walk, tmp_path):
         plvo.Sequence(walk, topics={"depth": "/front"})
 
 
+@pytest.mark.filterwarnings("ignore:the calibration does not say")
+def test_true_poses_lie_beside_the_bag(walk, bag, tmp_path):
+    results = list(plvo.run(bag))
+    with pytest.raises(plvo.Error, match="put the true ones beside it, as walk-groundtruth.txt"):
+        plvo.evaluate(bag, results)
+    (tmp_path / "walk-groundtruth.txt").write_bytes((walk / "groundtruth.txt").read_bytes())
+    assert plvo.evaluate(tmp_path / "walk.bag", results) == plvo.evaluate(walk / "groundtruth.txt", results)
+
+
 def test_what_is_no_bag_is_refused(tmp_path):
     with pytest.raises(plvo.Error, match="is not there"):
         plvo.Sequence(tmp_path / "none.bag")

@@ -39,6 +39,12 @@ def test_of_a_file(walk, tracked):
     assert 0 < found["ate_m"]["rmse"] < 0.02
 
 
+def test_of_the_folder_itself(walk, tracked):
+    assert plvo.evaluate(walk, tracked / "t") == plvo.evaluate(walk / "groundtruth.txt", tracked / "t")
+    with pytest.raises(plvo.Error, match="has neither groundtruth.txt nor"):
+        plvo.evaluate(tracked, tracked / "t")
+
+
 def test_of_results(walk, tracked):
     found = plvo.evaluate(walk / "groundtruth.txt", plvo.run(walk))
     expected = command(walk, tracked, "--rpe-delta", "1f", "--rpe-delta", "1s", "--est-covariance", tracked / "c", "--est-motions",

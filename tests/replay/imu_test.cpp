@@ -43,6 +43,26 @@ TEST(ImuFiles, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read.ignored, 0U);
 }
 
+TEST(ImuFiles, RecordedOnesKeepEveryDigit) {
+  const TemporaryFolder folder;
+  ImuRecording written = recording(20);
+  ASSERT_TRUE(refuse_imu_files(folder.path()).ok());
+  ASSERT_TRUE(write_imu_files(folder.path(), written, ImuAxes::kSensor).ok());
+  ImuRecording read;
+  ASSERT_TRUE(read_imu_files(folder.path(), read).ok());
+  ASSERT_EQ(read.gyro.size(), written.gyro.size());
+  for (std::size_t k = 0; k < written.gyro.size(); ++k) EXPECT_EQ(read.gyro[k].value, written.gyro[k].value);
+  EXPECT_NE(test::read_file(folder / "gyroscope.txt").find("rad/s, axes of the sensor"), std::string::npos);
+  const Status refused = refuse_imu_files(folder.path());
+  EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(std::string(refused.message()).find("has gyroscope.txt already"), std::string::npos);
+  // Of a sensor that is not there no file is made.
+  const TemporaryFolder other;
+  written.gyro.clear();
+  ASSERT_TRUE(write_imu_files(other.path(), written, ImuAxes::kSensor).ok());
+  EXPECT_FALSE(std::filesystem::exists(other / "gyroscope.txt"));
+}
+
 TEST(ImuFiles, OneOfThemIsEnoughAndNoneIsTold) {
   const TemporaryFolder folder;
   ImuRecording read;

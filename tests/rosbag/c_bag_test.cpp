@@ -9,6 +9,7 @@
 #include "procedural_sequence.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
+#include "walking_imu.hpp"
 
 namespace plvo {
 namespace {
@@ -111,6 +112,51 @@ TEST_F(CBag, TopicsByName) {
   EXPECT_TRUE(Opened(file, topics).says("bag_topics.struct_size is 8; set it to sizeof(plvo_bag_topics)"));
 }
 
+// The readings of the folder, and with them the poses of the program that uses them.
+TEST_F(CBag, ReadingsOfAGyroAndAnAccelerometer) {
+  ProceduralSequence rendered(320, 240);
+  TumWriter writer;
+  ASSERT_TRUE(writer.open(folder_ / "walk", rendered.camera(), 1000).ok());
+  ImuRecording recorded;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(writer.write(rendered.render(i)).ok());
+    for (const ImuReading& reading : imu_readings(i)) {
+      recorded.gyro.push_back({reading.stamp_ns, reading.rate});
+      recorded.accelerometer.push_back({reading.stamp_ns, reading.force});
+    }
+  }
+  ASSERT_TRUE(write_imu_files(folder_ / "walk", recorded, ImuAxes::kSensor).ok());
+  std::vector<test::RecordedMessage> messages =
+      test::published_imu(folder_ / "walk", "/imu", test::ImuContent::kBoth);
+  const std::vector<test::RecordedMessage> images = test::published(folder_ / "walk", false);
+  messages.insert(messages.end(), images.begin(), images.end());
+  write_file(folder_ / "walk.bag", test::bag_of(messages, "lz4"));
+
+  const std::string program = PLVO_C_IMU_EXAMPLE;
+  const test::CommandResult of_folder = test::run_command(program + ' ' + (folder_ / "walk").string());
+  const test::CommandResult of_bag = test::run_command(program + ' ' + (folder_ / "walk.bag").string());
+  EXPECT_EQ(of_bag.exit_code, 0) << of_bag.err;
+  EXPECT_EQ(of_bag.out, of_folder.out);
+  EXPECT_EQ(std::count(of_bag.out.begin(), of_bag.out.end(), '\n'), 4) << of_bag.out;
+
+  plvo_bag_topics topics = {};
+  topics.struct_size = offsetof(plvo_bag_topics, gyro);  // of a program that knows none of the two
+  topics.gyro = "/side/imu";
+  const Opened older((folder_ / "walk.bag").string(), topics);
+  plvo_imu_readings readings = {};
+  readings.struct_size = sizeof readings;
+  EXPECT_EQ(plvo_sequence_imu(older.sequence, &readings).code, PLVO_OK);
+  ASSERT_EQ(readings.gyro_count, recorded.gyro.size());
+  EXPECT_EQ(readings.gyro[1].value[0], recorded.gyro[1].value.x());
+  topics.struct_size = sizeof topics;
+  const Opened named((folder_ / "walk.bag").string(), topics);
+  ASSERT_EQ(named.status.code, PLVO_OK) << named.status.message;
+  const plvo_status status = plvo_sequence_imu(named.sequence, &readings);
+  EXPECT_EQ(status.code, PLVO_NOT_FOUND);
+  EXPECT_NE(std::strstr(status.message, "on /side/imu; they are on /imu"), nullptr) << status.message;
+  EXPECT_EQ(readings.accelerometer_count, 0U);
+}
+
 TEST_F(CBag, WhatIsWrongIsSaid) {
   const Opened nowhere((folder_ / "nowhere.bag").string());
   EXPECT_EQ(nowhere.status.code, PLVO_NOT_FOUND);
@@ -123,7 +169,8 @@ TEST_F(CBag, WhatIsWrongIsSaid) {
   const Opened told(bag("", test::kTumInfo), (folder_ / "calibration").c_str());
   ASSERT_EQ(told.status.code, PLVO_OK) << told.status.message;
   expect_the_folders_frames(told.sequence);
-  const Opened folder((folder_ / "tiny").string(), plvo_bag_topics{sizeof(plvo_bag_topics), {}, {}, {}});
+  const Opened folder((folder_ / "tiny").string(),
+                      plvo_bag_topics{sizeof(plvo_bag_topics), {}, {}, {}, {}, {}});
   EXPECT_TRUE(folder.says("the name of a ROS 1 bag ends in .bag")) << folder.status.message;
 }
 

@@ -75,7 +75,7 @@ TEST_F(CliNumbered, TheRateMakesTheStamps) {
   expect_refused("eval --gt " + tum_ + "/groundtruth.txt --rate 10 --est " + file("t.txt"), 2,
                  "--rate: is for a folder of numbered frames");
   expect_refused("eval --gt " + seven_ + " --gt-format tum --est " + file("t.txt"), 2,
-                 "--gt-format: is for a file");
+                 "--gt-format: is for a trajectory");
 }
 
 TEST_F(CliNumbered, PosesThatAreNoneAreCounted) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "command.hpp"
 #include "plvo/host/trajectory_file.hpp"
@@ -158,6 +160,42 @@ TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
 
 // The base's poses are the camera's, moved by where the camera sits, and so are their covariances: what a
 // motion's error is in units of its covariance stays what it was.
+// TUM's format as its benchmark and evo document it, taken at their word: comments begin with '#', every
+// other row has eight numbers with one space between them, seconds first, and the quaternion, w last, has
+// unit norm. plvo's own reader takes the very same rows for such.
+TEST_F(CliOutputs, TrajectoriesAreTumsToTheLetter) {
+  for (const char* base : {"", " --base-camera 0.2 0 0.5 -0.5 0.5 -0.5 0.5"}) {
+    ASSERT_EQ(run("--quiet --out " + path("t") + base).exit_code, 0);
+    const std::string text = read_file(folder_ / "t");
+    ASSERT_EQ(text.back(), '\n');
+    Trajectory read;
+    ASSERT_TRUE(read_trajectory({path("t"), TrajectoryFormat::kTum, {}}, read).ok());
+    std::size_t rows = 0;
+    std::istringstream lines(text);
+    double last_stamp = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.front() == '#') continue;
+      ASSERT_EQ(line.find_first_not_of("0123456789.- "), std::string::npos) << "plain decimals: " << line;
+      ASSERT_EQ(std::count(line.begin(), line.end(), ' '), 7) << line;
+      std::istringstream words(line);
+      const std::vector<double> numbers{std::istream_iterator<double>(words), {}};
+      ASSERT_EQ(numbers.size(), 8U) << line;
+      ASSERT_GT(numbers[0], last_stamp);
+      last_stamp = numbers[0];
+      const Eigen::Map<const Eigen::Vector4d> xyzw(numbers.data() + 4);
+      ASSERT_NEAR(xyzw.norm(), 1, 1e-8) << line;
+      ASSERT_LT(rows, read.poses.size());
+      const Se3& T = read.poses[rows].T_world_camera;
+      EXPECT_LT((T.t - Vector3(numbers[1], numbers[2], numbers[3])).norm(), 1e-12);
+      const Quaternion q = to_quaternion(T.R);
+      EXPECT_LT((Eigen::Vector4d(q.x, q.y, q.z, q.w) - (xyzw[3] < 0 ? -1 : 1) * xyzw).norm(), 1e-8);
+      ++rows;
+    }
+    EXPECT_EQ(rows, std::size_t{kFrames});
+    EXPECT_EQ(read.poses.size(), rows);
+  }
+}
+
 TEST_F(CliOutputs, PosesOfTheRobotsBase) {
   const std::string place = "0.2 -0.1 0.5 -0.54 0.46 -0.5 0.497";
   const Se3 T_base_camera{to_rotation({-0.54, 0.46, -0.5, 0.497}), Vector3(0.2, -0.1, 0.5)};
@@ -205,6 +243,44 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
 }
 
 // Each second pixel of the depth images, as a sensor with a smaller depth camera in the same place has them.
+// The simulator's z points up: what the truth knows of up is up in the level world, to the two degrees of an
+// accelerometer of 0.25 m/s² offset.
+TEST_F(CliOutputs, ALevelWorldByTheAccelerometer) {
+  const auto read = [&](const std::string& file) {
+    Trajectory trajectory;
+    EXPECT_TRUE(read_trajectory({path(file), TrajectoryFormat::kTum, {}}, trajectory).ok());
+    EXPECT_EQ(trajectory.poses.size(), std::size_t{kFrames});
+    return trajectory.poses;
+  };
+  ASSERT_EQ(run("--quiet --imu --level --out " + path("t")).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "t").find("turned level: gravity along y"), std::string::npos);
+  const auto truth = read("walk/groundtruth.txt"), level = read("t");
+  const Vector3 up(0, 0, 1);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const Vector3 down = level[i].T_world_camera.R * truth[i].T_world_camera.R.transpose() * -up;
+    EXPECT_LT((down - Vector3(0, 1, 0)).norm(), 0.1) << down.transpose();
+  }
+  // A camera that is mounted 20° askew: the base is level none the less.
+  const std::string mounted = " --base-camera 0.2 0 0.5 -0.576 0.576 -0.41 0.41";
+  ASSERT_EQ(run("--quiet --imu --level --out " + path("b") + mounted).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "b").find("turned level: gravity along -z"), std::string::npos);
+  const Se3 T_base_camera{to_rotation({-0.576, 0.576, -0.41, 0.41}), Vector3(0.2, 0, 0.5)};
+  const auto base = read("b");
+  EXPECT_LT(base[0].T_world_camera.t.norm(), 1e-8);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    const Matrix3 R_odom_truth =
+        base[i].T_world_camera.R * T_base_camera.R * truth[i].T_world_camera.R.transpose();
+    EXPECT_LT((R_odom_truth * up - up).norm(), 0.1) << i;
+    EXPECT_LT(((base[i].T_world_camera.t - base[0].T_world_camera.t).norm()), 0.2);
+  }
+  expect_refused(run("--level --out " + path("t")), "--level: is by the accelerometer of --imu");
+  fs::remove(folder_ / "walk/accelerometer.txt");
+  const CommandResult none = run("--imu --level --out " + path("t"));
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.err.find("without an accelerometer nothing says where down is"), std::string::npos)
+      << none.err;
+}
+
 TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
   ImageDecoder decoder;

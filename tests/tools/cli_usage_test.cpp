@@ -134,8 +134,8 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
   expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
   expect_usage("run x --report-frames 3", "--report-frames: is for a report");
-  expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to an .oni file");
-  expect_usage("live --device x.oni --every-frame", "--every-frame: is what an .oni file does anyway");
+  expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
+  expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");
   expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
   expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
   expect_usage("eval --gt a --est b --max-dt 0.1", "--max-dt: is for --gt-sampling nearest");

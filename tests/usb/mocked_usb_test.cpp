@@ -235,6 +235,28 @@ TEST_F(MockedUsb, MotorWithoutPermissionNamesTheRule) {
   EXPECT_NE(std::string(status.message()).find("60-plvo-rgbd.rules"), std::string::npos) << status.message();
 }
 
+// Each Kinect has a hub of its own: the motor that is wanted hangs beside the camera that is used.
+TEST_F(MockedUsb, OfTwoKinectsTheMotorBesideTheCamera) {
+  FakeMotor first, second;
+  first.state[8] = 20;
+  second.state[8] = 40;
+  mock_.plug(kMotor, first.behaviour());
+  mock_.plug(kCamera);
+  mock_.plug({"1-2", 1, 10, 0x0409, 0x005a});
+  mock_.plug({"1-2.1", 1, 11, 0x045e, 0x02b0, 0x0107, "12"}, second.behaviour());
+  mock_.plug({"1-2.3", 1, 12, 0x045e, 0x02ae});
+  ASSERT_TRUE(bus_.open().ok());
+  KinectMotor motor;
+  KinectState state;
+  for (const auto& [port, degrees] : {std::pair("1-1.3", 10), std::pair("1-2.3", 20), std::pair("", 10)}) {
+    const Status opened = motor.open(bus_, port);
+    ASSERT_TRUE(opened.ok()) << opened.message();
+    ASSERT_TRUE(motor.read(state).ok());
+    EXPECT_NEAR(state.tilt_rad, degrees * kDegree, 1e-12) << port;
+  }
+  EXPECT_EQ(motor.open(bus_, "1-4.3").code(), StatusCode::kNotFound);
+}
+
 TEST_F(MockedUsb, NoMotor) {
   ASSERT_TRUE(bus_.open().ok());
   KinectMotor motor;

@@ -10,8 +10,8 @@ find_package(Python COMPONENTS Interpreter Development.Module QUIET)
 set(PYBIND11_FINDPYTHON ON)
 find_package(pybind11 QUIET)
 set(python_can_be_built ${pybind11_FOUND})
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-  set(python_can_be_built OFF)  # a sanitizer would have to be loaded before Python itself
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" OR CMAKE_CROSSCOMPILING)
+  set(python_can_be_built OFF)  # a sanitizer would have to be loaded before Python itself; tests run this machine's Python
 endif()
 option(PLVO_BUILD_PYTHON "Build the Python package" ${python_can_be_built})
 if(PLVO_BUILD_PYTHON AND NOT pybind11_FOUND)
@@ -25,4 +25,8 @@ function(plvo_python_module target name)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PLVO_PYTHON_DIR}/plvo)
   target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-Os>)
   target_link_libraries(${target} PRIVATE plvo_warnings)
+  if(CMAKE_CROSSCOMPILING)  # the interpreter that was asked for the suffix is this machine's
+    set_target_properties(${target} PROPERTIES
+      SUFFIX .cpython-${Python_VERSION_MAJOR}${Python_VERSION_MINOR}-${CMAKE_LIBRARY_ARCHITECTURE}.so)
+  endif()
 endfunction()

@@ -38,6 +38,13 @@ gcc -std=c11 -Wall track_folder.c $(pkg-config --cflags --libs plvo) -o track_fo
 if ./track_folder no.bag 2>no.bag.words; then exit 1; fi
 grep -q "is not a ROS 1 bag" no.bag.words
 
+step "C, with the gyro and the accelerometer of the recording: the poses of plvo run --imu"
+plvo run walk --imu --quiet --out imu.txt
+# shellcheck disable=SC2046
+gcc -std=c11 -Wall track_with_imu.c $(pkg-config --cflags --libs plvo) -o track_with_imu
+grep -v '^#' imu.txt | cut -d' ' -f2- >imu.poses
+./track_with_imu walk | cut -d' ' -f2- | cmp - imu.poses
+
 step "C++, by find_package and by pkg-config"
 cmake -S consumer -B consumer-build >/dev/null
 cmake --build consumer-build >/dev/null

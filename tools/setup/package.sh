@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo. lintian reads them. Those
 # of this machine's architecture are then tried in a clean Debian 12: installed with apt, used from C, C++ and Python, and
-# purged (as root; it fetches some 200 MB of Debian's packages).
+# purged (as root; it fetches some 200 MB of Debian's packages). Those of a board run under emulation.
 # usage: tools/setup/package.sh [arm64|armhf]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -27,7 +27,7 @@ case "${1:-}" in
       preset=raspberry-pi-32 triplet=arm-linux-gnueabihf
     fi
     cmake --preset $preset -B "$build" -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/$triplet \
-      -DPLVO_OPENNI2_DRIVER_DIR=/usr/lib/$triplet/OpenNI2/Drivers -DPLVO_BUILD_TESTS=OFF >&2
+      -DPLVO_OPENNI2_DRIVER_DIR=/usr/lib/$triplet/OpenNI2/Drivers -DPLVO_BUILD_TESTS=OFF -DPLVO_BUILD_PYTHON=ON >&2
     ;;
   *)
     say "usage: tools/setup/package.sh [arm64|armhf]"
@@ -53,12 +53,27 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" --version >&2
   "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
-  tools/setup/page_program.sh docs/c.md c >"$work/track_folder.c"
-  "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/track_folder.c" -L"$work/usr/lib/$triplet" -lplvo \
-    -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/track_folder"
-  "${board[@]}" "$work/track_folder" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
-  grep -v '^#' "$work/run.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
-  say "the command line and a C program with the shared library agree on $(wc -l <"$work/c.poses") poses"
+  "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --imu --quiet --out "$work/imu.txt"
+  for program in 1:run 5:imu; do  # the two of the page, and what the command line says beside them
+    tools/setup/page_program.sh docs/c.md c "${program%:*}" >"$work/program.c"
+    "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/program.c" -L"$work/usr/lib/$triplet" -lplvo \
+      -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/program"
+    "${board[@]}" "$work/program" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
+    grep -v '^#' "$work/${program#*:}.txt" | cut -d' ' -f2- | cmp - "$work/c.poses"
+  done
+  say "the command line and two C programs with the shared library agree on $(wc -l <"$work/c.poses") poses each"
+  python=("${board[@]}" -E "PYTHONHOME=$sysroot/usr" -E PYTHONDONTWRITEBYTECODE=1
+    -E "PYTHONPATH=$work/usr/lib/python3/dist-packages:$sysroot/usr/lib/python3/dist-packages"
+    -E "LD_LIBRARY_PATH=$work/usr/lib/$triplet:$sysroot/usr/lib/$triplet/blas:$sysroot/usr/lib/$triplet/lapack" "$sysroot/usr/bin/python3")
+  "${python[@]}" - "$work/walk" >"$work/python.poses" <<'PROGRAM'
+import sys
+import plvo
+for r in plvo.run(sys.argv[1]):
+    if r.has_pose:
+        print(" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)))
+PROGRAM
+  grep -v '^#' "$work/run.txt" | cut -d' ' -f2- | cmp - "$work/python.poses"
+  say "and so does Python"
   printf '%s\n' "${debs[@]}"
   exit
 fi
@@ -87,6 +102,7 @@ mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
 cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
 tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
+tools/setup/page_program.sh docs/c.md c 5 >"$root/try/track_with_imu.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
 say "installed, used and purged; the packages:"
 printf '%s\n' "${debs[@]}"

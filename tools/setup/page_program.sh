@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The first program of a page, in a language: usage: tools/setup/page_program.sh docs/c.md c
+# A program of a page, in a language, the first one or that with the number: usage: tools/setup/page_program.sh docs/c.md c [5]
 set -euo pipefail
-exec awk -v begin="\`\`\`$2" '$0 == begin && !seen { inside = seen = 1; next } $0 == "```" { inside = 0 } inside' "$1"
+exec awk -v begin="\`\`\`$2" -v number="${3:-1}" \
+  '$0 == begin && ++seen == number { inside = 1; next } $0 == "```" { inside = 0 } inside' "$1"

@@ -3,8 +3,8 @@
 # A folder of Debian packages of another architecture, with everything that they depend on, made without touching this
 # machine's own packages and without being root. To be sourced after packages.sh.
 
-# What plvo is linked with on a board.
-PLVO_PACKAGES_BOARD="libc6-dev libstdc++-12-dev libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev libyaml-cpp-dev
+# What plvo is linked with on a board, and what its Python package is built and tried with.
+PLVO_PACKAGES_BOARD="pybind11-dev python3-dev python3-numpy libc6-dev libstdc++-12-dev libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev libyaml-cpp-dev
   nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev liblz4-dev"
 
 # make_sysroot ARCHITECTURE FOLDER: nothing when it is complete.

@@ -118,6 +118,10 @@ struct StageHook {
 
 struct Config {
   Features features = Features::kBoth;
+  // A level world: its y axis points down, its heading is the first camera's. The first frame then waits for
+  // one that brings gravity in its prior; what that says wrong of roll and pitch, later frames put right.
+  // set_pose() before the first frame comes before it.
+  bool level_world = false;
   ReferenceConfig references;
   DepthNoise depth_noise;
   NoiseConfig noise;

@@ -56,6 +56,31 @@ void GravityHold::start(const Vector3& z, const GravityPrior& reading, const Mat
   covariance_.block<3, 3>(3, 3) = offset;
 }
 
+// z = R_cw y + β + noise, y known: the pose is off by ω = [y]× R (β + noise), and not about y.
+void GravityHold::level(const GravityPrior& reading, HeldPose& pose) {
+  const Vector3 y(0, 1, 0);
+  Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
+  // A camera that hangs upside down is rolled over, so that it looks where it looked.
+  const bool hangs = z.y() < 0;
+  Matrix3 roll = Matrix3::Identity();
+  if (hangs) roll(0, 0) = roll(1, 1) = -1;
+  z = roll * z;
+  // The least turn from z to y; V = [z × y]×.
+  const Matrix3 V = y * z.transpose() - z * y.transpose();
+  const Matrix3 R = renormalise(
+      (Matrix3::Identity() + V + Matrix3(V.lazyProduct(V)) / (1 + z.y())).lazyProduct(roll).eval());
+  const Matrix3 Y = skew(y);
+  const Matrix3 offset = Matrix3::Identity() * (reading.offset_sigma * reading.offset_sigma);
+  pose = HeldPose();
+  pose.T_world_camera.R = R;
+  pose.covariance.block<3, 3>(3, 3) = turned(Y, turned(R, reading.covariance + offset));
+  pose.covariance_with_gravity.block<3, 3>(3, 3) = Y.lazyProduct(R).eval().lazyProduct(offset);
+  *this = GravityHold();
+  known_ = true;
+  down_ = y;
+  covariance_.block<3, 3>(3, 3) = offset;
+}
+
 void GravityHold::read(const GravityPrior& reading, HeldPose& from, HeldPose& current) {
   const Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
   // Covariances of the errors of `from` and `current` with the orientation's of `current`.

@@ -35,6 +35,11 @@ class GravityHold {
   const Matrix6& covariance() const { return covariance_; }  // of (ε, β)
   void forget() { *this = GravityHold(); }
 
+  // Makes a world of a reading: y points where it says that things fall, the heading is the camera's. Where
+  // down is in such a world is known for certain; what is not is the pose, by the reading's error. pose: of
+  // the camera that the reading is of; it must have passed MotionPrior::validate().
+  void level(const GravityPrior& reading, HeldPose& pose);
+
   // A reading at `current`, which is advance() of `from`; both are corrected. The first one says where down
   // is, and corrects nothing. A reading beyond the 99.9 % quantile of what is expected (a jolt) is left out.
   // The reading must have passed MotionPrior::validate().

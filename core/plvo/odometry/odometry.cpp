@@ -263,10 +263,23 @@ void Odometry::start(const MotionPrior& prior, TrackResult& result) {
     if (sensed_.known()) (void)predicted_pose(prior, result);
     return;
   }
+  const bool levels = at_start && config().level_world && !start_is_set_;
+  if (levels && !prior.gravity) {
+    result.state = TrackState::kInitialising;
+    result.status = {
+        StatusCode::kNotFound,
+        "waiting for gravity: Config::level_world wants the first frame's prior to say where down "
+        "is"};
+    return;
+  }
   // At the very start the anchor is the world's origin; after a loss what the priors make of the last good
   // pose, or itself, whose covariance grows by all the time that nobody saw.
   HeldPose pose = start_;
-  if (!at_start && sensed_.known()) {
+  if (levels) {
+    gravity_.level(*prior.gravity, pose);
+    result.T_world_camera = pose.T_world_camera;
+    result.pose_covariance = pose.covariance;
+  } else if (!at_start && sensed_.known()) {
     pose = predicted_pose(prior, result);
     result.status = {};
   } else {

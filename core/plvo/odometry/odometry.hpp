@@ -210,6 +210,7 @@ class Odometry {
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
   bool has_stamp_ = false;
+  bool start_is_set_ = false;  // start_, by set_pose()
   int lost_frames_ = 0;
   int view_slot_ = 0;  // whose keypoints features() shows
   std::size_t point_track_count_ = 0;

@@ -31,6 +31,7 @@ void Odometry::reset() {
   frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
   start_ = HeldPose();
+  start_is_set_ = false;
   sensed_ = SensedMotion();
   gravity_.forget();
   noise_ = config().noise.initial;
@@ -51,6 +52,7 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   start_ = HeldPose();
   start_.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
   start_.covariance = covariance;
+  start_is_set_ = true;
   kept_.clear();  // their poses are in the world that was
   if (last_ == kNobody) return {};
   // The keyframe moves with the last frame: the motion between them stays what it is.

@@ -96,6 +96,7 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
   }
   config.seed = whole.seed;
   config.stage_clock = whole.stage_clock;
+  config.level_world = whole.level_world != 0;
   config.budget.frame_ns = whole.frame_budget_ns;
   if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
   if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;

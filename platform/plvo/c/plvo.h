@@ -137,6 +137,9 @@ typedef struct plvo_config {
    * plvo_thread_pair_run (thread_pair.h) is one. NULL: one thing after the other. */
   void (*side_by_side)(void* runner, plvo_task here, plvo_task beside);
   void* side_by_side_runner;
+  /* 1: a level world. Its y axis points down, its heading is the first camera's; the first frame waits for
+   * one whose plvo_prior brings gravity. plvo_set_pose before the first frame comes before it. */
+  int32_t level_world;
 } plvo_config;
 
 /* Each sets struct_size and the defaults. `size` is sizeof of the struct. */

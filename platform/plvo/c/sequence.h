@@ -26,12 +26,14 @@ typedef struct plvo_sequence plvo_sequence;
 PLVO_API plvo_status plvo_sequence_open(const char* path, const char* calibration, plvo_sequence** sequence);
 
 /* Of a bag. NULL: TUM's topics (/camera/rgb/image_color, /camera/depth/image), else the only one with such
- * images; camera_info beside colour. */
+ * images; camera_info beside colour; for plvo_sequence_imu the only sensor_msgs/Imu with such readings. */
 typedef struct plvo_bag_topics {
   uint32_t struct_size; /* plvo_bag_topics topics = {sizeof topics}; */
   const char* colour;
   const char* depth;
   const char* camera_info;
+  const char* gyro;
+  const char* accelerometer;
 } plvo_bag_topics;
 
 /* As plvo_sequence_open, with the topics to read; topics may be NULL. */
@@ -46,6 +48,29 @@ PLVO_API size_t plvo_sequence_frame_count(const plvo_sequence* sequence);
 /* The next frame; its images are valid until the next call. PLVO_DAMAGED: this pair cannot be decoded (the
  * message says why), the next call goes on after it. PLVO_END_OF_STREAM: nothing more will come. */
 PLVO_API plvo_status plvo_sequence_next(plvo_sequence* sequence, plvo_frame* frame);
+
+/* rad/s of a gyro; m/s^2 of an accelerometer, which at rest reads 9.8 upwards. */
+typedef struct plvo_imu_sample {
+  int64_t stamp_ns; /* on the clock of the frames */
+  double value[3];  /* in the sensor's axes */
+} plvo_imu_sample;
+
+/* Oldest first, stamps increasing; NULL and 0 for a sensor that is not there. */
+typedef struct plvo_imu_readings {
+  uint32_t struct_size; /* plvo_imu_readings readings = {sizeof readings}; */
+  const plvo_imu_sample* gyro;
+  size_t gyro_count;
+  const plvo_imu_sample* accelerometer;
+  size_t accelerometer_count;
+  size_t left_out; /* damaged, not finite, or not later than the one before */
+} plvo_imu_readings;
+
+/* What a gyro and an accelerometer recorded beside the images: gyroscope.txt and accelerometer.txt of the
+ * folder, or sensor_msgs/Imu of the bag. For plvo_imu_add_gyro and plvo_imu_add_acceleration (imu.h). They
+ * are all read now, and stay until the next call or the sequence's end. PLVO_NOT_FOUND where there are none,
+ * PLVO_INVALID_ARGUMENT where several topics could be meant, PLVO_DAMAGED with the line that is not
+ * understood; *readings then has none. */
+PLVO_API plvo_status plvo_sequence_imu(plvo_sequence* sequence, plvo_imu_readings* readings);
 
 /* NULL is allowed. */
 PLVO_API void plvo_sequence_close(plvo_sequence* sequence);

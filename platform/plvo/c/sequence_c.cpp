@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plvo/c/boundary.hpp"
 #include "plvo/c/guarded.hpp"
@@ -13,9 +14,13 @@
 template <>
 inline constexpr std::size_t plvo::c::kFirstSize<plvo_bag_topics> =
     plvo::c::end_of(offsetof(plvo_bag_topics, camera_info), &plvo_bag_topics::camera_info);
+template <>
+inline constexpr std::size_t plvo::c::kFirstSize<plvo_imu_readings> =
+    plvo::c::end_of(offsetof(plvo_imu_readings, left_out), &plvo_imu_readings::left_out);
 
 struct plvo_sequence {
   plvo::Recording camera;
+  std::vector<plvo_imu_sample> gyro, accelerometer;
 };
 
 namespace {
@@ -52,6 +57,18 @@ Status open(const char* path, const char* calibration, const plvo::BagTopicNames
   if (Status status = opened->camera.open(path, choose, {{}, topics, {}}); !status.ok()) return status;
   *sequence = opened.release();
   return {};
+}
+
+std::vector<plvo_imu_sample> samples_for_c(const std::vector<plvo::ImuSample>& samples) {
+  std::vector<plvo_imu_sample> result;
+  result.reserve(samples.size());
+  for (const auto& [stamp_ns, value] : samples)
+    result.push_back({stamp_ns, {value.x(), value.y(), value.z()}});
+  return result;
+}
+
+const plvo_imu_sample* first_of(const std::vector<plvo_imu_sample>& samples) {
+  return samples.empty() ? nullptr : samples.data();
 }
 
 std::string text_or_none(const char* text) { return text == nullptr ? "" : text; }
@@ -97,8 +114,9 @@ plvo_status plvo_sequence_open_bag(const char* file, const char* calibration, co
     plvo_bag_topics known = {};
     if (topics != nullptr)
       if (Status status = plvo::c::take_struct(topics, known, "bag_topics"); !status.ok()) return status;
-    const plvo::BagTopicNames names = {
-        text_or_none(known.colour), text_or_none(known.depth), text_or_none(known.camera_info), {}, {}};
+    const plvo::BagTopicNames names = {text_or_none(known.colour), text_or_none(known.depth),
+                                       text_or_none(known.camera_info), text_or_none(known.gyro),
+                                       text_or_none(known.accelerometer)};
     return open(file, calibration, names, sequence);
   });
 }
@@ -133,6 +151,27 @@ plvo_status plvo_sequence_next(plvo_sequence* sequence, plvo_frame* frame) {
     whole.depth_stride_bytes = view.depth.stride * static_cast<std::int64_t>(sizeof(std::uint16_t));
     whole.metres_per_unit = view.depth.metres_per_unit;
     plvo::c::give_struct(whole, frame);
+    return status;
+  });
+}
+
+plvo_status plvo_sequence_imu(plvo_sequence* sequence, plvo_imu_readings* readings) {
+  return guarded([&]() -> Status {
+    if (sequence == nullptr) return missing("sequence");
+    if (Status status = plvo::c::check_struct(readings, "imu_readings"); !status.ok()) return status;
+    plvo::ImuRecording recording;
+    const Status status = sequence->camera.read_imu(recording);
+    if (!status.ok()) recording = {};
+    sequence->gyro = samples_for_c(recording.gyro);
+    sequence->accelerometer = samples_for_c(recording.accelerometer);
+    plvo_imu_readings whole;
+    std::memset(&whole, 0, sizeof whole);
+    whole.gyro = first_of(sequence->gyro);
+    whole.gyro_count = sequence->gyro.size();
+    whole.accelerometer = first_of(sequence->accelerometer);
+    whole.accelerometer_count = sequence->accelerometer.size();
+    whole.left_out = recording.ignored;
+    plvo::c::give_struct(whole, readings);
     return status;
   });
 }

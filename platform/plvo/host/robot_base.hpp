@@ -8,9 +8,17 @@
 
 namespace plvo {
 
-// The pose is T_odom_base = T_base_camera · T_world_camera · T_base_camera⁻¹, the motion that of the base
-// since the reference; covariances are carried along (first order), T_base_camera being exact. The names of
-// the members stay: T_world_camera is T_odom_base. All else is as it was.
-TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera);
+// The pose is T_odom_base = T_odom_world · T_world_camera · T_base_camera⁻¹, the motion that of the base
+// since the reference; covariances are carried along (first order), T_odom_world and T_base_camera being
+// exact. The names of the members stay: T_world_camera is T_odom_base. All else is as it was.
+TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera, const Se3& T_odom_world);
+// Where odom is the base at the first frame, T_world_camera having been the identity.
+inline TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera) {
+  return result_of_base(result, T_base_camera, T_base_camera);
+}
+
+// T_odom_world of a level world (Config::level_world): odom has its z axis up, and its origin and heading are
+// those of the base at the first pose.
+Se3 level_odom(const Se3& T_world_camera, const Se3& T_base_camera);
 
 }  // namespace plvo

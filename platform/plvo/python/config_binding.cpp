@@ -38,7 +38,7 @@ Settings of_preset(Preset preset) {
 
 Settings make_settings(const std::string& preset, const std::optional<std::string>& features,
                        const std::optional<std::string>& reference, const std::optional<std::uint64_t>& seed,
-                       const BudgetConfig& budget) {
+                       const BudgetConfig& budget, bool level_world) {
   constexpr Choice<Preset> kPresets[] = {
       {"default", Preset::kDefault}, {"paper", Preset::kPaper}, {"tiny", Preset::kTiny}};
   constexpr Choice<Features> kFeatures[] = {
@@ -52,6 +52,7 @@ Settings make_settings(const std::string& preset, const std::optional<std::strin
   if (reference) config.references.policy = choose("reference", *reference, kReferences);
   if (seed) config.seed = *seed;
   config.budget = budget;
+  config.level_world = level_world;
   throw_unless_ok(config.validate());
   return settings;
 }
@@ -63,14 +64,15 @@ void bind_config(py::module_& module) {
   py::class_<Settings>(module, "Config")
       .def(py::init([](const std::string& preset, const py::object& features, const py::object& reference,
                        const py::object& seed, std::int64_t frame_budget_ns, int budget_patience_frames,
-                       double budget_spare_share) {
+                       double budget_spare_share, bool level_world) {
              return make_settings(preset, optional<std::string>(features), optional<std::string>(reference),
                                   optional<std::uint64_t>(seed),
-                                  {frame_budget_ns, budget_patience_frames, budget_spare_share});
+                                  {frame_budget_ns, budget_patience_frames, budget_spare_share}, level_world);
            }),
            py::kw_only(), "preset"_a = "default", "features"_a = py::none(), "reference"_a = py::none(),
            "seed"_a = py::none(), "frame_budget_ns"_a = budget.frame_ns,
-           "budget_patience_frames"_a = budget.patience_frames, "budget_spare_share"_a = budget.spare_share)
+           "budget_patience_frames"_a = budget.patience_frames, "budget_spare_share"_a = budget.spare_share,
+           "level_world"_a = false)
       .def_property_readonly("seed", [](const Settings& s) { return s.config.seed; })
       .def_property_readonly("frame_budget_ns", [](const Settings& s) { return s.config.budget.frame_ns; });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/recording/recording.hpp"
 
+#include <fmt/core.h>
+
 #include <utility>
 
 #include "plvo/replay/recorded_camera.hpp"
@@ -14,6 +16,29 @@ namespace plvo {
 namespace fs = std::filesystem;
 
 bool is_bag_file(const fs::path& path) { return path.extension() == ".bag"; }
+
+bool is_recording(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) || is_bag_file(path);
+}
+
+fs::path bag_ground_truth_file(const fs::path& bag) {
+  fs::path file = bag;
+  file.replace_filename(bag.stem().string() + "-groundtruth.txt");
+  return file;
+}
+
+Status read_true_poses(const fs::path& recording, const SequenceOptions& options, Trajectory& trajectory) {
+  if (!is_bag_file(recording)) return read_ground_truth(recording, options, trajectory);
+  const fs::path file = bag_ground_truth_file(recording);
+  std::error_code error;
+  if (fs::exists(file, error)) return read_trajectory({file, {}, {}}, trajectory);
+  trajectory = {};
+  return {
+      StatusCode::kNotFound,
+      fmt::format("the poses in {} are not read: put the true ones beside it, as {}, or name a trajectory",
+                  recording.filename().string(), file.filename().string())};
+}
 
 Status Recording::open(const fs::path& path, const CalibrationChoice& choose,
                        const RecordingOptions& options) {
@@ -62,6 +87,8 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   frame_count_ = camera->frame_count();
   unpaired_colour_ = camera->unpaired_colour();
   remarks_ = camera->remarks();
+  std::error_code error;
+  has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {
     return camera->read_imu(topics, recording);
   };

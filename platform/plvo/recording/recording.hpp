@@ -19,7 +19,15 @@
 
 namespace plvo {
 
-bool is_bag_file(const std::filesystem::path& path);  // by its name, .bag
+bool is_bag_file(const std::filesystem::path& path);   // by its name, .bag
+bool is_recording(const std::filesystem::path& path);  // a folder or a bag, and no file of another kind
+
+// The true poses of a bag, which are not read out of it: FILE-groundtruth.txt beside FILE.bag, as TUM
+// publishes the two.
+std::filesystem::path bag_ground_truth_file(const std::filesystem::path& bag);
+// Of a folder or a bag: as read_ground_truth. kNotFound says where they are looked for.
+Status read_true_poses(const std::filesystem::path& recording, const SequenceOptions& options,
+                       Trajectory& trajectory);
 
 struct RecordingOptions {
   SequenceOptions sequence;  // of a bag: the tolerance, the scale and the range
@@ -46,7 +54,7 @@ class Recording final : public RgbdCamera {
   std::size_t unpaired_colour() const { return unpaired_colour_; }
   const Calibration& calibration() const { return calibration_; }  // in force, as of FrameFit
   const WholeImage& whole_image() const { return whole_image_; }   // of width 0 where that is not known
-  bool has_ground_truth() const { return has_ground_truth_; }      // read_ground_truth
+  bool has_ground_truth() const { return has_ground_truth_; }      // read_true_poses
   // Sentences for whoever runs it, but for what the calibration assumes.
   const std::vector<std::string>& remarks() const { return remarks_; }
 

@@ -54,14 +54,19 @@ Status read_samples(const fs::path& path, std::vector<ImuSample>& samples, std::
   return {};
 }
 
-Status write_samples(const fs::path& path, const char* header, const std::vector<ImuSample>& samples) {
+std::string short_line(const ImuSample& sample) {
+  return fmt::format("{} {:.7f} {:.7f} {:.7f}", format_stamp(sample.stamp_ns), sample.value.x(),
+                     sample.value.y(), sample.value.z());
+}
+
+Status write_samples(const fs::path& folder, const char* name, const std::vector<ImuSample>& samples,
+                     ImuAxes axes) {
+  const bool simulated = axes == ImuAxes::kCamera;
+  if (samples.empty() && !simulated) return {};
   LineFile file;
-  Status status = file.open(path, header);
-  for (std::size_t i = 0; status.ok() && i < samples.size(); ++i) {
-    const ImuSample& sample = samples[i];
-    status = file.write(fmt::format("{} {:.7f} {:.7f} {:.7f}", format_stamp(sample.stamp_ns),
-                                    sample.value.x(), sample.value.y(), sample.value.z()));
-  }
+  Status status = file.open(folder / name, imu_header(name, axes));
+  for (std::size_t i = 0; status.ok() && i < samples.size(); ++i)
+    status = file.write(simulated ? short_line(samples[i]) : imu_line(samples[i]));
   return status;
 }
 
@@ -83,12 +88,31 @@ Status read_imu_files(const fs::path& folder, ImuRecording& recording) {
   return status;
 }
 
-Status write_imu_files(const fs::path& folder, const ImuRecording& recording) {
-  Status status =
-      write_samples(folder / kGyroFile, "# timestamp wx wy wz (rad/s, axes of the camera)", recording.gyro);
-  if (status.ok())
-    status = write_samples(folder / kAccelerometerFile, "# timestamp ax ay az (m/s^2, axes of the camera)",
-                           recording.accelerometer);
+std::string imu_header(std::string_view file, ImuAxes axes) {
+  const char* columns = file == kGyroFile ? "wx wy wz (rad/s" : "ax ay az (m/s^2";
+  const char* whose = axes == ImuAxes::kCamera   ? "axes of the camera"
+                      : axes == ImuAxes::kKinect ? "axes of a Kinect: --imu-axes x,-y,z"
+                                                 : "axes of the sensor";
+  return fmt::format("# timestamp {}, {})", columns, whose);
+}
+
+std::string imu_line(const ImuSample& sample) {
+  return fmt::format("{} {} {} {}", format_stamp(sample.stamp_ns), sample.value.x(), sample.value.y(),
+                     sample.value.z());
+}
+
+Status refuse_imu_files(const fs::path& folder) {
+  std::error_code error;
+  for (const char* name : {kGyroFile, kAccelerometerFile})
+    if (fs::exists(folder / name, error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} has {} already: remove it or choose another folder", folder.string(), name)};
+  return {};
+}
+
+Status write_imu_files(const fs::path& folder, const ImuRecording& recording, ImuAxes axes) {
+  Status status = write_samples(folder, kGyroFile, recording.gyro, axes);
+  if (status.ok()) status = write_samples(folder, kAccelerometerFile, recording.accelerometer, axes);
   return status;
 }
 

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "plvo/base/status.hpp"
@@ -24,7 +27,18 @@ struct ImuRecording {
 // understood.
 Status read_imu_files(const std::filesystem::path& folder, ImuRecording& recording);
 
-// Writes both into the folder. kIo with the operating system's reason.
-Status write_imu_files(const std::filesystem::path& folder, const ImuRecording& recording);
+// In which axes readings are: what the first line of a file says. kSensor: in its own, whichever they are.
+enum class ImuAxes : std::uint8_t { kCamera, kKinect, kSensor };
+std::string imu_header(std::string_view file, ImuAxes axes);
+// A line of either file, with all digits.
+std::string imu_line(const ImuSample& sample);
+
+// kInvalidArgument for a folder that has one of the two already, which would be overwritten.
+Status refuse_imu_files(const std::filesystem::path& folder);
+
+// Writes both into the folder: simulated ones (kCamera) with seven decimals, recorded ones with all digits,
+// and of those no file without a reading. kIo with the operating system's reason.
+Status write_imu_files(const std::filesystem::path& folder, const ImuRecording& recording,
+                       ImuAxes axes = ImuAxes::kCamera);
 
 }  // namespace plvo

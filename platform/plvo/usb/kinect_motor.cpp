@@ -71,6 +71,12 @@ std::uint32_t light_on_audio(KinectLight light) {
   return 1;
 }
 
+// "1-1.1" and "1-1.3" hang on 1-1.
+bool same_hub(const std::string& port, const std::string& camera_port) {
+  const std::size_t hub = camera_port.find_last_of(".-");
+  return hub == std::string::npos || port.substr(0, port.find_last_of(".-")) == camera_port.substr(0, hub);
+}
+
 }  // namespace
 
 KinectMotor::~KinectMotor() { close(); }
@@ -82,14 +88,14 @@ void KinectMotor::close() {
   handle_ = nullptr;
 }
 
-Status KinectMotor::open(const UsbBus& bus) {
+Status KinectMotor::open(const UsbBus& bus, const std::string& camera_port) {
   close();
   const std::vector<UsbDeviceFacts> devices = bus.list();
   const UsbDeviceFacts* camera = nullptr;
   const UsbDeviceFacts* motor = nullptr;
   const UsbDeviceFacts* audio = nullptr;
   for (const UsbDeviceFacts& device : devices) {
-    if (device.known.family != SensorFamily::kKinectV1) continue;
+    if (device.known.family != SensorFamily::kKinectV1 || !same_hub(device.port, camera_port)) continue;
     if (device.known.part == SensorPart::kCamera && camera == nullptr) camera = &device;
     if (device.known.part == SensorPart::kMotor && motor == nullptr) motor = &device;
     if (device.known.part == SensorPart::kAudio && audio == nullptr) audio = &device;

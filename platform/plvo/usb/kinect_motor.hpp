@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "plvo/base/status.hpp"
 #include "plvo/math/types.hpp"
@@ -33,8 +34,10 @@ class KinectMotor {
   KinectMotor(const KinectMotor&) = delete;
   KinectMotor& operator=(const KinectMotor&) = delete;
 
-  // The motor of the first Kinect v1 on the bus. kNotFound, kPermission, kBusy say what to do.
-  Status open(const UsbBus& bus);
+  // The motor of the Kinect v1 whose camera is at this port ("1-1.3"), beside which it sits on the Kinect's
+  // own hub; of the first one on the bus where no port is named. kNotFound, kPermission, kBusy say what to
+  // do.
+  Status open(const UsbBus& bus, const std::string& camera_port = {});
   void close();
 
   // Clamped to ±31°. Returns at once; read() tells when the head has arrived.

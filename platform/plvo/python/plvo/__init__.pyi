@@ -67,7 +67,8 @@ class Camera:
 class Config:
     """How the odometry is set; None leaves an entry to the preset. tiny brings small limits with it, for images of 320x240.
     frame_budget_ns: what a frame may take (see Odometry.frame_took), 0: as long as it takes; fewer features after one that took
-    longer, more again after budget_patience_frames in a row that took less than budget_spare_share of it."""
+    longer, more again after budget_patience_frames in a row that took less than budget_spare_share of it. level_world: the world's y
+    axis points down; the first frame waits for one whose prior brings gravity."""
 
     def __init__(
         self,
@@ -79,6 +80,7 @@ class Config:
         frame_budget_ns: int = 0,
         budget_patience_frames: int = ...,
         budget_spare_share: float = ...,
+        level_world: bool = False,
     ) -> None: ...
     @property
     def seed(self) -> int: ...

@@ -2,6 +2,7 @@
 // plvo calibrate: when a sensor exposes depth and colour, from recordings made with it.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "plvo/calibrate/timing_report.hpp"
 #include "plvo/calibrate/timing_search.hpp"
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
@@ -36,6 +38,7 @@ constexpr const char* kHelp =
 
 struct CalibrateOptions {
   std::vector<std::string> recordings;
+  BagTopicNames topics;
   CalibrationOptions calibration;
   std::string out, report, json;
   std::size_t frames = 300;
@@ -43,6 +46,14 @@ struct CalibrateOptions {
   int threads = 2;
   bool quiet = false;
 };
+
+CameraOptions camera_options(const CalibrateOptions& options, const std::string& recording) {
+  CameraOptions camera;
+  camera.sequence = recording;
+  camera.topics = options.topics;
+  camera.calibration = options.calibration;
+  return camera;
+}
 
 // The cameras are opened once for each pass; what they have to say is said once.
 class FirstPassLog final : public Log {
@@ -91,10 +102,7 @@ class Calibrate {
 
  private:
   Status open(const std::string& recording, OpenedCamera& opened) {
-    CameraOptions camera;
-    camera.sequence = recording;
-    camera.calibration = options_.calibration;
-    return open_camera(camera, log_, opened);
+    return open_camera(camera_options(options_, recording), log_, opened);
   }
 
   // The lens, and what is known beforehand, are those of the first recording; the others must have its size.
@@ -205,11 +213,11 @@ void check(const CLI::App& command, const CalibrateOptions& options) {
     if (is_oni_file(recording))
       refuse_options(command, {"--depth-scale"},
                      "does not apply to an .oni file, which has units of its own");
-    CameraOptions camera;
-    camera.sequence = recording;
-    camera.calibration = options.calibration;
-    add_inputs(camera, files);
+    add_inputs(camera_options(options, recording), files);
   }
+  if (std::none_of(options.recordings.begin(), options.recordings.end(),
+                   [](const std::string& recording) { return is_bag_file(recording); }))
+    refuse_bag_options(command);
   files.check();
 }
 
@@ -219,8 +227,9 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App& command = add_command(app, "calibrate", "Find when a sensor exposes depth and colour", kHelp);
   OptionGroup group(command);
-  CLI::Option* recordings = group.add("recordings", "DIR|FILE.oni",
-                                      "Recordings of one sensor: folders in the TUM layout, or .oni files",
+  CLI::Option* recordings = group.add("recordings", "DIR|FILE.oni|FILE.bag",
+                                      "Recordings of one sensor: folders in the TUM layout, .oni files, or "
+                                      "ROS 1 bags",
                                       [options](const std::string& text) -> std::string {
                                         options->recordings.push_back(text);
                                         return text.empty() ? "expected a path, not an empty word" : "";
@@ -237,6 +246,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   group.whole("--threads", options->threads, 1, 256,
               "Threads; the result does not depend on them (default 2)");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  add_bag_options(command, options->topics, BagImu::kPassedOver);
   add_calibration_options(command, options->calibration, DepthScale::kAsked, "the calibration in the folder");
   add_json_option(command, options->json);
   on_command(command, exit_code, [&command, options] {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plvo/host/robot_base.hpp"
+#include "plvo/host/trajectory_file.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -16,8 +17,26 @@ constexpr double kLengthTolerance = 0.01;  // two decimals of a quaternion are e
 
 }  // namespace
 
-TrackResult BaseOption::apply(const TrackResult& result) const {
-  return T_base_camera ? result_of_base(result, *T_base_camera) : result;
+const FrameNames& BaseOption::frames() const {
+  if (T_base_camera) return level ? kLevelBaseFrames : kBaseFrames;
+  return level ? kLevelFrames : kCameraFrames;
+}
+
+TrackResult BaseOption::apply(const TrackResult& result) {
+  if (!T_base_camera) return result;
+  if (!T_odom_world && level && has_pose(result))
+    T_odom_world = level_odom(result.T_world_camera, *T_base_camera);
+  return result_of_base(result, *T_base_camera, T_odom_world.value_or(*T_base_camera));
+}
+
+void add_level_option(OptionGroup& group, BaseOption& option) {
+  group.flag("--level", option.level,
+             "A level world, by the accelerometer of --imu: gravity along its y axis, or with --base-camera "
+             "odom's z axis up; the first pose waits for the first reading");
+}
+
+void check_level_option(const CLI::App& command, bool imu) {
+  if (!imu) refuse_options(command, {"--level"}, "is by the accelerometer of --imu: add that");
 }
 
 void add_base_option(OptionGroup& group, BaseOption& option) {

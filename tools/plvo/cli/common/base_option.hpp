@@ -17,13 +17,19 @@ struct BaseOption {
   std::vector<double> numbers;  // tx ty tz qx qy qz qw
   std::optional<Se3> T_base_camera;
 
-  const FrameNames& frames() const { return T_base_camera ? kBaseFrames : kCameraFrames; }
-  // Of the base, where there is one.
-  TrackResult apply(const TrackResult& result) const;
+  bool level = false;               // the world is level: Config::level_world
+  std::optional<Se3> T_odom_world;  // of the first pose, where it is
+
+  const FrameNames& frames() const;
+  // Of the base, where there is one; of each frame, in order.
+  TrackResult apply(const TrackResult& result);
 };
 void add_base_option(OptionGroup& group, BaseOption& option);
 // Makes T_base_camera of the numbers; refuses a quaternion that is none, and the option where nothing that it
 // changes is written.
+// `--level`, for commands that have `--imu` as well, without which it is refused.
+void add_level_option(OptionGroup& group, BaseOption& option);
+void check_level_option(const CLI::App& command, bool imu);
 void check_base_option(BaseOption& option, bool poses_are_written);
 // Where the camera looks upwards because the turn to optical axes seems to be missing.
 void warn_of_base_option(const BaseOption& option, Log& log);

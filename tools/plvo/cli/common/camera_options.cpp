@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/numbered_index.hpp"
@@ -19,16 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr NumberRange kTolerance_s = positive(3600);
 constexpr std::uint64_t kMostScale = 16;
-
-constexpr const char* kBagGroup = "ROS bag";
-
-OptionGroup::Reader read_topic(std::string& topic) {
-  return [&topic](const std::string& text) -> std::string {
-    if (text.empty()) return expected("the name of a topic", text);
-    topic = text;
-    return {};
-  };
-}
 
 bool parse_count(std::string_view text, std::size_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -77,7 +68,7 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
   if (recording->has_ground_truth())
     opened.ground_truth = [path = options.sequence, sequence = how.sequence](const std::vector<std::int64_t>&,
                                                                              eval::Trajectory& truth) {
-      return read_ground_truth(path, sequence, truth);
+      return read_true_poses(path, sequence, truth);
     };
   opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
   opened.camera = recording;
@@ -185,19 +176,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       "Scale the images down by this factor, and the calibration, which is that of the whole images, "
       "with them: for less time a frame (default 1; images above 2047 pixels a side: as little as they "
       "need)");
-  OptionGroup bag(command, kBagGroup);
-  bag.add("--colour-topic", "TOPIC",
-          "Of sensor_msgs/Image (default /camera/rgb/image_color, or the only one)",
-          read_topic(options.topics.colour));
-  bag.add("--depth-topic", "TOPIC", "Of sensor_msgs/Image (default /camera/depth/image, or the only one)",
-          read_topic(options.topics.depth));
-  bag.add("--info-topic", "TOPIC", "Of sensor_msgs/CameraInfo (default camera_info beside colour)",
-          read_topic(options.topics.camera_info));
-  bag.add("--gyro-topic", "TOPIC", "Of sensor_msgs/Imu, for --imu (default the only one with turn rates)",
-          read_topic(options.topics.gyro));
-  bag.add("--accelerometer-topic", "TOPIC",
-          "Of sensor_msgs/Imu, for --imu (default the only one with accelerations)",
-          read_topic(options.topics.accelerometer));
+  add_bag_options(command, options.topics, BagImu::kKept);
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
 }
@@ -223,7 +202,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
   if (is_bag_file(options.sequence))
     return refuse_options(command, {"--associations", "--rate"},
                           "does not apply to a ROS bag, which has pairs and stamps of its own");
-  refuse_group(command, kBagGroup, "is for a ROS bag (FILE.bag)");
+  refuse_bag_options(command);
   if (is_oni_file(options.sequence)) {
     refuse_options(command, {"--scale"}, "is for folders of images, not for an .oni file");
     return refuse_options(command, {"--associations", "--tolerance", "--rate", "--depth-scale"},
@@ -240,6 +219,7 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   files.reads(options.associations);
   files.reads(options.simulator.trajectory);
   if (options.simulated) return;
+  if (is_bag_file(options.sequence)) files.reads(bag_ground_truth_file(options.sequence));
   if (is_oni_file(options.sequence) || is_bag_file(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
   for (const char* name :

@@ -41,6 +41,7 @@ Config make_config(const OdometryOptions& options) {
   config.features = options.features.value_or(config.features);
   config.references.policy = options.reference.value_or(config.references.policy);
   config.seed = options.seed.value_or(config.seed);
+  config.level_world = options.level_world;
   config.budget.frame_ns = static_cast<std::int64_t>(options.budget_ms * 1e6);
   return config;
 }

@@ -15,6 +15,7 @@
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/doctor/doctor_page.hpp"
 #include "plvo/host/line_file.hpp"
+#include "plvo/recording/recording.hpp"
 #include "plvo/usb/usb_bus.hpp"
 
 namespace plvo::cli {
@@ -86,6 +87,8 @@ int doctor_command(const DoctorOptions&) {
 
 void check(const CLI::App& command, const DoctorOptions& options) {
   check_live_camera_options(command, options.camera);
+  if (is_bag_file(options.camera.device))
+    refuse("--device", "a ROS bag is no sensor: plvo run FILE.bag tracks it");
   if (options.no_capture) {
     const char* why = "is for the capture, which --no-capture leaves out";
     refuse_options(command, {"--seconds", "--mode", "--device"}, why);
@@ -103,7 +106,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App& command =
       add_command(app, "doctor", "Say what is wrong with the sensor, and what to do", kDoctorHelp);
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOni);
   OptionGroup group(command);
   group.number("--seconds", options->seconds, kSeconds, "SECONDS", "Capture only so long (default 3)");
   group.flag("--no-capture", options->no_capture, "Look, but do not open the camera");

@@ -17,6 +17,7 @@
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/line_file.hpp"
+#include "plvo/recording/recording.hpp"
 #include "plvo/replay/numbered_index.hpp"
 #include "plvo/report/report.hpp"
 
@@ -27,6 +28,7 @@ constexpr const char* kEvalHelp =
     "Examples:\n"
     "  plvo eval --gt walk/groundtruth.txt --est trajectory.txt\n"
     "  plvo eval --gt chess/seq-01 --est trajectory.txt     the poses of numbered frames\n"
+    "  plvo eval --gt walk.bag --est trajectory.txt         walk-groundtruth.txt beside the bag\n"
     "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n";
 
 struct EvalOptions {
@@ -47,17 +49,12 @@ bool stamps_are_moderate(const eval::Trajectory& trajectory) {
   });
 }
 
-bool is_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_directory(path, error);
-}
-
 Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, eval::Trajectory& estimate,
                    std::vector<eval::StampedCovariance>& covariances,
                    std::vector<eval::UncertainMotion>& motions) {
   const std::filesystem::path& truth = options.ground_truth.path;
-  Status status = is_folder(truth) ? read_ground_truth(truth, options.folder, ground_truth)
-                                   : read_trajectory(options.ground_truth, ground_truth);
+  Status status = is_recording(truth) ? read_true_poses(truth, options.folder, ground_truth)
+                                      : read_trajectory(options.ground_truth, ground_truth);
   if (status.ok()) status = read_trajectory(options.estimate, estimate);
   if (status.ok() && !stamps_are_moderate(estimate))
     status = {StatusCode::kInvalidArgument, options.estimate.path.string() + " has stamps beyond 146 years"};
@@ -111,12 +108,15 @@ void check(const CLI::App& command, const EvalOptions& options) {
   if (options.sampling != eval::GroundTruthSampling::kNearest)
     refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
   const std::filesystem::path& truth = options.ground_truth.path;
-  if (is_folder(truth)) refuse_options(command, {"--gt-format"}, "is for a file, and --gt names a folder");
+  if (is_recording(truth))
+    refuse_options(command, {"--gt-format"}, "is for a trajectory, and --gt names a recording");
+  if (is_bag_file(options.estimate.path))
+    refuse("--est", "a ROS bag is a recording; name the trajectory that plvo run --out made of it");
   if (!is_numbered_folder(truth)) refuse_options(command, {"--rate"}, "is for a folder of numbered frames");
   FileRoles files;
   files.writes("--report", options.report);
   files.writes("--json", options.json);
-  files.reads(truth / "groundtruth.txt");
+  files.reads(is_bag_file(truth) ? bag_ground_truth_file(truth) : truth / "groundtruth.txt");
   SequenceIndex index;
   if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
     for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);
@@ -136,7 +136,8 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
     });
   };
   require(file("--gt", options.ground_truth.path,
-               "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI, or the folder of a sequence"));
+               "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI, or the folder or bag of a "
+               "sequence"));
   require(file("--est", options.estimate.path, "The estimate: a trajectory in one of these forms"));
   const std::vector<std::pair<std::string, eval::TrajectoryFormat>> formats = {
       {"auto", eval::TrajectoryFormat::kAuto},

@@ -4,11 +4,13 @@
 #include <string>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_session.hpp"
 #include "plvo/host/tcp_listener.hpp"
+#include "plvo/replay/imu_files.hpp"
 #include "plvo/view/host_names.hpp"
 
 namespace plvo::cli {
@@ -19,7 +21,8 @@ constexpr const char* kLiveHelp =
     "  plvo live --view 8080                      look at http://127.0.0.1:8080/ meanwhile\n"
     "  plvo live --out poses.txt --record walk    keep the poses and the images\n"
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
-    "  plvo live --device walk.oni --out t.txt    a recording, every frame of it\n"
+    "  plvo live --device walk.oni --out t.txt    a recording, every frame of it; walk.bag, too\n"
+    "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"
     "\n"
     "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
 
@@ -45,6 +48,7 @@ std::string check_stream(const std::string& text) {
 void add_outputs(CLI::App& command, LiveOptions& options) {
   add_output_options(command, options.outputs.files);
   OptionGroup group(command, kOutputGroup);
+  add_level_option(group, options.outputs.files.base);
   group.path("--json", options.summary, "The summary as JSON");
   group.path("--record", options.record,
              "Keep every captured frame: in a new folder that plvo run reads, or in a new .oni file",
@@ -76,16 +80,25 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
 
 void check(const CLI::App& command, LiveOptions& options) {
   check_live_camera_options(command, options.camera);
-  if (is_oni_file(options.camera.device))
-    refuse_options(command, {"--every-frame"}, "is what an .oni file does anyway; leave it away");
+  if (is_recorded_device(options.camera.device)) {
+    refuse_options(command, {"--every-frame"}, "is what a recording does anyway; leave it away");
+    refuse_options(command, {"--imu"},
+                   "is for a live Kinect; plvo run FILE.bag --imu takes a bag's readings");
+  }
+  if (is_bag_file(options.camera.device) && is_oni_file(options.record))
+    refuse("--record", "a ROS bag is kept as a folder, not as an .oni file");
   if (options.outputs.view.empty())
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   LiveOutputOptions& outputs = options.outputs;
   check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
+  check_level_option(command, options.imu);
+  options.odometry.level_world = outputs.files.base.level;
   FileRoles files;
   for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
   files.writes("--json", options.summary);
   if (is_oni_file(options.record)) files.writes("--record", options.record);
+  if (options.imu && !is_oni_file(options.record) && !options.record.empty())
+    files.writes("--record", std::filesystem::path(options.record) / kAccelerometerFile);
   for (const std::string& stream : options.outputs.streams)
     if (stream == "-") files.writes("--stream", stream);
   add_inputs(options.camera, files);
@@ -97,11 +110,15 @@ void check(const CLI::App& command, LiveOptions& options) {
 void add_live(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kLiveHelp);
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
   OptionGroup group(command);
+  group.flag(
+      "--imu", options->imu,
+      "With a Kinect v1's accelerometer: gravity holds roll and pitch; with --record DIR it is kept, too");
   group.number("--rate", options->rate_hz, positive(1000), "HZ", "Track so many frames a second at most");
   group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
   add_limit_options(command, options->frames, options->seconds);
+  add_bag_options(command, options->camera.topics, BagImu::kPassedOver);
   add_outputs(command, *options);
   add_odometry_options(command, options->odometry);
   on_command(command, exit_code, [&command, options] {

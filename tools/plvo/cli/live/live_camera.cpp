@@ -5,7 +5,9 @@
 
 #include <charconv>
 
+#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
+#include "plvo/cli/live/bag_device.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"
@@ -21,12 +23,15 @@ bool parse_positive(std::string_view text, int& value) {
 
 }  // namespace
 
-void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, PlayedFiles files) {
+  const bool bags = files == PlayedFiles::kOniAndBags;
   OptionGroup group(command);
   group.path(
       "--device", options.device,
-      "A sensor by its OpenNI2 URI (plvo doctor lists them), or an .oni file (default: the first sensor)",
-      "URI|FILE.oni");
+      fmt::format("A sensor by its OpenNI2 URI (plvo doctor lists them){} an .oni file{} (default: the "
+                  "first sensor)",
+                  bags ? "," : ", or", bags ? " or a ROS 1 bag" : ""),
+      bags ? "URI|FILE.oni|FILE.bag" : "URI|FILE.oni");
   group.add("--mode", "WIDTHxHEIGHT@FPS",
             "Size and rate of colour and depth, such as 640x480@30 (default), 320x240@30 or 320x240@60",
             [&options](const std::string& text) -> std::string {
@@ -41,14 +46,15 @@ void add_live_camera_options(CLI::App& command, LiveCameraOptions& options) {
 
 void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options) {
   check_calibration_options(command);
-  if (is_oni_file(options.device))
+  if (is_recorded_device(options.device))
     refuse_options(command, {"--mode"},
-                   "does not apply to an .oni file, which has a size and a rate of its own");
+                   "does not apply to a recording, which has a size and a rate of its own");
+  if (!is_bag_file(options.device)) refuse_bag_options(command);
 }
 
 void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
   files.reads(options.calibration.file);
-  if (is_oni_file(options.device)) files.reads(options.device);
+  if (is_recorded_device(options.device)) files.reads(options.device);
 }
 
 void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds) {
@@ -73,10 +79,11 @@ bool parse_video_mode(const std::string& text, VideoMode& mode) {
 }
 
 bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
+bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag_file(path); }
 
 int exit_code_of_camera(const Status& status, const std::string& device) {
   switch (status.code()) {
-    case StatusCode::kNotFound: return is_oni_file(device) ? kExitFailure : kExitNoSensor;
+    case StatusCode::kNotFound: return is_recorded_device(device) ? kExitFailure : kExitNoSensor;
     case StatusCode::kPermission:
     case StatusCode::kBusy:
     case StatusCode::kTimeout:
@@ -99,6 +106,7 @@ class OpenNi2LiveCamera final : public LiveCamera {
 
   CameraModel model() const override { return camera_.model(); }
   Status next(RgbdFrame& frame) override { return camera_.next(frame); }
+  std::string uri() const override { return camera_.device().uri; }
   std::string name() const override {
     const OpenNi2DeviceInfo info = camera_.device();
     return is_oni_file(info.uri) ? info.uri : fmt::format("{} ({})", info.name, info.uri);
@@ -155,9 +163,7 @@ Status calibrate(const CalibrationOptions& from, int width, int height, std::opt
   return {};
 }
 
-}  // namespace
-
-Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
+Status open_sensor(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
   VideoMode mode;
   if (!parse_video_mode(options.mode, mode)) return {StatusCode::kInvalidArgument, "not a video mode"};
   OpenNi2Options settings;
@@ -181,6 +187,8 @@ Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_
   return status;
 }
 
+}  // namespace
+
 Status list_live_cameras(std::vector<OpenNi2DeviceInfo>& devices) { return OpenNi2Camera::list(devices); }
 
 #else
@@ -194,11 +202,17 @@ Status not_built() {
       "again"};
 }
 
+Status open_sensor(const LiveCameraOptions&, Log&, std::unique_ptr<LiveCamera>&) { return not_built(); }
+
 }  // namespace
 
-Status open_live_camera(const LiveCameraOptions&, Log&, std::unique_ptr<LiveCamera>&) { return not_built(); }
 Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); }
 
 #endif
+
+Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
+  return is_bag_file(options.device) ? open_bag_device(options, log, camera)
+                                     : open_sensor(options, log, camera);
+}
 
 }  // namespace plvo::cli

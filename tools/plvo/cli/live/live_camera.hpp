@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sensor that `plvo live`, `record` and `doctor` read, as the command line names it, and its recorder for
-// .oni files. One thread at a time may use it.
+// The sensor that `plvo live`, `record` and `doctor` read, as the command line names it, or a file in its
+// place, and its recorder for .oni files. One thread at a time may use it.
 #pragma once
 
 #include <memory>
@@ -15,11 +15,13 @@
 namespace plvo::cli {
 
 struct LiveCameraOptions {
-  std::string device;  // an OpenNI2 URI or an .oni file; empty: the first sensor
+  std::string device;  // an OpenNI2 URI, an .oni file or a .bag file; empty: the first sensor
   std::string mode = "640x480@30";
+  BagTopicNames topics;
   CalibrationOptions calibration;
 };
-void add_live_camera_options(CLI::App& command, LiveCameraOptions& options);
+enum class PlayedFiles : std::uint8_t { kOni, kOniAndBags };  // in the place of a sensor
+void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, PlayedFiles files);
 // Refuses what does not apply to the device that was named.
 void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options);
 void add_inputs(const LiveCameraOptions& options, FileRoles& files);
@@ -34,15 +36,19 @@ struct VideoMode {
 // "WIDTHxHEIGHT" or "WIDTHxHEIGHT@FPS".
 bool parse_video_mode(const std::string& text, VideoMode& mode);
 
-// A file instead of a sensor: every frame of it is wanted, and it waits for whoever reads.
 bool is_oni_file(const std::string& path);
+// An .oni file or a ROS bag instead of a sensor: every frame of it is wanted, and it waits for whoever reads.
+bool is_recorded_device(const std::string& path);
 
 class LiveCamera : public RgbdCamera {
  public:
   virtual ~LiveCamera() = default;
-  virtual std::string name() const = 0;  // for people: "Virtual RGB-D (virtual://plvo)"
+  virtual std::string name() const = 0;           // for people: "Virtual RGB-D (virtual://plvo)"
+  virtual std::string uri() const { return {}; }  // of a sensor
   virtual OpenNi2Counters counters() const = 0;
   virtual bool registered_by_device() const = 0;
+  // What a recording has of a gyro and an accelerometer.
+  virtual Status read_imu(ImuRecording&) { return {StatusCode::kNotFound, "the camera is no recording"}; }
   // Ends an .oni recording, too. What was asked for above can still be asked.
   virtual void close() = 0;
 

@@ -13,6 +13,7 @@
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/host/line_file.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -39,7 +40,7 @@ int LiveSession::run() {
 // Everything that can be wrong is found before the first file is made.
 Status LiveSession::open() {
   if (Status status = open_live_camera(options_.camera, console_, camera_); !status.ok()) return status;
-  const bool every = options_.every_frame || is_oni_file(options_.camera.device);
+  const bool every = options_.every_frame || is_recorded_device(options_.camera.device);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
@@ -48,8 +49,16 @@ Status LiveSession::open() {
     if (Status status = LineFile::check(options_.summary); !status.ok()) return status;
   if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
     return status;
+  const bool keeps_imu = options_.imu && !options_.record.empty() && !is_oni_file(options_.record);
+  if (keeps_imu)
+    if (Status status = refuse_imu_files(options_.record); !status.ok()) return status;
   if (!options_.record.empty())
     if (Status status = recording_.open(options_.record, *camera_, every); !status.ok()) return status;
+  if (options_.imu) {
+    if (keeps_imu) accelerometer_.keep_in(options_.record);
+    if (Status status = accelerometer_.start(*camera_, options_.odometry.level_world); !status.ok())
+      return status;
+  }
   summary_.camera_name = camera_->name();
   summary_.recording = options_.record;
   capture_ = std::make_unique<LiveCapture>(*camera_, *ring_, recording_, console_);
@@ -99,7 +108,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   if (options_.rate_hz > 0)
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
-  block_.track(frame, MotionPrior(), record_);
+  block_.track(frame, accelerometer_.prior(frame.stamp_ns, arrival_ns), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;
@@ -141,6 +150,7 @@ void LiveSession::show_line(const ViewStatus& status, const TrackResult& result)
 
 void LiveSession::finish() {
   capture_->stop();
+  accelerometer_.stop();
   recorder_failure_ = recording_.stop();
   if (!recorder_failure_.ok()) console_.write(LogLevel::kError, recorder_failure_.message());
   outputs_.close();
@@ -150,6 +160,7 @@ void LiveSession::finish() {
   summary_.seconds = static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9;
   summary_.interrupted = interrupted();
   summary_.capture = capture_->state();
+  summary_.accelerometer = accelerometer_.summary();
   summary_.dropped = ring_->counters().dropped;
   summary_.recorded = recording_.frames();
   summary_.not_recorded = recording_.dropped();

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "plvo/cli/common/odometry_options.hpp"
+#include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/live/live_outputs.hpp"
 #include "plvo/cli/live/live_summary.hpp"
@@ -24,13 +25,14 @@ struct LiveOptions {
   double seconds = std::numeric_limits<double>::infinity();
   double rate_hz = 0;        // at most; 0: as they come
   bool every_frame = false;  // the camera waits for the odometry
+  bool imu = false;          // a Kinect's accelerometer
   bool quiet = false;
 };
 
 class LiveSession {
  public:
   explicit LiveSession(const LiveOptions& options)
-      : options_(options), console_(options.quiet), outputs_(console_) {}
+      : options_(options), console_(options.quiet), outputs_(console_), accelerometer_(console_) {}
 
   // From opening the camera to the exit code.
   int run();
@@ -55,6 +57,7 @@ class LiveSession {
   Recording recording_;
   std::unique_ptr<LiveCapture> capture_;
   OdometryBlock block_;
+  LiveAccelerometer accelerometer_;
   LiveSummary summary_;
   RateMeter meter_;
   FrameRecord record_;

@@ -55,6 +55,10 @@ std::string LiveSummary::to_text() const {
         fmt::format(
             "{} frames in {}{}", recorded, recording,
             not_recorded > 0 ? fmt::format("; {} dropped, for the disk is too slow", not_recorded) : ""));
+  if (accelerometer.used)
+    rows.emplace_back("accelerometer",
+                      fmt::format("{} readings, {} left out as late, {} failures", accelerometer.readings,
+                                  accelerometer.late, accelerometer.failures));
   if (dropped_lines > 0)
     rows.emplace_back("stream", fmt::format("{} lines dropped for slow readers", dropped_lines));
   return camera_name + '\n' + cli::to_text(rows) + stage_table();
@@ -72,6 +76,10 @@ nlohmann::ordered_json LiveSummary::to_json() const {
   json["latency_ms"] = cli::to_json(latency_);
   json["recording"] = {{"path", recording}, {"frames", recorded}, {"dropped", not_recorded}};
   json["stream_dropped_lines"] = dropped_lines;
+  if (accelerometer.used)
+    json["accelerometer"] = {{"readings", accelerometer.readings},
+                             {"late", accelerometer.late},
+                             {"failures", accelerometer.failures}};
   return json;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "plvo/cli/common/track_summary.hpp"
+#include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 
 namespace plvo::cli {
@@ -26,6 +27,7 @@ class LiveSummary : public TrackSummary {
   std::string recording;      // path, empty: none
   std::uint64_t recorded = 0, not_recorded = 0;
   std::uint64_t dropped_lines = 0;
+  AccelerometerSummary accelerometer;
 
  private:
   DurationHistogram latency_;

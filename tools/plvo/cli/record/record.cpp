@@ -7,13 +7,16 @@
 #include <string>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -24,6 +27,7 @@ constexpr const char* kRecordHelp =
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
     "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
     "  plvo record walk --device walk.oni    the one from the other\n"
+    "  plvo record walk --device walk.bag    a folder of a ROS 1 bag; --imu: with gyro, accelerometer\n"
     "\n"
     "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
 
@@ -32,6 +36,7 @@ struct RecordOptions {
   std::string path;
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
   double seconds = std::numeric_limits<double>::infinity();
+  bool imu = false;
   bool quiet = false;
 };
 
@@ -54,6 +59,21 @@ int judge(const RecordOptions& options, const LiveCapture::State& state, const S
   return kExitNoSensor;
 }
 
+// What can be wrong with the readings is found before anything is made. readings: of a bag, all that it has.
+Status check_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
+  if (!options.imu) return {};
+  if (Status status = refuse_imu_files(options.path); !status.ok()) return status;
+  return is_bag_file(options.camera.device) ? camera.read_imu(readings) : Status();
+}
+
+Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
+                 LiveAccelerometer& accelerometer) {
+  if (!options.imu) return {};
+  if (is_bag_file(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
+  accelerometer.keep_in(options.path);
+  return accelerometer.start(camera, false);
+}
+
 int record_command(const RecordOptions& options) {
   catch_interrupt();
   ignore_broken_outputs();
@@ -66,11 +86,14 @@ int record_command(const RecordOptions& options) {
   // Here the ring only says that frames come: the recording has one of its own.
   const CameraModel model = camera->model();
   FrameRing ring(model.width, model.height, 3, RingPolicy::kNewest);
+  ImuRecording readings;
   Recording recording;
-  if (Status status =
-          recording.open(options.path, *camera, is_oni_file(options.camera.device), options.frames);
-      !status.ok())
-    return fail(status);
+  LiveAccelerometer accelerometer(console);
+  Status begun = check_imu(options, *camera, readings);
+  if (begun.ok())
+    begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);
+  if (begun.ok()) begun = begin_imu(options, *camera, readings, accelerometer);
+  if (!begun.ok()) return fail(begun);
   console.write(LogLevel::kInfo, fmt::format("{}, {}x{}, into {}; Ctrl-C ends", camera->name(), model.width,
                                              model.height, options.path));
   LiveCapture capture(*camera, ring, recording, console);
@@ -80,12 +103,15 @@ int record_command(const RecordOptions& options) {
   RgbdFrame frame;
   std::int64_t arrival_ns = 0;
   while (!interrupted() && seconds() < options.seconds) {
-    if (ring.take(frame, arrival_ns, kRingPatience_ms) == FrameRing::Take::kClosed) break;
+    const FrameRing::Take take = ring.take(frame, arrival_ns, kRingPatience_ms);
+    if (take == FrameRing::Take::kClosed) break;
+    if (take == FrameRing::Take::kFrame) accelerometer.prior(frame.stamp_ns, arrival_ns);
     const LiveCapture::State state = capture.state();
     if (state.frames >= options.frames || !state.recorder.ok()) break;
     if (console.wants_line()) show_line(console, state, recording);
   }
   capture.stop();
+  accelerometer.stop();
   const Status stopped = recording.stop();
   console.clear();
   const LiveCapture::State state = capture.state();
@@ -111,9 +137,19 @@ void check(const CLI::App& command, const RecordOptions& options) {
         "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
     files.writes("path", options.path);
   } else {
-    for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt"})
+    for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
       files.writes("path", std::filesystem::path(options.path) / name);
   }
+  if (is_oni_file(options.path)) {
+    refuse_options(command, {"--imu"}, "is for a folder, for an .oni file keeps no such readings");
+    if (is_bag_file(options.camera.device))
+      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
+  }
+  if (is_oni_file(options.camera.device))
+    refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
+  if (!options.imu)
+    refuse_options(command, {"--gyro-topic", "--accelerometer-topic"},
+                   "is for --imu: add it, or leave this away");
   add_inputs(options.camera, files);
   files.check();
 }
@@ -127,8 +163,12 @@ void add_record(CLI::App& app, int& exit_code) {
   OptionGroup group(command);
   require(group.path("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file",
                      "DIR|FILE.oni"));
-  add_live_camera_options(command, options->camera);
+  add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
+  group.flag(
+      "--imu", options->imu,
+      "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the ROS bag");
   add_limit_options(command, options->frames, options->seconds);
+  add_bag_options(command, options->camera.topics, BagImu::kKept);
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
   on_command(command, exit_code, [&command, options] {
     check(command, *options);

@@ -51,11 +51,13 @@ void check_imu_options(const CLI::App& command, const ImuOptions& options, const
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
 }
 
-Status open_imu(const ImuOptions& options, const OpenedCamera& camera, Log& log,
+Status open_imu(const ImuOptions& options, const OpenedCamera& camera, bool level, Log& log,
                 std::optional<RecordedImu>& imu) {
   if (!options.used) return {};
   ImuRecording recording;
   if (Status status = camera.inertial(recording); !status.ok()) return status;
+  if (level && recording.accelerometer.empty())
+    return {StatusCode::kNotFound, "--level: without an accelerometer nothing says where down is"};
   if (recording.gyro.empty())
     log.write(LogLevel::kWarning, "no gyro: gravity alone helps, a frame that shows nothing is lost");
   if (recording.accelerometer.empty())

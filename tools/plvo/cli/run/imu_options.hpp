@@ -18,8 +18,9 @@ void add_imu_options(CLI::App& command, ImuOptions& options);
 // Refuses what does not apply to the camera of the command line.
 void check_imu_options(const CLI::App& command, const ImuOptions& options, const CameraOptions& camera);
 
-// Leaves `imu` empty where it was not asked for. log: for what is missing or was left out.
-Status open_imu(const ImuOptions& options, const OpenedCamera& camera, Log& log,
+// Leaves `imu` empty where it was not asked for. level: kNotFound without an accelerometer. log: for what is
+// missing or was left out.
+Status open_imu(const ImuOptions& options, const OpenedCamera& camera, bool level, Log& log,
                 std::optional<RecordedImu>& imu);
 
 // "x,-y,z": which of the sensor's axes points right, down and forward.

@@ -79,7 +79,9 @@ class Run {
   Status open() {
     if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
     if (Status status = block_.init(opened_.camera->model(), options_.odometry); !status.ok()) return status;
-    if (Status status = open_imu(options_.imu, opened_, console_, imu_); !status.ok()) return status;
+    if (Status status = open_imu(options_.imu, opened_, options_.outputs.base.level, console_, imu_);
+        !status.ok())
+      return status;
     warn_of_base_option(options_.outputs.base, console_);
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
@@ -178,6 +180,8 @@ void check(const CLI::App& command, RunOptions& options) {
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
   check_base_option(options.outputs.base, options.outputs.has_poses());
+  check_level_option(command, options.imu.used);
+  options.odometry.level_world = options.outputs.base.level;
   FileRoles files;
   for (const auto& [option, path] : options.outputs.named()) files.writes(option, path);
   files.writes("--json", options.summary);
@@ -199,6 +203,8 @@ void add_run(CLI::App& app, int& exit_code) {
       "As fast as it goes (default), as the stamps say, or a frame for each Enter");
   add_imu_options(command, options->imu);
   add_output_options(command, options->outputs);
+  OptionGroup base(command, kOutputGroup);
+  add_level_option(base, options->outputs.base);
   OptionGroup outputs(command, kOutputGroup);
   outputs.path("--json", options->summary, "The summary as JSON");
   outputs.path("--report", options->report, "A page that shows the run: one HTML file, no network");

@@ -8,6 +8,7 @@
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/trajectory_file.hpp"
 #include "plvo/python/error.hpp"
+#include "plvo/recording/recording.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -66,7 +67,8 @@ std::string evaluate_json(const std::string& truth_path, const py::object& estim
                           const py::iterable& deltas) {
   const EvaluationOptions options = options_of(sampling, max_difference_s, offset_s, deltas);
   Trajectory truth;
-  throw_unless_ok(read_trajectory({truth_path, {}, {}}, truth));
+  throw_unless_ok(is_recording(truth_path) ? read_true_poses(truth_path, {}, truth)
+                                           : read_trajectory({truth_path, {}, {}}, truth));
   Estimate estimate;
   if (py::isinstance<py::str>(estimated))
     throw_unless_ok(read_trajectory({estimated.cast<std::string>(), {}, {}}, estimate.trajectory));

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/live/bag_device.hpp"
+
+#include <utility>
+
+namespace plvo::cli {
+namespace {
+
+class BagDevice final : public LiveCamera {
+ public:
+  BagDevice(std::string name, OpenedCamera opened) : name_(std::move(name)), opened_(std::move(opened)) {}
+
+  CameraModel model() const override { return opened_.camera->model(); }
+  Status next(RgbdFrame& frame) override {
+    const Status status = opened_.camera->next(frame);
+    counters_.frames += status.ok() ? 1 : 0;
+    counters_.damaged += status.code() == StatusCode::kDamaged ? 1 : 0;
+    return status;
+  }
+  std::string name() const override { return name_; }
+  OpenNi2Counters counters() const override { return counters_; }
+  bool registered_by_device() const override { return true; }
+  void close() override {}
+  Status read_imu(ImuRecording& recording) override { return opened_.inertial(recording); }
+
+  Status start_oni(const std::string&) override {
+    return {StatusCode::kUnsupported, "OpenNI2 does not play bags: make a folder of it instead"};
+  }
+  Status poll_oni() override { return {}; }
+  void stop_oni() override {}
+
+ private:
+  std::string name_;
+  OpenedCamera opened_;
+  OpenNi2Counters counters_;
+};
+
+}  // namespace
+
+Status open_bag_device(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
+  CameraOptions recording;
+  recording.sequence = options.device;
+  recording.topics = options.topics;
+  recording.calibration = options.calibration;
+  OpenedCamera opened;
+  if (Status status = open_camera(recording, log, opened); !status.ok()) return status;
+  camera = std::make_unique<BagDevice>(options.device, std::move(opened));
+  return {};
+}
+
+}  // namespace plvo::cli
