@@ -35,7 +35,7 @@ template <typename Function>
 struct DepthFunction {
   Function function;
   double at(int x, int y) const { return function(x, y); }
-  bool locate(Vector2&, SeenBeside&) const { return true; }
+  bool locate(Vector2&) const { return true; }
   double at_colour_time(double, const Vector2&, double depth_m) const { return depth_m; }
 };
 template <typename Function>

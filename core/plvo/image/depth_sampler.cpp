@@ -78,46 +78,32 @@ double nearest_surface(std::span<const Reading> readings, const DepthNoise& nois
 
 }  // namespace
 
-bool DepthSampler::locate(Vector2& pixel, SeenBeside& beside) const {
+bool DepthSampler::locate(Vector2& pixel) const {
   if (!exposure_.depth_apart()) return true;
-  // What is seen where depends on its depth, which is read where it is seen, and on the row there. Most of
-  // the displacement is the rotation's, the same for every depth.
+  // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
+  // rotation's, the same for every depth.
+  constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
-  constexpr double kSameDepth = 0.02;
   const Pinhole& pinhole = exposure_.pinhole();
-  const bool guessed = beside.depth_m > 0;
-  double depth_m = guessed ? beside.depth_m : kUnknownDepth_m;
-  Vector2 located = pixel + beside.shift;
-  const auto inside_image = [&] {
-    return located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height;
-  };
-  const auto follow = [&] {
+  double depth_m = kUnknownDepth_m;
+  Vector2 located = pixel;
+  for (int i = 0; i < kGuesses; ++i) {
+    const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
+    if (read > 0) depth_m = read;
     const Vector3 p =
         exposure_.at_depth_time(back_project(pinhole, pixel.x(), pixel.y(), depth_m), pixel.y(), located.y());
     if (!(p.z() > kNearestSeen_m)) return false;
     located = project(pinhole, p);
-    return inside_image();
-  };
-  constexpr int kGuesses = 2;
-  for (int i = 0; i < kGuesses; ++i) {
-    const double read =
-        inside_image() ? at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5)) : 0;
-    const double change = read - depth_m;
-    // As beside it: what follows from there is as good as a second guess.
-    const bool same = guessed && change * change <= kSameDepth * kSameDepth * depth_m * depth_m;
-    if (read > 0) depth_m = read;
-    if (!follow()) return false;
-    if (same) break;
+    if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
+      return false;
   }
-  beside = {depth_m, located - pixel};
   pixel = located;
   return true;
 }
 
 DepthSample DepthSampler::sample(double u, double v, int radius) const {
   Vector2 located(u, v);
-  SeenBeside nothing;
-  if (!locate(located, nothing)) return {};
+  if (!locate(located)) return {};
   DepthSample result = sample_window(located.x(), located.y(), radius);
   if (result.depth_m > 0) result.depth_m = at_colour_time(v, located, result.depth_m);
   if (!(result.depth_m > 0)) return {};

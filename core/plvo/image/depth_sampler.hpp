@@ -22,12 +22,6 @@ struct DepthSample {
   Vector2 located = Vector2::Zero();  // where the depth image shows it, px
 };
 
-// Where the depth image showed what was seen beside a pixel: a guess of where it shows what is seen there.
-struct SeenBeside {
-  double depth_m = 0;               // 0: nothing is known
-  Vector2 shift = Vector2::Zero();  // from the colour image to the depth image, px
-};
-
 class DepthSampler {
  public:
   DepthSampler(const DepthView& depth, const UndistortionMap& map, const DepthNoise& noise,
@@ -38,8 +32,8 @@ class DepthSampler {
   DepthSampler with(const Exposure& exposure) const { return {depth_, map_, noise_, exposure}; }
 
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
-  // place itself unless depth is exposed apart. `beside` becomes what was found.
-  bool locate(Vector2& pixel, SeenBeside& beside) const;
+  // place itself unless depth is exposed apart.
+  bool locate(Vector2& pixel) const;
   // A depth read at `located`, as it was when colour's row v was exposed.
   double at_colour_time(double v, const Vector2& located, double depth_m) const {
     if (!exposure_.depth_apart()) return depth_m;

@@ -15,7 +15,6 @@
 #include <span>
 
 #include "plvo/camera/depth_noise.hpp"
-#include "plvo/image/depth_sampler.hpp"
 #include "plvo/lines/segment.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -84,10 +83,9 @@ int sample_count(const Segment& segment, const SampleOptions& options);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
-// depth, which DepthSampler is: locate(Vector2&, SeenBeside&) finds where the depth image shows what is seen
-// at a pixel, given what was found beside it, at(int x, int y) returns metres there, 0 where there is none or
-// outside the image, and at_colour_time(v, located, metres) carries a reading back to the moment of colour's
-// row v.
+// depth, which DepthSampler is: locate(Vector2&) finds where the depth image shows what is seen at a pixel,
+// at(int x, int y) returns metres there, 0 where there is none or outside the image, and at_colour_time(v,
+// located, metres) carries a reading back to the moment of colour's row v.
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {
@@ -107,12 +105,11 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
     return static_cast<float>(
         depth.at(nearest_pixel(p.x() - offset * along.y()), nearest_pixel(p.y() + offset * along.x())));
   };
-  SeenBeside beside;
   for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
     const double t = i * step - 0.5 * length;
     const Vector2 seen = middle + t * along;
     Vector2 p = seen;
-    if (!depth.locate(p, beside)) continue;
+    if (!depth.locate(p)) continue;
     const float here = read(p, 0);
     const float left = side_reach_px > 0 ? read(p, -side_reach_px) : here;
     const float right = side_reach_px > 0 ? read(p, side_reach_px) : here;
