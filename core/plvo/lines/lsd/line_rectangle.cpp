@@ -87,7 +87,7 @@ Range about(Range range, std::int64_t centre_q22) {
   const auto offset = [&](std::int64_t q14) {
     return static_cast<std::int32_t>((q14 * 256 - centre_q22) >> kDirectionBits);
   };
-  return {std::min(offset(range.low), 0), std::max(offset(range.high), 0)};
+  return {std::min<std::int32_t>(offset(range.low), 0), std::max<std::int32_t>(offset(range.high), 0)};
 }
 
 }  // namespace
