@@ -24,6 +24,7 @@ struct OdometryOptions {
   std::optional<std::uint64_t> seed;
   double budget_ms = 0;  // 0: none
   int cores = 1;
+  int surfaces = 0;
 };
 void add_odometry_options(CLI::App& command, OdometryOptions& options);
 
