@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include <cmath>
 #include <vector>
 
 #include "simulated_pair.hpp"
@@ -98,7 +101,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   for (int k = 0; k < kJoint; ++k) {
     const double h = 1e-5;
     const double numeric = (cost(k, h) - cost(k, -h)) / (2 * h);
-    EXPECT_NEAR(sum.g[k], numeric, 1e-5 * (sum.H(k, k) * 1e-3 + std::fabs(numeric))) << k;
+    EXPECT_NEAR(sum.g[k], numeric, 1e-5 * (sum.H(k, k) * 1e-3 + std::abs(numeric))) << k;
   }
 }
 
@@ -189,7 +192,7 @@ TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
   }
   // Noise of normals alone would hold the camera to 10 mm along the corridor.
   EXPECT_GT(naive, 8e3);
-  EXPECT_LT(std::fabs(along), 0.03 * naive);
+  EXPECT_LT(std::abs(along), 0.03 * naive);
   EXPECT_GT(across, 3e6);
 }
 

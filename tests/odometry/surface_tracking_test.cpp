@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "depth_picture.hpp"
@@ -112,9 +113,9 @@ TEST(SurfaceTracking, ARoomFixesTheMotionACorridorLeavesItsAxisOpen) {
     across += walk().R.col(0).dot(open * walk().R.col(0)) / kPairs;
   }
   // 1/1e3 is 30 mm: less than that is not claimed of the corridor's axis.
-  EXPECT_LT(std::fabs(along), 1e3);
-  EXPECT_GT(across, 100 * std::fabs(along));
-  EXPECT_GT(along_room, 20 * std::fabs(along));
+  EXPECT_LT(std::abs(along), 1e3);
+  EXPECT_GT(across, 100 * std::abs(along));
+  EXPECT_GT(along_room, 20 * std::abs(along));
 }
 
 TEST(SurfaceTracking, AnotherSurfaceIsNoMatch) {
@@ -129,7 +130,7 @@ TEST(SurfaceTracking, AnotherSurfaceIsNoMatch) {
   track_surfaces(picture(nearer, none, gaussian).sampler(), kPinhole, NoiseConfig{}, 0.25,
                  pair.features.samples.span(), none, found);
   EXPECT_GT(found.size(), 20U);
-  for (const SurfaceMatch& match : found) EXPECT_LT(std::fabs(match.normal.z()), 0.5);
+  for (const SurfaceMatch& match : found) EXPECT_LT(std::abs(match.normal.z()), 0.5);
 }
 
 struct Walked {

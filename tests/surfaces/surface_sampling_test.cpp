@@ -12,20 +12,17 @@
 namespace plvo {
 namespace {
 
-using test::depth_of_plane;
-using test::DepthPicture;
-
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
-constexpr Pinhole kPinhole{262, 262, 159.5, 119.5};
+constexpr int kImageWidth = 320;
+constexpr int kImageHeight = 240;
+constexpr Pinhole kCamera{262, 262, 159.5, 119.5};
 
 struct Room {
   explicit Room(int samples) : memory(1 << 20), arena(memory) {
     features.carve(arena, samples);
     arena.seal();
   }
-  void sample(const DepthPicture& picture) {
-    sample_surfaces(picture.sampler(), kPinhole, kWidth, kHeight, 1, arena, features);
+  void sample(const test::DepthPicture& picture) {
+    sample_surfaces(picture.sampler(), kCamera, kImageWidth, kImageHeight, 1, arena, features);
   }
   std::vector<std::byte> memory;
   Arena arena;
@@ -33,9 +30,9 @@ struct Room {
 };
 
 // A wall, and below it a strip of floor.
-DepthPicture wall_and_floor() {
-  return {kWidth, kHeight, [](int x, int y) {
-            const double floor = depth_of_plane(kPinhole, x, y, {0, 1, 0}, 0.8);
+test::DepthPicture wall_and_floor() {
+  return {kImageWidth, kImageHeight, [](int x, int y) {
+            const double floor = test::depth_of_plane(kCamera, x, y, {0, 1, 0}, 0.8);
             return floor > 0 && floor < 2.4 ? floor : 2.4;
           }};
 }
@@ -79,7 +76,7 @@ TEST(SurfaceSampling, ASmallSurfaceIsNotOutvoted) {
   int quarters[4] = {};
   for (const SurfaceSample& sample : few.features.samples)
     if (sample.normal.z() < -0.99)
-      ++quarters[static_cast<int>(project(kPinhole, sample.p).x() / (kWidth / 4.0))];
+      ++quarters[static_cast<int>(project(kCamera, sample.p).x() / (kImageWidth / 4.0))];
   for (const int quarter : quarters) EXPECT_GT(quarter, 0);
 }
 
@@ -88,14 +85,14 @@ TEST(SurfaceSampling, WithoutRoomThereAreNone) {
   room.sample(wall_and_floor());
   EXPECT_TRUE(room.features.samples.empty());
   ArenaSizer sizer;
-  reserve_surface_sampling(sizer, kWidth, kHeight, 0);
+  reserve_surface_sampling(sizer, kImageWidth, kImageHeight, 0);
   EXPECT_EQ(sizer.peak(), 0U);
 }
 
 TEST(SurfaceSampling, WhatThereWasBeforeIsForgotten) {
   Room room(400);
   room.sample(wall_and_floor());
-  room.sample({kWidth, kHeight, [](int, int) { return 0.0; }});
+  room.sample({kImageWidth, kImageHeight, [](int, int) { return 0.0; }});
   EXPECT_TRUE(room.features.samples.empty());
 }
 

@@ -14,6 +14,14 @@ constexpr int kJoint = JointInformation::kSize;
 constexpr int kCommon = 2;
 constexpr int kAll = kJoint + kCommon;
 
+// r² over the variance of r, with what the match shares with others.
+double normalised(const SurfaceMatch& match, const Vector3& e) {
+  const double r = match.normal.dot(e);
+  const double moment = match.normal.dot(match.common.col(0));
+  const double offset = match.normal.dot(match.common.col(1));
+  return r * r / (match.variance + moment * moment + offset * offset);
+}
+
 // Sums over (ξ, β, γ); of H the lower triangle.
 struct Sums {
   double H[kAll][kAll] = {};
@@ -67,8 +75,7 @@ SurfaceConstraints::SurfaceConstraints(std::span<const SurfaceMatch> matches, co
 
 double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double) const {
   const SurfaceMatch& match = matches_[i];
-  const double r = match.normal.dot(T * match.p_reference - match.p_current);
-  return r * r / match.variance;
+  return normalised(match, T * match.p_reference - match.p_current);
 }
 
 void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared) {
@@ -76,8 +83,7 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared) {
     const SurfaceMatch& match = matches_[i];
     Vector3 e = T * match.p_reference - match.p_current;
     if (shared.any()) e += shared.fields(match.p_current, match.delay_s).lazyProduct(shared.value);
-    const double r = match.normal.dot(e);
-    held_[i] = r * r / match.variance;
+    held_[i] = normalised(match, e);
     inliers_[i] = held_[i] <= kGateSigmas * kGateSigmas ? 1 : 0;
   }
 }

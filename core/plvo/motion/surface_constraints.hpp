@@ -53,7 +53,7 @@ class SurfaceConstraints final : public ConstraintSet {
 
  private:
   std::span<const SurfaceMatch> matches_;
-  std::span<double> held_;  // r² / σ² where the solve began
+  std::span<double> held_;  // mahalanobis_squared where the solve began
 };
 
 }  // namespace plvo
