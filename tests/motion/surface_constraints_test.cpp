@@ -44,8 +44,8 @@ struct Walls {
       Vector3 along = 0.01 * gaussian.vector<3>();
       along -= n_current.dot(along) * n_current;
       match.p_current = truth * p + along + sigma * gaussian() * n_current;
-      match.common.col(0) = 0.004 * Vector3(1, -0.5, 0.3) + 0.01 * Vector3(0.2, 1, 0).cross(p);
-      match.common.col(1) = 0.002 * p.z() * p;
+      match.common.col(0) = 0.001 * Vector3(1, -0.5, 0.3) + 0.001 * Vector3(0.2, 1, 0).cross(p);
+      match.common.col(1) = 0.0004 * p.z() * p;
       match.p_current += match.common * gamma;
       Vector3 off = normal_sigma * gaussian.vector<3>();
       off -= face.dot(off) * face;

@@ -14,12 +14,9 @@ constexpr int kJoint = JointInformation::kSize;
 constexpr int kCommon = 2;
 constexpr int kAll = kJoint + kCommon;
 
-// r² over the variance of r, with what the match shares with others.
 double normalised(const SurfaceMatch& match, const Vector3& e) {
   const double r = match.normal.dot(e);
-  const double moment = match.normal.dot(match.common.col(0));
-  const double offset = match.normal.dot(match.common.col(1));
-  return r * r / (match.variance + moment * moment + offset * offset);
+  return r * r / match.variance;
 }
 
 // Sums over (ξ, β, γ); of H the lower triangle.

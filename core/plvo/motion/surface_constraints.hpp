@@ -46,6 +46,8 @@ class SurfaceConstraints final : public ConstraintSet {
   int dof() const override { return 1; }
   bool usable(std::size_t) const override { return false; }  // to RANSAC
   Primitive primitive(std::size_t) const override { return {}; }
+  // r² / σ². What the matches share is not in it: where that shows, they weigh less (gate, robust loss, the
+  // learning of σ²), which on real sensors is better than to believe that it is known (docs/sensors.md).
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
   void begin(const Se3& T, const SharedErrors& shared) override;
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
