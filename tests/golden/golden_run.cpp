@@ -110,6 +110,8 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
   ProceduralRenderer sequence;
   if (!print_input(memory, sequence, print)) return false;
   Config points, lines, keyframe, lost;
+  Limits surfaces = Limits::qvga();
+  surfaces.surfaces = 200;
   points.features = Features::kPoints;
   lines.features = Features::kLines;
   keyframe.references.policy = ReferencePolicy::kKeyframe;
@@ -124,6 +126,11 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
       {.name = "kinect", .config = {}, .readout_s = kKinectReadout_s, .depth_timing = {true, -0.01, 0.03}},
       // Lost for so long that the reference is given up, then found again.
       {.name = "lost", .config = lost, .frames = 10, .dark_from = 2, .dark_frames = 5},
+      {.name = "surfaces",
+       .config = {},
+       .limits = surfaces,
+       .readout_s = kKinectReadout_s,
+       .depth_timing = {true, -0.01, 0.03}},
       {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
   };
   for (const GoldenCase& golden : cases)

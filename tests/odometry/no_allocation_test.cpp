@@ -88,10 +88,17 @@ Config budgeted() {
   return config;
 }
 
+Limits with_surfaces() {
+  Limits limits = Limits::qvga();
+  limits.surfaces = 200;
+  return limits;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Configs, NoAllocation,
     testing::Values([] { return Settings{.config = {}}; }, [] { return Settings{.config = Config::paper()}; },
                     [] { return Settings{.config = keyframe_alone()}; },
+                    [] { return Settings{.config = {}, .limits = with_surfaces()}; },
                     [] { return Settings{.config = budgeted()}; },
                     [] { return Settings{.config = Config::tiny(), .limits = Limits::tiny()}; }));
 

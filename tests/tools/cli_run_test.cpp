@@ -115,6 +115,15 @@ TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
   EXPECT_EQ(run("--cores 3").exit_code, 2);
 }
 
+TEST_F(CliRun, SurfacesTakePartWhenAskedFor) {
+  ASSERT_EQ(run("--quiet --out " + file("without.txt")).exit_code, 0);
+  ASSERT_EQ(run("--quiet --surfaces 0 --out " + file("none.txt")).exit_code, 0);
+  ASSERT_EQ(run("--quiet --surfaces 200 --out " + file("with.txt")).exit_code, 0);
+  EXPECT_EQ(read_file(file("without.txt")), read_file(file("none.txt")));
+  EXPECT_NE(read_file(file("without.txt")), read_file(file("with.txt")));
+  EXPECT_EQ(run("--surfaces 1001").exit_code, 2);
+}
+
 TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {
   ASSERT_EQ(run("--quiet --out " + file("recorded.txt")).exit_code, 0);
   ASSERT_EQ(run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --seed 3 --quiet --frames :" +

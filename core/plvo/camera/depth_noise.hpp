@@ -22,12 +22,13 @@ struct DepthNoise {
 };
 
 // The variances that the residuals show over those that the models state, one factor for each kind of
-// measurement: across the image and along the ray for points, all of it for lines; and for what all of a
-// frame share (shared_errors.hpp).
+// measurement: across the image and along the ray for points, all of it for lines and for surfaces; and for
+// what all of a frame share (shared_errors.hpp).
 struct NoiseScales {
   double image = 1;
   double depth = 1;
   double lines = 1;
+  double surfaces = 1;
   double turning = 1;
   double shared_depth = 1;
 };

@@ -54,6 +54,8 @@ Vector3 Exposure::as_seen(const Vector3& p_mid) const {
   return seen;
 }
 
+Vector3 Exposure::rate(const Vector3& p) const { return v_ + omega_.cross(p); }
+
 Vector3 Exposure::at_depth_time(const Vector3& p, double v, double depth_v) const {
   return moved(p, v_, omega_, depth_lag_s(v, depth_v));
 }

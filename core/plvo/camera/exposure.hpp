@@ -39,6 +39,11 @@ class Exposure {
   Vector3 at_depth_time(const Vector3& p, double v, double depth_v) const;
   Vector3 from_depth_time(const Vector3& p, double v, double depth_v) const;
 
+  // Seconds from the exposure of colour's middle row to that of depth's row depth_v, if depth is apart.
+  double depth_delay_s(double depth_v) const { return depth_lag_s(0.5 * last_row_, depth_v); }
+  // How fast a point at p moves, m/s.
+  Vector3 rate(const Vector3& p) const;
+
   const Pinhole& pinhole() const { return pinhole_; }
 
  private:

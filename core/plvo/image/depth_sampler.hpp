@@ -80,6 +80,7 @@ class DepthSampler {
   DepthSample sample(double u, double v, int radius = 2) const;
 
   const DepthNoise& noise() const { return noise_; }
+  const Exposure& exposure() const { return exposure_; }
 
  private:
   DepthSample sample_window(double u, double v, int radius) const;

@@ -105,7 +105,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     Cholesky<6> cholesky;
     if (cholesky.factor(solver.hessian())) estimate.shared = problem.shared(cholesky.inverse());
     shared.value = estimate.shared.value;
-    for (std::size_t kind = 0; kind < sets.size(); ++kind)
+    for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
       estimate.information[kind] = problem.information(kind);
   }
   // What is not determined does not converge either: say the cause, not the symptom.

@@ -17,6 +17,7 @@
 #include "plvo/motion/motion_problem.hpp"
 #include "plvo/motion/point_constraints.hpp"
 #include "plvo/motion/ransac.hpp"
+#include "plvo/motion/surface_constraints.hpp"
 
 namespace plvo {
 
@@ -29,10 +30,10 @@ struct MotionEstimate {
   // C_H (23) of the ⊞-perturbation (v, ω) of T_current_reference, with the robust weights: (Σ w Jᵀ Σ⁻¹ J)⁻¹.
   // m², m rad, rad².
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  // Per kind, in the order of the sets: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹ (26). Zero for an empty
-  // kind.
-  std::array<Matrix6, kMaxConstraintKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
-                                                          Matrix6::Zero(), Matrix6::Zero()};
+  // Per kind, in the order of the sets, of the first of them: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹
+  // (26). Zero for an empty kind.
+  std::array<Matrix6, kInformedKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
+                                                     Matrix6::Zero(), Matrix6::Zero()};
   SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
@@ -79,17 +80,18 @@ constexpr std::span<MotionSolver> take_solver(Memory& memory) {
   return memory.template take<MotionSolver>("motion: solver", 1);
 }
 
-// What points, lines (of each reference), a sensed motion and estimate_motion take between mark and rewind,
-// for sizing.
+// What points, lines, surfaces (of each reference), a sensed motion and estimate_motion take between mark and
+// rewind, for sizing.
 template <typename Memory>
 constexpr void size_motion(Memory& memory, std::size_t references, std::size_t max_points,
-                           std::size_t max_lines) {
+                           std::size_t max_lines, std::size_t max_surfaces = 0) {
   const ScratchScope<Memory> scope(memory);
   for (std::size_t r = 0; r < references; ++r) {
     (void)PointConstraints::Workspace::take(memory, max_points);
     (void)LineConstraints::Workspace::take(memory, max_lines);
+    (void)SurfaceConstraints::Workspace::take(memory, max_surfaces);
   }
-  (void)take_ransac_scratch(memory, references * (max_points + max_lines) + 1);
+  (void)take_ransac_scratch(memory, references * (max_points + max_lines + max_surfaces) + 1);
   (void)take_solver(memory);
 }
 

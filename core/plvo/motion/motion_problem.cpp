@@ -123,7 +123,7 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
     any = true;
     of_kind_.set_zero();
     cost += share_[kind] * set.linearize(T, shared_, kernels_[kind], of_kind_);
-    candidate_information_[kind] = share_[kind] * of_kind_.H.block<6, 6>(0, 0);
+    if (kind < kInformedKinds) candidate_information_[kind] = share_[kind] * of_kind_.H.block<6, 6>(0, 0);
     of_reference_.H += share_[kind] * of_kind_.H;
     of_reference_.g += share_[kind] * of_kind_.g;
   }

@@ -13,8 +13,10 @@
 namespace plvo {
 
 inline constexpr std::size_t kMaxReferences = 2;
-// Sets: points and lines of each reference, and a motion that other sensors tell.
-inline constexpr std::size_t kMaxConstraintKinds = 2 * kMaxReferences + 1;
+// Sets: points and lines of each reference, and a motion that other sensors tell; then surfaces of each.
+inline constexpr std::size_t kMaxConstraintKinds = 3 * kMaxReferences + 1;
+// Of the first sets the information is kept: of all but surfaces.
+inline constexpr std::size_t kInformedKinds = 2 * kMaxReferences + 1;
 
 // A frame that matches are with. The motion is solved against the base, reference 0; the pose of any other
 // relative to it is known with a covariance (of the ⊞-perturbation of T_reference_base), and marginalised:
@@ -56,7 +58,7 @@ class MotionProblem {
   // At the accepted state, where the motion has this covariance.
   SharedErrorEstimate shared(const Matrix6& covariance) const;
   // The Schur complement of one kind at the accepted state, the shared errors taken for known: C_P⁻¹ (14),
-  // C_L⁻¹ (19).
+  // C_L⁻¹ (19). Of the first kInformedKinds sets.
   const Matrix6& information(std::size_t kind) const { return information_[kind]; }
 
  private:
@@ -80,7 +82,7 @@ class MotionProblem {
   // Of the shared errors given the motion: their covariance, and how they follow the motion.
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
-  std::array<Matrix6, kMaxConstraintKinds> information_, candidate_information_;
+  std::array<Matrix6, kInformedKinds> information_, candidate_information_;
   // What a linearisation sums up: of all references, of one, of one kind of it.
   JointInformation sum_, of_reference_, of_kind_;
 };

@@ -36,7 +36,11 @@ class SharedErrors {
   double sigma(int k) const { return k < kTurning ? turning_ : depth_; }
 
   // F(p), and what it makes of β.
-  Matrix<3, kCount> fields(const Vector3& p) const;
+  Matrix<3, kCount> fields(const Vector3& p) const {
+    return fields(p, turning_ > 0 ? exposure_.delay_s(p) : 0);
+  }
+  // The same of a p that was exposed delay_s after the middle row.
+  Matrix<3, kCount> fields(const Vector3& p, double delay_s) const;
   Vector3 shift(const Vector3& p) const { return fields(p).lazyProduct(value); }
 
   Vector value = Vector::Zero();  // β

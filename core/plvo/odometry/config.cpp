@@ -55,15 +55,18 @@ Status validate(const PointConfig& points) {
 
 Status validate(const NoiseConfig& noise) {
   if (!within(noise.initial.image, 0.01, 100) || !within(noise.initial.depth, 0.01, 100) ||
-      !within(noise.initial.lines, 0.01, 100))
-    return out_of_range("noise.initial image, depth, lines", "between 0.01 and 100");
+      !within(noise.initial.lines, 0.01, 100) || !within(noise.initial.surfaces, 0.01, 100))
+    return out_of_range("noise.initial image, depth, lines, surfaces", "between 0.01 and 100");
   if (!within(noise.learning_rate, 0, 0.5)) return out_of_range("noise.learning_rate", "0 to 0.5");
   if (!within(noise.initial.turning, 0.01, 100) || !within(noise.initial.shared_depth, 0.01, 100))
     return out_of_range("noise.initial turning, shared_depth", "between 0.01 and 100");
   if (!within(noise.turning_rad_per_s, 0, 10) || !within(noise.shared_depth_m, 0, 1))
     return out_of_range("noise.turning_rad_per_s, shared_depth_m", "0 to 10 rad/s, 1 m");
-  if (!within(noise.point_correlation, 0, 1) || !within(noise.line_correlation, 0, 1))
-    return out_of_range("noise.point_correlation, line_correlation", "0 to 1");
+  if (!within(noise.point_correlation, 0, 1) || !within(noise.line_correlation, 0, 1) ||
+      !within(noise.surface_correlation, 0, 1))
+    return out_of_range("noise.point_correlation, line_correlation, surface_correlation", "0 to 1");
+  if (!within(noise.depth_moment_s, 0, 1) || !within(noise.depth_offset_m, 0, 1))
+    return out_of_range("noise.depth_moment_s, depth_offset_m", "0 to 1 s, 1 m");
   return {};
 }
 
@@ -149,6 +152,7 @@ Status Limits::validate() const {
   if (!within(segments, 1, 60000)) return out_of_range("Limits::segments", "1 to 60000");
   if (!within(kept_keyframes, 0, kMostKeptKeyframes)) return out_of_range("Limits::kept_keyframes", "0 to 4");
   if (!within(references, 1, 2)) return out_of_range("Limits::references", "1 or 2");
+  if (!within(surfaces, 0, 1000)) return out_of_range("Limits::surfaces", "0 to 1000");
   if (!within(cores, 1, 2)) return out_of_range("Limits::cores", "1 or 2");
   if (!within(line_bands, 1, 8)) return out_of_range("Limits::line_bands", "1 to 8");
   return {};

@@ -33,6 +33,8 @@ struct Limits {
   int kept_keyframes = 1;
   // 2: points are searched for in scratch of their own, so that Config::side_by_side may be set.
   int cores = 1;
+  // Samples of surfaces per frame, 0 … 1000: what depth alone says of the motion. 0: none, and no memory.
+  int surfaces = 0;
   static constexpr Limits vga() { return {}; }
   static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0, 1}; }
   // Within 512 KiB, with Config::tiny().
@@ -74,7 +76,7 @@ struct LineConfig {
 // its exposure and the scene: no constants serve all.
 struct NoiseConfig {
   // Where the scales start: plane residuals of real Kinects are half of σ_d (2), their square a quarter.
-  NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1};
+  NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1, .surfaces = 0.25};
   // Each frame moves the scales by this share of what its residuals show; 0: they stay.
   double learning_rate = 0.1;
   // Where the errors start that all features of a frame share (shared_errors.hpp), SD; 0: there are none.
@@ -84,6 +86,11 @@ struct NoiseConfig {
   // (reflections, the lens, the clock) does not average out either.
   double point_correlation = 0.1;
   double line_correlation = 0.02;
+  double surface_correlation = 0.1;
+  // What the samples of surfaces in a depth image share, SD: when it was taken is off by so much, and its
+  // depths by so much at 1 m, growing with their square.
+  double depth_moment_s = 0.005;
+  double depth_offset_m = 0.002;
 };
 
 struct ReferenceConfig {

@@ -119,6 +119,13 @@ void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, P
   result.points.dropped = static_cast<int>(points.keypoints.dropped());
 }
 
+void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+                             FrameFeatures& features) const {
+  lift_points(depth, noise, features.points);
+  sample_surfaces(depth, camera_.pinhole, camera_.width, camera_.height, noise.surfaces, scratch,
+                  features.surfaces);
+}
+
 void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
                                     PointFeatures& points) const {
   if constexpr (!kPointsBuilt) return;

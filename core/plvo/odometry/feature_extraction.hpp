@@ -17,6 +17,7 @@
 #include "plvo/odometry/stage_timer.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/points/detector.hpp"
+#include "plvo/surfaces/surface_sampling.hpp"
 
 namespace plvo {
 
@@ -45,6 +46,7 @@ class FeatureExtraction {
       memory.template take<std::byte>("segment detection",
                                       SegmentDetector::scratch_bytes(segment_search(limits)));
     }
+    reserve_surface_sampling(memory, limits.width, limits.height, limits.surfaces);
     {
       const ScratchScope scope(memory);
       memory.template take<std::uint8_t>("segments with 3D", static_cast<std::size_t>(limits.segments));
@@ -65,9 +67,10 @@ class FeatureExtraction {
   // lines have no 3D yet.
   void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
                TrackResult& result);
-  // P2, P3, and what belongs to each keypoint's own surface: when the motion during the exposure is known as
-  // well as it will be.
-  void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
+  // What a reference needs besides lines: lift_points, and samples of surfaces where Limits have room for
+  // them. When the motion during the exposure is known as well as it will be.
+  void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+            FrameFeatures& features) const;
   // L2, L3, for the motion during the exposure. The segments that get 3D move to the front and are described.
   // Again, with a better idea of the motion, these are lifted anew where depth was exposed apart from colour;
   // one that has no 3D any more keeps what it had.
@@ -113,6 +116,8 @@ class FeatureExtraction {
   void lift_segments_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
   bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                  Line3d& line) const;
+  // P2, P3, and what belongs to each keypoint's own surface.
+  void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
   void describe_points(Arena& scratch, PointFeatures& points) const;
 
   CameraModel camera_;

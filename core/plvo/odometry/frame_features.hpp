@@ -9,6 +9,7 @@
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/feature_budget.hpp"
 #include "plvo/points/keypoint.hpp"
+#include "plvo/surfaces/surface_features.hpp"
 
 namespace plvo {
 
@@ -16,17 +17,20 @@ struct FrameFeatures {
   std::int64_t stamp_ns = 0;
   PointFeatures points;
   LineFeatures lines;
+  SurfaceFeatures surfaces;
 
   // Empty, with room for so many of what was carved.
   void clear(const FeatureRoom& room) {
     points.clear(room.keypoints);
     lines.clear(room.segments);
+    surfaces.samples.clear();
   }
 
   template <typename Memory>
   constexpr void carve(Memory& memory, const Limits& limits) {
     points.carve(memory, limits.keypoints);
     lines.carve(memory, limits.segments);
+    surfaces.carve(memory, limits.surfaces);
   }
 };
 

@@ -42,6 +42,17 @@ std::span<const Line3d> carried(const Exposure& shutter, std::span<const Line3d>
   return copies;
 }
 
+std::span<const SurfaceSample> carried(const Exposure& shutter, std::span<const SurfaceSample> samples,
+                                       Arena& scratch) {
+  if (samples.empty()) return samples;
+  const std::span<SurfaceSample> copies = scratch.take<SurfaceSample>("at mid-exposure", samples.size());
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    copies[i] = samples[i];
+    copies[i].p = shutter.at_mid_exposure(samples[i].p);
+  }
+  return copies;
+}
+
 }  // namespace
 
 Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference) {
@@ -71,11 +82,13 @@ MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, c
   MidExposure result = points_at_mid_exposure(camera, prior, T_current_reference, reference, scratch);
   result.reference_lines = reference.lines.lines_3d();
   result.current_lines = current.lines.lines_3d();
+  result.reference_surfaces = reference.surfaces.samples.span();
   if (!(camera.readout_s > 0)) return result;
 
   const Exposure shutter = reference_exposure(camera, prior, T_current_reference);
   result.reference_lines = carried(shutter, reference.lines.lines_3d(), scratch);
   result.current_lines = carried(result.current, current.lines.lines_3d(), scratch);
+  result.reference_surfaces = carried(shutter, result.reference_surfaces, scratch);
   return result;
 }
 

@@ -34,6 +34,7 @@ struct MidExposure {
   Exposure current;
   std::span<const Point3d> reference_points;
   std::span<const Line3d> reference_lines, current_lines;
+  std::span<const SurfaceSample> reference_surfaces;
 };
 
 // How the camera moved while the current frame was exposed, if this is the motion.
@@ -57,6 +58,8 @@ constexpr void take_mid_exposure(Memory& memory, const Limits& limits) {
   take_points_at_mid_exposure(memory, limits);
   memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
   memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
+  if (limits.surfaces > 0)
+    memory.template take<SurfaceSample>("at mid-exposure", static_cast<std::size_t>(limits.surfaces));
 }
 
 }  // namespace plvo

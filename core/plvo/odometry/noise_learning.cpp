@@ -16,12 +16,15 @@ constexpr double kMedian4 = 3.3567;
 // SD's gate of inliers: noise twice as large as modelled must be able to show.
 constexpr double kFarthestPoint = 45;
 constexpr double kFarthestLine = 53;
+constexpr double kFarthestSurface = 45;
 constexpr std::size_t kLeastMatches = 12;
 // One frame may not say more than this, and the scales stay within these bounds.
 constexpr double kMostOfAFrame = 4;
 constexpr double kLeastScale = 0.04;
 // A rendered depth image has no smooth error at all.
 constexpr double kLeastSharedScale = 0.0025;
+// A sample of a surface is a mean of many readings.
+constexpr double kLeastSurfaceScale = 0.0025;
 constexpr double kMostScale = 25;
 
 double median_over(FixedVector<double>& values, double expected) {
@@ -91,6 +94,17 @@ NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& poin
   return shown;
 }
 
+double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch) {
+  if (surfaces.size() == 0) return 1;
+  const ScratchScope scope(scratch);
+  FixedVector<double> residuals(scratch.take<double>("residuals", surfaces.size()));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const double s = surfaces.mahalanobis_squared(i, T_current_reference, kFarthestSurface);
+    if (s < kFarthestSurface) residuals.push_back(s);
+  }
+  return median_over(residuals, kMedian1);
+}
+
 void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown) {
   shown.turning = mean_square(shared, estimate, 0, SharedErrors::kTurning);
   shown.shared_depth = mean_square(shared, estimate, SharedErrors::kTurning, SharedErrors::kDepth);
@@ -100,6 +114,7 @@ void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& sca
   scales.image = step(scales.image, shown.image, config.learning_rate);
   scales.depth = step(scales.depth, shown.depth, config.learning_rate);
   scales.lines = step(scales.lines, shown.lines, config.learning_rate);
+  scales.surfaces = step(scales.surfaces, shown.surfaces, config.learning_rate, kLeastSurfaceScale);
   scales.turning = step(scales.turning, shown.turning, config.learning_rate, kLeastSharedScale);
   scales.shared_depth =
       step(scales.shared_depth, shown.shared_depth, config.learning_rate, kLeastSharedScale);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the models of the noise are right, from the residuals that the estimate leaves: variance
-// components, one for points across the image, one for their depth, one for lines. Medians, so that neither
-// outliers nor the scale itself decide who has a say; over the last reference, whose motion is small: what
-// shows is the measurement's noise and not that of a long way.
+// components, one for points across the image, one for their depth, one for lines, one for surfaces. Medians,
+// so that neither outliers nor the scale itself decide who has a say; over the last reference, whose motion
+// is small: what shows is the measurement's noise and not that of a long way.
 #pragma once
 
 #include <span>
@@ -13,6 +13,7 @@
 #include "plvo/motion/line_constraints.hpp"
 #include "plvo/motion/point_constraints.hpp"
 #include "plvo/motion/shared_errors.hpp"
+#include "plvo/motion/surface_constraints.hpp"
 #include "plvo/odometry/config.hpp"
 
 namespace plvo {
@@ -21,6 +22,9 @@ namespace plvo {
 // to tell. Scratch: see reserve_noise_learning.
 NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
                             const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch);
+
+// The same of surfaces; 1 without any.
+double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch);
 
 // What the shared errors' estimate says of their variances: the mean square of each kind's parameters, with
 // what is not known of them, over the prior's (expectation maximisation of a variance component); 1 for a
@@ -37,6 +41,8 @@ constexpr void reserve_noise_learning(Memory& memory, const Limits& limits) {
   memory.template take<double>("residuals", points);
   memory.template take<double>("residuals", points);
   memory.template take<double>("residuals", static_cast<std::size_t>(limits.segments));
+  if (limits.surfaces > 0)
+    memory.template take<double>("residuals", static_cast<std::size_t>(limits.surfaces));
 }
 
 }  // namespace plvo

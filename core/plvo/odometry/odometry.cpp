@@ -140,14 +140,14 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
     estimate_motion(depth, tracked, result);
     fill_views(tracked.motion);
     if (tracked.motion.status == StatusCode::kOk) {
-      rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, features.points);
+      rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, features);
       accept(tracked, prior, result);
       look_back(depth, tracked, result);
     } else {
       lose(tracked.motion, prior, result);
     }
   } else if (!resume(depth, prior, tracked, result)) {
-    rooms_.extraction.lift_points(depth.with(predicted), noise_, features.points);
+    rooms_.extraction.lift(depth.with(predicted), noise_, arena_, features);
     rooms_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
     start(prior, result);
   }
@@ -163,6 +163,7 @@ void Odometry::take_feature_memory() {
     if (slot == keyframe_ || kept_.holds(slot)) continue;
     std::swap(mine.points, frame(slot).features.points);
     std::swap(mine.lines, frame(slot).features.lines);
+    std::swap(mine.surfaces, frame(slot).features.surfaces);
   }
 }
 

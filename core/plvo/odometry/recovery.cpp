@@ -68,7 +68,7 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
   kept_.drop(slot);
   keyframe_ = slot;
   result.reference_stamp_ns = frame(slot).features.stamp_ns;
-  rooms_.extraction.lift_points(depth.with(tracked.exposure), noise_, frame(current_).features.points);
+  rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
   accept(tracked, prior, result);
   result.returned = true;
   return true;

@@ -89,6 +89,14 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
       points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
   std::array<LineConstraints, kMaxReferences> lines{
       lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
+  const auto surfaces_of = [&](std::size_t r) {
+    SurfaceConstraints set(tracks_[r].surfaces.span(),
+                           SurfaceConstraints::Workspace::take(scratch, tracks_[r].surfaces.size()));
+    set.set_reference(r, config.noise.surface_correlation, weight);
+    return set;
+  };
+  std::array<SurfaceConstraints, kMaxReferences> surfaces{
+      surfaces_of(0), last > 0 ? surfaces_of(last) : SurfaceConstraints({}, {})};
   std::array<ConstraintSet*, kMaxConstraintKinds> sets{&points[0], &lines[0], &points[1], &lines[1]};
   std::size_t set_count = 2 * features.size();
   const SensedMotion& sensed = current.sensed;
@@ -100,6 +108,8 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     sets[set_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
   }
+  for (SurfaceConstraints& set : surfaces)
+    if (set.size() > 0) sets[set_count++] = &set;
 
   tracked.exposure = {};
   tracked.shown = {};
@@ -111,9 +121,9 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
-    tracked.shown =
-        residual_scales(camera.pinhole, points[last], lines[last],
-                        motions_to_current(tracked.motion.T_current_reference, poses)[last], scratch);
+    const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
+    tracked.shown = residual_scales(camera.pinhole, points[last], lines[last], T_current_last, scratch);
+    tracked.shown.surfaces = surface_scale(surfaces[last], T_current_last, scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
 }
@@ -169,6 +179,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     match_predicted_lines(camera.pinhole, features.current, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
+    tracks_[0].surfaces.clear();  // projecting them takes a good idea of the motion
   }
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config.points.registered;
@@ -212,6 +223,8 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
     gates.max_angle_rad = config.lines.guided_angle_rad;
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
+    track_surfaces(depth, camera.pinhole, config.noise, current.noise.surfaces,
+                   features[r].reference_surfaces, motions[r], tracks_[r].surfaces);
   }
   solve(std::span(features).first(references.size()), poses, current, base_is_last ? 0 : 1,
         {&T_current_base, shared_errors(config.noise, exposure, current.noise), true}, kFineSolve, scratch,

@@ -18,6 +18,7 @@
 #include "plvo/odometry/noise_learning.hpp"
 #include "plvo/odometry/point_tracking.hpp"
 #include "plvo/odometry/sensed_motion.hpp"
+#include "plvo/odometry/surface_tracking.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/points/sparse_alignment.hpp"
 
@@ -38,6 +39,7 @@ struct ReferenceTracks {
   std::span<std::uint8_t> point_inliers;  // a flag for each of points.matches
   FixedVector<Match> lines;               // indices of both frames' 3D lines
   std::span<std::uint8_t> line_inliers;
+  FixedVector<SurfaceMatch> surfaces;
   int inliers = 0;  // points and lines
 
   template <typename Memory>
@@ -48,6 +50,9 @@ struct ReferenceTracks {
     const auto segments = static_cast<std::size_t>(limits.segments);
     lines = FixedVector<Match>(memory.template take<Match>("line tracks", segments));
     line_inliers = memory.template take<std::uint8_t>("line tracks", segments);
+    if (limits.surfaces > 0)
+      surfaces = FixedVector<SurfaceMatch>(
+          memory.template take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
   }
 };
 
@@ -89,7 +94,7 @@ class ReferenceTracking {
     reserve_line_tracking(memory, limits.segments);
     reserve_noise_learning(memory, limits);
     size_motion(memory, references, static_cast<std::size_t>(limits.keypoints),
-                static_cast<std::size_t>(limits.segments));
+                static_cast<std::size_t>(limits.segments), static_cast<std::size_t>(limits.surfaces));
   }
 
   // Of the frame with this stamp, for align(), until the next call.

@@ -28,6 +28,9 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.whole("--cores", options.cores, 1, 2,
               "2: points and lines are searched for at the same time, and images and features halved between "
               "two threads; results are the same. Times of stages are those of the first (default 1)");
+  group.whole("--surfaces", options.surfaces, 0, 1000,
+              "So many samples of surfaces from each depth image, 200 for example, besides points and lines: "
+              "for bare rooms, docs/sensors.md (default 0: none)");
   group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
 }
 
@@ -51,6 +54,7 @@ Limits make_limits(const OdometryOptions& options, const CameraModel& camera) {
   limits.width = camera.width;
   limits.height = camera.height;
   limits.cores = options.cores;
+  limits.surfaces = options.surfaces;
   return limits;
 }
 

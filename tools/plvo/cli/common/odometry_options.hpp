@@ -25,6 +25,7 @@ struct OdometryOptions {
   double budget_ms = 0;  // 0: none
   int cores = 1;
   bool level_world = false;
+  int surfaces = 0;
 };
 void add_odometry_options(CLI::App& command, OdometryOptions& options);
 

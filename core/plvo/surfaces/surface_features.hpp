@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of a frame's surfaces, from depth alone: what a bare wall shows where there is neither a point nor
+// a line. A sample says where its surface is along the surface's normal, and nothing else.
+#pragma once
+
+#include <cstddef>
+
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/math/types.hpp"
+
+namespace plvo {
+
+struct SurfaceSample {
+  Vector3 p = Vector3::Zero();       // camera frame, at the time of colour's row, m
+  Vector3 normal = Vector3::Zero();  // unit, towards the camera
+  double variance = 0;               // of p along the normal, m²
+  double normal_variance = 0;        // of the normal, in any direction across it, rad²
+};
+
+struct SurfaceFeatures {
+  FixedVector<SurfaceSample> samples;
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, int capacity) {
+    if (capacity > 0)
+      samples = FixedVector<SurfaceSample>(
+          memory.template take<SurfaceSample>("surface features", static_cast<std::size_t>(capacity)));
+  }
+};
+
+}  // namespace plvo

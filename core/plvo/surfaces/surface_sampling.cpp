@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/surfaces/surface_sampling.hpp"
+
+#include <array>
+#include <utility>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kBins = 7;  // of x and of y of the normal, each
+constexpr auto kAllBins = static_cast<std::size_t>(kBins * kBins);
+
+std::size_t bin_of(const Vector3& normal) {
+  const auto bin = [](double x) {
+    const int b = static_cast<int>(0.5 * (x + 1) * kBins);
+    return static_cast<std::size_t>(b < kBins ? b : kBins - 1);
+  };
+  return bin(normal.y()) * kBins + bin(normal.x());
+}
+
+// In an order that prefers no part of the image.
+void shuffle(FixedVector<SurfaceSample>& samples) {
+  Random random;
+  for (std::size_t i = samples.size(); i > 1; --i)
+    std::swap(samples[i - 1], samples[random.below(static_cast<std::uint32_t>(i))]);
+}
+
+// The first of every bin, then the second of every bin, …
+void take_in_turns(const FixedVector<SurfaceSample>& from, FixedVector<SurfaceSample>& to) {
+  for (std::size_t turn = 0; turn < from.size() && !to.full(); ++turn) {
+    std::array<std::size_t, kAllBins> seen{};
+    for (const SurfaceSample& sample : from)
+      if (seen[bin_of(sample.normal)]++ == turn && !to.full()) to.push_back(sample);
+  }
+}
+
+}  // namespace
+
+void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int width, int height,
+                     double noise_scale, Arena& scratch, SurfaceFeatures& features) {
+  features.samples.clear();
+  if (features.samples.capacity() == 0) return;
+  const ScratchScope scope(scratch);
+  const auto cells = static_cast<std::size_t>((width / kSurfaceCell + 1) * (height / kSurfaceCell + 1));
+  FixedVector<SurfaceSample> candidates(scratch.take<SurfaceSample>("surface candidates", cells));
+  SurfaceSample sample;
+  for (int y = kSurfaceCell / 2; y < height; y += kSurfaceCell)
+    for (int x = kSurfaceCell / 2; x < width; x += kSurfaceCell)
+      if (observe_surface(depth, pinhole, x, y, noise_scale, sample)) candidates.push_back(sample);
+  if (candidates.size() > features.samples.capacity()) shuffle(candidates);
+  take_in_turns(candidates, features.samples);
+}
+
+}  // namespace plvo

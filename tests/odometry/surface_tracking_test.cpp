@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// From two depth images to constraints: a corridor and a room, ray-cast with a Kinect's noise, seen before
+// and after a known motion. And the odometry with surfaces: the same bits again, memory only where asked for.
+#include "plvo/odometry/surface_tracking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "depth_picture.hpp"
+#include "plvo/motion/motion_problem.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/surfaces/surface_sampling.hpp"
+#include "procedural_sequence.hpp"
+#include "simulated_pair.hpp"
+
+namespace plvo {
+namespace {
+
+using test::DepthPicture;
+using test::Gaussian;
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+constexpr Pinhole kPinhole{262, 262, 159.5, 119.5};
+constexpr double kNoiseShare = 0.5;  // of σ_d
+constexpr double kRange_m = 5;
+
+struct Plane {
+  Vector3 n;
+  double d;  // n · X = d, X in the reference's coordinates
+};
+std::vector<Plane> corridor() {
+  return {{{1, 0, 0}, 1.0}, {{1, 0, 0}, -0.9}, {{0, 1, 0}, 1.2}, {{0, 1, 0}, -1.1}};
+}
+std::vector<Plane> closed(std::vector<Plane> planes) {
+  planes.push_back({{0, 0, 1}, 3.5});
+  return planes;
+}
+
+DepthPicture picture(const std::vector<Plane>& planes, const Se3& T_camera_reference, Gaussian& gaussian) {
+  return {kWidth, kHeight, [&](int x, int y) {
+            double nearest = kRange_m;
+            for (const Plane& plane : planes) {
+              const Vector3 n = T_camera_reference.R * plane.n;
+              const double z = test::depth_of_plane(kPinhole, x, y, n, plane.d + n.dot(T_camera_reference.t));
+              if (z > 0 && z < nearest) nearest = z;
+            }
+            if (!(nearest < kRange_m)) return 0.0;
+            return nearest + kNoiseShare * DepthNoise{}.sigma(nearest) * gaussian();
+          }};
+}
+
+struct Pair {
+  Pair(const std::vector<Plane>& planes, const Se3& motion, std::uint64_t seed)
+      : truth(motion), memory(1 << 20), arena(memory), storage(200) {
+    Gaussian gaussian(seed);
+    features.carve(arena, 200);
+    const DepthPicture before = picture(planes, Se3{}, gaussian);
+    const DepthPicture after = picture(planes, motion, gaussian);
+    sample_surfaces(before.sampler(), kPinhole, kWidth, kHeight, kNoiseShare * kNoiseShare, arena, features);
+    FixedVector<SurfaceMatch> found(storage);
+    track_surfaces(after.sampler(), kPinhole, NoiseConfig{}, kNoiseShare * kNoiseShare,
+                   features.samples.span(), motion, found);
+    storage.resize(found.size());
+    flags.resize(found.size());
+    held.resize(found.size());
+  }
+  SurfaceConstraints constraints() { return {storage, {flags, held}}; }
+  JointInformation information() {
+    SurfaceConstraints set = constraints();
+    set.begin(truth, {});
+    JointInformation sum;
+    (void)set.linearize(truth, {}, RobustKernel(), sum);
+    return sum;
+  }
+
+  Se3 truth;
+  std::vector<std::byte> memory;
+  Arena arena;
+  SurfaceFeatures features;
+  std::vector<SurfaceMatch> storage;
+  std::vector<std::uint8_t> flags;
+  std::vector<double> held;
+};
+
+Se3 walk() { return {rotation_exp({0.01, -0.03, 0.02}), {0.02, -0.01, -0.06}}; }
+
+TEST(SurfaceTracking, FindsTheSurfacesWhereTheTrueMotionPutsThem) {
+  Pair pair(closed(corridor()), walk(), 1);
+  ASSERT_GT(pair.features.samples.size(), 60U);
+  EXPECT_GT(pair.storage.size(), 0.7 * static_cast<double>(pair.features.samples.size()));
+  const SurfaceConstraints set = pair.constraints();
+  double sum = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) sum += set.mahalanobis_squared(i, pair.truth, 1e9);
+  const double mean = sum / static_cast<double>(set.size());
+  // The variance is that of one reading; a plane through 49 of them errs by far less, which the odometry
+  // learns.
+  EXPECT_GT(mean, 0.005);
+  EXPECT_LT(mean, 0.3);
+}
+
+TEST(SurfaceTracking, ARoomFixesTheMotionACorridorLeavesItsAxisOpen) {
+  double along_room = 0, along = 0, across = 0;
+  constexpr int kPairs = 6;
+  for (std::uint64_t seed = 1; seed <= kPairs; ++seed) {
+    const Vector3 axis = walk().R.col(2);
+    const Matrix3 room = Pair(closed(corridor()), walk(), seed).information().H.block<3, 3>(0, 0);
+    const Matrix3 open = Pair(corridor(), walk(), seed).information().H.block<3, 3>(0, 0);
+    along_room += axis.dot(room * axis) / kPairs;
+    along += axis.dot(open * axis) / kPairs;
+    across += walk().R.col(0).dot(open * walk().R.col(0)) / kPairs;
+  }
+  // 1/1e3 is 30 mm: less than that is not claimed of the corridor's axis.
+  EXPECT_LT(std::abs(along), 1e3);
+  EXPECT_GT(across, 100 * std::abs(along));
+  EXPECT_GT(along_room, 20 * std::abs(along));
+}
+
+TEST(SurfaceTracking, AnotherSurfaceIsNoMatch) {
+  Gaussian gaussian(3);
+  const Se3 none;
+  Pair pair(closed(corridor()), none, 3);
+  // The end of the room has come half a metre nearer: none of its samples may be found again.
+  std::vector<Plane> nearer = corridor();
+  nearer.push_back({{0, 0, 1}, 3.0});
+  std::vector<SurfaceMatch> storage(200);
+  FixedVector<SurfaceMatch> found(storage);
+  track_surfaces(picture(nearer, none, gaussian).sampler(), kPinhole, NoiseConfig{}, 0.25,
+                 pair.features.samples.span(), none, found);
+  EXPECT_GT(found.size(), 20U);
+  for (const SurfaceMatch& match : found) EXPECT_LT(std::abs(match.normal.z()), 0.5);
+}
+
+struct Walked {
+  std::vector<TrackResult> results;
+  double error_m = 0;
+};
+Walked walk_with(int surfaces) {
+  Limits limits = Limits::qvga();
+  limits.surfaces = surfaces;
+  ProceduralSequence sequence(kWidth, kHeight);
+  std::vector<std::byte> memory(required_bytes(limits));
+  Odometry odometry;
+  const Status status = odometry.init(memory, sequence.camera(), Config{}, limits);
+  EXPECT_TRUE(status.ok()) << status.message();
+  Walked walked;
+  for (int i = 0; i < 15; ++i) {
+    walked.results.push_back(odometry.track(i == 8 ? sequence.render_dark(i) : sequence.render(i)));
+    const Se3 expected =
+        ProceduralSequence::T_world_camera(0).inverse() * ProceduralSequence::T_world_camera(i);
+    if (i != 8)
+      walked.error_m = std::max(walked.error_m, (walked.results.back().T_world_camera.t - expected.t).norm());
+  }
+  EXPECT_LE(odometry.memory_peak(), memory.size());
+  return walked;
+}
+
+TEST(SurfacesInTheOdometry, TakePartWhereLimitsHaveRoomForThem) {
+  const Walked with = walk_with(200);
+  const Walked again = walk_with(200);
+  const Walked without = walk_with(0);
+  EXPECT_LT(with.error_m, 0.02);
+  for (std::size_t i = 0; i < with.results.size(); ++i) {
+    EXPECT_EQ(with.results[i].state, without.results[i].state);
+    EXPECT_EQ(with.results[i].T_world_camera.t, again.results[i].T_world_camera.t);
+    EXPECT_EQ(with.results[i].motion_covariance, again.results[i].motion_covariance);
+  }
+  EXPECT_NE(with.results.back().T_world_camera.t, without.results.back().T_world_camera.t);
+  EXPECT_LT(with.results.back().motion_covariance.trace(), without.results.back().motion_covariance.trace());
+}
+
+TEST(SurfacesInTheOdometry, LimitsSayWhatTheyTake) {
+  Limits limits = Limits::vga();
+  EXPECT_EQ(limits.surfaces, 0);
+  const std::size_t without = required_bytes(limits);
+  limits.surfaces = 200;
+  EXPECT_TRUE(limits.validate().ok());
+  EXPECT_GT(required_bytes(limits), without);
+  EXPECT_LT(required_bytes(limits), without + 300'000);
+  limits.surfaces = 1001;
+  EXPECT_FALSE(limits.validate().ok());
+  limits.surfaces = -1;
+  EXPECT_FALSE(limits.validate().ok());
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plane through a window of depth: where it is and where it faces against the plane that the image was made
+// of, its variances against what noise makes of it, and what is no plane.
+#include "plvo/surfaces/plane_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include "depth_picture.hpp"
+#include "simulated_pair.hpp"
+
+namespace plvo {
+namespace {
+
+using test::depth_of_plane;
+using test::DepthPicture;
+using test::Gaussian;
+
+constexpr int kWidth = 96;
+constexpr int kHeight = 72;
+constexpr Pinhole kPinhole{90, 92, 47.5, 35.5};
+// Of Kinect-like images the pixels are finer; noise then decides how well a normal is known.
+constexpr Pinhole kFine{525, 525, 47.5, 35.5};
+
+struct Wall {
+  Vector3 n;  // unit, towards the camera: n · X = −d
+  double d;
+};
+
+DepthPicture picture_of(const Wall& wall, const Pinhole& pinhole = kPinhole) {
+  return {kWidth, kHeight, [&](int x, int y) { return depth_of_plane(pinhole, x, y, wall.n, -wall.d); }};
+}
+
+TEST(PlaneWindow, FindsThePlaneOfTheWorld) {
+  for (const Wall& wall : {Wall{{0, 0, -1}, 2.0}, Wall{Vector3(0.5, 0.1, -0.8).normalized(), 1.7},
+                           Wall{Vector3(-0.2, 0.7, -0.5).normalized(), 1.1}}) {
+    const DepthPicture picture = picture_of(wall);
+    int found = 0;
+    for (double v = 12; v < kHeight - 12; v += 5.3)
+      for (double u = 12; u < kWidth - 12; u += 4.7) {
+        SurfaceSample sample;
+        if (!observe_surface(picture.sampler(), kPinhole, u, v, 1, sample)) continue;
+        ++found;
+        const Vector2 pixel = project(kPinhole, sample.p);
+        EXPECT_NEAR(pixel.x(), u, 1e-9);
+        EXPECT_NEAR(pixel.y(), v, 1e-9);
+        EXPECT_NEAR(wall.n.dot(sample.p), -wall.d, 2 * DepthPicture::kUnit);
+        EXPECT_GT(wall.n.dot(sample.normal), 0.9999);
+        // A depth error moves a slanted surface along its normal by less than along the ray.
+        const double sigma_d = DepthNoise{}.sigma(sample.p.z());
+        const double cosine = -wall.n.dot(sample.p) / sample.p.z();
+        EXPECT_NEAR(sample.variance, cosine * cosine * sigma_d * sigma_d, 0.01 * sample.variance);
+      }
+    EXPECT_GT(found, 60);
+  }
+}
+
+TEST(PlaneWindow, ItsVarianceOfTheNormalIsWhatNoiseMakesOfIt) {
+  Gaussian gaussian(7);
+  const Wall wall{Vector3(0.4, -0.2, -0.9).normalized(), 2};
+  constexpr double kShare = 0.5;  // of σ_d
+  double spread = 0;
+  double stated = 0;
+  constexpr int kTrials = 300;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const DepthPicture picture(32, 32, [&](int x, int y) {
+      const double z = depth_of_plane(kFine, x, y, wall.n, -wall.d);
+      return z + kShare * DepthNoise{}.sigma(z) * gaussian();
+    });
+    SurfaceSample sample;
+    ASSERT_TRUE(observe_surface(picture.sampler(), kFine, 16, 16, kShare * kShare, sample));
+    // Two directions across the normal: half of the squared distance is the variance of one.
+    spread += 0.5 * (sample.normal - wall.n).squaredNorm() / kTrials;
+    stated += sample.normal_variance / kTrials;
+  }
+  // It is that of a surface which faces the camera: on a slope it is less in one of the two directions.
+  EXPECT_GT(stated, 0.9 * spread);
+  EXPECT_LT(stated, 1.5 * spread);
+}
+
+TEST(PlaneWindow, AnEdgeAHoleAndAGrazingSurfaceAreNone) {
+  SurfaceSample sample;
+  const auto seen = [&](const DepthPicture& picture) {
+    return observe_surface(picture.sampler(), kPinhole, 48, 36, 1, sample);
+  };
+  EXPECT_TRUE(seen({kWidth, kHeight, [](int, int) { return 1.5; }}));
+  EXPECT_FALSE(seen({kWidth, kHeight, [](int x, int) { return x < 50 ? 1.5 : 1.7; }}));
+  EXPECT_FALSE(seen({kWidth, kHeight, [](int x, int) { return x < 47 ? 1.5 : 0.0; }}));
+  EXPECT_TRUE(seen({kWidth, kHeight, [](int x, int y) { return x == 48 && y == 36 ? 0.0 : 1.5; }}));
+  EXPECT_FALSE(seen(picture_of({Vector3(0, -0.995, -0.09).normalized(), 0.2})));
+  EXPECT_FALSE(observe_surface(DepthPicture(kWidth, kHeight, [](int, int) { return 1.5; }).sampler(),
+                               kPinhole, kWidth + 3.0, 36, 1, sample))
+      << "beside the image";
+}
+
+// A wall comes nearer; depth is exposed 20 ms before colour, so the depth image shows it farther away.
+TEST(PlaneWindow, IsCarriedFromDepthsTimeToColours) {
+  CameraModel camera;
+  camera.width = kWidth;
+  camera.height = kHeight;
+  camera.pinhole = kPinhole;
+  camera.depth_timing = {.known = true, .delay_s = -0.02, .readout_s = 0};
+  Vector6 velocity = Vector6::Zero();
+  velocity[2] = -0.5;
+  const Exposure exposure(camera, velocity, -0.02);
+  const DepthPicture picture(kWidth, kHeight, [](int, int) { return 1.51; });
+  SurfaceSample sample;
+  double depth_row = -1;
+  ASSERT_TRUE(observe_surface(picture.sampler(exposure), kPinhole, 60, 20, 1, sample, &depth_row));
+  EXPECT_NEAR(sample.p.z(), 1.5, 2 * DepthPicture::kUnit);
+  EXPECT_NEAR(depth_row, 20, 0.5);
+}
+
+}  // namespace
+}  // namespace plvo
