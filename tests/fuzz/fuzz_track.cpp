@@ -38,7 +38,7 @@ class Bytes {
   std::size_t size_;
 };
 
-constexpr Limits kLimits{96, 72, 100, 40};
+constexpr Limits kLimits{.width = 96, .height = 72, .keypoints = 100, .segments = 40, .surfaces = 20};
 
 Config read_config(Bytes& bytes) {
   Config config;

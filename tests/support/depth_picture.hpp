@@ -14,14 +14,16 @@ class DepthPicture {
  public:
   static constexpr double kUnit = 1e-4;  // m
 
-  // depth_m(x, y): 0 for none.
+  // depth_m(x, y): 0 for none; what is too far for the unit is none either.
   template <typename Function>
   DepthPicture(int width, int height, Function depth_m)
       : width_(width), height_(height), units_(static_cast<std::size_t>(width * height)) {
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
+      for (int x = 0; x < width; ++x) {
+        const double units = std::floor(depth_m(x, y) / kUnit + 0.5);
         units_[static_cast<std::size_t>(y * width + x)] =
-            static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
+            units < 65536 ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+      }
   }
   DepthSampler sampler(const Exposure& exposure = {}) const {
     return {{units_.data(), width_, height_, width_, kUnit}, map_, DepthNoise{}, exposure};
