@@ -64,7 +64,7 @@ class Pairs {
         rooms_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
     }
     if (!has_reference_) rooms_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
-    rooms_.extraction.lift_points(depth, noise, current.points);
+    rooms_.extraction.lift(depth, noise, arena_, current);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
     has_reference_ = true;
     slot_ = 1 - slot_;
