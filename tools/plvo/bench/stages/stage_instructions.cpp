@@ -24,7 +24,7 @@ const std::vector<Row>& rows() {
       {Stage::kPoints, "detect", {"plvo::detect_keypoints("}},
       {Stage::kPoints, "smooth", {"plvo::smooth_binomial7("}},
       {Stage::kPoints, "describe", {"plvo::Describer::", "plvo::cut_patch("}},
-      {Stage::kPoints, "3D", {"plvo::FeatureExtraction::lift_points("}},
+      {Stage::kPoints, "3D", {"plvo::FeatureExtraction::lift("}},
       {Stage::kLines, "detect", {"plvo::SegmentDetector::detect("}},
       {Stage::kLines, "describe", {"plvo::describe_segment("}},
       {Stage::kLines, "depths", {"void plvo::sample_segment<"}},
