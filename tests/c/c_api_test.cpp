@@ -150,7 +150,7 @@ TEST(CApi, WhatAProgramDoesNotKnowIsTheDefault) {
   zeros.struct_size = sizeof zeros;
   zeros.width = zeros.height = 240;
   zeros.keypoints = zeros.segments = 100;
-  expected = {240, 240, 100, 100, Limits().references, Limits().line_bands, 0};
+  expected = {240, 240, 100, 100, Limits().references, Limits().line_bands, 0, Limits().cores, 0};
   const plvo_limits whole = c_limits(expected);
   EXPECT_EQ(plvo_required_bytes(&zeros), plvo_required_bytes(&whole));
   plvo_config unset = {};

@@ -65,12 +65,16 @@ constexpr Ceiling kCeilings[] = {
     {"image to align with", {20'000, 5'000, 5'000}},
     {"point tracks", {95'000, 60'000, 24'000}},
     {"line tracks", {2'600, 1'300, 400}},
+    {"surface features", {52'000, 0, 0}},
+    {"surface tracks", {58'000, 0, 0}},
 };
 
 TEST(Memory, NoRoomTakesMoreThanItsCeiling) {
   const MemoryUse* const uses[] = {&vga(), &qvga(), &tiny()};
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(uses[i]->rows.size(), std::size(kCeilings)) << "a room without a ceiling";
+    const auto rooms = std::count_if(std::begin(kCeilings), std::end(kCeilings),
+                                     [&](const Ceiling& c) { return c.bytes[i] > 0; });
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(uses[i]->rows.size()), rooms) << "a room without a ceiling";
     for (const MemoryUse::Row& row : uses[i]->rows) {
       const auto* ceiling = std::find_if(std::begin(kCeilings), std::end(kCeilings),
                                          [&](const Ceiling& c) { return row.who == c.who; });

@@ -137,13 +137,15 @@ struct Walked {
   std::vector<TrackResult> results;
   double error_m = 0;
 };
-Walked walk_with(int surfaces) {
+Walked walk_with(int surfaces, bool used = true) {
   Limits limits = Limits::qvga();
   limits.surfaces = surfaces;
   ProceduralSequence sequence(kWidth, kHeight);
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;
-  const Status status = odometry.init(memory, sequence.camera(), Config{}, limits);
+  Config config;
+  config.surfaces = used;
+  const Status status = odometry.init(memory, sequence.camera(), config, limits);
   EXPECT_TRUE(status.ok()) << status.message();
   Walked walked;
   for (int i = 0; i < 15; ++i) {
@@ -161,11 +163,14 @@ TEST(SurfacesInTheOdometry, TakePartWhereLimitsHaveRoomForThem) {
   const Walked with = walk_with(200);
   const Walked again = walk_with(200);
   const Walked without = walk_with(0);
+  const Walked unused = walk_with(200, false);
   EXPECT_LT(with.error_m, 0.02);
   for (std::size_t i = 0; i < with.results.size(); ++i) {
     EXPECT_EQ(with.results[i].state, without.results[i].state);
     EXPECT_EQ(with.results[i].T_world_camera.t, again.results[i].T_world_camera.t);
     EXPECT_EQ(with.results[i].motion_covariance, again.results[i].motion_covariance);
+    EXPECT_EQ(without.results[i].T_world_camera.t, unused.results[i].T_world_camera.t);
+    EXPECT_EQ(without.results[i].motion_covariance, unused.results[i].motion_covariance);
   }
   EXPECT_NE(with.results.back().T_world_camera.t, without.results.back().T_world_camera.t);
   EXPECT_LT(with.results.back().motion_covariance.trace(), without.results.back().motion_covariance.trace());
@@ -173,12 +178,14 @@ TEST(SurfacesInTheOdometry, TakePartWhereLimitsHaveRoomForThem) {
 
 TEST(SurfacesInTheOdometry, LimitsSayWhatTheyTake) {
   Limits limits = Limits::vga();
-  EXPECT_EQ(limits.surfaces, 0);
-  const std::size_t without = required_bytes(limits);
-  limits.surfaces = 200;
   EXPECT_TRUE(limits.validate().ok());
-  EXPECT_GT(required_bytes(limits), without);
-  EXPECT_LT(required_bytes(limits), without + 300'000);
+  const std::size_t with = required_bytes(limits);
+  limits.surfaces = 0;  // as in the limits of less memory
+  EXPECT_EQ(limits.surfaces, Limits::qvga().surfaces);
+  EXPECT_EQ(limits.surfaces, Limits::tiny().surfaces);
+  EXPECT_TRUE(limits.validate().ok());
+  EXPECT_LT(required_bytes(limits), with);
+  EXPECT_GT(required_bytes(limits) + 300'000, with);
   limits.surfaces = 1001;
   EXPECT_FALSE(limits.validate().ok());
   limits.surfaces = -1;

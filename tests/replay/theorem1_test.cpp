@@ -37,6 +37,7 @@ class Pairs {
   explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
     // The theorem is of the kinds alone: what both share belongs to neither.
     config_.noise.turning_rad_per_s = config_.noise.shared_depth_m = 0;
+    config_.surfaces = false;
     arena_ = Arena(memory_);
     rooms_.carve(arena_, Limits::vga());
     arena_.seal();

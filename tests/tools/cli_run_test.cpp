@@ -115,12 +115,16 @@ TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
   EXPECT_EQ(run("--cores 3").exit_code, 2);
 }
 
-TEST_F(CliRun, SurfacesTakePartWhenAskedFor) {
-  ASSERT_EQ(run("--quiet --out " + file("without.txt")).exit_code, 0);
-  ASSERT_EQ(run("--quiet --surfaces 0 --out " + file("none.txt")).exit_code, 0);
-  ASSERT_EQ(run("--quiet --surfaces 200 --out " + file("with.txt")).exit_code, 0);
-  EXPECT_EQ(read_file(file("without.txt")), read_file(file("none.txt")));
-  EXPECT_NE(read_file(file("without.txt")), read_file(file("with.txt")));
+TEST_F(CliRun, SurfacesTakePartUnlessTheyAreLeftOut) {
+  const auto trajectory = [&](const std::string& options) {
+    EXPECT_EQ(run("--quiet --out " + file("t.txt") + ' ' + options).exit_code, 0);
+    return read_file(file("t.txt"));
+  };
+  EXPECT_EQ(trajectory(""), trajectory("--surfaces 200"));
+  EXPECT_NE(trajectory(""), trajectory("--surfaces 0"));
+  EXPECT_EQ(trajectory("--preset paper"), trajectory("--preset paper --surfaces 0"));
+  EXPECT_EQ(run("--preset paper --surfaces 200").exit_code, 2);
+  EXPECT_EQ(trajectory("--preset tiny"), trajectory("--preset tiny --surfaces 0"));
   EXPECT_EQ(run("--surfaces 1001").exit_code, 2);
 }
 

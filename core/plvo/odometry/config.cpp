@@ -171,6 +171,7 @@ Status Config::validate() const {
 
 Config Config::paper() {
   Config config;
+  config.surfaces = false;
   config.references.policy = ReferencePolicy::kPreviousFrame;
   config.depth_noise.registration_px = 0;
   config.noise = {.initial = {},

@@ -34,11 +34,11 @@ struct Limits {
   // 2: points are searched for in scratch of their own, so that Config::side_by_side may be set.
   int cores = 1;
   // Samples of surfaces per frame, 0 … 1000: what depth alone says of the motion. 0: none, and no memory.
-  int surfaces = 0;
+  int surfaces = 200;
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0, 1}; }
+  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0, 1, 0}; }
   // Within 512 KiB, with Config::tiny().
-  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1}; }
+  static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1, 0}; }
   // kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
@@ -125,6 +125,8 @@ struct StageHook {
 
 struct Config {
   Features features = Features::kBoth;
+  // Beside them samples of bare surfaces, where Limits have room for some (plvo/surfaces).
+  bool surfaces = true;
   // A level world: its y axis points down, its heading is the first camera's. The first frame then waits for
   // one that brings gravity in its prior; what that says wrong of roll and pitch, later frames put right.
   // set_pose() before the first frame comes before it.

@@ -122,8 +122,9 @@ void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, P
 void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                              FrameFeatures& features) const {
   lift_points(depth, noise, features.points);
-  sample_surfaces(depth, camera_.pinhole, camera_.width, camera_.height, noise.surfaces, scratch,
-                  features.surfaces);
+  if (config_.surfaces)
+    sample_surfaces(depth, camera_.pinhole, camera_.width, camera_.height, noise.surfaces, scratch,
+                    features.surfaces);
 }
 
 void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,

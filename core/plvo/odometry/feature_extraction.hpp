@@ -67,8 +67,8 @@ class FeatureExtraction {
   // lines have no 3D yet.
   void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
                TrackResult& result);
-  // What a reference needs besides lines: lift_points, and samples of surfaces where Limits have room for
-  // them. When the motion during the exposure is known as well as it will be.
+  // What a reference needs besides lines: lift_points, and samples of surfaces. When the motion during the
+  // exposure is known as well as it will be.
   void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
             FrameFeatures& features) const;
   // L2, L3, for the motion during the exposure. The segments that get 3D move to the front and are described.

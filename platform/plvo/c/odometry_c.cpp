@@ -36,7 +36,7 @@ constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
 
 plvo_limits to_c(const plvo::Limits& limits) {
   return {sizeof(plvo_limits), limits.width,      limits.height,         limits.keypoints, limits.segments,
-          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores};
+          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores,     limits.surfaces};
 }
 
 plvo_config default_config() {
@@ -63,6 +63,7 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
       .line_bands = whole.line_bands != 0 ? whole.line_bands : limits.line_bands,
       .kept_keyframes = whole.kept_keyframes,
       .cores = whole.cores != 0 ? whole.cores : limits.cores,
+      .surfaces = whole.surfaces,
   };
   return limits.validate();
 }

@@ -92,6 +92,7 @@ typedef struct plvo_limits {
   int32_t line_bands;          /* of the image, searched for segments one by one, 1 to 8; 0: the default, 1 */
   int32_t kept_keyframes;      /* after a loss, 0 to 4 */
   int32_t cores;               /* 2: room for plvo_config.side_by_side; 0: the default, 1 */
+  int32_t surfaces;            /* samples of bare surfaces per frame, 0 to 1000; 0: none */
 } plvo_limits;
 
 /* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have

@@ -22,14 +22,13 @@ namespace {
 
 // The numbers of Limits that are not None stand in for those of the preset.
 struct OwnLimits {
-  py::object keypoints, segments, references, line_bands, kept_keyframes;
+  py::object keypoints, segments, references, line_bands, kept_keyframes, surfaces;
 
   void put_into(Limits& limits) const {
-    const std::pair<const py::object&, int&> pairs[] = {{keypoints, limits.keypoints},
-                                                        {segments, limits.segments},
-                                                        {references, limits.references},
-                                                        {line_bands, limits.line_bands},
-                                                        {kept_keyframes, limits.kept_keyframes}};
+    const std::pair<const py::object&, int&> pairs[] = {
+        {keypoints, limits.keypoints},           {segments, limits.segments},
+        {references, limits.references},         {line_bands, limits.line_bands},
+        {kept_keyframes, limits.kept_keyframes}, {surfaces, limits.surfaces}};
     for (const auto& [own, entry] : pairs) entry = optional<int>(own).value_or(entry);
   }
 };
@@ -129,14 +128,14 @@ void bind_odometry(py::module_& module) {
   py::class_<Tracker>(module, "Odometry")
       .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
                        const py::object& segments, const py::object& references, const py::object& line_bands,
-                       const py::object& kept_keyframes, int cores) {
+                       const py::object& kept_keyframes, const py::object& surfaces, int cores) {
              return std::make_unique<Tracker>(
                  camera, config.is_none() ? Settings() : config.cast<Settings>(),
-                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes}, cores);
+                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes, surfaces}, cores);
            }),
            "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
            "segments"_a = py::none(), "references"_a = py::none(), "line_bands"_a = py::none(),
-           "kept_keyframes"_a = py::none(), "cores"_a = Limits().cores)
+           "kept_keyframes"_a = py::none(), "surfaces"_a = py::none(), "cores"_a = Limits().cores)
       .def(
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,

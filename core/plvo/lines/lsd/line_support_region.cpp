@@ -1,7 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/lines/lsd/line_support_region.hpp"
 
+#include <bit>
+
 namespace plvo::lsd {
+
+namespace {
+
+// The eight neighbours, row by row.
+constexpr std::int16_t kRight[] = {-1, 0, 1, -1, 1, -1, 0, 1};
+constexpr std::int16_t kDown[] = {-1, -1, -1, 0, 0, 1, 1, 1};
+
+// Bit i: neighbour i is in no region yet. Byte by byte: a wide load would wait for the narrow stores of
+// pixels that were just taken.
+unsigned open_neighbours(const std::uint8_t* state, std::ptrdiff_t stride) {
+  static_assert(kUsed == 1U << 7);
+  const std::uint8_t* const above = state - stride;
+  const std::uint8_t* const below = state + stride;
+  const unsigned used = (above[-1] & kUsed) >> 7 | (above[0] & kUsed) >> 6 | (above[1] & kUsed) >> 5 |
+                        (state[-1] & kUsed) >> 4 | (state[1] & kUsed) >> 3 | (below[-1] & kUsed) >> 2 |
+                        (below[0] & kUsed) >> 1 | (below[1] & kUsed);
+  return used ^ 0xffU;
+}
+
+}  // namespace
 
 Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pixel> storage) {
   // Plain pointers: the compiler must not fear that a write to the states changes where the arrays are.
@@ -10,34 +32,30 @@ Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pi
   Pixel* const pixels = storage.data();
   const std::ptrdiff_t stride = field.stride;
   const std::int64_t tangent_q15 = tolerance.tangent_q15;
-  std::size_t count = 0;
-  std::int64_t sum_x = 0;
-  std::int64_t sum_y = 0;
-  const auto add = [&](std::uint8_t* state, int x, int y) {
-    const Direction d = directions[state - states];
-    *state = static_cast<std::uint8_t>((*state + 1) | kUsed);
-    pixels[count++] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
-    sum_x += d.x;
-    sum_y += d.y;
-  };
-  const auto try_add = [&](std::uint8_t* state, int x, int y) {
-    if ((*state & kUsed) != 0) return;
-    const Direction d = directions[state - states];
-    const std::int64_t dot = d.x * sum_x + d.y * sum_y;
-    const std::int64_t cross = d.x * sum_y - d.y * sum_x;
-    if ((cross < 0 ? -cross : cross) * 32768 <= tangent_q15 * dot) add(state, x, y);
-  };
-  add(states + field.index(seed.x, seed.y), seed.x, seed.y);
+  const std::size_t first = field.index(seed.x, seed.y);
+  std::size_t count = 1;
+  std::int64_t sum_x = directions[first].x;
+  std::int64_t sum_y = directions[first].y;
+  pixels[0] = seed;
+  states[first] = static_cast<std::uint8_t>((states[first] + 1) | kUsed);
   for (std::size_t next = 0; next < count; ++next) {
-    const int x = pixels[next].x;
-    const int y = pixels[next].y;
-    std::uint8_t* row = states + field.index(x, y - 1);
-    for (int j = y - 1; j <= y + 1; ++j, row += stride) {
-      // Most neighbours are taken already: three at a glance.
-      if ((row[-1] & row[0] & row[1] & kUsed) != 0) continue;
-      try_add(row - 1, x - 1, j);
-      try_add(row, x, j);
-      try_add(row + 1, x + 1, j);
+    const Pixel pixel = pixels[next];
+    std::uint8_t* const here = states + field.index(pixel.x, pixel.y);
+    // Whether a neighbour is aligned cannot be foreseen, so nothing branches on it: it is written down, and
+    // stays if it counts. There is room: it is in no region yet.
+    for (unsigned open = open_neighbours(here, stride); open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      std::uint8_t* const state = here + kDown[i] * stride + kRight[i];
+      const Direction d = directions[state - states];
+      const std::int64_t dot = d.x * sum_x + d.y * sum_y;
+      const std::int64_t cross = d.x * sum_y - d.y * sum_x;
+      const int aligned = (cross < 0 ? -cross : cross) * 32768 <= tangent_q15 * dot ? 1 : 0;
+      pixels[count] = {static_cast<std::int16_t>(pixel.x + kRight[i]),
+                       static_cast<std::int16_t>(pixel.y + kDown[i])};
+      count += static_cast<std::size_t>(aligned);
+      *state = static_cast<std::uint8_t>(*state + aligned * (kUsed + 1));
+      sum_x += d.x & -aligned;
+      sum_y += d.y & -aligned;
     }
   }
   return {storage.first(count), sum_x, sum_y};

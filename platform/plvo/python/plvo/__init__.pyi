@@ -227,6 +227,7 @@ class Odometry:
         references: int | None = None,
         line_bands: int | None = None,
         kept_keyframes: int | None = None,
+        surfaces: int | None = None,
         cores: int = 1,
     ) -> None: ...
     def track(

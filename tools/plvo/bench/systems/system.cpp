@@ -102,6 +102,7 @@ Status make_system(const std::string& name, const CameraModel& camera, std::uniq
   config.features = name.starts_with("plvo-points")  ? Features::kPoints
                     : name.starts_with("plvo-lines") ? Features::kLines
                                                      : Features::kBoth;
+  if (config.features != Features::kBoth) config.surfaces = false;  // the kind alone
   auto ours = std::make_unique<PlvoSystem>();
   const Status status = ours->init(camera, config);
   if (status.ok()) system = std::move(ours);

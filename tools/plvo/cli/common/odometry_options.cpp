@@ -29,9 +29,16 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
               "2: points and lines are searched for at the same time, and images and features halved between "
               "two threads; results are the same. Times of stages are those of the first (default 1)");
   group.whole("--surfaces", options.surfaces, 0, 1000,
-              "So many samples of surfaces from each depth image, 200 for example, besides points and lines: "
-              "for bare rooms, docs/sensors.md (default 0: none)");
+              "So many samples of surfaces from each depth image, besides points and lines; 0: none "
+              "(default 200; none of --preset paper and tiny)");
   group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
+}
+
+void check_odometry_options(const OdometryOptions& options) {
+  if (options.preset == Preset::kPaper && options.surfaces.value_or(0) > 0)
+    refuse("--surfaces",
+           "does not apply to --preset paper, which matches a frame once: surfaces are looked for "
+           "where a first estimate of the motion puts them");
 }
 
 namespace {
@@ -42,6 +49,7 @@ Config make_config(const OdometryOptions& options) {
   if (options.preset == Preset::kPaper) config = Config::paper();
   if (options.preset == Preset::kTiny) config = Config::tiny();
   config.features = options.features.value_or(config.features);
+  config.surfaces = options.surfaces ? *options.surfaces > 0 : config.surfaces;
   config.references.policy = options.reference.value_or(config.references.policy);
   config.seed = options.seed.value_or(config.seed);
   config.level_world = options.level_world;
@@ -54,7 +62,7 @@ Limits make_limits(const OdometryOptions& options, const CameraModel& camera) {
   limits.width = camera.width;
   limits.height = camera.height;
   limits.cores = options.cores;
-  limits.surfaces = options.surfaces;
+  limits.surfaces = options.surfaces.value_or(limits.surfaces);
   return limits;
 }
 

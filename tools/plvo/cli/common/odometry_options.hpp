@@ -25,9 +25,11 @@ struct OdometryOptions {
   double budget_ms = 0;  // 0: none
   int cores = 1;
   bool level_world = false;
-  int surfaces = 0;
+  std::optional<int> surfaces;
 };
 void add_odometry_options(CLI::App& command, OdometryOptions& options);
+// Ends the command when they contradict each other.
+void check_odometry_options(const OdometryOptions& options);
 
 // An odometry with the block it needs, and the second thread that it was asked for. Every page of the block
 // is touched, so that memory does not seem to grow later.

@@ -80,6 +80,7 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
 
 void check(const CLI::App& command, LiveOptions& options) {
   check_live_camera_options(command, options.camera);
+  check_odometry_options(options.odometry);
   if (is_recorded_device(options.camera.device)) {
     refuse_options(command, {"--every-frame"}, "is what a recording does anyway; leave it away");
     refuse_options(command, {"--imu"},

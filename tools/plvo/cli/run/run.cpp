@@ -176,6 +176,7 @@ class Run {
 
 void check(const CLI::App& command, RunOptions& options) {
   check_camera_options(command, options.camera);
+  check_odometry_options(options.odometry);
   check_imu_options(command, options.imu, options.camera);
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
