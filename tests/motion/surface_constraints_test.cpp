@@ -59,15 +59,14 @@ std::vector<Vector3> room() { return {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 
 
 struct Set {
   explicit Set(const Walls& walls)
-      : flags(walls.matches.size()),
-        held(walls.matches.size()),
-        constraints(walls.matches, {flags, held}),
-        sets{&constraints} {}
+      : flags(walls.matches.size()), constraints(walls.matches, {flags, {&form, 1}}), sets{&constraints} {}
   std::vector<std::uint8_t> flags;
-  std::vector<double> held;
+  SurfaceForm form;
   SurfaceConstraints constraints;
   std::vector<ConstraintSet*> sets;
 };
+
+const RobustKernel kKernel(RobustLoss::kHuber, 1);
 
 SharedErrors shared_errors() {
   CameraModel camera;
@@ -83,10 +82,9 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   for (int k = 0; k < SharedErrors::kCount; ++k) at.value[k] = 0.2 * at.sigma(k) * gaussian();
   Set set(walls);
   const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
-  set.constraints.begin(T, at);
-  const RobustKernel kernel(RobustLoss::kHuber, 1);
+  set.constraints.begin(T, at, kKernel);
   JointInformation sum;
-  (void)set.constraints.linearize(T, at, kernel, sum);
+  (void)set.constraints.linearize(T, at, kKernel, sum);
   EXPECT_EQ(sum.H, sum.H.transpose());
   const auto cost = [&](int k, double step) {
     Vector6 delta = Vector6::Zero();
@@ -96,7 +94,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
     else
       shared.value[k - 6] += step;
     JointInformation unused;
-    return set.constraints.linearize(boxplus(T, delta), shared, kernel, unused);
+    return set.constraints.linearize(boxplus(T, delta), shared, kKernel, unused);
   };
   for (int k = 0; k < kJoint; ++k) {
     const double h = 1e-5;
@@ -105,44 +103,58 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   }
 }
 
-// The slow, obvious statement: all parameters in one dense system, those that are shared last.
+// The slow, obvious statement: all parameters in one dense system, match by match, those of the set last.
 TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   Gaussian gaussian(12);
-  const Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
+  Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
+  for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
+  SharedErrors shared = shared_errors();
   Set set(walls);
-  const Se3& T = walls.truth;
-  set.constraints.begin(T, {});
+  set.constraints.begin(walls.truth, shared, kKernel);
+  // Some steps of a solve later.
+  const Se3 T = boxplus(walls.truth, 3e-3 * gaussian.vector<6>());
+  for (int k = 0; k < SharedErrors::kCount; ++k) shared.value[k] = 0.2 * shared.sigma(k) * gaussian();
   JointInformation sum;
-  const double cost = set.constraints.linearize(T, {}, RobustKernel(), sum);
+  const double cost = set.constraints.linearize(T, shared, kKernel, sum);
 
-  Dense H = Dense::Zero(8, 8);
-  H(6, 6) = H(7, 7) = 1;
-  DenseVector g = DenseVector::Zero(8);
+  constexpr int kAll = kJoint + 2;
+  Dense H = Dense::Zero(kAll, kAll);
+  H(kJoint, kJoint) = H(kJoint + 1, kJoint + 1) = 1;
+  DenseVector g = DenseVector::Zero(kAll);
   double plain = 0;
+  int inliers = 0;
   for (std::size_t i = 0; i < walls.matches.size(); ++i) {
     if (set.flags[i] == 0) continue;
+    ++inliers;
     const SurfaceMatch& match = walls.matches[i];
-    Dense V(3, 8);
-    V << Dense::Identity(3, 3), -Dense(skew(T.R * match.p_reference)), Dense(match.common);
+    const Dense F = shared.fields(match.p_current, match.delay_s);
+    Dense V(3, kAll);
+    V << Dense::Identity(3, 3), -Dense(skew(T.R * match.p_reference)), F, Dense(match.common);
     const DenseVector n = match.normal;
+    // Weights are those of where the solve began, with none of the shared errors.
+    double weight = 1;
+    (void)kKernel(set.constraints.mahalanobis_squared(i, walls.truth, 0), weight);
     const Dense M =
+        weight *
         ((1 + match.normal_variance) * n * n.transpose() - match.normal_variance * Dense::Identity(3, 3)) /
         match.variance;
-    const DenseVector e = T * match.p_reference - match.p_current;
+    const DenseVector e = T * match.p_reference - match.p_current +
+                          shared.fields(match.p_current, match.delay_s) * shared.value;
     H += V.transpose() * M * V;
     g += V.transpose() * M * e;
     plain += 0.5 * e.dot(M * e);
   }
-  const Dense gain = H.block(0, 6, 6, 2) * test::inverse(H.bottomRightCorner(2, 2));
-  const Dense expected = H.topLeftCorner(6, 6) - gain * H.block(6, 0, 2, 6);
-  const DenseVector expected_g = g.head(6) - gain * g.tail(2);
-  const DenseVector step = test::solve_positive(H.bottomRightCorner(2, 2), g.tail(2));
-  EXPECT_LT((Dense(sum.H.block<6, 6>(0, 0)) - expected).norm(), 1e-9 * expected.norm());
-  EXPECT_LT((DenseVector(sum.g.head<6>()) - expected_g).norm(), 1e-9 * g.norm());
-  EXPECT_NEAR(cost, plain - 0.5 * g.tail(2).dot(step), 1e-9 * plain);
+  EXPECT_GT(inliers, 30);
+  const Dense gain = H.block(0, kJoint, kJoint, 2) * test::inverse(H.bottomRightCorner(2, 2));
+  const Dense expected = H.topLeftCorner(kJoint, kJoint) - gain * H.block(kJoint, 0, 2, kJoint);
+  const DenseVector expected_g = g.head(kJoint) - gain * g.tail(2);
+  const double expected_cost =
+      plain - 0.5 * g.tail(2).dot(test::inverse(H.bottomRightCorner(2, 2)) * g.tail(2));
+  EXPECT_LT((Dense(sum.H) - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_LT((DenseVector(sum.g) - expected_g).norm(), 1e-9 * expected_g.norm());
+  EXPECT_NEAR(cost, expected_cost, 1e-9 * plain);
 }
 
-// A room seen with noise and with errors in common: the covariance keeps its word.
 TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
   Gaussian gaussian(13);
   constexpr int kTrials = 300;
@@ -179,7 +191,7 @@ TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
     const Vector3 axis = walls.truth.R.col(2);
     const auto information = [&](const Vector3& direction) {
       Set set(walls);
-      set.constraints.begin(walls.truth, {});
+      set.constraints.begin(walls.truth, {}, kKernel);
       JointInformation sum;
       (void)set.constraints.linearize(walls.truth, {}, RobustKernel(), sum);
       const Matrix3 H = sum.H.block<3, 3>(0, 0);
@@ -201,7 +213,7 @@ TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
   Walls walls(gaussian, room(), 50, 0.004, 0.01);
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;
   Set set(walls);
-  set.constraints.begin(walls.truth, {});
+  set.constraints.begin(walls.truth, {}, kKernel);
   for (std::size_t i = 0; i < walls.matches.size(); ++i) {
     EXPECT_EQ(set.flags[i], i == 3 ? 0 : 1) << i;
     EXPECT_FALSE(set.constraints.usable(i));

@@ -65,12 +65,11 @@ struct Pair {
                    features.samples.span(), motion, found);
     storage.resize(found.size());
     flags.resize(found.size());
-    held.resize(found.size());
   }
-  SurfaceConstraints constraints() { return {storage, {flags, held}}; }
+  SurfaceConstraints constraints() { return {storage, {flags, {&form, 1}}}; }
   JointInformation information() {
     SurfaceConstraints set = constraints();
-    set.begin(truth, {});
+    set.begin(truth, {}, RobustKernel());
     JointInformation sum;
     (void)set.linearize(truth, {}, RobustKernel(), sum);
     return sum;
@@ -82,7 +81,7 @@ struct Pair {
   SurfaceFeatures features;
   std::vector<SurfaceMatch> storage;
   std::vector<std::uint8_t> flags;
-  std::vector<double> held;
+  SurfaceForm form;
 };
 
 Se3 walk() { return {rotation_exp({0.01, -0.03, 0.02}), {0.02, -0.01, -0.06}}; }

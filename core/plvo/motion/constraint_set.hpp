@@ -64,7 +64,7 @@ class ConstraintSet {
   // linearize() moves the other parts of the landmarks to their optimum for T and the shared errors' value,
   // adds their Schur complement on (ξ, β) to `sum` (over the inliers; what belongs to β only if there are
   // any) and returns ½ Σ ρ there. Time is linear in size().
-  virtual void begin(const Se3& T, const SharedErrors& shared) = 0;
+  virtual void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) = 0;
   virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                            JointInformation& sum) const = 0;
 

@@ -86,7 +86,7 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   for (Matrix6& information : information_) information.setZero();
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    sets_[kind]->begin(motions[sets_[kind]->reference()], shared);
+    sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind]);
     share_[kind] = share_of(*sets_[kind]);
   }
   for (std::size_t r = 1; r < kMaxReferences; ++r) root_[r] = root(references_[r].covariance);

@@ -10,9 +10,13 @@ namespace {
 
 // Beyond so many σ it is another surface.
 constexpr double kGateSigmas = 5;
+constexpr int kShared = SharedErrors::kCount;
 constexpr int kJoint = JointInformation::kSize;
-constexpr int kCommon = 2;
+constexpr int kCommon = SurfaceForm::kCommon;
 constexpr int kAll = kJoint + kCommon;
+constexpr int kMotion = SurfaceForm::kMotion;
+constexpr int kOthers = SurfaceForm::kOthers;
+constexpr int kSize = SurfaceForm::kSize;
 
 double normalised(const SurfaceMatch& match, const Vector3& e) {
   const double r = match.normal.dot(e);
@@ -25,17 +29,54 @@ struct Sums {
   double g[kAll] = {};
 };
 
-// Vᵀ M V and Vᵀ M e, with M e as it is.
-void add(const Matrix<3, kAll>& V, const Matrix3& M, const Vector3& Me, int first_unused, Sums& sums) {
-  for (int a = 0; a < kAll; ++a) {
-    if (a >= first_unused && a < kJoint) continue;
-    const Vector3 column = V.col(a);
-    const Vector3 Mv = M.lazyProduct(column);
-    sums.g[a] += column.dot(Me);
-    for (int b = 0; b <= a; ++b)
-      if (b < first_unused || b >= kJoint) sums.H[a][b] += Mv.dot(V.col(b));
+// One match's part of the form's lower triangle. p: homogeneous, what the motion's columns of A are made of:
+// entry (i, j) of T moves e by p_j along axis i. others: the other columns, the last of which is e at the
+// start.
+void add(const double (&p)[4], const Matrix3& M, const Matrix<3, kOthers>& others, SurfaceForm& form) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int k = 0; k <= i; ++k) {
+        const double scaled = M(i, k) * p[j];
+        for (int l = 0; l < 4; ++l) form.Q[4 * i + j][4 * k + l] += scaled * p[l];
+      }
+  for (int a = 0; a < kOthers; ++a) {
+    const Vector3 Mv = M.lazyProduct(others.col(a));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) form.Q[kMotion + a][4 * i + j] += Mv[i] * p[j];
+    for (int b = 0; b <= a; ++b) form.Q[kMotion + a][kMotion + b] += Mv.dot(others.col(b));
   }
 }
+
+void clear(SurfaceForm& form) {
+  for (auto& row : form.Q)
+    for (double& entry : row) entry = 0;
+}
+
+void mirror(SurfaceForm& form) {
+  for (int a = 0; a < kSize; ++a)
+    for (int b = 0; b < a; ++b) form.Q[b][a] = form.Q[a][b];
+}
+
+// How T's entries follow ξ = (υ, ω): υ moves the last column, ω turns the others, d(R p) = ω × R p.
+struct Tangent {
+  double d[6][kMotion] = {};
+  explicit Tangent(const Matrix3& R) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const int last = (k + 2) % 3;
+      d[k][4 * k + 3] = 1;
+      for (int j = 0; j < 3; ++j) {
+        d[3 + k][4 * next + j] = -R(last, j);
+        d[3 + k][4 * last + j] = R(next, j);
+      }
+    }
+  }
+  double along(int k, const double* entries) const {
+    double sum = 0;
+    for (int i = 0; i < kMotion; ++i) sum += d[k][i] * entries[i];
+    return sum;
+  }
+};
 
 // Takes γ out of the sums: their Schur complement, added to `sum`. Returns what the cost loses.
 double eliminate_common(const Sums& sums, int size, JointInformation& sum) {
@@ -66,7 +107,7 @@ double eliminate_common(const Sums& sums, int size, JointInformation& sum) {
 SurfaceConstraints::SurfaceConstraints(std::span<const SurfaceMatch> matches, const Workspace& workspace)
     : ConstraintSet(workspace.inliers.first(std::min(matches.size(), workspace.inliers.size()))),
       matches_(matches.first(inliers_.size())),
-      held_(workspace.held.first(inliers_.size())) {
+      form_(workspace.form.data()) {
   std::fill(inliers_.begin(), inliers_.end(), std::uint8_t{0});
 }
 
@@ -75,46 +116,67 @@ double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T, doub
   return normalised(match, T * match.p_reference - match.p_current);
 }
 
-void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared) {
+void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) {
+  T_begin_ = T;
+  if (matches_.empty()) return;
+  clear(*form_);
+  Matrix<3, kOthers> others = Matrix<3, kOthers>::Zero();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const SurfaceMatch& match = matches_[i];
-    Vector3 e = T * match.p_reference - match.p_current;
-    if (shared.any()) e += shared.fields(match.p_current, match.delay_s).lazyProduct(shared.value);
-    held_[i] = normalised(match, e);
-    inliers_[i] = held_[i] <= kGateSigmas * kGateSigmas ? 1 : 0;
-  }
-}
-
-double SurfaceConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
-                                     JointInformation& sum) const {
-  const int size = shared.any() ? kJoint : 6;
-  Sums sums;
-  Matrix<3, kAll> V = Matrix<3, kAll>::Zero();
-  V.block<3, 3>(0, 0).setIdentity();
-  double cost = 0;
-  for (std::size_t i = 0; i < matches_.size(); ++i) {
-    if (inliers_[i] == 0) continue;
-    const SurfaceMatch& match = matches_[i];
-    const Vector3 q = T.R * match.p_reference;
-    Vector3 e = q + T.t - match.p_current;
-    V.block<3, 3>(0, 3) = -skew(q);
+    const Vector3 offset = T * match.p_reference - match.p_current;
+    Vector3 e = offset;
     if (shared.any()) {
-      const Matrix<3, SharedErrors::kCount> F = shared.fields(match.p_current, match.delay_s);
-      e += F.lazyProduct(shared.value);
-      V.block<3, SharedErrors::kCount>(0, 6) = F;
+      others.block<3, kShared>(0, 0) = shared.fields(match.p_current, match.delay_s);
+      e += others.block<3, kShared>(0, 0).lazyProduct(shared.value);
     }
-    V.block<3, kCommon>(0, kJoint) = match.common;
+    const double s = normalised(match, e);
+    inliers_[i] = s <= kGateSigmas * kGateSigmas ? 1 : 0;
+    if (inliers_[i] == 0) continue;
     double weight = 1;
-    (void)kernel(held_[i], weight);
+    (void)kernel(s, weight);
     weight /= match.variance;
     const Vector3& n = match.normal;
     Matrix3 M = (weight * (1 + match.normal_variance)) * (n * n.transpose());
     for (int k = 0; k < 3; ++k) M(k, k) -= weight * match.normal_variance;
-    const Vector3 Me = M.lazyProduct(e);
-    cost += 0.5 * e.dot(Me);
-    add(V, M, Me, size, sums);
+    others.block<3, kCommon>(0, kShared) = match.common;
+    others.col(kOthers - 1) = offset;
+    const Vector3& p = match.p_reference;
+    add({p.x(), p.y(), p.z(), 1}, M, others, *form_);
   }
-  return cost - eliminate_common(sums, size, sum);
+  mirror(*form_);
+}
+
+double SurfaceConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel&,
+                                     JointInformation& sum) const {
+  if (matches_.empty()) return 0;
+  const auto& Q = form_->Q;
+  double x[kSize] = {};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) x[4 * i + j] = T.R(i, j) - T_begin_.R(i, j);
+    x[4 * i + 3] = T.t[i] - T_begin_.t[i];
+  }
+  for (int k = 0; k < kShared && shared.any(); ++k) x[kMotion + k] = shared.value[k];
+  x[kSize - 1] = 1;
+  double Qx[kSize] = {};
+  double cost = 0;
+  for (int a = 0; a < kSize; ++a) {
+    for (int b = 0; b < kSize; ++b) Qx[a] += Q[a][b] * x[b];
+    cost += 0.5 * Qx[a] * x[a];
+  }
+  const Tangent tangent(T.R);
+  Sums sums;
+  for (int a = 0; a < 6; ++a) {
+    double column[kSize];
+    for (int b = 0; b < kSize; ++b) column[b] = tangent.along(a, Q[b]);
+    sums.g[a] = tangent.along(a, Qx);
+    for (int b = 0; b <= a; ++b) sums.H[a][b] = tangent.along(b, column);
+    for (int b = 6; b < kAll; ++b) sums.H[b][a] = column[kMotion + b - 6];
+  }
+  for (int a = 6; a < kAll; ++a) {
+    sums.g[a] = Qx[kMotion + a - 6];
+    for (int b = 6; b <= a; ++b) sums.H[a][b] = Q[kMotion + a - 6][kMotion + b - 6];
+  }
+  return cost - eliminate_common(sums, shared.any() ? kJoint : 6, sum);
 }
 
 }  // namespace plvo

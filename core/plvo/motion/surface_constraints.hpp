@@ -11,6 +11,10 @@
 // depth image was taken, one for its offset, moves e by G γ and is eliminated within the set; besides the
 // shared errors of the frame and the correlation of the set. Weights are those of where a solve begins. No
 // minimal set is drawn from surfaces, and they are no part of RANSAC's consensus: begin() judges them.
+//
+// e is linear in the 3×4 entries of T, in the shared errors and in γ. With weights held, the cost is one
+// quadratic form of these 22 numbers: begin() sums it up over the matches, and a step of the solver takes the
+// same time however many there are.
 #pragma once
 
 #include "plvo/motion/constraint_set.hpp"
@@ -26,16 +30,23 @@ struct SurfaceMatch {
   Matrix<3, 2> common = Matrix<3, 2>::Zero();  // G: what one SD of the moment and of the offset makes of e
 };
 
+// Σ w Aᵀ M A, symmetric, for e = A x with x = (T − T where the solve began, by rows; β; γ; 1).
+struct SurfaceForm {
+  static constexpr int kMotion = 12, kCommon = 2, kOthers = SharedErrors::kCount + kCommon + 1;
+  static constexpr int kSize = kMotion + kOthers;
+  double Q[kSize][kSize];
+};
+
 class SurfaceConstraints final : public ConstraintSet {
  public:
   struct Workspace {
     std::span<std::uint8_t> inliers;
-    std::span<double> held;
+    std::span<SurfaceForm> form;  // one
     template <typename Memory>
     static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
       if (max_matches == 0) return {};
       return {memory.template take<std::uint8_t>("motion: surface inliers", max_matches),
-              memory.template take<double>("motion: surfaces held", max_matches)};
+              memory.template take<SurfaceForm>("motion: surfaces' form", 1)};
     }
   };
 
@@ -49,13 +60,14 @@ class SurfaceConstraints final : public ConstraintSet {
   // r² / σ². What the matches share is not in it: where that shows, they weigh less (gate, robust loss, the
   // learning of σ²), which on real sensors is better than to believe that it is known (docs/sensors.md).
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin(const Se3& T, const SharedErrors& shared) override;
+  void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) override;
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 
  private:
   std::span<const SurfaceMatch> matches_;
-  std::span<double> held_;  // mahalanobis_squared where the solve began
+  SurfaceForm* form_;
+  Se3 T_begin_;
 };
 
 }  // namespace plvo
