@@ -38,7 +38,8 @@ class Bytes {
   std::size_t size_;
 };
 
-constexpr Limits kLimits{.width = 96, .height = 72, .keypoints = 100, .segments = 40, .surfaces = 20};
+// The smallest images that are taken: the most executions a second.
+constexpr Limits kLimits{.width = 64, .height = 64, .keypoints = 60, .segments = 30, .surfaces = 20};
 
 Config read_config(Bytes& bytes) {
   Config config;
@@ -92,8 +93,10 @@ bool finite(const TrackResult& result) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   const Config config = read_config(bytes);
-  CameraModel camera{
-      kLimits.width, kLimits.height, {bytes.number(40, 200), bytes.number(40, 200), 48, 36}, {}};
+  CameraModel camera{kLimits.width,
+                     kLimits.height,
+                     {bytes.number(40, 200), bytes.number(40, 200), kLimits.width / 2, kLimits.height / 2},
+                     {}};
   camera.distortion.k1 = bytes.number(-0.3, 0.3);
 
   static std::vector<std::byte> memory(required_bytes(kLimits));

@@ -170,6 +170,16 @@ TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
   EXPECT_NEAR(json["nees_motion"]["mean"].get<double>(), 1, 1e-3);
   EXPECT_NEAR(json["nees_motion"]["translation"]["median"].get<double>(), 1, 1e-3);
   EXPECT_NEAR(json["nees_motion"]["rotation"]["mean"].get<double>(), 0, 1e-3);
+  // With twice as much noise of the truth the covariance is three times as large.
+  const auto noisy = nlohmann::json::parse(eval(more + " --gt-sigma 0.001 0 --json -").out);
+  EXPECT_NEAR(noisy["nees_motion"]["mean"].get<double>(), 1.0 / 3, 1e-3);
+  EXPECT_EQ(noisy["ground_truth_sigma"]["position_m"], 0.001);
+  EXPECT_NE(eval(more + " --gt-sigma 0.001 0.5")
+                .out.find("of a true pose, in the covariance as well: 1.000 mm, 0.5000 deg"),
+            std::string::npos);
+  EXPECT_EQ(eval("--gt-sigma 0.001 0").exit_code, 2);
+  EXPECT_EQ(eval(more + " --gt-sigma 0.001").exit_code, 2);
+  EXPECT_EQ(eval(more + " --gt-sigma -1 0").exit_code, 2);
   // The same error thirty times over is no noise.
   EXPECT_EQ(json["nees_second"]["samples"], 21);
   EXPECT_EQ(json["nees_second"]["translation"]["expected"], 3);

@@ -29,7 +29,7 @@ Consistency monte_carlo(double sigma, double claimed) {
     motions.push_back({i * 30'000'000LL, (i - 1) * 30'000'000LL, boxplus(motion, error),
                        Matrix6::Identity() * (claimed * claimed)});
   }
-  return motion_consistency(motions, truth, GroundTruthSampling::kInterpolated, 1);
+  return motion_consistency(motions, truth, {.max_difference_ns = 1});
 }
 
 TEST(Consistency, TrueCovarianceLiesInTheBand) {
@@ -64,7 +64,7 @@ TEST(Consistency, SingularCovariancesAreCountedNotUsed) {
     covariances.push_back({i, Matrix6::Zero()});
   }
   covariances[2].covariance = Matrix6::Identity();
-  const Consistency c = pose_consistency(poses, covariances);
+  const Consistency c = pose_consistency(poses, covariances, {});
   EXPECT_EQ(c.count, 1u);
   EXPECT_EQ(c.singular, 1u);
 }

@@ -79,6 +79,19 @@ const StampedCovariance* find(const std::vector<StampedCovariance>& covariances,
 
 }  // namespace
 
+// With R_i Exp(η_i) and p_i + w_i for the true poses, R = R_bᵀ R_a turns by R η_a − η_b and t = R_bᵀ (p_a −
+// p_b) moves by R_bᵀ (w_a − w_b) + t × η_b; all of η and w are alike in every direction.
+Matrix6 TruthSigma::of_motion(const Vector3& t) const {
+  const double p = position_m * position_m, r = orientation_rad * orientation_rad;
+  const Matrix3 T = skew(t);
+  Matrix6 C = Matrix6::Zero();
+  C.block<3, 3>(0, 0) = 2 * p * Matrix3::Identity() + r * T * T.transpose();
+  C.block<3, 3>(3, 3) = 2 * r * Matrix3::Identity();
+  C.block<3, 3>(0, 3) = -r * T;
+  C.block<3, 3>(3, 0) = -r * T.transpose();
+  return C;
+}
+
 std::vector<PoseError> pose_errors(const PairedPoses& poses,
                                    const std::vector<StampedCovariance>& covariances) {
   std::vector<PoseError> errors;
@@ -92,40 +105,44 @@ std::vector<PoseError> pose_errors(const PairedPoses& poses,
   return errors;
 }
 
-Consistency pose_consistency(const PairedPoses& poses, const std::vector<StampedCovariance>& covariances) {
+Consistency pose_consistency(const PairedPoses& poses, const std::vector<StampedCovariance>& covariances,
+                             const TruthSigma& truth_sigma) {
   Accumulator accumulator;
   const std::vector<PoseError> errors = pose_errors(poses, covariances);
   for (std::size_t i = 1; i < errors.size();
        ++i) {  // the first pose defines the world: no error, no covariance
-    if (const StampedCovariance* c = find(covariances, errors[i].stamp_ns); c != nullptr)
-      accumulator.add(errors[i].error, c->covariance);
+    if (const StampedCovariance* c = find(covariances, errors[i].stamp_ns); c != nullptr) {
+      const Vector3 walked = poses.estimate[0].R * (poses.truth[0].inverse() * poses.truth[i]).t;
+      accumulator.add(errors[i].error, c->covariance + truth_sigma.of_motion(walked));
+    }
   }
   return accumulator.finish(accumulator.count());
 }
 
 Consistency motion_consistency(const std::vector<UncertainMotion>& motions, const Trajectory& ground_truth,
-                               GroundTruthSampling sampling, std::int64_t max_difference_ns) {
+                               const TruthSampling& sampling) {
   std::vector<std::int64_t> stamps, references;
   for (const UncertainMotion& motion : motions) {
     stamps.push_back(motion.stamp_ns);
     references.push_back(motion.reference_stamp_ns);
   }
-  const SampledPoses now = sample(ground_truth, stamps, sampling, max_difference_ns);
-  const SampledPoses before = sample(ground_truth, references, sampling, max_difference_ns);
+  const SampledPoses now = sample(ground_truth, stamps, sampling.sampling, sampling.max_difference_ns);
+  const SampledPoses before = sample(ground_truth, references, sampling.sampling, sampling.max_difference_ns);
   Accumulator accumulator;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (!now.valid[i] || !before.valid[i]) continue;
     const Se3 truth = now.poses[i].inverse() * before.poses[i];
-    accumulator.add(boxminus(motions[i].T_camera_reference, truth), motions[i].covariance);
+    accumulator.add(boxminus(motions[i].T_camera_reference, truth),
+                    motions[i].covariance + sampling.sigma.of_motion(truth.t));
   }
   return accumulator.finish(accumulator.count());
 }
 
 Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::int64_t span_ns,
-                             const Trajectory& ground_truth, GroundTruthSampling sampling,
-                             std::int64_t max_difference_ns) {
+                             const Trajectory& ground_truth, const TruthSampling& sampling) {
   const MotionChain chain(motions);
-  const SampledPoses truth = sample(ground_truth, chain.stamps_ns(), sampling, max_difference_ns);
+  const SampledPoses truth =
+      sample(ground_truth, chain.stamps_ns(), sampling.sampling, sampling.max_difference_ns);
   Accumulator accumulator;
   std::size_t independent = 0;
   std::size_t counted_to = 0;  // the frame at which the last of the independent ones ends
@@ -138,7 +155,8 @@ Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::i
       continue;
     }
     const std::size_t before = accumulator.count();
-    accumulator.add(boxminus(T_to_from, truth.poses[to].inverse() * truth.poses[from]), covariance);
+    const Se3 true_motion = truth.poses[to].inverse() * truth.poses[from];
+    accumulator.add(boxminus(T_to_from, true_motion), covariance + sampling.sigma.of_motion(true_motion.t));
     if (accumulator.count() == before || from < counted_to) continue;
     ++independent;
     counted_to = to;

@@ -27,6 +27,23 @@ struct Nees {
   Band mean_band{}, median_band{};
 };
 
+// How far a true pose is off: standard deviations in each axis, of poses that err independently.
+struct TruthSigma {
+  double position_m = 0;
+  double orientation_rad = 0;
+
+  // What it adds to the covariance of the motion T_b_a = T_w_b⁻¹ T_w_a between two true poses; t: its
+  // translation.
+  Matrix6 of_motion(const Vector3& t) const;
+};
+
+// Of the truth that estimates are compared with.
+struct TruthSampling {
+  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
+  std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
+  TruthSigma sigma = {};
+};
+
 struct Consistency {
   std::size_t count = 0;        // samples with a usable covariance and truth
   std::size_t independent = 0;  // how many of them share no stretch of the recording: the bands are for these
@@ -45,14 +62,14 @@ std::vector<PoseError> pose_errors(const PairedPoses& poses,
                                    const std::vector<StampedCovariance>& covariances);
 
 // Of the poses. Errors of neighbours are nearly the same error: the bands are far too narrow for them.
-Consistency pose_consistency(const PairedPoses& poses, const std::vector<StampedCovariance>& covariances);
+Consistency pose_consistency(const PairedPoses& poses, const std::vector<StampedCovariance>& covariances,
+                             const TruthSigma& truth_sigma);
 // Of the single motions, frame to reference: the sharper test, where the truth is sharp enough.
 Consistency motion_consistency(const std::vector<UncertainMotion>& motions, const Trajectory& ground_truth,
-                               GroundTruthSampling sampling, std::int64_t max_difference_ns);
+                               const TruthSampling& sampling);
 // Of the motions over span_ns, chained from the single ones: over a second the jitter of motion capture
 // counts little, and what neighbouring errors have in common adds up. One sample from each frame on.
 Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::int64_t span_ns,
-                             const Trajectory& ground_truth, GroundTruthSampling sampling,
-                             std::int64_t max_difference_ns);
+                             const Trajectory& ground_truth, const TruthSampling& sampling);
 
 }  // namespace plvo::eval

@@ -42,11 +42,12 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result) {
   result = {};
-  result.sampling = options.sampling;
+  result.truth = options.truth;
   result.estimate_poses = estimate.poses.size();
   std::vector<std::int64_t> stamps;
   for (const StampedPose& pose : estimate.poses) stamps.push_back(pose.stamp_ns + options.offset_ns);
-  const SampledPoses truth = sample(ground_truth, stamps, options.sampling, options.max_difference_ns);
+  const SampledPoses truth =
+      sample(ground_truth, stamps, options.truth.sampling, options.truth.max_difference_ns);
   PairedPoses& poses = result.poses;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!truth.valid[i]) continue;
@@ -76,17 +77,15 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
   result.without_truth = find_gaps(stamps, truth.valid);
 
   result.errors = pose_errors(poses, covariances);
-  if (!covariances.empty()) result.pose_nees = pose_consistency(poses, covariances);
+  if (!covariances.empty()) result.pose_nees = pose_consistency(poses, covariances, options.truth.sigma);
   if (!motions.empty()) {
     std::vector<UncertainMotion> shifted = motions;
     for (UncertainMotion& motion : shifted) {
       motion.stamp_ns += options.offset_ns;
       motion.reference_stamp_ns += options.offset_ns;
     }
-    result.motion_nees =
-        motion_consistency(shifted, ground_truth, options.sampling, options.max_difference_ns);
-    result.second_nees =
-        span_consistency(shifted, kSecondNs, ground_truth, options.sampling, options.max_difference_ns);
+    result.motion_nees = motion_consistency(shifted, ground_truth, options.truth);
+    result.second_nees = span_consistency(shifted, kSecondNs, ground_truth, options.truth);
   }
   return {};
 }

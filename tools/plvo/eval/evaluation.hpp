@@ -17,10 +17,9 @@
 namespace plvo::eval {
 
 struct EvaluationOptions {
-  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
-  std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
-  std::int64_t offset_ns = 0;                   // added to the stamps of the estimate
-  std::vector<RpeDelta> deltas;                 // empty: one frame and one second
+  TruthSampling truth;
+  std::int64_t offset_ns = 0;    // added to the stamps of the estimate
+  std::vector<RpeDelta> deltas;  // empty: one frame and one second
 };
 
 struct Interval {
@@ -29,7 +28,7 @@ struct Interval {
 };
 
 struct Evaluation {
-  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
+  TruthSampling truth;  // how it was asked for
   std::size_t estimate_poses = 0;
   PairedPoses poses;  // those with ground truth
   double duration_s = 0;

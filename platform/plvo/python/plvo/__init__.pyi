@@ -287,4 +287,5 @@ def evaluate(
     max_difference_s: float = 0.02,
     offset_s: float = 0.0,
     rpe_deltas: Iterable[str] = ("1f", "1s"),
+    truth_sigma: tuple[float, float] = (0.0, 0.0),
 ) -> dict[str, Any]: ...

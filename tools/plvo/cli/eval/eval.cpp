@@ -17,6 +17,7 @@
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/line_file.hpp"
+#include "plvo/math/trigonometry.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/numbered_index.hpp"
 #include "plvo/report/report.hpp"
@@ -36,6 +37,7 @@ struct EvalOptions {
   std::string kitti_times, covariance, motions, report;
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
+  std::vector<double> sigma;  // of a true pose: m, degrees
   double offset_s = 0;
   SequenceOptions folder;  // where the ground truth is a folder
   std::vector<eval::RpeDelta> deltas;
@@ -71,10 +73,11 @@ Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, e
 
 int eval_command(EvalOptions options) {
   eval::EvaluationOptions settings;
-  settings.sampling = options.sampling;
-  settings.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
+  settings.truth.sampling = options.sampling;
+  settings.truth.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
   settings.offset_ns = static_cast<std::int64_t>(options.offset_s * 1e9);
   settings.deltas = options.deltas;
+  if (!options.sigma.empty()) settings.truth.sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
   options.ground_truth.kitti_times = options.estimate.kitti_times = options.kitti_times;
 
   eval::Trajectory ground_truth, estimate;
@@ -107,6 +110,8 @@ int eval_command(EvalOptions options) {
 void check(const CLI::App& command, const EvalOptions& options) {
   if (options.sampling != eval::GroundTruthSampling::kNearest)
     refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
+  if (options.covariance.empty() && options.motions.empty())
+    refuse_options(command, {"--gt-sigma"}, "is for the NEES; add --est-covariance or --est-motions");
   const std::filesystem::path& truth = options.ground_truth.path;
   if (is_recording(truth))
     refuse_options(command, {"--gt-format"}, "is for a trajectory, and --gt names a recording");
@@ -169,6 +174,17 @@ void add_eval(CLI::App& app, int& exit_code) {
                "True pose at a stamp: interpolated (default), or the nearest, as TUM's scripts take it");
   group.number("--max-dt", options->max_difference_s, positive(3600), "SECONDS",
                "With --gt-sampling nearest: most that a pose is from its true pose (default 0.02)");
+  takes_values(
+      group.add("--gt-sigma", "NUMBER",
+                "Two numbers: how far a true pose is off, standard deviations in each axis of its position "
+                "(m) and orientation (degrees); joins the covariance in the NEES (default 0 0)",
+                [options](const std::string& text) {
+                  double value = 0;
+                  std::string wrong = read_number(text, {0, 10}, value);
+                  if (wrong.empty()) options->sigma.push_back(value);
+                  return wrong;
+                }),
+      2, 2);
   group.number("--offset", options->offset_s, {-4e9, 4e9}, "SECONDS", "Added to the stamps of the estimate");
   repeatable(group.add(
       "--rpe-delta", "DELTA",

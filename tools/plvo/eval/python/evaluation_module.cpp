@@ -40,17 +40,20 @@ Estimate estimate_of(const py::iterable& results) {
 }
 
 EvaluationOptions options_of(const std::string& sampling, double max_difference_s, double offset_s,
-                             const py::iterable& deltas) {
+                             const py::iterable& deltas, double sigma_m, double sigma_rad) {
   EvaluationOptions options;
   if (sampling == "nearest")
-    options.sampling = GroundTruthSampling::kNearest;
+    options.truth.sampling = GroundTruthSampling::kNearest;
   else if (sampling != "interpolated")
     throw py::value_error("sampling: expected interpolated or nearest, got '" + sampling + "'");
   constexpr double kDay_s = 86400;
   if (!(max_difference_s > 0 && max_difference_s <= kDay_s) || !(offset_s >= -kDay_s && offset_s <= kDay_s))
     throw py::value_error("max_difference_s and offset_s must be seconds within a day");
-  options.max_difference_ns = static_cast<std::int64_t>(max_difference_s * 1e9);
+  options.truth.max_difference_ns = static_cast<std::int64_t>(max_difference_s * 1e9);
   options.offset_ns = static_cast<std::int64_t>(offset_s * 1e9);
+  if (!(sigma_m >= 0 && sigma_m <= 1) || !(sigma_rad >= 0 && sigma_rad <= 1))
+    throw py::value_error("truth_sigma must be metres and radians from 0 to 1");
+  options.truth.sigma = {sigma_m, sigma_rad};
   for (const py::handle item : deltas) {
     RpeDelta delta;
     const auto text = item.cast<std::string>();
@@ -64,8 +67,9 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
 
 std::string evaluate_json(const std::string& truth_path, const py::object& estimated,
                           const std::string& sampling, double max_difference_s, double offset_s,
-                          const py::iterable& deltas) {
-  const EvaluationOptions options = options_of(sampling, max_difference_s, offset_s, deltas);
+                          const py::iterable& deltas, std::pair<double, double> truth_sigma) {
+  const EvaluationOptions options =
+      options_of(sampling, max_difference_s, offset_s, deltas, truth_sigma.first, truth_sigma.second);
   Trajectory truth;
   throw_unless_ok(is_recording(truth_path) ? read_true_poses(truth_path, {}, truth)
                                            : read_trajectory({truth_path, {}, {}}, truth));
