@@ -86,23 +86,23 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
   return {};
 }
 
-Status Odometry::check(const RgbdFrame& frame) const {
+Status Odometry::check(const RgbdFrame& input) const {
   if (!ready_) return {StatusCode::kInvalidArgument, "track() before a successful init()"};
-  if (frame.colour.data == nullptr || frame.depth.data == nullptr)
+  if (input.colour.data == nullptr || input.depth.data == nullptr)
     return {StatusCode::kInvalidArgument, "the frame has no colour or no depth image"};
-  if (frame.colour.width != camera().width || frame.colour.height != camera().height ||
-      frame.depth.width != camera().width || frame.depth.height != camera().height)
+  if (input.colour.width != camera().width || input.colour.height != camera().height ||
+      input.depth.width != camera().width || input.depth.height != camera().height)
     return Status(StatusCode::kInvalidArgument, "colour and depth must have the calibration's size, ")
         .append(camera().width)
         .append("x")
         .append(camera().height);
-  const int bytes_per_pixel = frame.colour.format == PixelFormat::kGray8 ? 1 : 3;
-  if (frame.colour.stride_bytes < camera().width * bytes_per_pixel || frame.depth.stride < camera().width)
+  const int bytes_per_pixel = input.colour.format == PixelFormat::kGray8 ? 1 : 3;
+  if (input.colour.stride_bytes < camera().width * bytes_per_pixel || input.depth.stride < camera().width)
     return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
   // Within this range the squares of depths and of inverse depths are far from the ends of a double's.
-  if (!(frame.depth.metres_per_unit >= 1e-6 && frame.depth.metres_per_unit < 1))
+  if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
     return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
-  if (has_stamp_ && frame.stamp_ns <= last_stamp_ns_)
+  if (has_stamp_ && input.stamp_ns <= last_stamp_ns_)
     return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
   return {};
 }

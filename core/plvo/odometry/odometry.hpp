@@ -109,12 +109,12 @@ class Odometry {
 
   // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
   // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
-  TrackResult track(const RgbdFrame& frame);
+  TrackResult track(const RgbdFrame& input);
   // With what other sensors say of the frame. Their motion leads the search for features and joins the
   // estimate as one more constraint: what vision leaves open then has a large covariance and is no loss, and
   // a frame that shows nothing is kPredicted. Gravity holds roll and pitch of the pose. A prior that says
   // nothing changes nothing; one that does not pass MotionPrior::validate() is refused with the frame.
-  TrackResult track(const RgbdFrame& frame, const MotionPrior& prior);
+  TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
 
   // As after init: the next usable frame defines the world, and what was learnt of the noise is forgotten.
   // The budget of time stays: it is about the machine.
@@ -152,9 +152,9 @@ class Odometry {
   using References = std::array<Reference, kMaxReferences>;
   static constexpr int kNobody = -1;
 
-  Status check(const RgbdFrame& frame) const;
+  Status check(const RgbdFrame& input) const;
   void take_feature_memory();
-  double depth_after_colour_s(const RgbdFrame& frame) const;
+  double depth_after_colour_s(const RgbdFrame& input) const;
   Exposure predict_exposure(std::int64_t stamp_ns) const;
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
   // Without registration find() is the whole estimate, of the base alone.

@@ -29,11 +29,18 @@ constexpr double kWeightOfTwo = 2.0 / 3;
 // What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
 constexpr double kHeld = 1e6;
 
+// The sets of constraints of an estimate, by which it counts inliers: points and lines of each reference,
+// then the sensed motion, then surfaces, of which nothing is asked by number.
+constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
+constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
+constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
+static_assert(matched_sets(kMaxReferences) < kInformedKinds, "and the sensed motion");
+
 void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
   result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
   for (std::size_t r = 0; r < tracks.size(); ++r) {
-    const int points = estimate.inliers[2 * r];
-    const int lines = estimate.inliers[2 * r + 1];
+    const int points = estimate.inliers[points_set(r)];
+    const int lines = estimate.inliers[lines_set(r)];
     tracks[r].inliers = points + lines;
     result.points.matched += static_cast<int>(tracks[r].points.matches.size());
     result.lines.matched += static_cast<int>(tracks[r].lines.size());
@@ -97,8 +104,12 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   };
   std::array<SurfaceConstraints, kMaxReferences> surfaces{
       surfaces_of(0), last > 0 ? surfaces_of(last) : SurfaceConstraints({}, {})};
-  std::array<ConstraintSet*, kMaxConstraintKinds> sets{&points[0], &lines[0], &points[1], &lines[1]};
-  std::size_t set_count = 2 * features.size();
+  std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    sets[points_set(r)] = &points[r];
+    sets[lines_set(r)] = &lines[r];
+  }
+  std::size_t set_count = matched_sets(features.size());
   const SensedMotion& sensed = current.sensed;
   MotionConfig motion_config = config.motion;
   std::uint8_t sensed_flag = 0;
@@ -140,20 +151,20 @@ bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& cu
   const Pyramid& pyramid = current.extraction.pyramid();
   Se3 T = reference.prior.T_current_reference;
   AlignmentStep step;
-  const auto align = [&](std::span<const AlignmentWindow> windows, int rounds) {
+  const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
     for (int round = 0; round < rounds; ++round) {
       const ScratchScope exposed(scratch);
       // What a rolling shutter does depends on the motion: anew for each better idea of it.
       const MidExposure at = points_at_mid_exposure(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
-        if (!align_step(windows, at.reference_points, camera.pinhole, at.current, pyramid, T, step))
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
           return false;
       if (step.size < kAligned) break;
     }
     return true;
   };
-  if (!align(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
-  if (!align(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
+  if (!take_rounds(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
   T_current_reference = T;
   return true;
 }
@@ -170,13 +181,13 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
       at_mid_exposure(camera, reference.prior, T_predicted, *reference.features, current.features, scratch);
   {
     const StageTimer timer(config, result, Stage::kMatching);
-    const DepthSampler depth = current.depth.with(features.current);
-    track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
+    const DepthSampler depth = current.depth.with(features.current_exposure);
+    track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
                         tracks_[0].points);
     LineMatchConfig gates = config.lines.match;
     gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
-    match_predicted_lines(camera.pinhole, features.current, reference.features->lines,
+    match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
     tracks_[0].surfaces.clear();  // projecting them takes a good idea of the motion
@@ -184,7 +195,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config.points.registered;
   const SharedErrors shared =
-      whole ? shared_errors(config.noise, features.current, current.noise) : SharedErrors{};
+      whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
   const bool is_last = reference.prior.reference_is_last;
   MotionReferences poses;
   if (!is_last) poses[1] = reference.last;
