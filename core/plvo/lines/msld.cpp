@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -45,10 +46,7 @@ constexpr std::array<BandWeights, kMsldBands> kMsldWeights = make_msld_weights()
 
 // Positions in the image in 1/65536 px.
 constexpr int kPositionBits = 16;
-std::int32_t to_fixed(double x) {
-  const double scaled = x * (1 << kPositionBits);
-  return static_cast<std::int32_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
-}
+std::int32_t to_fixed(double x) { return round_to<std::int32_t>(x * (1 << kPositionBits)); }
 
 struct Region {
   std::int32_t x, y;               // of the first column's first row
