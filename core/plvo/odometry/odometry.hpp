@@ -168,7 +168,10 @@ class Odometry {
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   void note_velocity(std::int64_t motion_ns);
   void accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result);
-  void start(const MotionPrior& prior, TrackResult& result);
+  void start_first(const MotionPrior& prior, TrackResult& result);
+  void start_again(const MotionPrior& prior, TrackResult& result);
+  void start_at(const HeldPose& pose, TrackResult& result);
+  void read_gravity(const MotionPrior& prior, HeldPose& pose);
   void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
   MotionReference last_from_keyframe() const;
   HeldPose held(int slot) const;
@@ -184,7 +187,9 @@ class Odometry {
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
   void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
-  void fill_views(const MotionEstimate& motion);
+  const char* first_word_of_loss() const;
+  static std::size_t fill_segment_views(const LineFeatures& lines, std::span<SegmentView> views);
+  void fill_track_views(const MotionEstimate& motion);
 
   const CameraModel& camera() const { return rooms_.extraction.camera(); }
   const Config& config() const { return rooms_.extraction.config(); }
