@@ -88,7 +88,7 @@ bool inside(const Region& region, GrayView image) {
   return true;
 }
 
-struct Sums {
+struct ColumnSums {
   std::array<float, kSums> first{};   // Σ V over the columns
   std::array<float, kSums> second{};  // Σ V²
 };
@@ -118,7 +118,7 @@ void read_column(GrayView image, const Region& region, std::int32_t x, std::int3
 }
 
 // The four parts are independent lanes, each summed in one order: a compiler may do them side by side.
-void add_column(const Column& column, Sums& sums) {
+void add_column(const Column& column, ColumnSums& sums) {
   for (std::size_t band = 0; band < kMsldBands; ++band) {
     std::array<float, 4> V{};
     for (std::size_t o = 0; o < 2 * kMsldReach + 1; ++o)
@@ -132,7 +132,7 @@ void add_column(const Column& column, Sums& sums) {
 }
 
 template <bool kInside>
-void sum_region(GrayView image, const Region& region, Sums& sums) {
+void sum_region(GrayView image, const Region& region, ColumnSums& sums) {
   Column column{};
   std::int32_t x = region.x, y = region.y;
   for (int c = 0; c < region.columns; ++c) {
@@ -164,7 +164,7 @@ LineDescriptor describe_segment(GrayView image, double scale, const Segment& seg
   LineDescriptor descriptor;
   if (!(segment.length_px() > 0)) return descriptor;
   const Region region = make_region(scale, segment);
-  Sums sums;
+  ColumnSums sums;
   if (inside(region, image))
     sum_region<true>(image, region, sums);
   else
