@@ -51,6 +51,43 @@ void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, Tr
   result.lm_iterations += estimate.lm.iterations;
 }
 
+// What the matches with each reference say of the motion; empty for a reference that there is not.
+struct FeatureConstraints {
+  std::array<PointConstraints, kMaxReferences> points;
+  std::array<LineConstraints, kMaxReferences> lines;
+  std::array<SurfaceConstraints, kMaxReferences> surfaces;
+};
+
+FeatureConstraints constraints_of(std::span<const MidExposure> features,
+                                  std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
+                                  Arena& scratch) {
+  static_assert(kMaxReferences == 2);
+  const bool two = features.size() > 1;
+  const double weight = two ? kWeightOfTwo : 1;
+  const auto points = [&](std::size_t r) {
+    const PointTracks& found = tracks[r].points;
+    PointConstraints set(features[r].reference_points, found.points, found.matches.span(),
+                         PointConstraints::Workspace::take(scratch, found.matches.size()));
+    set.set_reference(r, noise.point_correlation, weight);
+    return set;
+  };
+  const auto lines = [&](std::size_t r) {
+    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks[r].lines.span(),
+                        LineConstraints::Workspace::take(scratch, tracks[r].lines.size()));
+    set.set_reference(r, noise.line_correlation, weight);
+    return set;
+  };
+  const auto surfaces = [&](std::size_t r) {
+    SurfaceConstraints set(tracks[r].surfaces.span(),
+                           SurfaceConstraints::Workspace::take(scratch, tracks[r].surfaces.size()));
+    set.set_reference(r, noise.surface_correlation, weight);
+    return set;
+  };
+  return {{points(0), two ? points(1) : PointConstraints({}, {}, {}, {})},
+          {lines(0), two ? lines(1) : LineConstraints({}, {}, {}, {})},
+          {surfaces(0), two ? surfaces(1) : SurfaceConstraints({}, {})}};
+}
+
 SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
   return {exposure, config.turning_rad_per_s * sqrt(noise.turning),
           config.shared_depth_m * sqrt(noise.shared_depth)};
@@ -74,40 +111,13 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
                               const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
                               TrackResult& result) {
   const Config& config = current.extraction.config();
-  const CameraModel& camera = current.extraction.camera();
   const StageTimer timer(config, result, Stage::kMotion);
   const ScratchScope scope(scratch);
-  const std::size_t last = features.size() - 1;
-  const double weight = features.size() > 1 ? kWeightOfTwo : 1;
-  const auto points_of = [&](std::size_t r) {
-    const PointTracks& tracks = tracks_[r].points;
-    PointConstraints set(features[r].reference_points, tracks.points, tracks.matches.span(),
-                         PointConstraints::Workspace::take(scratch, tracks.matches.size()));
-    set.set_reference(r, config.noise.point_correlation, weight);
-    return set;
-  };
-  const auto lines_of = [&](std::size_t r) {
-    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks_[r].lines.span(),
-                        LineConstraints::Workspace::take(scratch, tracks_[r].lines.size()));
-    set.set_reference(r, config.noise.line_correlation, weight);
-    return set;
-  };
-  std::array<PointConstraints, kMaxReferences> points{
-      points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
-  std::array<LineConstraints, kMaxReferences> lines{
-      lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
-  const auto surfaces_of = [&](std::size_t r) {
-    SurfaceConstraints set(tracks_[r].surfaces.span(),
-                           SurfaceConstraints::Workspace::take(scratch, tracks_[r].surfaces.size()));
-    set.set_reference(r, config.noise.surface_correlation, weight);
-    return set;
-  };
-  std::array<SurfaceConstraints, kMaxReferences> surfaces{
-      surfaces_of(0), last > 0 ? surfaces_of(last) : SurfaceConstraints({}, {})};
+  FeatureConstraints constraints = constraints_of(features, tracks_, config.noise, scratch);
   std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
   for (std::size_t r = 0; r < features.size(); ++r) {
-    sets[points_set(r)] = &points[r];
-    sets[lines_set(r)] = &lines[r];
+    sets[points_set(r)] = &constraints.points[r];
+    sets[lines_set(r)] = &constraints.lines[r];
   }
   std::size_t set_count = matched_sets(features.size());
   const SensedMotion& sensed = current.sensed;
@@ -119,7 +129,7 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     sets[set_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
   }
-  for (SurfaceConstraints& set : surfaces)
+  for (SurfaceConstraints& set : constraints.surfaces)
     if (set.size() > 0) sets[set_count++] = &set;
 
   tracked.exposure = {};
@@ -127,14 +137,19 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
                   tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
-    std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
-    std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
+    const std::span<const std::uint8_t> points = constraints.points[r].inliers();
+    const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
+    std::copy(points.begin(), points.end(), tracks_[r].point_inliers.begin());
+    std::copy(lines.begin(), lines.end(), tracks_[r].line_inliers.begin());
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
+    const std::size_t last = features.size() - 1;
     const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
-    tracked.shown = residual_scales(camera.pinhole, points[last], lines[last], T_current_last, scratch);
-    tracked.shown.surfaces = surface_scale(surfaces[last], T_current_last, scratch);
+    const Pinhole& pinhole = current.extraction.camera().pinhole;
+    tracked.shown =
+        residual_scales(pinhole, constraints.points[last], constraints.lines[last], T_current_last, scratch);
+    tracked.shown.surfaces = surface_scale(constraints.surfaces[last], T_current_last, scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
 }
