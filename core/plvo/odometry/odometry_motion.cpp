@@ -47,9 +47,13 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 // The keyframe, which is the base, and the last good frame, as far as the policy wants both.
 std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
   const MotionReference last = last_from_keyframe();
-  references[0] = {&frame(keyframe_).features, prior_of(keyframe_, stamp_ns), {}, last};
+  references[0] = {.features = &frame(keyframe_).features,
+                   .prior = prior_of(keyframe_, stamp_ns),
+                   .pose = {},
+                   .last = last};
   if (!uses_both_references()) return 1;
-  references[1] = {&frame(last_).features, prior_of(last_, stamp_ns), last, {}};
+  references[1] = {
+      .features = &frame(last_).features, .prior = prior_of(last_, stamp_ns), .pose = last, .last = {}};
   return 2;
 }
 
@@ -61,27 +65,28 @@ void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked
   const std::size_t count = choose_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
-  const Reference& latest = references[count - 1];
+  const std::span<const Reference> all = std::span(references).first(count);
+  const Reference& latest = all.back();
+  const auto refine = [&](const Se3& T_current_base) {
+    rooms_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
+    return tracked.motion.status == StatusCode::kOk;
+  };
+  const auto find = [&](const Reference& from, double radius_px) {
+    rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
+    if (tracked.motion.status != StatusCode::kOk) return false;
+    return !config().points.registered ||
+           refine(tracked.motion.T_current_reference * from.pose.T_reference_base);
+  };
   Se3 T_current_latest;
   if (config().points.registered &&
-      rooms_.tracking.align(latest, current, arena_, T_current_latest, result)) {
-    rooms_.tracking.refine(std::span(references).first(count), current,
-                           T_current_latest * latest.pose.T_reference_base, arena_, tracked, result);
-    if (tracked.motion.status == StatusCode::kOk) return;
-  }
-  for (std::size_t attempt = 0; attempt <= count; ++attempt) {
-    const bool wide = attempt > 0;
-    Reference from = references[count - (wide ? attempt : 1)];
-    if (wide && !sensed_.known()) from.prior.T_current_reference = Se3{};
-    rooms_.tracking.find(from, current,
-                         wide ? config().references.wide_search_px : config().points.match.radius_px, arena_,
-                         tracked, result);
-    if (tracked.motion.status != StatusCode::kOk) continue;
-    if (!config().points.registered) return;
-    const Se3 T_current_base = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    rooms_.tracking.refine(std::span(references).first(count), current, T_current_base, arena_, tracked,
-                           result);
-    if (tracked.motion.status == StatusCode::kOk) return;
+      rooms_.tracking.align(latest, current, arena_, T_current_latest, result) &&
+      refine(T_current_latest * latest.pose.T_reference_base))
+    return;
+  if (find(latest, config().points.match.radius_px)) return;
+  for (std::size_t r = count; r-- > 0;) {
+    Reference anywhere = references[r];
+    if (!sensed_.known()) anywhere.prior.T_current_reference = Se3{};
+    if (find(anywhere, config().references.wide_search_px)) return;
   }
 }
 
