@@ -25,6 +25,7 @@
 #include "plvo/lines/line_match.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/lines/msld.hpp"
+#include "plvo/odometry/config.hpp"
 #include "plvo/replay/calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 
