@@ -26,18 +26,6 @@ TEST(FixedVector, RefusesAndCountsWhatDoesNotFit) {
   EXPECT_EQ(v.dropped(), 0U);
 }
 
-TEST(FixedVector, TruncateShrinksAndNeverGrows) {
-  std::array<int, 4> storage{};
-  FixedVector<int> v{std::span(storage)};
-  for (int i = 0; i < 4; ++i) v.push_back(i);
-  v.truncate(9);
-  EXPECT_EQ(v.size(), 4U);
-  v.truncate(2);
-  EXPECT_EQ(v.size(), 2U);
-  EXPECT_TRUE(v.push_back(7));
-  EXPECT_EQ(v[2], 7);
-}
-
 TEST(FixedVector, IteratesOverWhatItHolds) {
   std::array<int, 8> storage{9, 9, 9, 9, 9, 9, 9, 9};
   FixedVector<int> v{std::span(storage)};

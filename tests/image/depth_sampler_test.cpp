@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWidth = 48;
 constexpr int kHeight = 36;
+constexpr int kReach = 2;       // px: windows of 5 × 5
 constexpr double kUnit = 5e-5;  // m: fine steps, so that only the sampler's own errors are seen
 
 // A depth image made from a function of the pixel, in metres; no lens.
@@ -63,11 +64,11 @@ TEST(DepthSampler, ASlopeWidensSigmaByTheRegistration) {
   for (double registration : {0.5, 2.0}) {
     const DepthSampler sampler = scene.sampler(registration);
     const double expected = std::hypot(sampler.noise().sigma(z), registration * slope);
-    EXPECT_NEAR(sampler.sample(u, v).sigma_m, expected, 0.02 * expected);
-    EXPECT_GT(sampler.sample(u, v).sigma_m, sampler.noise().sigma(z));
+    EXPECT_NEAR(sampler.sample(u, v, kReach).sigma_m, expected, 0.02 * expected);
+    EXPECT_GT(sampler.sample(u, v, kReach).sigma_m, sampler.noise().sigma(z));
   }
   const Scene flat([](int, int) { return 1.4; });
-  EXPECT_NEAR(flat.sampler(2).sample(u, v).sigma_m, DepthNoise{}.sigma(1.4), 1e-6);
+  EXPECT_NEAR(flat.sampler(2).sample(u, v, kReach).sigma_m, DepthNoise{}.sigma(1.4), 1e-6);
 }
 
 TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
@@ -75,28 +76,28 @@ TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
   const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
   const DepthSampler sampler = scene.sampler();
   for (double u : {22.0, 23.0, 23.4, 24.0, 25.0}) {
-    const DepthSample sample = sampler.sample(u, 18);
+    const DepthSample sample = sampler.sample(u, 18, kReach);
     EXPECT_NEAR(sample.depth_m, 1.0, 1e-9) << u;
     EXPECT_TRUE(sample.on_edge) << u;
     EXPECT_NEAR(sample.sigma_m, 2 * sampler.noise().sigma(1.0), 1e-9) << u;
   }
-  EXPECT_NEAR(sampler.sample(21, 18).depth_m, 1.0, 1e-9);
-  EXPECT_FALSE(sampler.sample(21, 18).on_edge);
-  EXPECT_NEAR(sampler.sample(26, 18).depth_m, 1.5, 1e-9);
-  EXPECT_FALSE(sampler.sample(26, 18).on_edge);
+  EXPECT_NEAR(sampler.sample(21, 18, kReach).depth_m, 1.0, 1e-9);
+  EXPECT_FALSE(sampler.sample(21, 18, kReach).on_edge);
+  EXPECT_NEAR(sampler.sample(26, 18, kReach).depth_m, 1.5, 1e-9);
+  EXPECT_FALSE(sampler.sample(26, 18, kReach).on_edge);
 }
 
 TEST(DepthSampler, OneOrTwoPixelsThatFlyBeforeTheSurfaceAreNone) {
   for (const int flying : {1, 2}) {
     Scene scene([](int, int) { return 1.5; });
     for (int i = 0; i < flying; ++i) scene.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
-    const DepthSample sample = scene.sampler().sample(23, 18);
+    const DepthSample sample = scene.sampler().sample(23, 18, kReach);
     EXPECT_NEAR(sample.depth_m, 1.5, 1e-9) << flying;
   }
   // Three are a surface.
   Scene thin([](int, int) { return 1.5; });
   for (int i = 0; i < 3; ++i) thin.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
-  EXPECT_NEAR(thin.sampler().sample(23, 18).depth_m, 0.75, 1e-3);
+  EXPECT_NEAR(thin.sampler().sample(23, 18, kReach).depth_m, 0.75, 1e-3);
 }
 
 TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
@@ -113,9 +114,10 @@ TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
   const DepthSampler at_rest = scene.sampler();
   const DepthSampler turning = at_rest.with(Exposure(camera, velocity, 0.01));
   for (const double u : {14.0, 16.0, 22.0, 26.0})
-    EXPECT_NEAR(turning.sample(u, 18).depth_m, at_rest.sample(u + shift_px, 18).depth_m, 0.01) << u;
-  EXPECT_NEAR(turning.sample(22, 18).depth_m, 1.5, 0.01);
-  EXPECT_NEAR(at_rest.sample(22, 18).depth_m, 1.0, 0.01);
+    EXPECT_NEAR(turning.sample(u, 18, kReach).depth_m, at_rest.sample(u + shift_px, 18, kReach).depth_m, 0.01)
+        << u;
+  EXPECT_NEAR(turning.sample(22, 18, kReach).depth_m, 1.5, 0.01);
+  EXPECT_NEAR(at_rest.sample(22, 18, kReach).depth_m, 1.0, 0.01);
 }
 
 TEST(DepthSampler, NoiseAndSteepSurfacesAreNoEdge) {
@@ -123,8 +125,8 @@ TEST(DepthSampler, NoiseAndSteepSurfacesAreNoEdge) {
   const auto step = [](double jump_m) {
     return Scene([=](int x, int) { return x <= 23 ? 1.0 : 1.0 + jump_m; });
   };
-  EXPECT_FALSE(step(0.039).sampler().sample(23, 18).on_edge);
-  EXPECT_TRUE(step(0.041).sampler().sample(23, 18).on_edge);
+  EXPECT_FALSE(step(0.039).sampler().sample(23, 18, kReach).on_edge);
+  EXPECT_TRUE(step(0.041).sampler().sample(23, 18, kReach).on_edge);
 }
 
 TEST(DepthSampler, AHalfEmptyWindowHasNoDepth) {
@@ -135,24 +137,24 @@ TEST(DepthSampler, AHalfEmptyWindowHasNoDepth) {
       scene.units[static_cast<std::size_t>((13 + i / 5) * kWidth + 18 + i % 5)] = 0;
   };
   clear(12);
-  EXPECT_NEAR(scene.sampler().sample(20, 15).depth_m, 1.2, 1e-9) << "13 of 25 are left";
+  EXPECT_NEAR(scene.sampler().sample(20, 15, kReach).depth_m, 1.2, 1e-9) << "13 of 25 are left";
   clear(13);
-  EXPECT_EQ(scene.sampler().sample(20, 15).depth_m, 0) << "12 of 25 are left";
-  EXPECT_EQ(scene.sampler().sample(20, 15).sigma_m, 0);
+  EXPECT_EQ(scene.sampler().sample(20, 15, kReach).depth_m, 0) << "12 of 25 are left";
+  EXPECT_EQ(scene.sampler().sample(20, 15, kReach).sigma_m, 0);
   const Scene empty([](int, int) { return 0.0; });
-  EXPECT_EQ(empty.sampler().sample(20, 15).depth_m, 0);
+  EXPECT_EQ(empty.sampler().sample(20, 15, kReach).depth_m, 0);
 }
 
 TEST(DepthSampler, AtTheBorderTheWindowIsWhatTheImageHolds) {
   const Plane plane{0.7, 0.001, 0.0007};
   const Scene scene(plane);
   const DepthSampler sampler = scene.sampler();
-  EXPECT_EQ(sampler.sample(0, 0).depth_m, 0) << "a corner holds 9 of 25 pixels";
+  EXPECT_EQ(sampler.sample(0, 0, kReach).depth_m, 0) << "a corner holds 9 of 25 pixels";
   const double right = kWidth - 1;
   const double bottom = kHeight - 1;
-  EXPECT_EQ(sampler.sample(right, bottom).depth_m, 0);
-  for (double x : {0.0, right}) EXPECT_NEAR(sampler.sample(x, 18).depth_m, plane(x, 18), kUnit);
-  for (double y : {0.0, bottom}) EXPECT_NEAR(sampler.sample(20, y).depth_m, plane(20, y), kUnit);
+  EXPECT_EQ(sampler.sample(right, bottom, kReach).depth_m, 0);
+  for (double x : {0.0, right}) EXPECT_NEAR(sampler.sample(x, 18, kReach).depth_m, plane(x, 18), kUnit);
+  for (double y : {0.0, bottom}) EXPECT_NEAR(sampler.sample(20, y, kReach).depth_m, plane(20, y), kUnit);
   EXPECT_EQ(sampler.at(-1, 5), 0);
   EXPECT_EQ(sampler.at(5, -1), 0);
   EXPECT_EQ(sampler.at(kWidth, 5), 0);

@@ -12,6 +12,7 @@
 namespace plvo {
 namespace {
 
+using test::kSeed;
 using test::LineScene;
 
 // The four numbers of a line that a match can see: where it crosses the two planes z = const … here, the
@@ -63,7 +64,7 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
     seen.a = middle - half * d + (shift - half * turn) * n;
     seen.b = middle + half * d + (shift + half * turn) * n;
     Line3d line;
-    ASSERT_EQ(fit_line3d(seen, samples, pinhole, config, line).outcome, Line3dOutcome::kOk);
+    ASSERT_EQ(fit_line3d(seen, samples, pinhole, config, kSeed, line).outcome, Line3dOutcome::kOk);
     const Offsets o = across(line, scene);
     nees += o.error.dot(Vector4(test::solve_positive(o.covariance, o.error))) / trials;
     Vector6 e;
@@ -106,7 +107,7 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
       config.depth_correlation_px = nees == &as_stated ? run : 1;
       config.trust_residuals = nees == &as_seen;
       Line3d line;
-      ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, line).outcome, Line3dOutcome::kOk);
+      ASSERT_EQ(fit_line3d(scene.segment, samples, pinhole, config, kSeed, line).outcome, Line3dOutcome::kOk);
       const Vector3 d = (scene.b - scene.a).normalized();
       const Vector3 across_plane = scene.a.cross(scene.b).normalized();
       const Vector3 in_plane = d.cross(across_plane);
@@ -155,7 +156,7 @@ TEST(OccludingEdge, BackgroundDoesNotDragTheLine) {
           Line3dConfig config;
           config.side_reach_px = reach;
           Line3d line;
-          if (observe_line(border.segment, noisy, pinhole, DepthNoise{}, config, line).outcome !=
+          if (observe_line(border.segment, noisy, pinhole, DepthNoise{}, config, kSeed, line).outcome !=
               Line3dOutcome::kOk)
             return 0;
           return test::offset_from_line(line.a, a, b) < 0.03 && test::offset_from_line(line.b, a, b) < 0.03

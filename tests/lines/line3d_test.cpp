@@ -10,6 +10,7 @@
 namespace plvo {
 namespace {
 
+using test::kSeed;
 using test::LineScene;
 
 double signed_distance(const Whitened& s, const PlaneLine& line) {
@@ -80,7 +81,7 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
     config.inlier_chi_square = 1e9;  // everything is consensus, in both
     const LineSamples samples = scene.noisy_samples(random, config.sigma_p_px, DepthNoise{});
     Line3d line;
-    const Line3dReport report = fit_line3d(scene.segment, samples, pinhole, config, line);
+    const Line3dReport report = fit_line3d(scene.segment, samples, pinhole, config, kSeed, line);
     ASSERT_EQ(report.outcome, Line3dOutcome::kOk);
     std::vector<Point3d> points;
     for (const LineSample& s : samples.with_depth()) {
@@ -105,7 +106,8 @@ TEST(Line3d, EndsAreOrderedAsTheSegments) {
   const Pinhole pinhole;
   const LineScene scene = LineScene::random(random, pinhole);
   Line3d line;
-  ASSERT_EQ(fit_line3d(scene.segment, scene.exact_samples(), pinhole, {}, line).outcome, Line3dOutcome::kOk);
+  ASSERT_EQ(fit_line3d(scene.segment, scene.exact_samples(), pinhole, {}, kSeed, line).outcome,
+            Line3dOutcome::kOk);
   EXPECT_LT((project(pinhole, line.a) - scene.segment.a).norm(), 1e-6);
   EXPECT_LT((project(pinhole, line.b) - scene.segment.b).norm(), 1e-6);
   EXPECT_LT((line.a - scene.a).norm() + (line.b - scene.b).norm(), 1e-8);
@@ -121,7 +123,7 @@ TEST(Line3d, WrongDepthsAreLeftOut) {
     for (int i = 0; i < samples.count; ++i)  // a third of them far behind
       if (i % 3 == 1) samples.sample[static_cast<std::size_t>(i)].depth_m *= 1.3 + random.uniform();
     Line3d line;
-    if (fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), line).outcome !=
+    if (fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), kSeed, line).outcome !=
         Line3dOutcome::kOk)
       continue;
     ++found;
@@ -142,8 +144,8 @@ TEST(Line3d, TwoSurfacesAreNotOneLine) {
     for (int i = samples.count * 7 / 10; i < samples.count; ++i)
       samples.sample[static_cast<std::size_t>(i)].depth_m += 0.4;
     Line3d line;
-    EXPECT_NE(fit_line3d(scene.segment, samples, pinhole, {}, line).outcome, Line3dOutcome::kOk);
-    with_paper += fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), line).outcome ==
+    EXPECT_NE(fit_line3d(scene.segment, samples, pinhole, {}, kSeed, line).outcome, Line3dOutcome::kOk);
+    with_paper += fit_line3d(scene.segment, samples, pinhole, Line3dConfig::paper(), kSeed, line).outcome ==
                   Line3dOutcome::kOk;
   }
   EXPECT_GT(with_paper, 30);
@@ -163,7 +165,8 @@ TEST(Line3d, MissingDepth) {
           samples.sample[static_cast<std::size_t>(kept++)] = samples.sample[static_cast<std::size_t>(i)];
       samples.count = kept;
       Line3d line;
-      found += fit_line3d(scene.segment, samples, pinhole, {}, line).outcome == Line3dOutcome::kOk ? 1 : 0;
+      found +=
+          fit_line3d(scene.segment, samples, pinhole, {}, kSeed, line).outcome == Line3dOutcome::kOk ? 1 : 0;
     }
     if (percent < 60)
       EXPECT_GE(found, 38) << percent;
@@ -189,7 +192,8 @@ TEST(Line3d, PerspectiveAmbiguityIsRejected) {
         s.depth_m += s.sigma_d_m * test::gaussian(random);
       }
       Line3d line;
-      accepted += fit_line3d(scene.segment, samples, pinhole, {}, line).outcome == Line3dOutcome::kOk ? 1 : 0;
+      accepted +=
+          fit_line3d(scene.segment, samples, pinhole, {}, kSeed, line).outcome == Line3dOutcome::kOk ? 1 : 0;
     }
     EXPECT_LE(accepted, 4) << sagitta_m;
   }
@@ -202,9 +206,9 @@ TEST(Line3d, SameBitsWhateverTheOrderOfCalls) {
   LineSamples samples = one.noisy_samples(random, 0.5, DepthNoise{});
   for (int i = 0; i < samples.count; i += 4) samples.sample[static_cast<std::size_t>(i)].depth_m += 1;
   Line3d first, other, again;
-  (void)fit_line3d(one.segment, samples, pinhole, {}, first);
-  (void)fit_line3d(two.segment, two.exact_samples(), pinhole, {}, other);
-  (void)fit_line3d(one.segment, samples, pinhole, {}, again);
+  (void)fit_line3d(one.segment, samples, pinhole, {}, kSeed, first);
+  (void)fit_line3d(two.segment, two.exact_samples(), pinhole, {}, kSeed, other);
+  (void)fit_line3d(one.segment, samples, pinhole, {}, kSeed, again);
   EXPECT_EQ(first.a, again.a);
   EXPECT_EQ(first.Sigma, again.Sigma);
 }
@@ -212,15 +216,15 @@ TEST(Line3d, SameBitsWhateverTheOrderOfCalls) {
 TEST(Line3d, NothingToFit) {
   Line3d line;
   Segment s;
-  EXPECT_EQ(
-      observe_line(s, test::DepthFunction{[](int, int) { return 1.0; }}, Pinhole{}, DepthNoise{}, {}, line)
-          .outcome,
-      Line3dOutcome::kTooFewDepths);
+  EXPECT_EQ(observe_line(s, test::DepthFunction{[](int, int) { return 1.0; }}, Pinhole{}, DepthNoise{}, {},
+                         kSeed, line)
+                .outcome,
+            Line3dOutcome::kTooFewDepths);
   s.b = {30, 0};
-  EXPECT_EQ(
-      observe_line(s, test::DepthFunction{[](int, int) { return 0.0; }}, Pinhole{}, DepthNoise{}, {}, line)
-          .outcome,
-      Line3dOutcome::kTooFewDepths);
+  EXPECT_EQ(observe_line(s, test::DepthFunction{[](int, int) { return 0.0; }}, Pinhole{}, DepthNoise{}, {},
+                         kSeed, line)
+                .outcome,
+            Line3dOutcome::kTooFewDepths);
 }
 
 }  // namespace

@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "plvo/base/random.hpp"
 #include "plvo/lines/line3d.hpp"
 
 namespace plvo::test {
+
+inline constexpr std::uint64_t kSeed = 1;  // of the fits
 
 inline double gaussian(Random& random) {
   double sum = 0;

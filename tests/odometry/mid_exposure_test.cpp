@@ -85,7 +85,7 @@ class MidExposureOfAPair : public testing::Test {
         at_mid_exposure(camera, prior, T, reference_.features, current_.features, scratch);
     double sum = 0;
     for (std::size_t i = 0; i < world_.size(); ++i) {
-      const Vector3 now = features.current.at_mid_exposure(current_.features.points.points[i].p);
+      const Vector3 now = features.current_exposure.at_mid_exposure(current_.features.points.points[i].p);
       sum += (now - T * features.reference_points[i].p).squaredNorm();
     }
     return std::sqrt(sum / kPoints);

@@ -13,11 +13,13 @@
 #include "plvo/points/descriptor.hpp"
 #include "plvo/points/detector.hpp"
 #include "texture.hpp"
+#include "whole_window.hpp"
 
 namespace plvo {
 namespace {
 
 using test::GrayImage;
+using test::kWholeWindow;
 
 constexpr int kSide = 150;
 constexpr int kCell = 15;

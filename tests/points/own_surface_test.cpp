@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "plvo/base/random.hpp"
+#include "whole_window.hpp"
 
 namespace plvo {
 namespace {
+
+using test::kWholeWindow;
 
 constexpr int kSceneWidth = 96;
 constexpr int kSceneHeight = 80;

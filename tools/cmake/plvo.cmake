@@ -20,7 +20,7 @@ if(NOT Eigen3_VERSION VERSION_EQUAL PLVO_GOLDEN_EIGEN)
     "golden_test says whether the bits are the same")
 endif()
 
-# How the core is compiled. Loops over pixels are vectorised (plvo_vectorise); those over the three numbers of a point are
+# How the core is compiled. Loops over pixels are vectorised (PLVO_PIXEL_SOURCES); those over the three numbers of a point are
 # not: GCC 12 takes two of them together just behind the stores that made them one by one, and every such load waits for
 # both. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
 # processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised

@@ -32,10 +32,6 @@ class FixedVector {
     size_ = 0;
     dropped_ = 0;
   }
-  // Shrinks; never grows.
-  constexpr void truncate(std::size_t size) {
-    if (size < size_) size_ = size;
-  }
   // Counts elements that a selection rule of the caller's left out.
   constexpr void add_dropped(std::size_t count) { dropped_ += count; }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two pieces of work that may run at the same time, where the platform has a second core to offer
-// (hal/task_pair.hpp). Neither reads what the other writes, so that the result is the same bits whether they
-// do.
+// (plvo/hal/task_pair.hpp). Neither reads what the other writes, so that the result is the same bits whether
+// they do.
 #pragma once
 
 namespace plvo {

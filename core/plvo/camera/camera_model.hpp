@@ -23,8 +23,8 @@ inline constexpr double kKinectReadout_s = 0.0261;
 // the same place, and the depth image's stamp is not looked at.
 struct DepthTiming {
   bool known = false;
-  double delay_s =
-      0;  // depth's middle row is exposed so long after depth's stamp; colour's, at colour's stamp
+  // Depth's middle row is exposed so long after depth's stamp; colour's middle row, at colour's stamp.
+  double delay_s = 0;
   double readout_s = 0;  // as CameraModel::readout_s, of the depth image
 };
 

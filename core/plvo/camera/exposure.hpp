@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// When what is exposed. A rolling shutter exposes one row after the other, and depth is often exposed at
-// another moment than colour; the camera moves meanwhile. With its velocity known, a feature can be carried
-// to where it would have been seen while the middle row of the colour image was exposed, and a frame has one
-// pose again (Ringaby & Forssén, "Scan rectification for structured light range sensors with rolling
-// shutters", ICCV 2011); and the depth of a colour pixel can be read where that pixel's surface was at
-// depth's time.
+// When each row of the colour and of the depth image is exposed. A rolling shutter exposes one row after the
+// other, and depth is often exposed at another moment than colour; the camera moves meanwhile. With its
+// velocity known, a feature can be carried to where it would have been seen while the middle row of the
+// colour image was exposed, and a frame has one pose again (Ringaby & Forssén, "Scan rectification for
+// structured light range sensors with rolling shutters", ICCV 2011); and the depth of a colour pixel can be
+// read where that pixel's surface was at depth's time.
 #pragma once
 
 #include "plvo/camera/camera_model.hpp"

@@ -48,7 +48,7 @@ class InverseDepthPlane {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, q_ = 0, qx_ = 0, qy_ = 0;
 };
 
-struct Reading {
+struct DepthReading {
   double x, y, z;  // offset from (u, v) in px; m
 };
 
@@ -59,18 +59,18 @@ double jump_behind(double depth_m, const DepthNoise& noise) {
 
 // The nearest depth of a surface that at least three readings show: one or two may fly before everything
 // else. 0 when there is none.
-double nearest_surface(std::span<const Reading> readings, const DepthNoise& noise) {
+double nearest_surface(std::span<const DepthReading> readings, const DepthNoise& noise) {
   const std::size_t least = readings.size() < 3 ? readings.size() : 3;
   double nearest = 0;
   for (std::size_t tries = 0; tries < 3; ++tries) {
     double next = 0;
-    for (const Reading& reading : readings)
+    for (const DepthReading& reading : readings)
       if (reading.z > nearest && (next == 0 || reading.z < next)) next = reading.z;
     if (next == 0) return 0;
     nearest = next;
     const double end = nearest + jump_behind(nearest, noise);
     std::size_t support = 0;
-    for (const Reading& reading : readings) support += reading.z >= nearest && reading.z <= end ? 1 : 0;
+    for (const DepthReading& reading : readings) support += reading.z >= nearest && reading.z <= end ? 1 : 0;
     if (support >= least) return nearest;
   }
   return 0;
@@ -112,7 +112,7 @@ DepthSample DepthSampler::sample(double u, double v, int radius) const {
 }
 
 DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
-  std::array<Reading, kMaxWindow> window;
+  std::array<DepthReading, kMaxWindow> window;
   std::size_t count = 0;
   const int x0 = static_cast<int>(u + 0.5);
   const int y0 = static_cast<int>(v + 0.5);

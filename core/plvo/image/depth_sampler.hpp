@@ -77,7 +77,7 @@ class DepthSampler {
   static constexpr int kMaxRadius = 3;
   // The depth at colour pixel (u, v), inside the image, from a plane fitted to the nearer surface in the
   // window of (2·radius+1)² pixels around it; with radius 0 the one reading there.
-  DepthSample sample(double u, double v, int radius = 2) const;
+  DepthSample sample(double u, double v, int radius) const;
 
   const DepthNoise& noise() const { return noise_; }
   const Exposure& exposure() const { return exposure_; }

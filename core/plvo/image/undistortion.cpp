@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "plvo/base/lanes.hpp"
+#include "plvo/math/rounding.hpp"
 
 namespace plvo {
 namespace {
@@ -18,8 +19,7 @@ constexpr int kLaneShift = 16 - kLaneBits;
 constexpr std::int32_t kMaxLane = 12 << kLaneBits;  // times the longest stride still below 2^15
 
 constexpr std::int64_t pair_of(double x, double y) {
-  const auto round = [](double v) { return static_cast<std::int64_t>(v < 0 ? v - 0.5 : v + 0.5); };
-  return round(x * 65536) * (std::int64_t{1} << 32) + round(y * 65536);
+  return round_to<std::int64_t>(x * 65536) * (std::int64_t{1} << 32) + round_to<std::int64_t>(y * 65536);
 }
 std::int64_t pair_of(const Vector2& v) { return pair_of(v.x(), v.y()); }
 

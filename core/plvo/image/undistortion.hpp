@@ -36,7 +36,8 @@ class UndistortionMap {
   // Of ideal the rows from begin to before end.
   void undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const;
 
-  // Where the map says that ideal pixel (x, y) was imaged.
+  // Where the map says that ideal pixel (x, y) was imaged. The images are read without it: it is there for
+  // who wants to know how exact the map is.
   Vector2 position_px(int x, int y) const {
     const std::int64_t at = position(x, y);
     return Vector2(x_of(at), y_of(at)) / (1 << kFractionBits);

@@ -84,7 +84,7 @@ bool confident(int tries, double w) {
 
 // The line with the least MSAC cost of the regression and at most max_ransac_iterations pairs of samples, a
 // quarter of the set apart or more.
-bool ransac(const Samples& samples, const Line3dConfig& config, PlaneLine& best) {
+bool ransac(const Samples& samples, const Line3dConfig& config, std::uint64_t seed, PlaneLine& best) {
   const auto n = static_cast<std::uint32_t>(samples.count);
   const double threshold = config.inlier_chi_square;
   double best_cost = threshold * static_cast<double>(n) + 1;
@@ -95,7 +95,7 @@ bool ransac(const Samples& samples, const Line3dConfig& config, PlaneLine& best)
     best = line;
     if (best_inliers * 20 >= samples.count * 19) return true;
   }
-  Random random(config.seed);
+  Random random(seed);
   for (int i = 0; i < config.max_ransac_iterations; ++i) {
     if (confident(i, static_cast<double>(best_inliers) / static_cast<double>(n))) break;
     const std::uint32_t first = random.below(n);
@@ -284,9 +284,9 @@ void leave_plane(const Segment& segment, const Pinhole& pinhole, const PlaneLine
 // The consensus set and the line that fits it best, in turns; two suffice.
 constexpr int kConsensusRounds = 2;
 
-Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& config, PlaneLine& line,
-                           Line3dReport& report) {
-  if (!ransac(samples, config, line)) return Line3dOutcome::kNoConsensus;
+Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& config, std::uint64_t seed,
+                           PlaneLine& line, Line3dReport& report) {
+  if (!ransac(samples, config, seed, line)) return Line3dOutcome::kNoConsensus;
   if (!re_anchor(line, samples.span().front().t, samples.span().back().t)) return Line3dOutcome::kNoConsensus;
   int consensus = find_consensus(samples, line, config.inlier_chi_square);
   for (int round = 0; round < kConsensusRounds; ++round) {
@@ -304,7 +304,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
 }  // namespace
 
 Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken, const Pinhole& pinhole,
-                        const Line3dConfig& config, Line3d& out) {
+                        const Line3dConfig& config, std::uint64_t seed, Line3d& out) {
   Line3dReport report;
   report.asked = taken.asked;
   report.with_depth = taken.count;
@@ -317,7 +317,7 @@ Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken, const 
   Samples samples;
   whiten_all(taken, config.sigma_p_px, samples);
   PlaneLine line;
-  report.outcome = fit_in_plane(samples, needed, config, line, report);
+  report.outcome = fit_in_plane(samples, needed, config, seed, line, report);
   if (report.outcome != Line3dOutcome::kOk) return report;
 
   // A and B: the feet of the consensus set's two extremities.

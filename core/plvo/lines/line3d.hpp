@@ -44,7 +44,6 @@ struct Line3dConfig {
   // independent σ_p per sample.
   bool trust_segment = true;
   double transverse_floor_px = 0.1;
-  std::uint64_t seed = 1;
 
   static Line3dConfig paper() {
     Line3dConfig config;
@@ -77,18 +76,19 @@ struct Line3dReport {
 };
 
 // The 3D line of the samples, camera frame, metres; a, b ordered as the segment's. `line` is written only on
-// kOk.
+// kOk. seed: of RANSAC's random generator.
 Line3dReport fit_line3d(const Segment& segment, const LineSamples& samples, const Pinhole& pinhole,
-                        const Line3dConfig& config, Line3d& line);
+                        const Line3dConfig& config, std::uint64_t seed, Line3d& line);
 
 // Sampling and fit in one; depth as in sample_segment.
 template <typename Depth>
 Line3dReport observe_line(const Segment& segment, const Depth& depth, const Pinhole& pinhole,
-                          const DepthNoise& noise, const Line3dConfig& config, Line3d& line) {
+                          const DepthNoise& noise, const Line3dConfig& config, std::uint64_t seed,
+                          Line3d& line) {
   LineSamples samples;
   const SampleOptions options{config.max_samples, config.sample_spacing_px, config.side_reach_px};
   sample_segment(segment, noise, options, depth, samples);
-  return fit_line3d(segment, samples, pinhole, config, line);
+  return fit_line3d(segment, samples, pinhole, config, seed, line);
 }
 
 }  // namespace plvo

@@ -17,8 +17,8 @@ namespace plvo {
 
 struct LineMatchConfig {
   double max_angle_rad = 0.2;  // between predicted and current direction
-  double max_offset_px =
-      40;                    // across the predicted segment, at the current one's middle; slack along it, too
+  // Across the predicted segment, at the current one's middle; so much slack along it, too.
+  double max_offset_px = 40;
   double min_overlap = 0.5;  // of the shorter one's length
   int max_distance = 35000;  // of descriptors, squared
   double max_ratio = 0.85;   // of the distances, not squared, to the best and to the next best

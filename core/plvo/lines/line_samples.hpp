@@ -83,9 +83,7 @@ int sample_count(const Segment& segment, const SampleOptions& options);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
-// depth, which DepthSampler is: locate(Vector2&) finds where the depth image shows what is seen at a pixel,
-// at(int x, int y) returns metres there, 0 where there is none or outside the image, and at_colour_time(v,
-// located, metres) carries a reading back to the moment of colour's row v.
+// depth: a DepthSampler, or in tests something with its functions locate(), at() and at_colour_time().
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -45,10 +46,7 @@ constexpr std::array<BandWeights, kMsldBands> kMsldWeights = make_msld_weights()
 
 // Positions in the image in 1/65536 px.
 constexpr int kPositionBits = 16;
-std::int32_t to_fixed(double x) {
-  const double scaled = x * (1 << kPositionBits);
-  return static_cast<std::int32_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
-}
+std::int32_t to_fixed(double x) { return round_to<std::int32_t>(x * (1 << kPositionBits)); }
 
 struct Region {
   std::int32_t x, y;               // of the first column's first row
@@ -90,7 +88,7 @@ bool inside(const Region& region, GrayView image) {
   return true;
 }
 
-struct Sums {
+struct ColumnSums {
   std::array<float, kSums> first{};   // Σ V over the columns
   std::array<float, kSums> second{};  // Σ V²
 };
@@ -120,7 +118,7 @@ void read_column(GrayView image, const Region& region, std::int32_t x, std::int3
 }
 
 // The four parts are independent lanes, each summed in one order: a compiler may do them side by side.
-void add_column(const Column& column, Sums& sums) {
+void add_column(const Column& column, ColumnSums& sums) {
   for (std::size_t band = 0; band < kMsldBands; ++band) {
     std::array<float, 4> V{};
     for (std::size_t o = 0; o < 2 * kMsldReach + 1; ++o)
@@ -134,7 +132,7 @@ void add_column(const Column& column, Sums& sums) {
 }
 
 template <bool kInside>
-void sum_region(GrayView image, const Region& region, Sums& sums) {
+void sum_region(GrayView image, const Region& region, ColumnSums& sums) {
   Column column{};
   std::int32_t x = region.x, y = region.y;
   for (int c = 0; c < region.columns; ++c) {
@@ -166,7 +164,7 @@ LineDescriptor describe_segment(GrayView image, double scale, const Segment& seg
   LineDescriptor descriptor;
   if (!(segment.length_px() > 0)) return descriptor;
   const Region region = make_region(scale, segment);
-  Sums sums;
+  ColumnSums sums;
   if (inside(region, image))
     sum_region<true>(image, region, sums);
   else

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Box L4 of the paper: the mean–standard-deviation line descriptor of Wang, Wu and Hu, "MSLD: A robust
 // descriptor for line matching", Pattern Recognition 42(5), 2009. A region along the segment is cut into
-// kBands bands parallel to it. In every column across the segment, each band sums the gradients as they stand
-// to the segment: towards its brighter side, away from it, along it and against it, four non-negative
+// kMsldBands bands parallel to it. In every column across the segment, each band sums the gradients as they
+// stand to the segment: towards its brighter side, away from it, along it and against it, four non-negative
 // numbers. The descriptor is their mean and their SD over the columns. Both halves are normalised by
 // themselves, so a linear change of the light cancels; an offset cancels in the gradient already.
 //

@@ -107,7 +107,7 @@ class LevenbergMarquardt {
     }
   }
 
-  // H and g at the state where solve() left the problem.
+  // H and g at the state where solve() left the problem; g for proofs alone, that it is where solve() says.
   const Matrix<N, N>& hessian() const { return H_; }
   const Vector<N>& gradient() const { return g_; }
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 
+#include "plvo/math/rounding.hpp"
+
 namespace plvo {
 namespace {
 
@@ -55,7 +57,7 @@ struct Reduced {
 
 Reduced reduce(double radians) {
   const double turns = radians * (2.0 / kPi);
-  const auto k = static_cast<std::int64_t>(turns + (turns < 0 ? -0.5 : 0.5));
+  const auto k = round_to<std::int64_t>(turns);
   const auto n = static_cast<double>(k);
   const double x = ((radians - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow;
   return {x, static_cast<int>(k & 3)};
@@ -140,7 +142,7 @@ double exp(double x) {
   constexpr double kLn2High = 6.93147180369123816490e-01;
   constexpr double kLn2Low = 1.90821492927058770002e-10;
   const double turns = x * 1.44269504088896338700;
-  auto k = static_cast<int>(turns + (turns < 0 ? -0.5 : 0.5));
+  auto k = round_to<int>(turns);
   const double r = (x - k * kLn2High) - k * kLn2Low;
   double sum = 1;
   for (int n = 16; n >= 1; --n) sum = 1 + sum * r / n;

@@ -68,10 +68,10 @@ class ConstraintSet {
   virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                            JointInformation& sum) const = 0;
 
-  // Which of the references the matches are with (motion_problem.hpp), 0 unless said otherwise; ρ, the
-  // correlation between the residuals of any two matches: errors that the features of a scene share do not
-  // average out, so n matches weigh as n / (1 + (n − 1) ρ) independent ones; and what each weighs besides,
-  // less than 1 where another set judges the same measurements.
+  // reference: which of them the matches are with (motion_problem.hpp), 0 unless said otherwise. correlation:
+  // between the residuals of any two matches; errors that the features of a scene share do not average out,
+  // so n matches weigh as n / (1 + (n − 1) correlation) independent ones. weight: of each match besides, less
+  // than 1 where another set judges the same measurements.
   void set_reference(std::size_t reference, double correlation, double weight = 1) {
     reference_ = reference;
     correlation_ = correlation;

@@ -14,9 +14,9 @@ namespace {
 // A segment must be longer than this many SDs of its ends, or its direction is not known well enough to
 // linearise.
 constexpr double kMinLengthSigmas = 4;
-// Squared, of four offsets (99 % of χ²(4)): what lies farther off is no noise, and tells nothing of the noise
-// along the line.
-constexpr double kNoise = 13.3;
+// The squared distance of a match's four offsets, 99 % quantile of χ²(4): what lies farther off is no noise,
+// and tells nothing of the noise along the line.
+constexpr double kFarthestNoise = 13.3;
 
 bool is_measurement(const Line3d& line) {
   Cholesky<6> cholesky;
@@ -140,7 +140,7 @@ bool observe_both(const Line3d& reference, const Line3d& current, const Se3& T, 
   at.w_reference = -N.transpose_times(at.w);
   at.y = first.e - Vector4(first.C.lazyProduct(at.w_reference));
   const double squared = c.dot(at.w);
-  const double noise = squared > kNoise ? kNoise / squared : 1;
+  const double noise = squared > kFarthestNoise ? kFarthestNoise / squared : 1;
   at.w *= noise;
   at.w_reference *= noise;
   return true;

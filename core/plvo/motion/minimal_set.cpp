@@ -132,7 +132,8 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
   const double least_sine = kHeightSigmas * sigma > kMinSine ? kHeightSigmas * sigma : kMinSine;
   if (!(largest_sine_squared > least_sine * least_sine)) return MinimalSetStatus::kDegenerate;
 
-  double best_trace = -4;  // below the trace of any rotation
+  constexpr double kBelowAnyTrace = -4;  // of a rotation
+  double best_trace = kBelowAnyTrace;
   for (unsigned signs = 0; signs < 8; ++signs) {
     double s[3];
     for (unsigned i = 0; i < 3; ++i) s[i] = (signs >> i & 1) != 0 ? -1 : 1;
@@ -157,7 +158,7 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
     best_trace = trace;
     T = {R, t};
   }
-  return best_trace > -4 ? MinimalSetStatus::kSolved : MinimalSetStatus::kInconsistent;
+  return best_trace > kBelowAnyTrace ? MinimalSetStatus::kSolved : MinimalSetStatus::kInconsistent;
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ Status refuse(const char* part, const char* what) {
   return Status(StatusCode::kInvalidArgument, "prior: ").append(part).append(" ").append(what);
 }
 
-bool is_covariance(const Matrix3& C) {
+bool is_positive_definite_covariance(const Matrix3& C) {
   if (!C.allFinite()) return false;
   const double largest = C.cwiseAbs().maxCoeff();
   if (!((C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest)) return false;
@@ -30,17 +30,19 @@ constexpr const char* kCovariance =
 Status MotionPrior::validate() const {
   if (rotation && !is_rotation(rotation->R_now_before))
     return refuse("rotation", "must be a rotation matrix");
-  if (rotation && !is_covariance(rotation->covariance)) return refuse("rotation", kCovariance);
+  if (rotation && !is_positive_definite_covariance(rotation->covariance))
+    return refuse("rotation", kCovariance);
   if (translation && !(translation->t_now_before.cwiseAbs().maxCoeff() <= kFarthest_m))
     return refuse("translation", "must be finite and at most 1000 m");
   if (translation && !translation->t_now_before.allFinite())
     return refuse("translation", "must be finite and at most 1000 m");
-  if (translation && !is_covariance(translation->covariance)) return refuse("translation", kCovariance);
+  if (translation && !is_positive_definite_covariance(translation->covariance))
+    return refuse("translation", kCovariance);
   if (!gravity) return {};
   const double length_squared = gravity->down.squaredNorm();
   if (!(length_squared > 1e-12 && length_squared < 1e12))
     return refuse("gravity", "must be a finite direction with a length");
-  if (!is_covariance(gravity->covariance)) return refuse("gravity", kCovariance);
+  if (!is_positive_definite_covariance(gravity->covariance)) return refuse("gravity", kCovariance);
   if (!(gravity->offset_sigma >= 0 && gravity->offset_sigma <= 1))
     return refuse("gravity", "must have an offset_sigma between 0 and 1");
   return {};

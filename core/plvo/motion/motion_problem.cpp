@@ -27,8 +27,7 @@ namespace {
 constexpr int kJointSize = JointInformation::kSize;
 using Joint = Matrix<kJointSize, kJointSize>;
 
-// Of a set's n inliers, whose residuals correlate by ρ: n / (1 + (n − 1) ρ) independent ones, times what each
-// weighs, as a share of n.
+// What a set's n inliers weigh, as a share of what n independent ones would (ConstraintSet::set_reference).
 double share_of(const ConstraintSet& set) {
   int n = 0;
   for (const std::uint8_t flag : set.inliers()) n += flag;

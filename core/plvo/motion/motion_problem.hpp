@@ -74,8 +74,8 @@ class MotionProblem {
   MotionReferences references_;
   std::array<Matrix6, kMaxReferences> root_;  // of the references' covariances
   Kernels kernels_;
-  std::array<double, kMaxConstraintKinds>
-      share_{};  // that a kind's inliers weigh, of as many independent ones
+  // What a kind's inliers weigh together, as a share of what as many independent ones would.
+  std::array<double, kMaxConstraintKinds> share_{};
   Se3 T_, candidate_;
   SharedErrors shared_;
   SharedErrors::Vector candidate_shared_;

@@ -16,8 +16,7 @@ enum class RobustLoss : std::uint8_t {
   kNone,
   // ρ(s) = s up to k², 2 k √s − k² beyond. k² is the 95 % quantile of χ²(dof), so that 19 of 20 good matches
   // keep weight 1 whatever their kind: C stays honest under Gaussian noise, and the problem stays convex
-  // where
-  // it was.
+  // where it was.
   kHuber,
 };
 

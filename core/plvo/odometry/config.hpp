@@ -8,6 +8,7 @@
 #include "plvo/base/side_by_side.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/image/undistortion.hpp"
 #include "plvo/lines/line3d.hpp"
 #include "plvo/lines/line_match.hpp"
 #include "plvo/motion/motion_config.hpp"
@@ -19,6 +20,10 @@ namespace plvo {
 
 // Capacities: fixed by init, never exceeded. What does not fit is dropped by a stated rule and counted.
 struct Limits {
+  // Images have at least and at most so many pixels a side.
+  static constexpr int kLeastSide = 64;
+  static constexpr int kMostSide = UndistortionMap::kMaxSide;
+
   int width = 640;      // px, largest image
   int height = 480;     // px
   int keypoints = 400;  // per frame
@@ -46,10 +51,11 @@ struct Limits {
 enum class Features : std::uint8_t { kPoints, kLines, kBoth };
 
 enum class ReferencePolicy : std::uint8_t {
-  kPreviousFrame,        // the paper: every frame against the one before
-  kKeyframe,             // against the last keyframe, replaced when too few of its features are still seen
-  kKeyframeAndPrevious,  // against both in one estimate: the keyframe holds the drift, the last frame the
-                         // rest
+  kPreviousFrame,  // the paper: every frame against the one before
+  kKeyframe,       // against the last keyframe, replaced when too few of its features are still seen
+  // Against both in one estimate: the keyframe keeps the drift small, and most features are found again in
+  // the last frame.
+  kKeyframeAndPrevious,
 };
 
 struct PointConfig {
@@ -61,8 +67,8 @@ struct PointConfig {
   // σ_p on the finest level, doubling with each: what registration is never better than. Without registration
   // it is that of a detected keypoint.
   double sigma_px = 0.1;
-  int depth_reach_px =
-      2;  // depth is that of a plane through the pixels so far around, 0 … 3; 0: of the pixel alone
+  // Depth is that of a plane through the pixels so far around, 0 … 3; 0: of the pixel alone.
+  int depth_reach_px = 2;
 };
 
 struct LineConfig {
@@ -138,7 +144,8 @@ struct Config {
   LineConfig lines;
   MotionConfig motion;
   BudgetConfig budget;
-  std::uint64_t seed = 1;  // of RANSAC's random generator
+  // Of the random generators of RANSAC: over matches, and over the depths along each line.
+  std::uint64_t seed = 1;
 
   // For per-stage times: a monotonic clock in nanoseconds. The core reads no other clock, and never decides
   // by it.

@@ -114,7 +114,6 @@ void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, P
   describe_points(scratch, points);
   result.points.with_depth =
       static_cast<int>(points.keypoints.size());  // the detector passes over what has none
-
   result.points.detected = summary.candidates;
   result.points.dropped = static_cast<int>(points.keypoints.dropped());
 }
@@ -154,8 +153,8 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
 
 bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                                   Line3d& line) const {
-  const Line3dReport report =
-      observe_line(segment, depth, camera_.pinhole, config_.depth_noise, config_.lines.fit, line);
+  const Line3dReport report = observe_line(segment, depth, camera_.pinhole, config_.depth_noise,
+                                           config_.lines.fit, config_.seed, line);
   if (report.outcome != Line3dOutcome::kOk) return false;
   line.Sigma *= noise.lines;
   return true;

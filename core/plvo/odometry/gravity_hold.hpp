@@ -30,6 +30,7 @@ class GravityHold {
  public:
   // Whether a reading has said where down is in the world.
   bool known() const { return known_; }
+  // The estimate itself, for proofs: the odometry only has poses corrected by it.
   const Vector3& down_in_world() const { return down_; }     // unit length
   const Vector3& offset() const { return offset_; }          // in the camera's axes, of a unit vector
   const Matrix6& covariance() const { return covariance_; }  // of (ε, β)

@@ -32,23 +32,23 @@ Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,
   return {camera, reference_velocity(prior, recent_velocity(prior, T_current_reference)), 0};
 }
 
-std::span<const Line3d> carried(const Exposure& shutter, std::span<const Line3d> lines, Arena& scratch) {
+std::span<const Line3d> carried(const Exposure& exposure, std::span<const Line3d> lines, Arena& scratch) {
   const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
   for (std::size_t i = 0; i < copies.size(); ++i) {
     copies[i] = lines[i];
-    copies[i].a = shutter.at_mid_exposure(lines[i].a);
-    copies[i].b = shutter.at_mid_exposure(lines[i].b);
+    copies[i].a = exposure.at_mid_exposure(lines[i].a);
+    copies[i].b = exposure.at_mid_exposure(lines[i].b);
   }
   return copies;
 }
 
-std::span<const SurfaceSample> carried(const Exposure& shutter, std::span<const SurfaceSample> samples,
+std::span<const SurfaceSample> carried(const Exposure& exposure, std::span<const SurfaceSample> samples,
                                        Arena& scratch) {
   if (samples.empty()) return samples;
   const std::span<SurfaceSample> copies = scratch.take<SurfaceSample>("at mid-exposure", samples.size());
   for (std::size_t i = 0; i < copies.size(); ++i) {
     copies[i] = samples[i];
-    copies[i].p = shutter.at_mid_exposure(samples[i].p);
+    copies[i].p = exposure.at_mid_exposure(samples[i].p);
   }
   return copies;
 }
@@ -66,13 +66,13 @@ MidExposure points_at_mid_exposure(const CameraModel& camera, const PairPrior& p
   MidExposure result;
   const std::span<const Point3d> points = reference.points.points.first(reference.points.keypoints.size());
   result.reference_points = points;
-  result.current = current_exposure(camera, prior, T_current_reference);
+  result.current_exposure = current_exposure(camera, prior, T_current_reference);
   if (!(camera.readout_s > 0)) return result;
 
-  const Exposure shutter = reference_exposure(camera, prior, T_current_reference);
+  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
   const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
   for (std::size_t i = 0; i < copies.size(); ++i)
-    copies[i] = {shutter.at_mid_exposure(points[i].p), points[i].Sigma};
+    copies[i] = {exposure.at_mid_exposure(points[i].p), points[i].Sigma};
   result.reference_points = copies;
   return result;
 }
@@ -85,10 +85,10 @@ MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, c
   result.reference_surfaces = reference.surfaces.samples.span();
   if (!(camera.readout_s > 0)) return result;
 
-  const Exposure shutter = reference_exposure(camera, prior, T_current_reference);
-  result.reference_lines = carried(shutter, reference.lines.lines_3d(), scratch);
-  result.current_lines = carried(result.current, current.lines.lines_3d(), scratch);
-  result.reference_surfaces = carried(shutter, result.reference_surfaces, scratch);
+  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
+  result.reference_lines = carried(exposure, reference.lines.lines_3d(), scratch);
+  result.current_lines = carried(result.current_exposure, current.lines.lines_3d(), scratch);
+  result.reference_surfaces = carried(exposure, result.reference_surfaces, scratch);
   return result;
 }
 

@@ -31,7 +31,7 @@ struct PairPrior {
 };
 
 struct MidExposure {
-  Exposure current;
+  Exposure current_exposure;
   std::span<const Point3d> reference_points;
   std::span<const Line3d> reference_lines, current_lines;
   std::span<const SurfaceSample> reference_surfaces;

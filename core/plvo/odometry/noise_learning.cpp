@@ -12,8 +12,11 @@ namespace {
 constexpr double kMedian1 = 0.4549;
 constexpr double kMedian2 = 1.3863;
 constexpr double kMedian4 = 3.3567;
-// What lies farther out (squared, in its own model's units) is a wrong match rather than noise. Twice the
-// SD's gate of inliers: noise twice as large as modelled must be able to show.
+// Squared distances, in the model's SDs, beyond which a residual is a wrong match rather than noise. RANSAC
+// takes for inliers what lies within the 99 % quantile of χ²: 11.34 for a point's three degrees of freedom,
+// 13.28 for a line's four. Noise with twice the SD that the models state must be able to show, so here it is
+// four times these. A sample of a surface has one degree of freedom, and only lies far off if the scale has
+// yet to be learnt: points' bound, 6.7 SDs, serves it too.
 constexpr double kFarthestPoint = 45;
 constexpr double kFarthestLine = 53;
 constexpr double kFarthestSurface = 45;

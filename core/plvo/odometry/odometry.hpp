@@ -109,12 +109,12 @@ class Odometry {
 
   // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
   // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
-  TrackResult track(const RgbdFrame& frame);
+  TrackResult track(const RgbdFrame& input);
   // With what other sensors say of the frame. Their motion leads the search for features and joins the
   // estimate as one more constraint: what vision leaves open then has a large covariance and is no loss, and
   // a frame that shows nothing is kPredicted. Gravity holds roll and pitch of the pose. A prior that says
   // nothing changes nothing; one that does not pass MotionPrior::validate() is refused with the frame.
-  TrackResult track(const RgbdFrame& frame, const MotionPrior& prior);
+  TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
 
   // As after init: the next usable frame defines the world, and what was learnt of the noise is forgotten.
   // The budget of time stays: it is about the machine.
@@ -152,39 +152,55 @@ class Odometry {
   using References = std::array<Reference, kMaxReferences>;
   static constexpr int kNobody = -1;
 
-  Status check(const RgbdFrame& frame) const;
+  // odometry.cpp: what is refused, and what a frame brings with it.
+  Status check(const RgbdFrame& input) const;
   void take_feature_memory();
-  double depth_after_colour_s(const RgbdFrame& frame) const;
+  double depth_after_colour_s(const RgbdFrame& input) const;
+
+  // odometry_motion.cpp: where the camera is expected, and the search for the motion from there.
   Exposure predict_exposure(std::int64_t stamp_ns) const;
+  Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
+  PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
   // Without registration find() is the whole estimate, of the base alone.
   bool uses_both_references() const {
     return last_ != keyframe_ && config().points.registered &&
            config().references.policy == ReferencePolicy::kKeyframeAndPrevious;
   }
-  void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
-  Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
-  PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
-  void note_velocity(std::int64_t motion_ns);
+
+  // odometry_outcome.cpp: what becomes of a frame, and which one the next are matched with.
+  void start_first(const MotionPrior& prior, TrackResult& result);
+  void start_again(const MotionPrior& prior, TrackResult& result);
+  void start_at(const HeldPose& pose, TrackResult& result);
+  void read_gravity(const MotionPrior& prior, HeldPose& pose);
+  void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
   void accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result);
-  void start(const MotionPrior& prior, TrackResult& result);
-  void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
-  MotionReference last_from_keyframe() const;
-  HeldPose held(int slot) const;
-  void hold(int slot, const HeldPose& pose);
-  HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
+  void note_velocity(std::int64_t motion_ns);
   void choose_keyframe();
   void keep_image();
   bool still_seen(int slot) const;
   int free_slot() const;
-  void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
+  void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
+  const char* first_word_of_loss() const;
+
+  // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
+  HeldPose held(int slot) const;
+  void hold(int slot, const HeldPose& pose);
+  MotionReference last_from_keyframe() const;
+  void sense(const MotionPrior& prior, std::int64_t stamp_ns);
+  HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
+
+  // recovery.cpp: the view of a kept keyframe comes back.
   bool recognise(int slot, FrameFeatures& features, const Vector6& velocity, const DepthSampler& depth,
                  const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
   void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
-  void fill_views(const MotionEstimate& motion);
+
+  // odometry_views.cpp: what features() shows.
+  static std::size_t fill_segment_views(const LineFeatures& lines, std::span<SegmentView> views);
+  void fill_track_views(const MotionEstimate& motion);
 
   const CameraModel& camera() const { return rooms_.extraction.camera(); }
   const Config& config() const { return rooms_.extraction.config(); }

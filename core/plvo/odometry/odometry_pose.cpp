@@ -10,7 +10,7 @@ namespace {
 // What a prior leaves out of the motion goes on as it did for so long, then stands still.
 constexpr std::int64_t kLongestCoast_ns = 300'000'000;
 
-bool is_covariance(const Matrix6& C) {
+bool is_semidefinite_covariance(const Matrix6& C) {
   if (!C.allFinite()) return false;
   const double largest = C.cwiseAbs().maxCoeff();
   return largest <= 1e6 && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
@@ -21,10 +21,10 @@ bool is_covariance(const Matrix6& C) {
 
 void Odometry::reset() {
   if (!ready_) return;
-  for (Frame& frame : frames_) {
-    const FrameFeatures features = frame.features;
-    frame = Frame();
-    frame.features = features;
+  for (Frame& each : frames_) {
+    const FrameFeatures features = each.features;
+    each = Frame();
+    each.features = features;
   }
   keyframe_ = last_ = kNobody;
   kept_.clear();
@@ -45,7 +45,7 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   if (!ready_) return {StatusCode::kInvalidArgument, "set_pose() before a successful init()"};
   if (!T_world_camera.is_finite() || !is_rotation(T_world_camera.R))
     return {StatusCode::kInvalidArgument, "set_pose: the pose must be finite, and its R a rotation matrix"};
-  if (!is_covariance(covariance))
+  if (!is_semidefinite_covariance(covariance))
     return {StatusCode::kInvalidArgument,
             "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
   gravity_.forget();

@@ -22,8 +22,8 @@
 
 namespace plvo {
 
-// Reference keypoint matches[i].reference was found at (u, v)[i], and is points[i] there; matches[i].current
-// == i.
+// Reference keypoint matches[i].reference was found at pixels[i], and is points[i] there; matches[i].current
+// is i.
 struct PointTracks {
   FixedVector<Match> matches;
   std::span<Vector2> pixels;  // level-0 px

@@ -76,7 +76,7 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 
 // Tracking goes on since a new start, whose pose nobody saw: if the camera is back at the view of a kept
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
-// tracked: whose memory is free by now.
+// tracked: of the frame's own motion, which is accepted and not needed any more: room for another one.
 void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   if (kept_.empty() || ++frames_since_look_back_ < config().references.look_back_frames) return;
   frames_since_look_back_ = 0;

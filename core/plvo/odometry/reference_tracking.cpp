@@ -29,11 +29,18 @@ constexpr double kWeightOfTwo = 2.0 / 3;
 // What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
 constexpr double kHeld = 1e6;
 
+// The sets of constraints of an estimate, by which it counts inliers: points and lines of each reference,
+// then the sensed motion, then surfaces, of which nothing is asked by number.
+constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
+constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
+constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
+static_assert(matched_sets(kMaxReferences) < kInformedKinds, "and the sensed motion");
+
 void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
   result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
   for (std::size_t r = 0; r < tracks.size(); ++r) {
-    const int points = estimate.inliers[2 * r];
-    const int lines = estimate.inliers[2 * r + 1];
+    const int points = estimate.inliers[points_set(r)];
+    const int lines = estimate.inliers[lines_set(r)];
     tracks[r].inliers = points + lines;
     result.points.matched += static_cast<int>(tracks[r].points.matches.size());
     result.lines.matched += static_cast<int>(tracks[r].lines.size());
@@ -42,6 +49,43 @@ void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, Tr
   }
   result.ransac_iterations += estimate.ransac.iterations;
   result.lm_iterations += estimate.lm.iterations;
+}
+
+// What the matches with each reference say of the motion; empty for a reference that there is not.
+struct FeatureConstraints {
+  std::array<PointConstraints, kMaxReferences> points;
+  std::array<LineConstraints, kMaxReferences> lines;
+  std::array<SurfaceConstraints, kMaxReferences> surfaces;
+};
+
+FeatureConstraints constraints_of(std::span<const MidExposure> features,
+                                  std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
+                                  Arena& scratch) {
+  static_assert(kMaxReferences == 2);
+  const bool two = features.size() > 1;
+  const double weight = two ? kWeightOfTwo : 1;
+  const auto points = [&](std::size_t r) {
+    const PointTracks& found = tracks[r].points;
+    PointConstraints set(features[r].reference_points, found.points, found.matches.span(),
+                         PointConstraints::Workspace::take(scratch, found.matches.size()));
+    set.set_reference(r, noise.point_correlation, weight);
+    return set;
+  };
+  const auto lines = [&](std::size_t r) {
+    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks[r].lines.span(),
+                        LineConstraints::Workspace::take(scratch, tracks[r].lines.size()));
+    set.set_reference(r, noise.line_correlation, weight);
+    return set;
+  };
+  const auto surfaces = [&](std::size_t r) {
+    SurfaceConstraints set(tracks[r].surfaces.span(),
+                           SurfaceConstraints::Workspace::take(scratch, tracks[r].surfaces.size()));
+    set.set_reference(r, noise.surface_correlation, weight);
+    return set;
+  };
+  return {{points(0), two ? points(1) : PointConstraints({}, {}, {}, {})},
+          {lines(0), two ? lines(1) : LineConstraints({}, {}, {}, {})},
+          {surfaces(0), two ? surfaces(1) : SurfaceConstraints({}, {})}};
 }
 
 SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
@@ -67,38 +111,15 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
                               const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
                               TrackResult& result) {
   const Config& config = current.extraction.config();
-  const CameraModel& camera = current.extraction.camera();
   const StageTimer timer(config, result, Stage::kMotion);
   const ScratchScope scope(scratch);
-  const std::size_t last = features.size() - 1;
-  const double weight = features.size() > 1 ? kWeightOfTwo : 1;
-  const auto points_of = [&](std::size_t r) {
-    const PointTracks& tracks = tracks_[r].points;
-    PointConstraints set(features[r].reference_points, tracks.points, tracks.matches.span(),
-                         PointConstraints::Workspace::take(scratch, tracks.matches.size()));
-    set.set_reference(r, config.noise.point_correlation, weight);
-    return set;
-  };
-  const auto lines_of = [&](std::size_t r) {
-    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks_[r].lines.span(),
-                        LineConstraints::Workspace::take(scratch, tracks_[r].lines.size()));
-    set.set_reference(r, config.noise.line_correlation, weight);
-    return set;
-  };
-  std::array<PointConstraints, kMaxReferences> points{
-      points_of(0), last > 0 ? points_of(last) : PointConstraints({}, {}, {}, {})};
-  std::array<LineConstraints, kMaxReferences> lines{
-      lines_of(0), last > 0 ? lines_of(last) : LineConstraints({}, {}, {}, {})};
-  const auto surfaces_of = [&](std::size_t r) {
-    SurfaceConstraints set(tracks_[r].surfaces.span(),
-                           SurfaceConstraints::Workspace::take(scratch, tracks_[r].surfaces.size()));
-    set.set_reference(r, config.noise.surface_correlation, weight);
-    return set;
-  };
-  std::array<SurfaceConstraints, kMaxReferences> surfaces{
-      surfaces_of(0), last > 0 ? surfaces_of(last) : SurfaceConstraints({}, {})};
-  std::array<ConstraintSet*, kMaxConstraintKinds> sets{&points[0], &lines[0], &points[1], &lines[1]};
-  std::size_t set_count = 2 * features.size();
+  FeatureConstraints constraints = constraints_of(features, tracks_, config.noise, scratch);
+  std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    sets[points_set(r)] = &constraints.points[r];
+    sets[lines_set(r)] = &constraints.lines[r];
+  }
+  std::size_t set_count = matched_sets(features.size());
   const SensedMotion& sensed = current.sensed;
   MotionConfig motion_config = config.motion;
   std::uint8_t sensed_flag = 0;
@@ -108,7 +129,7 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     sets[set_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
   }
-  for (SurfaceConstraints& set : surfaces)
+  for (SurfaceConstraints& set : constraints.surfaces)
     if (set.size() > 0) sets[set_count++] = &set;
 
   tracked.exposure = {};
@@ -116,14 +137,19 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
                   tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
-    std::copy(points[r].inliers().begin(), points[r].inliers().end(), tracks_[r].point_inliers.begin());
-    std::copy(lines[r].inliers().begin(), lines[r].inliers().end(), tracks_[r].line_inliers.begin());
+    const std::span<const std::uint8_t> points = constraints.points[r].inliers();
+    const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
+    std::copy(points.begin(), points.end(), tracks_[r].point_inliers.begin());
+    std::copy(lines.begin(), lines.end(), tracks_[r].line_inliers.begin());
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
+    const std::size_t last = features.size() - 1;
     const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
-    tracked.shown = residual_scales(camera.pinhole, points[last], lines[last], T_current_last, scratch);
-    tracked.shown.surfaces = surface_scale(surfaces[last], T_current_last, scratch);
+    const Pinhole& pinhole = current.extraction.camera().pinhole;
+    tracked.shown =
+        residual_scales(pinhole, constraints.points[last], constraints.lines[last], T_current_last, scratch);
+    tracked.shown.surfaces = surface_scale(constraints.surfaces[last], T_current_last, scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
 }
@@ -140,20 +166,20 @@ bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& cu
   const Pyramid& pyramid = current.extraction.pyramid();
   Se3 T = reference.prior.T_current_reference;
   AlignmentStep step;
-  const auto align = [&](std::span<const AlignmentWindow> windows, int rounds) {
+  const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
     for (int round = 0; round < rounds; ++round) {
       const ScratchScope exposed(scratch);
       // What a rolling shutter does depends on the motion: anew for each better idea of it.
       const MidExposure at = points_at_mid_exposure(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
-        if (!align_step(windows, at.reference_points, camera.pinhole, at.current, pyramid, T, step))
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
           return false;
       if (step.size < kAligned) break;
     }
     return true;
   };
-  if (!align(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
-  if (!align(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
+  if (!take_rounds(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
   T_current_reference = T;
   return true;
 }
@@ -170,13 +196,13 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
       at_mid_exposure(camera, reference.prior, T_predicted, *reference.features, current.features, scratch);
   {
     const StageTimer timer(config, result, Stage::kMatching);
-    const DepthSampler depth = current.depth.with(features.current);
-    track_by_descriptor(view_of(current, depth, features.current), reference.features->points,
+    const DepthSampler depth = current.depth.with(features.current_exposure);
+    track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
                         tracks_[0].points);
     LineMatchConfig gates = config.lines.match;
     gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
-    match_predicted_lines(camera.pinhole, features.current, reference.features->lines,
+    match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
     tracks_[0].surfaces.clear();  // projecting them takes a good idea of the motion
@@ -184,7 +210,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config.points.registered;
   const SharedErrors shared =
-      whole ? shared_errors(config.noise, features.current, current.noise) : SharedErrors{};
+      whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
   const bool is_last = reference.prior.reference_is_last;
   MotionReferences poses;
   if (!is_last) poses[1] = reference.last;

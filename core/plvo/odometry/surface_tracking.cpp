@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kLeastCosine = 0.9;  // between the normals
 // Farther off than so many σ and this share of the depth it is another surface.
-constexpr double kGateSigmas = 5;
-constexpr double kGateShare = 0.01;
+constexpr double kPlaneGateSigmas = 5;
+constexpr double kPlaneGateShare = 0.01;
 
 bool match_sample(const DepthSampler& depth, const Pinhole& pinhole, const NoiseConfig& config,
                   double noise_scale, const SurfaceSample& from, const Se3& T, SurfaceMatch& match) {
@@ -31,7 +31,7 @@ bool match_sample(const DepthSampler& depth, const Pinhole& pinhole, const Noise
   match.variance = from.variance + to.variance;
   match.normal_variance = from.normal_variance;
   const double off = match.normal.dot(p - match.p_current);
-  const double limit = kGateSigmas * sqrt(match.variance) + kGateShare * p.z();
+  const double limit = kPlaneGateSigmas * sqrt(match.variance) + kPlaneGateShare * p.z();
   if (!(off * off <= limit * limit)) return false;
   match.delay_s = exposure.depth_apart() ? exposure.depth_delay_s(depth_row)
                   : exposure.rolling()   ? exposure.delay_s(to.p)

@@ -11,7 +11,7 @@
 namespace plvo {
 
 enum class TrackState : std::uint8_t {
-  kInitialising,  // the first usable frame: it defines the world
+  kInitialising,  // the first usable frame, from which tracking starts; or, where status says so, none yet
   kTracking,      // the pose is new
   kLost,          // status says why; the pose is the last good one; the next good frame goes on from there
   kPredicted,     // nothing could be seen, status says why; the pose is new, from the priors alone
@@ -36,9 +36,10 @@ struct TrackResult {
   std::int64_t stamp_ns = 0;
   std::int64_t reference_stamp_ns = 0;  // of the frame that this one was matched against
 
-  // Camera to world; the world is the camera frame of the first frame. Covariance of the ⊞-perturbation
-  // (position, then orientation; m and rad) in the axes of the world, accumulated from the motions. While
-  // lost, it is that of the last good pose; of a predicted pose it has grown by what the priors leave open.
+  // Camera to world; the world is the camera frame of the first frame, unless Config::level_world or
+  // set_pose() say otherwise. Covariance of the ⊞-perturbation (position, then orientation; m and rad) in the
+  // axes of the world, accumulated from the motions. While lost, it is that of the last good pose; of a
+  // predicted pose it has grown by what the priors leave open.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
 

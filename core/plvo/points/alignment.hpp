@@ -29,8 +29,8 @@ struct AlignmentOptions {
 struct Alignment {
   bool ok = false;
   double x = 0, y = 0;  // pixels of the level
-  double sigma_px =
-      0;  // SD of the position along its worse axis, from the residual and the patch's gradients
+  // SD of the position along its worse axis, from the residual and the patch's gradients.
+  double sigma_px = 0;
   int iterations = 0;
 };
 

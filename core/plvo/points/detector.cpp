@@ -118,7 +118,7 @@ class BestOfCell {
 struct Search {
   const Pyramid& pyramid;
   const DepthSampler& depth;
-  const DetectorConfig& options;
+  const DetectorConfig& config;
   FixedVector<Candidate>& candidates;
   int found = 0;
 };
@@ -126,10 +126,10 @@ struct Search {
 void search_cell(Search& search, const Band& band, int level, const Cell& cell) {
   const GrayView image = search.pyramid.level(level);
   // Half the threshold and half again, while the cell has too few: at most seven times.
-  int threshold = std::max(search.options.noise_floor, contrast_threshold(image, cell));
+  int threshold = std::max(search.config.noise_floor, contrast_threshold(image, cell));
   constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
-  while (threshold > search.options.noise_floor && band.count_above(cell, threshold) < kEnoughPixels)
-    threshold = std::max(search.options.noise_floor, threshold / 2);
+  while (threshold > search.config.noise_floor && band.count_above(cell, threshold) < kEnoughPixels)
+    threshold = std::max(search.config.noise_floor, threshold / 2);
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int x = cell.x0; x < cell.x1; ++x) {
@@ -137,7 +137,7 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
       if (x == cell.x1) break;
       if (band.score(x, y) <= threshold || !band.is_maximum(x, y)) continue;
       const auto strength = static_cast<float>(corner_strength(image, x, y));
-      if (strength < static_cast<float>(search.options.min_strength)) continue;
+      if (strength < static_cast<float>(search.config.min_strength)) continue;
       ++search.found;
       if (search.depth.at(x << level, y << level) <= 0) continue;
       best.insert({strength, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
@@ -149,12 +149,12 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
 
 void search_level(Search& search, Band& band, int level) {
   const GrayView image = search.pyramid.level(level);
-  const int size = search.options.cell_px;
+  const int size = search.config.cell_px;
   const int right = image.width - kKeypointMargin;
   if (right <= kKeypointMargin) return;
   for (int y = kKeypointMargin; y < image.height - kKeypointMargin; y += size) {
     const int bottom = std::min(y + size, image.height - kKeypointMargin);
-    band.fill(image, {kKeypointMargin, y, right, bottom}, search.options.noise_floor);
+    band.fill(image, {kKeypointMargin, y, right, bottom}, search.config.noise_floor);
     for (int x = kKeypointMargin; x < right; x += size)
       search_cell(search, band, level, {x, y, std::min(x + size, right), bottom});
   }
@@ -239,21 +239,21 @@ double corner_strength(GrayView image, int x, int y) {
 }
 
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorConfig& options, Arena& scratch, FixedVector<Keypoint>& out) {
+                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out) {
   const ScratchScope scope(scratch);
   const std::span<std::uint8_t> scores =
-      scratch.take<std::uint8_t>("keypoint scores", detection_band(pyramid.level(0).width, options.cell_px));
+      scratch.take<std::uint8_t>("keypoint scores", detection_band(pyramid.level(0).width, config.cell_px));
   std::size_t cells = 0;
-  for (int level = 0; level < options.levels; ++level)
-    cells += detection_cells(pyramid.level(level).width, pyramid.level(level).height, options.cell_px);
+  for (int level = 0; level < config.levels; ++level)
+    cells += detection_cells(pyramid.level(level).width, pyramid.level(level).height, config.cell_px);
   FixedVector<Candidate> candidates(
       scratch.take<Candidate>("keypoint candidates", cells * kKeypointsPerCell));
   out.clear();
   if (scores.empty() || candidates.capacity() == 0) return {};
 
-  Search search{pyramid, depth, options, candidates};
+  Search search{pyramid, depth, config, candidates};
   Band band(scores);
-  for (int level = 0; level < options.levels; ++level) search_level(search, band, level);
+  for (int level = 0; level < config.levels; ++level) search_level(search, band, level);
   const std::size_t kept = select_best_spread(candidates, out.capacity());
   for (std::size_t i = 0; i < kept; ++i) out.push_back(refine(pyramid, candidates[i]));
   out.add_dropped(candidates.size() - kept);

@@ -78,6 +78,6 @@ double corner_strength(GrayView image, int x, int y);
 // rank does not fit whole, its strongest. Pixels without depth are passed over, since only 3D points serve.
 // What was a local maximum but did not fit is counted by out.dropped(). Scratch: see reserve_detection.
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorConfig& options, Arena& scratch, FixedVector<Keypoint>& out);
+                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out);
 
 }  // namespace plvo

@@ -34,7 +34,6 @@ inline constexpr int kWindowReach = 4;
 inline constexpr int kWindowColumns = 2 * kWindowReach;
 inline constexpr int kWindowRows = 2 * kWindowReach + 1;
 using WindowMask = std::array<std::uint8_t, kWindowRows>;
-inline constexpr WindowMask kWholeWindow = {255, 255, 255, 255, 255, 255, 255, 255, 255};
 
 // The point features of one frame: parallel arrays, index = keypoint.
 struct PointFeatures {

@@ -10,7 +10,7 @@
 namespace plvo {
 namespace {
 
-constexpr int kReach = kAlignmentSide / 2;
+constexpr int kAlignmentReach = kAlignmentSide / 2;
 constexpr double kUnits = 8;  // of a grey level
 // SD of a grey level that no motion explains. A window whose own SD is below it shows nothing.
 constexpr double kGreyNoise = 2;
@@ -46,7 +46,7 @@ double about_means(const Numbers& a, double sum_a, const Numbers& b, double sum_
 bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
   constexpr std::int16_t kEighths = static_cast<std::int16_t>(kUnits);
   for (int row = 0; row < kAlignmentSide; ++row) {
-    const std::uint8_t* p = image.row(y - kReach + row) + x - kReach;
+    const std::uint8_t* p = image.row(y - kAlignmentReach + row) + x - kAlignmentReach;
     Lanes here, left, right, above, below;
     load_bytes(p, here);
     load_bytes(p - 1, left);
@@ -78,7 +78,7 @@ void read_window(GrayView image, int x, int y, Numbers& values) {
   const auto fx = static_cast<std::int16_t>(x & (kOne - 1));
   const auto fy = static_cast<std::int16_t>(y & (kOne - 1));
   const auto rest = static_cast<std::int16_t>(kOne - fx);
-  const std::uint8_t* p = image.row((y >> kReadBits) - kReach) + (x >> kReadBits) - kReach;
+  const std::uint8_t* p = image.row((y >> kReadBits) - kAlignmentReach) + (x >> kReadBits) - kAlignmentReach;
   Lanes above = {};
   for (int row = 0; row <= kAlignmentSide; ++row, p += image.stride) {
     Lanes left, right;
@@ -153,14 +153,14 @@ std::span<AlignmentWindow> SparseAlignment::cut_coarse(const PointFeatures& feat
     const int y = static_cast<int>(at.y() + 0.5);
     window.level = kLevel;
     window.centre = at - Vector2(x, y);
-    return x > kReach && y > kReach && x < image_.width - kReach && y < image_.height - kReach &&
-           make_window(image_, x, y, window);
+    return x > kAlignmentReach && y > kAlignmentReach && x < image_.width - kAlignmentReach &&
+           y < image_.height - kAlignmentReach && make_window(image_, x, y, window);
   });
 }
 
 std::span<AlignmentWindow> SparseAlignment::cut_fine(const PointFeatures& features,
                                                      std::span<AlignmentWindow> room) {
-  static_assert(kPatchRadius > kReach);
+  static_assert(kPatchRadius > kAlignmentReach);
   return cut(features, room, [&](std::size_t i, AlignmentWindow& window) {
     const Keypoint& keypoint = features.keypoints[i];
     const GrayView patch{features.patches[i].data(), kPatchSide, kPatchSide, kPatchSide};
@@ -186,8 +186,9 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     const GrayView image = pyramid.level(window.level);
     const double scale = 1.0 / (1 << window.level);
     const Vector2 expected = scale * project(pinhole, exposure.as_seen(q)) - window.centre;
-    if (!(expected.x() >= kReach && expected.y() >= kReach && expected.x() < image.width - kReach - 1 &&
-          expected.y() < image.height - kReach - 1))
+    if (!(expected.x() >= kAlignmentReach && expected.y() >= kAlignmentReach &&
+          expected.x() < image.width - kAlignmentReach - 1 &&
+          expected.y() < image.height - kAlignmentReach - 1))
       continue;
     ++step.seen;
     constexpr double kGrid = 1 << kReadBits;
@@ -210,10 +211,11 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     g += found.weight * (J.transpose() * wanted);
   }
   // Nothing can be told from a few; and what they leave open stays as it was predicted.
+  constexpr int kLeastSeenWindows = 6;
   constexpr double kDamping = 1e-6;
   for (int k = 0; k < 6; ++k) H(k, k) *= 1 + kDamping;
   Cholesky<6> cholesky;
-  if (step.seen < 6 || !cholesky.factor(H)) return false;
+  if (step.seen < kLeastSeenWindows || !cholesky.factor(H)) return false;
   const Vector6 delta = cholesky.solve(g);
   step.size = delta.cwiseAbs().maxCoeff();
   T_current_reference = boxplus(T, delta);

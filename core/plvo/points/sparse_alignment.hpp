@@ -3,8 +3,9 @@
 // another's, all of them at once (Forster, Pizzoli, Scaramuzza, "SVO: Fast semi-direct monocular visual
 // odometry", ICRA 2014, section IV.A). One window alone finds its way over a pixel or two; a hundred that
 // move as one rigid scene find it over many. First on a coarse level of the pyramid, for the motion may be
-// predicted badly, then on the keypoints' own; each window with a gain and an offset of its own, for lamps
-// swing. It says where to register the features (alignment.hpp) and is no measurement itself.
+// predicted badly, then on the keypoints' own. Each window has a gain and an offset of its own, since the
+// light on one place may change while that on another does not. The result says where to register the
+// features (alignment.hpp) and is no measurement itself.
 #pragma once
 
 #include <array>
@@ -25,6 +26,10 @@ namespace plvo {
 inline constexpr int kAlignmentSide = 8;
 inline constexpr int kAlignmentPixels = kAlignmentSide * kAlignmentSide;
 inline constexpr std::size_t kMostAlignmentWindows = 128;
+// A step is trusted when so many windows, three or so for each of the motion's parameters, look as they did;
+// and when most do: what the others show has gone or was never where it seemed to be.
+inline constexpr int kLeastAgreeingWindows = 20;
+inline constexpr double kLeastAgreeingShare = 0.5;
 
 struct AlignmentWindow {
   // Grey levels and their derivatives per pixel, in 1/8 of a grey level.
@@ -45,8 +50,7 @@ struct AlignmentStep {
   int seen = 0;
   int agreeing = 0;
   double size = 0;
-  // Enough of them, and most: what the others show has gone or was never where it seemed to be.
-  bool trusted() const { return agreeing >= 20 && 2 * agreeing >= seen; }
+  bool trusted() const { return agreeing >= kLeastAgreeingWindows && agreeing >= kLeastAgreeingShare * seen; }
 };
 
 class SparseAlignment {

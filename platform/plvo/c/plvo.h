@@ -120,7 +120,7 @@ typedef struct plvo_config {
   int32_t preset;    /* PLVO_PRESET_… */
   int32_t features;  /* PLVO_FEATURES_… */
   int32_t reference; /* PLVO_REFERENCE_… */
-  uint64_t seed;     /* of the random generator */
+  uint64_t seed;     /* of the random generators */
   /* For plvo_result.stage_ns: a monotonic clock in nanoseconds, or NULL. */
   int64_t (*stage_clock)(void);
   /* What a frame may take, where somebody waits for it (plvo_frame_took); 0: as long as it takes. */

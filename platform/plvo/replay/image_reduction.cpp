@@ -5,22 +5,20 @@
 
 #include <algorithm>
 
-#include "plvo/image/undistortion.hpp"
+#include "plvo/odometry/config.hpp"
 
 namespace plvo {
 
 int least_reduction(int width, int height) {
-  constexpr int kMost = UndistortionMap::kMaxSide;
   int factor = 1;
-  while (std::max(width, height) / factor > kMost) ++factor;
+  while (std::max(width, height) / factor > Limits::kMostSide) ++factor;
   return factor;
 }
 
 Status check_reduction(int factor, int width, int height) {
   if (factor < 1)
     return {StatusCode::kInvalidArgument, "images are scaled down by a whole number, from 1 on"};
-  constexpr int kLeast = 64;  // px a side: Limits
-  constexpr int kMost = UndistortionMap::kMaxSide;
+  constexpr int kLeast = Limits::kLeastSide, kMost = Limits::kMostSide;
   const int small_width = width / factor, small_height = height / factor;
   const bool fits = std::max(small_width, small_height) <= kMost;
   // Images that are too small as they are get their own words elsewhere.

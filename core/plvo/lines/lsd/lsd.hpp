@@ -6,7 +6,7 @@
 //
 // Time is bounded: each pixel is added to a region at most kMaxGrowths = 6 times and looked at by its 8
 // neighbours each time; every other pass over a region or its rectangle costs at most a constant times the
-// region's size, and at most max_segments segments are placed.
+// region's size, and at most as many segments are placed as the caller has room for.
 #pragma once
 
 #include <bit>

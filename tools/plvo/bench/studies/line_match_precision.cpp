@@ -25,6 +25,7 @@
 #include "plvo/lines/line_match.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/lines/msld.hpp"
+#include "plvo/odometry/config.hpp"
 #include "plvo/replay/calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 
@@ -81,8 +82,9 @@ class FrontEnd {
     for (const plvo::Segment& s : segments) {
       if (s.length_px() < 20) continue;
       plvo::Line3d line;
-      const bool ok = plvo::observe_line(s, depth, camera_.pinhole, noise, config, line).outcome ==
-                      plvo::Line3dOutcome::kOk;
+      const bool ok =
+          plvo::observe_line(s, depth, camera_.pinhole, noise, config, plvo::Config().seed, line).outcome ==
+          plvo::Line3dOutcome::kOk;
       result.segments.push_back(s);
       result.descriptors.push_back(plvo::describe_segment(pyramid_.level(1), 0.5, s));
       result.lines.push_back(line);

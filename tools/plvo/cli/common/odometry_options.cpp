@@ -31,7 +31,7 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.whole("--surfaces", options.surfaces, 0, 1000,
               "So many samples of surfaces from each depth image, besides points and lines; 0: none "
               "(default 200; none of --preset paper and tiny)");
-  group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generator");
+  group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generators");
 }
 
 void check_odometry_options(const OdometryOptions& options) {

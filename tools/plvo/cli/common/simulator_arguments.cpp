@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/common/simulator_arguments.hpp"
 
+#include <fmt/core.h>
+
 #include <charconv>
 
 #include "plvo/cli/common/arguments.hpp"
+#include "plvo/odometry/config.hpp"
 
 namespace plvo::cli {
 namespace {
 
-constexpr int kLeast_px = 64, kMost_px = 2047;  // what the odometry takes
+constexpr int kLeast_px = Limits::kLeastSide, kMost_px = Limits::kMostSide;
 
 bool parse_size(std::string_view text, int& width, int& height) {
   const char* end = text.data() + text.size();
@@ -51,7 +54,9 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
   group.add("--size", "WIDTHxHEIGHT", "Image size in pixels (default 640x480)",
             [&arguments](const std::string& text) -> std::string {
               if (parse_size(text, arguments.width, arguments.height)) return {};
-              return expected("WIDTHxHEIGHT from 64x64 to 2047x2047, such as 320x240", text);
+              return expected(fmt::format("WIDTHxHEIGHT from {}x{} to {}x{}, such as 320x240", kLeast_px,
+                                          kLeast_px, kMost_px, kMost_px),
+                              text);
             });
   group.number("--rolling-shutter", arguments.readout_s, {0, 1}, "SECONDS",
                "Time from the first row to the last (default 0: all rows at once; a Kinect's: 0.0261)");

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the odometry expects the camera, and how it looks for the motion from there: which frames a new one
+// is matched with, what is known beforehand, and what is tried in which order.
+#include "plvo/odometry/elapsed.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+namespace {
+
+// Beyond so many times the last motion's own time a prediction is worse than none.
+constexpr int kLongestPrediction = 3;
+
+}  // namespace
+
+// How the camera moves while the frame is exposed, if it goes on as it did.
+Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
+  if (last_ == kNobody) return {};
+  const PairPrior prior = prior_of(last_, stamp_ns);
+  return current_exposure(camera(), prior, prior.T_current_reference);
+}
+
+// The motion from the reference to now: as other sensors tell it, or if the camera goes on as it did between
+// the last two good frames.
+Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
+  const Frame& last = frame(last_);
+  const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
+  if (sensed_.known()) return sensed_.T_current_last() * T_last_reference;
+  const auto elapsed = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns));
+  if (!(elapsed < kLongestPrediction * static_cast<double>(last.motion_ns))) return T_last_reference;
+  return boxplus(Se3{}, elapsed * 1e-9 * last.velocity) * T_last_reference;
+}
+
+PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
+  const Frame& from = frame(reference);
+  const Frame& last = frame(last_);
+  PairPrior prior;
+  prior.T_current_reference = predict_motion(reference, stamp_ns);
+  prior.T_reference_last = from.T_world_camera.inverse() * last.T_world_camera;
+  prior.seconds_since_last = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9;
+  prior.reference_velocity = from.velocity;
+  prior.reference_velocity_known = from.motion_ns > 0;
+  prior.reference_is_last = reference == last_;
+  prior.depth_after_colour_s = depth_after_colour_s_;
+  return prior;
+}
+
+// The keyframe, which is the base, and the last good frame, as far as the policy wants both.
+std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
+  const MotionReference last = last_from_keyframe();
+  references[0] = {.features = &frame(keyframe_).features,
+                   .prior = prior_of(keyframe_, stamp_ns),
+                   .pose = {},
+                   .last = last};
+  if (!uses_both_references()) return 1;
+  references[1] = {
+      .features = &frame(last_).features, .prior = prior_of(last_, stamp_ns), .pose = last, .last = {}};
+  return 2;
+}
+
+// A first motion from the latest reference: by its image; failing that by its features, where they are
+// predicted; failing that from each, wherever it may be, unless other sensors say where. Then the motion from
+// all of them.
+void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
+  References references;
+  const std::size_t count = choose_references(result.stamp_ns, references);
+  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
+  result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
+  const std::span<const Reference> all = std::span(references).first(count);
+  const Reference& latest = all.back();
+  const auto refine = [&](const Se3& T_current_base) {
+    rooms_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
+    return tracked.motion.status == StatusCode::kOk;
+  };
+  const auto find = [&](const Reference& from, double radius_px) {
+    rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
+    if (tracked.motion.status != StatusCode::kOk) return false;
+    return !config().points.registered ||
+           refine(tracked.motion.T_current_reference * from.pose.T_reference_base);
+  };
+  Se3 T_current_latest;
+  if (config().points.registered &&
+      rooms_.tracking.align(latest, current, arena_, T_current_latest, result) &&
+      refine(T_current_latest * latest.pose.T_reference_base))
+    return;
+  if (find(latest, config().points.match.radius_px)) return;
+  for (std::size_t r = count; r-- > 0;) {
+    Reference anywhere = references[r];
+    if (!sensed_.known()) anywhere.prior.T_current_reference = Se3{};
+    if (find(anywhere, config().references.wide_search_px)) return;
+  }
+}
+
+}  // namespace plvo

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a frame: the first of a world, or of a new start after a loss; one with a motion; one
+// without. And which frame the next ones are matched with.
+#include "plvo/odometry/elapsed.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+namespace {
+
+// A frame with fewer 3D points and lines than this cannot start a trajectory.
+constexpr int kMinStartFeatures = 20;
+
+int features_3d(const TrackResult& result) { return result.points.with_depth + result.lines.with_depth; }
+bool too_few_features(const TrackResult& result) { return features_3d(result) < kMinStartFeatures; }
+
+Status hardly_anything(StatusCode code, const char* first_word, const TrackResult& result) {
+  return Status(code, first_word)
+      .append("hardly anything to see (dark, blurred, bare, or no depth); keypoints: ")
+      .append(result.points.detected)
+      .append(", 3D points and lines: ")
+      .append(features_3d(result));
+}
+
+// Why no motion was found, and what would help.
+Status explain_loss(const MotionEstimate& motion, const TrackResult& result, const char* first_word) {
+  if (too_few_features(result)) return hardly_anything(motion.status, first_word, result);
+  Status status(motion.status, first_word);
+  switch (motion.status) {
+    case StatusCode::kTooFewFeatures:
+      return status.append("too few features of the reference were found again: ")
+          .append(result.points.matched + result.lines.matched);
+    case StatusCode::kNoConsensus:
+      return status.append("the matches do not agree on one motion; matches: ")
+          .append(result.points.matched + result.lines.matched);
+    case StatusCode::kDegenerate:
+      return status.append("what is seen leaves some direction of motion open; inliers: ")
+          .append(result.points.inliers + result.lines.inliers);
+    default:
+      return status.append("the motion did not converge; inliers: ")
+          .append(result.points.inliers + result.lines.inliers);
+  }
+}
+
+}  // namespace
+
+// The very first frame that can be used: it defines the world, unless set_pose() did, or gravity does.
+void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
+  result.state = TrackState::kInitialising;
+  if (too_few_features(result)) {
+    result.status =
+        Status(StatusCode::kTooFewFeatures,
+               "waiting for a first frame with texture and depth; 3D points and lines in this one: ")
+            .append(features_3d(result));
+    return;
+  }
+  const bool levels = config().level_world && !start_is_set_;
+  if (levels && !prior.gravity) {
+    result.status = {
+        StatusCode::kNotFound,
+        "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
+    return;
+  }
+  HeldPose pose = start_;
+  if (levels)
+    gravity_.level(*prior.gravity, pose);
+  else
+    read_gravity(prior, pose);
+  start_at(pose, result);
+}
+
+// After a loss, and after the references were given up: what the priors make of the last good pose, or that
+// pose itself, whose covariance grows by all the time that nobody saw.
+void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
+  if (too_few_features(result)) {
+    result.state = TrackState::kLost;
+    result.status = hardly_anything(StatusCode::kTooFewFeatures, first_word_of_loss(), result);
+    if (sensed_.known()) (void)predicted_pose(prior, result);
+    return;
+  }
+  if (sensed_.known()) {
+    start_at(predicted_pose(prior, result), result);
+    return;
+  }
+  HeldPose pose = held(last_);
+  grow_unseen(result.stamp_ns, pose.covariance);
+  read_gravity(prior, pose);
+  start_at(pose, result);
+}
+
+// Of a camera that is not chained to an earlier pose.
+void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
+  HeldPose itself = pose;
+  if (prior.gravity) gravity_.read(*prior.gravity, itself, pose);
+}
+
+// The current frame becomes the keyframe and the last good one, with no motion behind it.
+void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  hold(current_, pose);
+  Frame& current = frame(current_);
+  current.motion_covariance.setZero();
+  current.motion_ns = 0;
+  result.T_camera_reference = Se3();
+  result.motion_covariance.setZero();
+  result.state = TrackState::kInitialising;
+  result.reference_stamp_ns = result.stamp_ns;
+  keyframe_ = last_ = current_;
+  keep_image();
+  current_ = free_slot();
+  lost_frames_ = 0;
+  sensed_.restart();
+}
+
+// The last good pose's covariance by now, when nobody saw the motion since.
+void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
+  const double seconds = static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, stamp_ns)) * 1e-9;
+  const double sigma_m = config().references.unseen_m_per_s * seconds;
+  const double sigma_rad = config().references.unseen_rad_per_s * seconds;
+  for (int i = 0; i < 3; ++i) {
+    covariance(i, i) += sigma_m * sigma_m;
+    covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+  }
+}
+
+void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result) {
+  const MotionEstimate& motion = tracked.motion;
+  result.state = TrackState::kTracking;
+  result.T_camera_reference = motion.T_current_reference;
+  result.motion_covariance = motion.C_H;
+  HeldPose from = held(keyframe_);
+  HeldPose pose = advance(from, motion.T_current_reference, motion.C_H);
+  if (prior.gravity) {
+    // The last frame's pose is not needed again but for the velocity: it moves with the keyframe's.
+    const Se3 T_last_keyframe = last_from_keyframe().T_reference_base;
+    gravity_.read(*prior.gravity, from, pose);
+    hold(keyframe_, from);
+    if (keyframe_ != last_) frame(last_).T_world_camera = from.T_world_camera * T_last_keyframe.inverse();
+  }
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance = pose.covariance;
+  hold(current_, pose);
+  frame(current_).motion_covariance = motion.C_H;
+  note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
+  lost_frames_ = 0;
+  sensed_.restart();
+  learn(config().noise, tracked.shown, noise_);
+  choose_keyframe();
+}
+
+// Of the current frame, and so more of the last one.
+void Odometry::note_velocity(std::int64_t motion_ns) {
+  Frame& last = frame(last_);
+  Frame& current = frame(current_);
+  const Se3 T_current_last = current.T_world_camera.inverse() * last.T_world_camera;
+  current.velocity = boxminus(T_current_last, Se3{}) / (static_cast<double>(motion_ns) * 1e-9);
+  current.motion_ns = motion_ns;
+  last.velocity = last.motion_ns > 0 ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
+  last.motion_ns = motion_ns;
+}
+
+// The tracked frame becomes the last good one, and the keyframe too, unless the keyframe goes on being a good
+// one.
+void Odometry::choose_keyframe() {
+  last_ = current_;
+  const FrameFeatures& features = frame(keyframe_).features;
+  // Too full a keyframe for the budget goes on costing what it did.
+  const FeatureRoom room = budget_.room();
+  const bool affordable =
+      features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
+  const bool keep =
+      config().references.policy != ReferencePolicy::kPreviousFrame && affordable && still_seen(keyframe_);
+  if (!keep) keyframe_ = last_;
+  if (!keep || uses_both_references()) keep_image();
+  current_ = free_slot();
+}
+
+// Of the current frame, which is the latest reference from now on.
+void Odometry::keep_image() {
+  rooms_.tracking.keep_image(rooms_.extraction.pyramid(), frame(current_).features.stamp_ns);
+}
+
+// Whether the last estimate, whose base was that frame, found enough of its features.
+bool Odometry::still_seen(int slot) const {
+  const FrameFeatures& features = frame(slot).features;
+  std::size_t available = features.lines.count_3d;
+  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
+    available += point.p.z() > 0 ? 1 : 0;
+  return rooms_.tracking.tracks(0).inliers >=
+         config().references.keyframe_inlier_ratio * static_cast<double>(available);
+}
+
+int Odometry::free_slot() const {
+  int slot = 0;
+  while (slot == keyframe_ || slot == last_ || kept_.holds(slot)) ++slot;
+  return slot;
+}
+
+void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result) {
+  result.state = TrackState::kLost;
+  result.status = explain_loss(motion, result, first_word_of_loss());
+  if (sensed_.known()) (void)predicted_pose(prior, result);
+  ++lost_frames_;
+  if (lost_frames_ < config().references.max_lost_frames) return;
+  // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
+  // starts anew at the last good pose.
+  kept_.keep(keyframe_);
+  keyframe_ = kNobody;
+  current_ = free_slot();
+}
+
+const char* Odometry::first_word_of_loss() const { return sensed_.known() ? "predicted: " : "lost: "; }
+
+}  // namespace plvo

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mask of a keypoint whose window shows nothing but its own surface.
+#pragma once
+
+#include "plvo/points/keypoint.hpp"
+
+namespace plvo::test {
+
+inline constexpr WindowMask kWholeWindow = {255, 255, 255, 255, 255, 255, 255, 255, 255};
+
+}  // namespace plvo::test
