@@ -5,15 +5,13 @@
 #include <cstring>
 
 #include "plvo/base/lanes.hpp"
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::lsd {
 namespace {
 
-std::int32_t to_fixed(double value, double one) {
-  const double scaled = value * one;
-  return static_cast<std::int32_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
-}
+std::int32_t to_fixed(double value, double one) { return round_to<std::int32_t>(value * one); }
 
 struct Moments {
   double mass = 0;

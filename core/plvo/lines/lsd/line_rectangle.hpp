@@ -82,8 +82,8 @@ inline int alignment_level(const Rectangle& rectangle, Direction direction) {
 // Calls visit(x, y) for every pixel of the field inside the rectangle, row by row.
 template <typename Visit>
 void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
-  // The corners bound the rows; each row is bounded by the two strips, with a pixel to spare, then each pixel
-  // is tested exactly.
+  // The corners bound the rows; each row is bounded by the two strips, with a little to spare, then each
+  // pixel is tested exactly.
   const double along_min = r.along_min / 256.0 - 0.01;
   const double along_max = r.along_max / 256.0 + 0.01;
   const double across_min = r.across_min / 256.0 - 0.01;
@@ -110,8 +110,8 @@ void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& vis
     const auto cut = [&](double u, double v) {
       const double lower = u < v ? u : v;
       const double upper = u < v ? v : u;
-      if (cx + lower - 1 > left) left = cx + lower - 1;
-      if (cx + upper + 1 < right) right = cx + upper + 1;
+      if (cx + lower > left) left = cx + lower;
+      if (cx + upper < right) right = cx + upper;
     };
     const double v = y - cy;
     if (inverse_dx != 0) cut((along_min - v * dy) * inverse_dx, (along_max - v * dy) * inverse_dx);
