@@ -94,7 +94,7 @@ void LiveSession::loop() {
 
 // False, after a short sleep, while the chosen rate says that it is too early for the next frame.
 bool LiveSession::wait_for_turn() {
-  if (options_.rate_hz <= 0) return true;
+  if (options_.max_rate_hz <= 0) return true;
   const std::int64_t now = posix_monotonic_ns();
   if (now < next_turn_ns_) {
     std::this_thread::sleep_for(
@@ -105,9 +105,9 @@ bool LiveSession::wait_for_turn() {
 }
 
 void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
-  if (options_.rate_hz > 0)
+  if (options_.max_rate_hz > 0)
     next_turn_ns_ =
-        std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
+        std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.max_rate_hz), posix_monotonic_ns());
   block_.track(frame, accelerometer_.prior(frame.stamp_ns, arrival_ns), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);

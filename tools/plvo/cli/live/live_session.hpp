@@ -23,7 +23,7 @@ struct LiveOptions {
   std::string record;   // folder or .oni
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
   double seconds = std::numeric_limits<double>::infinity();
-  double rate_hz = 0;        // at most; 0: as they come
+  double max_rate_hz = 0;    // 0: as they come
   bool every_frame = false;  // the camera waits for the odometry
   bool imu = false;          // a Kinect's accelerometer
   bool quiet = false;
