@@ -159,6 +159,7 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
   expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");
   expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
+  expect_usage("record x.oni --imu", "--imu: an .oni file keeps no readings of it; record a folder instead");
   expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
   expect_usage("eval --gt a --est b --max-dt 0.1", "--max-dt: is for --gt-sampling nearest");
 }

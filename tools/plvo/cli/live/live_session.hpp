@@ -54,7 +54,7 @@ class LiveSession {
   LiveOutputs outputs_;
   std::unique_ptr<LiveCamera> camera_;
   std::unique_ptr<FrameRing> ring_;
-  Recording recording_;
+  FrameRecording recording_;
   std::unique_ptr<LiveCapture> capture_;
   OdometryBlock block_;
   LiveAccelerometer accelerometer_;

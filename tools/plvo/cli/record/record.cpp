@@ -40,7 +40,7 @@ struct RecordOptions {
   bool quiet = false;
 };
 
-void show_line(Console& console, const LiveCapture::State& state, const Recording& recording) {
+void show_line(Console& console, const LiveCapture::State& state, const FrameRecording& recording) {
   std::string line = fmt::format("recorded {}  camera {:.1f} Hz  dropped {}", recording.frames(), state.hz,
                                  recording.dropped());
   if (!state.last.ok()) line += "  " + state.words;
@@ -87,7 +87,7 @@ int record_command(const RecordOptions& options) {
   const CameraModel model = camera->model();
   FrameRing ring(model.width, model.height, 3, RingPolicy::kNewest);
   ImuRecording readings;
-  Recording recording;
+  FrameRecording recording;
   LiveAccelerometer accelerometer(console);
   Status begun = check_imu(options, *camera, readings);
   if (begun.ok())
@@ -135,15 +135,13 @@ void check(const CLI::App& command, const RecordOptions& options) {
     refuse_group(
         command, kCalibrationGroup,
         "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
+    refuse_options(command, {"--imu"}, "an .oni file keeps no readings of it; record a folder instead");
+    if (is_bag_file(options.camera.device))
+      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
     for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
       files.writes("path", std::filesystem::path(options.path) / name);
-  }
-  if (is_oni_file(options.path)) {
-    refuse_options(command, {"--imu"}, "is for a folder, for an .oni file keeps no such readings");
-    if (is_bag_file(options.camera.device))
-      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
   }
   if (is_oni_file(options.camera.device))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");

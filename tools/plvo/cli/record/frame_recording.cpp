@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/cli/record/recording.hpp"
+#include "plvo/cli/record/frame_recording.hpp"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@ namespace plvo::cli {
 
 namespace fs = std::filesystem;
 
-Recording::~Recording() { [[maybe_unused]] const Status nobody_asks_any_more = stop(); }
+FrameRecording::~FrameRecording() { [[maybe_unused]] const Status nobody_asks_any_more = stop(); }
 
-Status Recording::open(const std::string& path, LiveCamera& camera, bool every_frame,
-                       std::uint64_t max_frames) {
+Status FrameRecording::open(const std::string& path, LiveCamera& camera, bool every_frame,
+                            std::uint64_t max_frames) {
   path_ = path;
   max_frames_ = max_frames;
   oni_ = is_oni_file(path);
@@ -44,7 +44,7 @@ Status Recording::open(const std::string& path, LiveCamera& camera, bool every_f
   return {};
 }
 
-void Recording::push(const RgbdFrame& frame) {
+void FrameRecording::push(const RgbdFrame& frame) {
   if (camera_ == nullptr || ended_ || offered_ >= max_frames_) return;
   ++offered_;
   if (oni_) {
@@ -54,19 +54,19 @@ void Recording::push(const RgbdFrame& frame) {
   }
 }
 
-Status Recording::poll() {
+Status FrameRecording::poll() {
   if (camera_ == nullptr || ended_) return {};
   const Status status = oni_ ? camera_->poll_oni() : take_failure();
   if (!status.ok()) ended_ = true;
   return status;
 }
 
-Status Recording::take_failure() {
+Status FrameRecording::take_failure() {
   const std::lock_guard lock(mutex_);
   return std::exchange(failure_, Status());
 }
 
-Status Recording::stop() {
+Status FrameRecording::stop() {
   if (camera_ == nullptr) return {};
   if (oni_) {
     camera_->stop_oni();
@@ -77,9 +77,9 @@ Status Recording::stop() {
   return take_failure();
 }
 
-std::uint64_t Recording::dropped() const { return ring_ ? ring_->counters().dropped : 0; }
+std::uint64_t FrameRecording::dropped() const { return ring_ ? ring_->counters().dropped : 0; }
 
-void Recording::write_frames() {
+void FrameRecording::write_frames() {
   TumWriter writer;
   bool made = false;
   RgbdFrame frame;
