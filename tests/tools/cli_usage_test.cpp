@@ -174,6 +174,42 @@ TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
   expect_usage("live --out a --json a", "--json: a is already written by --out");
 }
 
+// A sensor that was opened first would be missed here, with exit code 4; one that is there would have
+// started.
+TEST(CliUsage, OutputsAreTriedBeforeASensorIsOpened) {
+  const TemporaryFolder folder;
+  const auto at = [&folder](const std::string& name) { return (folder / name).string(); };
+  std::filesystem::create_directory(folder / "walk");
+  test::write_file(folder / "walk/depth.txt", "mine");
+  test::write_file(folder / "walk.oni", "mine");
+  test::write_file(folder / "poses.txt", "mine");
+  const auto expect_refused = [](const std::string& arguments, const std::string& words) {
+    const CommandResult r = plvo(arguments);
+    EXPECT_EQ(r.exit_code, 1) << arguments << ": " << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << ": " << r.err;
+  };
+  for (const char* command : {"record ", "live --record "}) {
+    expect_refused(command + at("walk"), "holds a recording already");
+    expect_refused(command + at("walk.oni"), "exists already");
+    expect_refused(command + at("no/such/folder"), "cannot make the folder");
+    expect_refused(command + at("poses.txt"), "it is a file");
+    expect_refused(command + at("no/such.oni"), "cannot create " + at("no/such.oni"));
+  }
+  test::write_file(folder / "accelerometer.txt", "mine");
+  expect_refused("record --imu " + folder.path().string(), "has accelerometer.txt already");
+  expect_refused("live --imu --record " + folder.path().string(), "has accelerometer.txt already");
+  for (const char* output : {"--out ", "--covariance ", "--motions ", "--stats ", "--json "})
+    expect_refused("live " + (output + at("no/such.txt")), "cannot create " + at("no/such.txt"));
+  expect_refused("live --stream unix:" + at("no/socket"), at("no/socket"));
+  expect_refused("live --view 192.0.2.1:0", "192.0.2.1");
+  // What is well is only tried: without a sensor nothing comes of it, and nothing is lost.
+  plvo("record " + at("new") + " --seconds 0.01 --device freenect://9-9");
+  plvo("live --device freenect://9-9 --record " + at("new.oni") + " --out " + at("poses.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new.oni"));
+  EXPECT_EQ(test::read_file(folder / "poses.txt"), "mine");
+}
+
 // What each flag of a command is for: its type and its words in the help, on one line.
 std::map<std::string, std::string> flags_of(const std::string& command) {
   std::map<std::string, std::string> flags;

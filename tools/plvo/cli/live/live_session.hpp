@@ -38,8 +38,11 @@ class LiveSession {
   int run();
 
  private:
+  Status prepare_outputs();
   Status open();
+  int refused(const Status& status, int exit_code);
   void loop();
+  bool keeps_imu() const;
   bool over() const;
   bool wait_for_turn();
   void handle(const RgbdFrame& frame, std::int64_t arrival_ns);

@@ -2,40 +2,71 @@
 #include "plvo/cli/record/frame_recording.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <utility>
+
+#include "plvo/host/line_file.hpp"
 
 namespace plvo::cli {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// is_new: it was not there before.
+Status make_folder(const fs::path& path, bool& is_new) {
+  std::error_code error;
+  is_new = fs::create_directory(path, error);
+  std::string reason;
+  if (!error && ::access(path.c_str(), W_OK | X_OK) != 0) reason = std::strerror(errno);
+  if (error) reason = error.message();
+  if (fs::exists(path, error) && !fs::is_directory(path, error)) reason = "it is a file";
+  if (reason.empty()) return {};
+  return {StatusCode::kIo, fmt::format("cannot make the folder {}: {}; choose a path that can be written",
+                                       path.string(), reason)};
+}
+
+}  // namespace
+
 FrameRecording::~FrameRecording() { [[maybe_unused]] const Status nobody_asks_any_more = stop(); }
+
+Status FrameRecording::check(const std::string& path) {
+  std::error_code error;
+  if (is_oni_file(path)) {
+    if (fs::exists(path, error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} exists already: remove it or choose another name", path)};
+    return LineFile::check(path);
+  }
+  for (const char* list : {"rgb.txt", "depth.txt"})
+    if (fs::exists(fs::path(path) / list, error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} holds a recording already: remove it or choose another folder", path)};
+  bool is_new = false;
+  if (Status status = make_folder(path, is_new); !status.ok()) return status;
+  if (is_new) fs::remove(path, error);
+  return {};
+}
 
 Status FrameRecording::open(const std::string& path, LiveCamera& camera, bool every_frame,
                             std::uint64_t max_frames) {
   path_ = path;
   max_frames_ = max_frames;
   oni_ = is_oni_file(path);
-  std::error_code error;
+  if (Status status = check(path); !status.ok()) return status;
   if (oni_) {
-    if (fs::exists(path, error))
-      return {StatusCode::kInvalidArgument,
-              fmt::format("{} exists already: remove it or choose another name", path)};
     const Status status = camera.start_oni(path);
     if (status.ok()) camera_ = &camera;
     return status;
   }
-  if (fs::exists(fs::path(path) / "rgb.txt", error))
-    return {StatusCode::kInvalidArgument,
-            fmt::format("{} holds a recording already: remove it or choose another folder", path)};
-  // The folder itself waits for the first frame, which says what unit depth is in; that it can be made is
-  // found out now.
-  fs::create_directory(path, error);
-  if (error || !fs::is_directory(path, error))
-    return {StatusCode::kIo, fmt::format("cannot make the folder {}: {}; choose a path that can be written",
-                                         path, error ? error.message() : "it is a file")};
+  // What is in the folder waits for the first frame, which says what unit depth is in.
+  bool is_new = false;
+  if (Status status = make_folder(path, is_new); !status.ok()) return status;
   camera_ = &camera;
   model_ = camera.model();
   ring_ = std::make_unique<FrameRing>(model_.width, model_.height, kSlots,
