@@ -5,29 +5,25 @@
 
 #include <algorithm>
 
-#include "plvo/image/undistortion.hpp"
-
 namespace plvo {
 
 int least_reduction(int width, int height) {
-  constexpr int kMost = UndistortionMap::kMaxSide;
   int factor = 1;
-  while (std::max(width, height) / factor > kMost) ++factor;
+  while (std::max(width, height) / factor > kMostTrackedSide) ++factor;
   return factor;
 }
 
 Status check_reduction(int factor, int width, int height) {
   if (factor < 1)
     return {StatusCode::kInvalidArgument, "images are scaled down by a whole number, from 1 on"};
-  constexpr int kLeast = 64;  // px a side: Limits
-  constexpr int kMost = UndistortionMap::kMaxSide;
   const int small_width = width / factor, small_height = height / factor;
-  const bool fits = std::max(small_width, small_height) <= kMost;
+  const bool fits = std::max(small_width, small_height) <= kMostTrackedSide;
   // Images that are too small as they are get their own words elsewhere.
-  if (fits && (factor == 1 || std::min(small_width, small_height) >= kLeast)) return {};
+  if (fits && (factor == 1 || std::min(small_width, small_height) >= kLeastTrackedSide)) return {};
   return {StatusCode::kInvalidArgument,
           fmt::format("images of {}x{} scaled down by {} are {}x{}, and plvo takes {}x{} to {}x{}", width,
-                      height, factor, small_width, small_height, kLeast, kLeast, kMost, kMost)};
+                      height, factor, small_width, small_height, kLeastTrackedSide, kLeastTrackedSide,
+                      kMostTrackedSide, kMostTrackedSide)};
 }
 
 CameraModel reduced(const CameraModel& camera, int factor) {

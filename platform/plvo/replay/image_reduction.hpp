@@ -11,8 +11,12 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/image/undistortion.hpp"
 
 namespace plvo {
+
+// Of the images that the core tracks, px (Limits).
+inline constexpr int kLeastTrackedSide = 64, kMostTrackedSide = UndistortionMap::kMaxSide;
 
 // What images were scaled down from: the size of the files.
 struct WholeImage {

@@ -173,9 +173,11 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   add_rate_option(group, options.rate_hz);
   group.whole(
       "--scale", options.scale, 1, kMostScale,
-      "Scale the images down by this factor, and the calibration, which is that of the whole images, "
-      "with them: for less time a frame (default 1; images above 2047 pixels a side: as little as they "
-      "need)");
+      fmt::format(
+          "Scale the images down by this factor, and the calibration, which is that of the whole images, "
+          "with them: for less time a frame (default 1; images above {} pixels a side: as little as they "
+          "need)",
+          kMostTrackedSide));
   add_bag_options(command, options.topics, BagImu::kKept);
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);
