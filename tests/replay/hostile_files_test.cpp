@@ -122,6 +122,19 @@ TEST(HostileFiles, SizesAreJudgedByTheHeaderAlone) {
   EXPECT_LT(peak_kib() - before, 64 * 1024);
 }
 
+// A row of one character, kept as words, takes fifty times its size.
+TEST(HostileFiles, ATableOfTheShortestRowsIsNotKeptWhole) {
+  const TemporaryFolder folder;
+  std::string rows(16u << 20, '\n');
+  for (std::size_t i = 0; i < rows.size(); i += 2) rows[i] = '1';
+  write_file(folder / "t.txt", rows);
+  const long before = peak_kib();
+  Trajectory trajectory;
+  const Status status = read_trajectory({folder / "t.txt", {}, {}}, trajectory);
+  EXPECT_TRUE(says(status, "line 1: has 1 columns where 8 are needed")) << status.message();
+  EXPECT_LT(peak_kib() - before, 64 * 1024);
+}
+
 // A zlib stream of `matches` times 258 zeros after a first one: deflate's fixed codes, 13 bits for 258 bytes.
 std::string zeros_in_zlib(std::uint32_t matches) {
   std::string bits = "110";  // last block, fixed codes (the lower bit of a number first)
