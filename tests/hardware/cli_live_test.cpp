@@ -140,7 +140,7 @@ TEST_F(CliLive, KeepsABudget) {
 }
 
 TEST_F(CliLive, ChosenRateDropsOldFramesAndCountsThem) {
-  const CommandResult r = plvo("live --rate 5 --frames 8 " + kSmall + "--json " + path("j"));
+  const CommandResult r = plvo("live --max-rate 5 --frames 8 " + kSmall + "--json " + path("j"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const auto json = nlohmann::json::parse(read_file(path("j")));
   const int frames = json["frames"], dropped = json["dropped"], captured = json["camera_frames"];
@@ -173,7 +173,7 @@ TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
   expect(plvo("live --seconds 1.5", device("stall")), 4, "no frame came from Virtual RGB-D");
   expect(plvo("live --frames 10 --quiet", device("dark 1;zero_depth 1")), 3, "no frame could be tracked: ");
   EXPECT_EQ(plvo("live --mode big").exit_code, 2);
-  EXPECT_EQ(plvo("live --rate 0").exit_code, 2);
+  EXPECT_EQ(plvo("live --max-rate 0").exit_code, 2);
   EXPECT_EQ(plvo("live --view-host robot.local").exit_code, 2) << "of which view?";
   EXPECT_EQ(plvo("live --view 0 --view-host http://robot/").exit_code, 2);
   EXPECT_EQ(plvo("live --depth-scale 1000").exit_code, 2);

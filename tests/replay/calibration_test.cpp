@@ -392,5 +392,18 @@ TEST(Calibration, BuiltinNames) {
   EXPECT_TRUE(says(builtin_calibration("tum-fr9", fr1), "the names are tum-fr1 tum-fr2"));
 }
 
+TEST(Calibration, OneWordIsANameOrAFile) {
+  Calibration c;
+  ASSERT_TRUE(named_calibration("tum-fr3", c).ok());
+  EXPECT_EQ(c.camera.pinhole.fx, 535.4);
+  const TemporaryFolder folder;
+  write_file(folder / "tum-fr3", "525 526 319.5 239.5\n");
+  ASSERT_TRUE(named_calibration((folder / "tum-fr3").string(), c).ok()) << "a file of a camera's name";
+  EXPECT_EQ(c.camera.pinhole.fy, 526);
+  const Status neither = named_calibration((folder / "tum-fr9").string(), c);
+  EXPECT_EQ(neither.code(), StatusCode::kNotFound);
+  EXPECT_TRUE(says(neither, "tum-fr9")) << neither.message();
+}
+
 }  // namespace
 }  // namespace plvo

@@ -10,8 +10,11 @@
 #include <functional>
 #include <string>
 
+#include "plvo/eval/uncertainty_file.hpp"
+#include "plvo/host/trajectory_reader.hpp"
 #include "plvo/replay/calibration.hpp"
 #include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/tum_index.hpp"
 #include "says.hpp"
@@ -119,6 +122,19 @@ TEST(HostileFiles, SizesAreJudgedByTheHeaderAlone) {
   EXPECT_LT(peak_kib() - before, 64 * 1024);
 }
 
+// A row of one character, kept as words, takes fifty times its size.
+TEST(HostileFiles, ATableOfTheShortestRowsIsNotKeptWhole) {
+  const TemporaryFolder folder;
+  std::string rows(16u << 20, '\n');
+  for (std::size_t i = 0; i < rows.size(); i += 2) rows[i] = '1';
+  write_file(folder / "t.txt", rows);
+  const long before = peak_kib();
+  Trajectory trajectory;
+  const Status status = read_trajectory({folder / "t.txt", {}, {}}, trajectory);
+  EXPECT_TRUE(says(status, "line 1: has 1 columns where 8 are needed")) << status.message();
+  EXPECT_LT(peak_kib() - before, 64 * 1024);
+}
+
 // A zlib stream of `matches` times 258 zeros after a first one: deflate's fixed codes, 13 bits for 258 bytes.
 std::string zeros_in_zlib(std::uint32_t matches) {
   std::string bits = "110";  // last block, fixed codes (the lower bit of a number first)
@@ -181,8 +197,8 @@ struct Reader {
   std::function<Status(const fs::path&)> read;
 };
 
-const std::array<Reader, 6>& readers() {
-  static const std::array<Reader, 6> all = {{
+const std::array<Reader, 11>& readers() {
+  static const std::array<Reader, 11> all = {{
       {"calibration.txt",
        [](const fs::path& path) {
          Calibration calibration;
@@ -214,6 +230,33 @@ const std::array<Reader, 6>& readers() {
          ImageDecoder decoder;
          std::vector<std::uint16_t> depth(64);
          return decoder.decode_depth(path, 8, 8, depth);
+       }},
+      {"groundtruth.txt",
+       [](const fs::path& path) {
+         Trajectory trajectory;
+         return read_ground_truth(path.parent_path(), {}, trajectory);
+       }},
+      {"times.txt",
+       [](const fs::path& path) {
+         const fs::path poses = path.parent_path() / "poses.txt";
+         write_file(poses, "1 0 0 0 0 1 0 0 0 0 1 0\n");
+         Trajectory trajectory;
+         return read_trajectory({poses, TrajectoryFormat::kKitti, path}, trajectory);
+       }},
+      {"covariance.txt",
+       [](const fs::path& path) {
+         std::vector<eval::StampedCovariance> covariances;
+         return eval::read_covariances(path, covariances);
+       }},
+      {"motions.txt",
+       [](const fs::path& path) {
+         std::vector<eval::UncertainMotion> motions;
+         return eval::read_motions(path, motions);
+       }},
+      {kGyroFile,
+       [](const fs::path& path) {
+         ImuRecording recording;
+         return read_imu_files(path.parent_path(), recording);
        }},
   }};
   return all;

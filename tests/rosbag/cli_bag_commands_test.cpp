@@ -126,7 +126,7 @@ TEST_F(CliBagCommands, WhatDoesNotApplyIsRefused) {
   expect_refused("live --imu" + device, 2, "--imu: is for a live Kinect");
   expect_refused("live --colour-topic /x", 2, "--colour-topic: is for a ROS bag");
   expect_refused("record " + path("x") + " --gyro-topic /imu" + device, 2, "--gyro-topic: is for --imu");
-  expect_refused("record " + path("x.oni") + " --imu", 2, "--imu: is for a folder");
+  expect_refused("record " + path("x.oni") + " --imu", 2, "--imu: an .oni file keeps no readings of it");
   expect_refused("record " + path("x") + " --imu --device walk.oni", 2,
                  "--imu: does not apply to an .oni file");
   expect_refused("doctor" + device, 2, "--device: a ROS bag is no sensor");

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
 
 #include "command.hpp"
 #include "tiny_sequence.hpp"
@@ -54,15 +57,14 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
   expect_usage("run x --readout 20", "--readout: expected a number from 0 to 1, not '20'");
   expect_usage("run x --distortion 1 2 3 nan",
                "--distortion: expected a number from -1000 to 1000, not 'nan'");
-  expect_usage("run x --distortion-rational 1 2 3 4 5",
-               "--distortion-rational: At least 8 required but received 5");
+  expect_usage("run x --distortion-rational 1 2 3 4 5", "--distortion-rational: takes 8 values, not 5");
   expect_usage("run x --distortion-equidistant 1 2 x 4",
                "--distortion-equidistant: expected a number from -1000 to 1000, not 'x'");
   expect_usage("run x --distortion 1 2 3 4 --distortion-equidistant 1 2 3 4",
                "give one of --distortion, --distortion-rational and --distortion-equidistant");
   for (const char* command : {"run x", "live"}) {
     const std::string base = std::string(command) + " --out t --base-camera ";
-    expect_usage(base + "0.1 0 0.5", "--base-camera: At least 7 required but received 3");
+    expect_usage(base + "0.1 0 0.5", "--base-camera: takes 7 values, not 3");
     expect_usage(base + "0.1 0 0.5 0 0 0 0", "the quaternion qx qy qz qw must have the length 1, not 0");
     expect_usage(base + "0.1 0 0.5 1 0.5 -0.5 0.5", "come qx qy qz qw, w last");
     expect_usage(base + "0.1 0 x 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'x'");
@@ -90,7 +92,7 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
                "--offset: expected a number from -4000000000 to 4000000000");
   expect_usage("eval --gt a --est b --gt-sampling nearest --max-dt nan",
                "--max-dt: expected a number above 0");
-  expect_usage("live --rate nan", "--rate: expected a number above 0 and up to 1000, not 'nan'");
+  expect_usage("live --max-rate nan", "--max-rate: expected a number above 0 and up to 1000, not 'nan'");
   expect_usage("live --seconds inf", "--seconds: expected a number above 0");
   expect_usage("record x --frames -1", "--frames: expected a whole number from 1");
   expect_usage("doctor --seconds 1e300", "--seconds: expected a number above 0");
@@ -110,10 +112,28 @@ TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
                "run: there is no option --featurse; did you mean --features? (see plvo run");
   expect_usage("run x --zoom=3 y", "run: there is no option --zoom");
   expect_usage("run x y", "run: 'y' is one word too many");
+  expect_usage("run x -- y", "run: 'y' is one word too many");
+  // Also where something required is missing: it may be what was misspelt.
+  for (const char* command : {"run", "record", "eval", "calibrate", "simulate"})
+    expect_usage(std::string(command) + " --bogus", std::string(command) + ": there is no option --bogus");
+  expect_usage("eval --gt a --esst b", "eval: there is no option --esst; did you mean --est?");
   expect_usage("record", "record: path is required");
   expect_usage("eval --gt a", "--est is required");
   expect_usage("run x --out", "--out");
   expect_usage("run x --out ''", "--out: expected a path, not an empty word");
+}
+
+TEST(CliUsage, HowManyValuesAnOptionTakesIsSaidPlainly) {
+  expect_usage("run x --frames 5 --frames 6", "run: --frames: may be given once, not 2 times (see");
+  expect_usage("run x --out a --out b --out c", "--out: may be given once, not 3 times");
+  expect_usage("run x --preset", "run: --preset: a value is missing: default, paper or tiny (see");
+  expect_usage("run x --fx", "--fx: a value is missing: PIXELS");
+  expect_usage("run x --out=", "--out: a value is missing: FILE");
+  expect_usage("live --stream", "--stream: a value is missing: [ADDR:]PORT, unix:PATH or -");
+  expect_usage("run x --distortion 1 2", "--distortion: takes 4 to 5 values, not 2");
+  expect_usage("run x --distortion 1 2 3 4 --distortion 1 2 3 4", "--distortion: takes 4 to 5 values, not 8");
+  expect_usage("run x --quiet=3", "--quiet: is a switch and takes no value");
+  expect_usage("run x --quiet=maybe", "--quiet: is a switch and takes no value");
 }
 
 TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
@@ -133,10 +153,13 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run --camera sim --frames 5:9", "a simulated walk starts at frame 0");
   expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
   expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
+  expect_usage("run x --preset tiny --reference both", "--reference: both does not apply to --preset tiny");
+  expect_usage("live --preset tiny --reference both", "--reference: both does not apply to --preset tiny");
   expect_usage("run x --report-frames 3", "--report-frames: is for a report");
   expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
   expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");
   expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
+  expect_usage("record x.oni --imu", "--imu: an .oni file keeps no readings of it; record a folder instead");
   expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
   expect_usage("eval --gt a --est b --max-dt 0.1", "--max-dt: is for --gt-sampling nearest");
 }
@@ -151,7 +174,97 @@ TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
   expect_usage("live --out a --json a", "--json: a is already written by --out");
 }
 
+// A sensor that was opened first would be missed here, with exit code 4; one that is there would have
+// started.
+TEST(CliUsage, OutputsAreTriedBeforeASensorIsOpened) {
+  const TemporaryFolder folder;
+  const auto at = [&folder](const std::string& name) { return (folder / name).string(); };
+  std::filesystem::create_directory(folder / "walk");
+  test::write_file(folder / "walk/depth.txt", "mine");
+  test::write_file(folder / "walk.oni", "mine");
+  test::write_file(folder / "poses.txt", "mine");
+  const auto expect_refused = [](const std::string& arguments, const std::string& words) {
+    const CommandResult r = plvo(arguments);
+    EXPECT_EQ(r.exit_code, 1) << arguments << ": " << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << arguments << ": " << r.err;
+  };
+  for (const char* command : {"record ", "live --record "}) {
+    expect_refused(command + at("walk"), "holds a recording already");
+    expect_refused(command + at("walk.oni"), "exists already");
+    expect_refused(command + at("no/such/folder"), "cannot make the folder");
+    expect_refused(command + at("poses.txt"), "it is a file");
+    expect_refused(command + at("no/such.oni"), "cannot create " + at("no/such.oni"));
+  }
+  test::write_file(folder / "accelerometer.txt", "mine");
+  expect_refused("record --imu " + folder.path().string(), "has accelerometer.txt already");
+  expect_refused("live --imu --record " + folder.path().string(), "has accelerometer.txt already");
+  for (const char* output : {"--out ", "--covariance ", "--motions ", "--stats ", "--json "})
+    expect_refused("live " + (output + at("no/such.txt")), "cannot create " + at("no/such.txt"));
+  expect_refused("live --stream unix:" + at("no/socket"), at("no/socket"));
+  expect_refused("live --view 192.0.2.1:0", "192.0.2.1");
+  // What is well is only tried: without a sensor nothing comes of it, and nothing is lost.
+  plvo("record " + at("new") + " --seconds 0.01 --device freenect://9-9");
+  plvo("live --device freenect://9-9 --record " + at("new.oni") + " --out " + at("poses.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new.oni"));
+  EXPECT_EQ(test::read_file(folder / "poses.txt"), "mine");
+}
+
+// What each flag of a command is for: its type and its words in the help, on one line.
+std::map<std::string, std::string> flags_of(const std::string& command) {
+  std::map<std::string, std::string> flags;
+  std::istringstream help(plvo(command + " --help").out);
+  std::string* told = nullptr;
+  for (std::string line; std::getline(help, line);) {
+    if (line.rfind("  --", 0) == 0) {
+      told = &flags[line.substr(2, line.find(' ', 2) - 2)];
+    } else if (line.rfind("    ", 0) != 0) {
+      told = nullptr;
+    }
+    if (told == nullptr) continue;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) *told += word + ' ';
+  }
+  return flags;
+}
+
+// How many meanings a flag has where it has more than one, and why it may.
+const std::map<std::string, std::size_t>& flags_of_several_meanings() {
+  static const std::map<std::string, std::size_t> flags = {
+      {"--frames", 4},  // always so many frames; run takes a range too, calibrate of all recordings together
+      {"--imu", 3},     // always a gyro and an accelerometer; what is done with them is the command's own
+      {"--calibration", 2},  // the same files; what holds without one depends on where the frames come from
+      {"--threads", 2},      // always a number of threads; what they do is the command's own
+      {"--out", 3},          // always the command's first result
+      {"--json", 2},         // always JSON; - prints it instead of the text where the text is the result
+      {"--report", 3},       // always a page; what it shows is the command's own
+      {"--device", 2},       // doctor captures from no ROS bag
+      {"--seconds", 2},      // doctor ends by itself
+  };
+  return flags;
+}
+
 TEST(CliUsage, TheSameFlagMeansTheSame) {
+  std::map<std::string, std::set<std::string>> meanings;
+  std::map<std::string, std::string> where;
+  for (const char* command : {"run", "live", "record", "calibrate", "eval", "simulate", "doctor", "tilt"}) {
+    const auto flags = flags_of(command);
+    EXPECT_FALSE(flags.empty()) << command;
+    for (const auto& [flag, words] : flags) {
+      meanings[flag].insert(words);
+      where[flag] += std::string(command) + ": " + words + '\n';
+    }
+  }
+  for (const auto& [flag, words] : meanings) {
+    const auto several = flags_of_several_meanings().find(flag);
+    EXPECT_EQ(words.size(), several == flags_of_several_meanings().end() ? 1u : several->second)
+        << where[flag];
+  }
+  for (const auto& [flag, count] : flags_of_several_meanings())
+    EXPECT_EQ(meanings.count(flag), 1u) << flag << " is no flag any more";
+}
+
+TEST(CliUsage, TheSameFlagDoesTheSame) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const std::string walk = (folder / "walk").string();

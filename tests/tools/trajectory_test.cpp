@@ -73,10 +73,35 @@ TEST(Trajectory, KittiTakesItsStampsFromElsewhere) {
   EXPECT_TRUE(says(surplus, "has 3 stamps for 2 poses")) << surplus.message();
 }
 
+// As Windows' programs save text.
+TEST(Trajectory, AByteOrderMarkAndCarriageReturnsAreNoPartOfIt) {
+  Trajectory t;
+  Status status = read_text(
+      "\xEF\xBB\xBF"
+      "1.0 1 2 3 0 0 0 1\r\n\r\n2.0 4 5 6 0 0 0 1\r\n",
+      t);
+  ASSERT_TRUE(status.ok()) << status.message();
+  ASSERT_EQ(t.poses.size(), 2u);
+  EXPECT_EQ(t.poses[0].stamp_ns, 1'000'000'000);
+  EXPECT_EQ(t.poses[1].T_world_camera.t, Vector3(4, 5, 6));
+  status = read_text(
+      "\xEF\xBB\xBF"
+      "1 0 0 4 0 1 0 5 0 0 1 6\r\n",
+      t);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(t.format, TrajectoryFormat::kKitti);
+  EXPECT_EQ(read_text(std::string("\xFF\xFE"
+                                  "1\0",
+                                  4),
+                      t)
+                .code(),
+            StatusCode::kDamaged);  // UTF-16
+}
+
 TEST(Trajectory, SaysWhatIsWrong) {
   Trajectory t;
   EXPECT_EQ(read_trajectory({"/nowhere.txt", TrajectoryFormat::kAuto, {}}, t).code(), StatusCode::kNotFound);
-  EXPECT_EQ(read_trajectory({"/tmp", TrajectoryFormat::kAuto, {}}, t).code(), StatusCode::kNotFound);
+  EXPECT_TRUE(says(read_trajectory({"/tmp", TrajectoryFormat::kAuto, {}}, t), "it is a folder; name a file"));
   EXPECT_TRUE(says(read_text("# only\n", t), "holds no pose"));
   EXPECT_TRUE(
       says(read_text("1.0 0 0 0 0 0 0 1\n1.1 0 0 0\n", t), "line 2: has 4 columns where 8 are needed"));

@@ -134,6 +134,22 @@ TEST(Diagnosis, SlowPorts) {
   expect_only(facts, FindingCode::kSlowPort, "needs USB 3", "blue");
 }
 
+TEST(Diagnosis, HubsOfAKinectV2AreNoCameras) {
+  SystemFacts facts = healthy_kinect();
+  facts.openni.files.push_back({"libfreenect2-openni2.so.0", ""});
+  facts.usbfs_memory_mb = 64;
+  UsbDeviceFacts slow = device(0x045e, 0x02d9, "1-2", 480), fast = device(0x045e, 0x02d9, "2-2", 5000);
+  slow.kernel_driver = fast.kernel_driver = "hub";
+  for (const auto camera : {std::uint16_t{0x02c4}, std::uint16_t{0x02d8}}) {
+    facts.devices = {slow, fast, device(0x045e, camera, "2-2.1", 5000)};
+    const std::vector<Finding> findings = diagnose(facts);
+    ASSERT_EQ(findings.size(), 1u) << findings.front().what;
+    EXPECT_EQ(findings.front().code, FindingCode::kReady);
+  }
+  facts.devices = {slow};
+  expect_only(facts, FindingCode::kSlowPort, "its camera is not: it needs USB 3", "blue");
+}
+
 TEST(Diagnosis, KinectV2DriverDoesNotServeAKinectV1NorTheOtherWayRound) {
   SystemFacts facts = healthy_kinect();
   facts.openni.files = {{"libfreenect2-openni2.so.0", ""}};

@@ -41,17 +41,10 @@ Status give_calibration(const plvo::Calibration& calibration, plvo_camera* camer
   return {};
 }
 
-Status find_calibration(const char* named, const plvo::OwnCalibration& own, plvo::Calibration& calibration) {
-  if (named == nullptr) return own(calibration);
-  for (std::string_view name : plvo::builtin_calibration_names())
-    if (name == named) return plvo::builtin_calibration(name, calibration);
-  return plvo::read_calibration(named, calibration);
-}
-
 Status open(const char* path, const char* calibration, const plvo::BagTopicNames& topics,
             plvo_sequence** sequence) {
   const auto choose = [calibration](const plvo::OwnCalibration& own, plvo::Calibration& found) {
-    return find_calibration(calibration, own, found);
+    return calibration == nullptr ? own(found) : plvo::named_calibration(calibration, found);
   };
   auto opened = std::make_unique<plvo_sequence>();
   if (Status status = opened->camera.open(path, choose, {{}, topics, {}}); !status.ok()) return status;

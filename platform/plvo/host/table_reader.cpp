@@ -3,43 +3,52 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <utility>
+#include <string_view>
+
+#include "plvo/host/input_file.hpp"
 
 namespace plvo {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// The words of a line without its comment.
+void split_line(std::string_view line, TableRow& row) {
+  constexpr std::string_view kBetween = " \t\r,";
+  row.words.clear();
+  line = line.substr(0, line.find('#'));
+  row.commas = line.find(',') != std::string_view::npos;
+  for (;;) {
+    line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+    if (line.empty()) return;
+    row.words.emplace_back(line.substr(0, line.find_first_of(kBetween)));
+    line.remove_prefix(row.words.back().size());
+  }
+}
+
+}  // namespace
+
 Status row_error(const fs::path& path, const TableRow& row, const std::string& what) {
   return {StatusCode::kDamaged, fmt::format("{} line {}: {}", path.string(), row.line, what)};
 }
 
-std::vector<TableRow> parse_table(std::istream& stream) {
-  std::vector<TableRow> rows;
-  std::string text;
-  for (int line = 1; std::getline(stream, text); ++line) {
-    TableRow row{line, {}, false};
-    std::string word;
-    for (char c : text.substr(0, text.find('#')) + ' ') {
-      const bool separator = c == ' ' || c == '\t' || c == '\r' || c == ',';
-      row.commas |= c == ',';
-      if (!separator) word += c;
-      if (separator && !word.empty()) row.words.push_back(std::exchange(word, {}));
-    }
-    if (!row.words.empty()) rows.push_back(std::move(row));
+Status each_row(const fs::path& path, std::uintmax_t limit_bytes,
+                const std::function<Status(const TableRow&)>& take) {
+  std::string content;
+  Status status = read_text_file(path, limit_bytes, content);
+  std::string_view rest = content;
+  TableRow row;
+  while (status.ok() && !rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    ++row.line;
+    split_line(line, row);
+    if (!row.words.empty()) status = take(row);
   }
-  return rows;
-}
-
-Status read_table(const fs::path& path, std::vector<TableRow>& rows) {
-  rows.clear();
-  std::error_code error;
-  std::ifstream stream(path);
-  if (!stream || fs::is_directory(path, error))
-    return {StatusCode::kNotFound, fmt::format("cannot read {}; name an existing file", path.string())};
-  rows = parse_table(stream);
-  return {};
+  return status;
 }
 
 Status parse_numbers(const fs::path& path, const TableRow& row, std::size_t first,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text files of numbers: one row a line, separated by spaces, tabs or commas, `#` comments.
+// Text files of numbers: one row a line, separated by spaces, tabs or commas, `#` comments. UTF-8 with or
+// without a byte order mark, lines ended as Unix or Windows ends them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <iosfwd>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,9 +19,10 @@ struct TableRow {
   bool commas = false;
 };
 
-std::vector<TableRow> parse_table(std::istream& stream);
-// kNotFound when the file cannot be read.
-Status read_table(const std::filesystem::path& path, std::vector<TableRow>& rows);
+// Each row that has a word goes to `take`, whose first failure ends it and is returned. Else as
+// read_text_file. One row at a time: a file within its limit could otherwise become fifty times its size.
+Status each_row(const std::filesystem::path& path, std::uintmax_t limit_bytes,
+                const std::function<Status(const TableRow&)>& take);
 
 // words[first … first+values.size()) as numbers. kDamaged, naming file and line, for what is not a number; a
 // NaN is one.

@@ -39,6 +39,10 @@ bool split_address(const std::string& text, std::string& host, int& port) {
   return true;
 }
 
+std::string with_brackets(const std::string& host) {
+  return host.find(':') == std::string::npos || host.front() == '[' ? host : '[' + host + ']';
+}
+
 bool is_loopback(const std::string& host) {
   const std::string address = without_brackets(host);
   if (address == "localhost") return true;

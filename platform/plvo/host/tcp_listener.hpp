@@ -13,6 +13,8 @@ namespace plvo {
 
 // "[ADDR:]PORT" into its parts; false for nonsense. Without an address: "127.0.0.1".
 bool split_address(const std::string& text, std::string& host, int& port);
+// The host as it stands before a port: an IPv6 address in brackets, once.
+std::string with_brackets(const std::string& host);
 
 // True for a host that only this machine can reach: "localhost", 127.0.0.0/8 or ::1, with or without
 // brackets. A name that merely begins like one of them is not.

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "plvo/host/input_file.hpp"
 #include "plvo/host/stamp_text.hpp"
 
 namespace plvo {
@@ -53,30 +54,13 @@ Status quaternion_pose(const std::filesystem::path& path, const TableRow& row, c
   return {};
 }
 
-Status read_kitti_times(const std::filesystem::path& path, std::size_t needed,
-                        std::vector<std::int64_t>& stamps) {
-  std::vector<TableRow> rows;
-  if (Status status = read_table(path, rows); !status.ok()) return status;
-  for (const TableRow& row : rows) {
+Status read_kitti_times(const std::filesystem::path& path, std::vector<std::int64_t>& stamps) {
+  return each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     std::int64_t stamp = 0;
     if (!parse_stamp_ns(row.words[0], stamp)) return row_error(path, row, "expected a stamp in seconds");
     stamps.push_back(stamp);
-  }
-  if (stamps.size() == needed) return {};
-  return {StatusCode::kInvalidArgument,
-          fmt::format("{} has {} stamps for {} poses; there must be one for each", path.string(),
-                      stamps.size(), needed)};
-}
-
-void sort_by_stamp(Trajectory& trajectory) {
-  auto& poses = trajectory.poses;
-  std::stable_sort(poses.begin(), poses.end(),
-                   [](const StampedPose& a, const StampedPose& b) { return a.stamp_ns < b.stamp_ns; });
-  const auto end = std::unique(poses.begin(), poses.end(), [](const StampedPose& a, const StampedPose& b) {
-    return a.stamp_ns == b.stamp_ns;
+    return {};
   });
-  trajectory.ignored_rows += static_cast<std::size_t>(poses.end() - end);
-  poses.erase(end, poses.end());
 }
 
 // The pose of a row in any format; false in `usable` for one with a NaN.
@@ -92,6 +76,65 @@ Status row_pose(const std::filesystem::path& path, const TableRow& row, Trajecto
   const Quaternion q = w_first ? Quaternion{v[4], v[5], v[6], v[3]} : Quaternion{v[3], v[4], v[5], v[6]};
   return quaternion_pose(path, row, Vector3(v[0], v[1], v[2]), q, pose);
 }
+
+// Takes the rows of a trajectory's file, one after the other.
+class Rows {
+ public:
+  Rows(const TrajectorySource& source, Trajectory& trajectory) : source_(source), trajectory_(trajectory) {}
+
+  Status take(const TableRow& row) {
+    if (count_ == 0)
+      if (Status status = begin(row); !status.ok()) return status;
+    StampedPose pose;
+    if (!parse_stamp(row, pose.stamp_ns))
+      return row_error(source_.path, row, fmt::format("'{}' is not a stamp", row.words[0]));
+    ++count_;
+    bool usable = false;
+    Status status = row_pose(source_.path, row, trajectory_.format, pose.T_world_camera, usable);
+    if (!status.ok()) return status;
+    if (usable)
+      trajectory_.poses.push_back(pose);
+    else
+      ++trajectory_.ignored_rows;
+    return {};
+  }
+
+  Status end() const {
+    const std::string path = source_.path.string();
+    if (count_ == 0) return {StatusCode::kInvalidArgument, fmt::format("{} holds no pose", path)};
+    if (timed_ && times_.size() != count_)
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} has {} stamps for {} poses; there must be one for each",
+                          source_.kitti_times.string(), times_.size(), count_)};
+    if (trajectory_.poses.empty())
+      return {StatusCode::kInvalidArgument, fmt::format("{} holds no pose without a NaN", path)};
+    return {};
+  }
+
+ private:
+  Status begin(const TableRow& first) {
+    trajectory_.format = source_.format == TrajectoryFormat::kAuto ? detect(first) : source_.format;
+    timed_ = trajectory_.format == TrajectoryFormat::kKitti && !source_.kitti_times.empty();
+    return timed_ ? read_kitti_times(source_.kitti_times, times_) : Status();
+  }
+
+  bool parse_stamp(const TableRow& row, std::int64_t& stamp_ns) const {
+    switch (trajectory_.format) {
+      case TrajectoryFormat::kKitti:
+        stamp_ns =
+            count_ < times_.size() ? times_[count_] : static_cast<std::int64_t>(count_) * kKittiPeriodNs;
+        return true;
+      case TrajectoryFormat::kEuroc: return parse_nanoseconds(row.words[0], stamp_ns);
+      default: return parse_stamp_ns(row.words[0], stamp_ns);
+    }
+  }
+
+  const TrajectorySource& source_;
+  Trajectory& trajectory_;
+  std::vector<std::int64_t> times_;
+  bool timed_ = false;  // by times_
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -116,38 +159,18 @@ Status matrix_pose(const std::filesystem::path& path, const TableRow& row, const
 
 Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory) {
   trajectory = {};
-  std::vector<TableRow> rows;
-  if (Status status = read_table(source.path, rows); !status.ok()) return status;
-  if (rows.empty())
-    return {StatusCode::kInvalidArgument, fmt::format("{} holds no pose", source.path.string())};
-  const TrajectoryFormat format = source.format == TrajectoryFormat::kAuto ? detect(rows[0]) : source.format;
-  const bool kitti = format == TrajectoryFormat::kKitti;
-  std::vector<std::int64_t> times;
-  if (kitti && !source.kitti_times.empty()) {
-    if (Status status = read_kitti_times(source.kitti_times, rows.size(), times); !status.ok()) return status;
-  }
-  trajectory.format = format;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    StampedPose pose;
-    if (kitti) pose.stamp_ns = times.empty() ? static_cast<std::int64_t>(i) * kKittiPeriodNs : times[i];
-    const bool stamp_read =
-        kitti || (format == TrajectoryFormat::kEuroc ? parse_nanoseconds(rows[i].words[0], pose.stamp_ns)
-                                                     : parse_stamp_ns(rows[i].words[0], pose.stamp_ns));
-    if (!stamp_read)
-      return row_error(source.path, rows[i], fmt::format("'{}' is not a stamp", rows[i].words[0]));
-    bool usable = false;
-    if (Status status = row_pose(source.path, rows[i], format, pose.T_world_camera, usable); !status.ok())
-      return status;
-    if (!usable) {
-      ++trajectory.ignored_rows;
-      continue;
-    }
-    trajectory.poses.push_back(pose);
-  }
-  if (trajectory.poses.empty())
-    return {StatusCode::kInvalidArgument,
-            fmt::format("{} holds no pose without a NaN", source.path.string())};
-  sort_by_stamp(trajectory);
+  Rows rows(source, trajectory);
+  Status status =
+      each_row(source.path, kMaxTextBytes, [&rows](const TableRow& row) { return rows.take(row); });
+  if (status.ok()) status = rows.end();
+  if (!status.ok()) return status;
+  auto& poses = trajectory.poses;
+  sort_by_stamp(poses);
+  const auto end = std::unique(poses.begin(), poses.end(), [](const StampedPose& a, const StampedPose& b) {
+    return a.stamp_ns == b.stamp_ns;
+  });
+  trajectory.ignored_rows += static_cast<std::size_t>(poses.end() - end);
+  poses.erase(end, poses.end());
   return {};
 }
 

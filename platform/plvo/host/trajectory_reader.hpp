@@ -6,6 +6,7 @@
 //   elsewhere
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -37,10 +38,17 @@ struct TrajectorySource {
   std::filesystem::path kitti_times;
 };
 
-// Rows are sorted by stamp. kNotFound; kDamaged with file and line, also for a quaternion or a matrix that is
-// no rotation; kInvalidArgument for a file without a pose, or with more or fewer poses than kitti_times has
-// stamps.
+// Rows are sorted by stamp. As read_text_file; kDamaged with file and line, also for a quaternion or a matrix
+// that is no rotation; kInvalidArgument for a file without a pose, or with more or fewer poses than
+// kitti_times has stamps.
 Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory);
+
+// Of one stamp, those that came first stay first.
+template <typename Stamped>
+void sort_by_stamp(std::vector<Stamped>& rows) {
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const Stamped& a, const Stamped& b) { return a.stamp_ns < b.stamp_ns; });
+}
 
 // A pose from columns first … first + 6 of a row: "tx ty tz qx qy qz qw". kDamaged as above; a pose with a
 // NaN is read, not refused.

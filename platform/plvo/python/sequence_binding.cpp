@@ -28,9 +28,7 @@ CalibrationChoice choice_of(const py::object& camera) {
       calibration = camera.cast<Calibration>();
       return {};
     }
-    const std::string name = path_text(camera);
-    const Status status = builtin_calibration(name, calibration);
-    return status.code() == StatusCode::kNotFound ? read_calibration(name, calibration) : status;
+    return named_calibration(path_text(camera), calibration);
   };
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 
 #include "plvo/host/input_file.hpp"
@@ -127,6 +128,12 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   }
   calibration = result;
   return {};
+}
+
+Status named_calibration(const std::string& name_or_file, Calibration& calibration) {
+  const bool named =
+      std::find(kBuiltinNames.begin(), kBuiltinNames.end(), name_or_file) != kBuiltinNames.end();
+  return named ? builtin_calibration(name_or_file, calibration) : read_calibration(name_or_file, calibration);
 }
 
 }  // namespace plvo

@@ -58,6 +58,9 @@ std::optional<std::filesystem::path> calibration_file_in(const std::filesystem::
 Status builtin_calibration(std::string_view name, Calibration& calibration);
 std::span<const std::string_view> builtin_calibration_names();
 
+// Where one word stands for either: one of those names, or else a file, as read_calibration.
+Status named_calibration(const std::string& name_or_file, Calibration& calibration);
+
 // As read_calibration takes it back, to the last bit: one line of numbers (as many as say something), and a
 // line `key value` for each property of the sensor that has no place among them and is not at its default.
 // The size is not written: the images beside it have it.

@@ -18,14 +18,14 @@ int least_reduction(int width, int height) {
 Status check_reduction(int factor, int width, int height) {
   if (factor < 1)
     return {StatusCode::kInvalidArgument, "images are scaled down by a whole number, from 1 on"};
-  constexpr int kLeast = Limits::kLeastSide, kMost = Limits::kMostSide;
   const int small_width = width / factor, small_height = height / factor;
-  const bool fits = std::max(small_width, small_height) <= kMost;
+  const bool fits = std::max(small_width, small_height) <= Limits::kMostSide;
   // Images that are too small as they are get their own words elsewhere.
-  if (fits && (factor == 1 || std::min(small_width, small_height) >= kLeast)) return {};
+  if (fits && (factor == 1 || std::min(small_width, small_height) >= Limits::kLeastSide)) return {};
   return {StatusCode::kInvalidArgument,
           fmt::format("images of {}x{} scaled down by {} are {}x{}, and plvo takes {}x{} to {}x{}", width,
-                      height, factor, small_width, small_height, kLeast, kLeast, kMost, kMost)};
+                      height, factor, small_width, small_height, Limits::kLeastSide, Limits::kLeastSide,
+                      Limits::kMostSide, Limits::kMostSide)};
 }
 
 CameraModel reduced(const CameraModel& camera, int factor) {

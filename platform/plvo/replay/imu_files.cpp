@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -17,29 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The words of a line without its comment.
-std::vector<std::string> columns_of(std::string_view line) {
-  std::vector<std::string> words;
-  line = line.substr(0, line.find('#'));
-  constexpr std::string_view kBetween = " \t\r,";
-  for (;;) {
-    line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
-    if (line.empty()) return words;
-    words.emplace_back(line.substr(0, line.find_first_of(kBetween)));
-    line.remove_prefix(words.back().size());
-  }
-}
-
 Status read_samples(const fs::path& path, std::vector<ImuSample>& samples, std::size_t& ignored) {
-  std::string content;
-  if (Status status = read_text_file(path, kMaxTextBytes, content); !status.ok()) return status;
   std::vector<double> values(3);
-  std::string_view rest = content;
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::string_view text = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), text.size() + 1));
-    const TableRow row{line, columns_of(text), false};
-    if (row.words.empty()) continue;
+  return each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     ImuSample sample;
     if (!parse_stamp_ns(row.words[0], sample.stamp_ns))
       return row_error(path, row, fmt::format("'{}' is not a stamp", row.words[0]));
@@ -50,8 +29,8 @@ Status read_samples(const fs::path& path, std::vector<ImuSample>& samples, std::
       samples.push_back(sample);
     else
       ++ignored;
-  }
-  return {};
+    return {};
+  });
 }
 
 std::string short_line(const ImuSample& sample) {

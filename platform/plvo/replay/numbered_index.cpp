@@ -8,11 +8,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <system_error>
-
-#include "plvo/host/input_file.hpp"
 
 namespace plvo {
 namespace {
@@ -149,10 +146,12 @@ Status read_numbered_index(const fs::path& folder, double frames_per_s, Sequence
 }
 
 Status read_matrix_pose(const fs::path& path, Se3& pose, bool& usable) {
-  std::string content;
-  if (Status status = read_text_file(path, kMaxPoseBytes, content); !status.ok()) return status;
-  std::istringstream stream(content);
-  const std::vector<TableRow> rows = parse_table(stream);
+  std::vector<TableRow> rows;
+  const auto keep = [&rows](const TableRow& row) {
+    rows.push_back(row);
+    return Status();
+  };
+  if (Status status = each_row(path, kMaxPoseBytes, keep); !status.ok()) return status;
   std::vector<double> matrix;
   for (const TableRow& row : rows) {
     std::vector<double> numbers(4);

@@ -35,10 +35,6 @@ inline Float3 normalised(Float3 a) { return a * (1.0F / norm(a)); }
 inline Float3 mix(Float3 a, Float3 b, float t) { return a + (b - a) * t; }
 inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline float clamp01(float x) { return x < 0 ? 0.0F : (x > 1 ? 1.0F : x); }
-inline float smooth_step(float lo, float hi, float x) {
-  const float t = clamp01((x - lo) / (hi - lo));
-  return t * t * (3.0F - 2.0F * t);
-}
 
 using Rgb = Float3;  // linear, not gamma encoded
 inline float luminance(Rgb c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }

@@ -103,6 +103,21 @@ bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& o
   return false;
 }
 
+// The hubs of a Kinect v2 show themselves on any port, its camera on USB 3 alone.
+void judge_hubs(const SystemFacts& facts, Findings& out) {
+  const auto shows = [&facts](SensorPart part) {
+    return std::any_of(facts.devices.begin(), facts.devices.end(), [part](const UsbDeviceFacts& device) {
+      return device.known.family == SensorFamily::kKinectV2 && device.known.part == part;
+    });
+  };
+  if (!shows(SensorPart::kHub) || shows(SensorPart::kCamera)) return;
+  out.push_back(
+      {Severity::kProblem, FindingCode::kSlowPort,
+       "A Kinect v2 is there, but its camera is not: it needs USB 3 (5000 Mbit/s) and its power supply.",
+       "Use a USB 3 port (blue) and a USB 3 cable, without a hub between, and plug the Kinect's power "
+       "supply in."});
+}
+
 bool judge_speed(const UsbDeviceFacts& device, Findings& out) {
   const int needed = needs_of(device.known.family).min_speed_mbps;
   if (device.speed_mbps == 0 || device.speed_mbps >= needed) return true;
@@ -260,6 +275,7 @@ std::vector<Finding> diagnose(const SystemFacts& facts) {
   const bool openni_usable = judge_openni(facts.openni, out);
   std::set<SensorFamily> with_driver, without_driver;
   for (const UsbDeviceFacts& device : facts.devices) {
+    if (device.known.part == SensorPart::kHub) continue;  // the system's, which keeps it
     bool usable = judge_access(device, !facts.udev_rule.empty(), out);
     if (device.known.part != SensorPart::kCamera) continue;
     const SensorFamily family = device.known.family;
@@ -272,6 +288,7 @@ std::vector<Finding> diagnose(const SystemFacts& facts) {
       out.push_back({Severity::kGood, FindingCode::kReady, "The " + where(device) + " is ready.", ""});
     }
   }
+  judge_hubs(facts, out);
   judge_bandwidth(facts, out);
   if (!facts.devices.empty() && facts.udev_rule.empty() &&
       std::none_of(out.begin(), out.end(),

@@ -10,9 +10,10 @@
 namespace plvo {
 
 enum class SensorFamily : std::uint8_t { kKinectV1, kKinectV2, kPrimeSense, kAstra };
-enum class SensorPart : std::uint8_t { kCamera, kMotor, kAudio };
+enum class SensorPart : std::uint8_t { kCamera, kMotor, kAudio, kHub };
 
-// One USB function of a sensor. A Kinect v1 shows three of them behind a hub of its own.
+// One USB function of a sensor. A Kinect v1 shows three of them behind a hub of its own; a Kinect v2 a
+// camera, and a hub on either bus of its USB 3 port, which is no trouble on the slow one.
 struct KnownUsbDevice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;

@@ -3,8 +3,7 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
+#include "plvo/host/input_file.hpp"
 #include "plvo/host/stamp_text.hpp"
 #include "plvo/host/table_reader.hpp"
 #include "plvo/host/trajectory_reader.hpp"
@@ -35,44 +34,36 @@ Status parse_covariance(const std::filesystem::path& path, const TableRow& row, 
   return {};
 }
 
-template <typename Row>
-void sort_by_stamp(std::vector<Row>& rows) {
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const Row& a, const Row& b) { return a.stamp_ns < b.stamp_ns; });
-}
-
 }  // namespace
 
 Status read_covariances(const std::filesystem::path& path, std::vector<StampedCovariance>& covariances) {
   covariances.clear();
-  std::vector<TableRow> rows;
-  if (Status status = read_table(path, rows); !status.ok()) return status;
-  for (const TableRow& row : rows) {
+  const Status status = each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     StampedCovariance next;
     if (!parse_stamp_ns(row.words[0], next.stamp_ns))
       return row_error(path, row, "expected a stamp in seconds first");
-    if (Status status = parse_covariance(path, row, 1, next.covariance); !status.ok()) return status;
+    if (Status parsed = parse_covariance(path, row, 1, next.covariance); !parsed.ok()) return parsed;
     covariances.push_back(next);
-  }
+    return {};
+  });
   sort_by_stamp(covariances);
-  return {};
+  return status;
 }
 
 Status read_motions(const std::filesystem::path& path, std::vector<UncertainMotion>& motions) {
   motions.clear();
-  std::vector<TableRow> rows;
-  if (Status status = read_table(path, rows); !status.ok()) return status;
-  for (const TableRow& row : rows) {
+  const Status status = each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     UncertainMotion next;
     if (row.words.size() < 2 || !parse_stamp_ns(row.words[0], next.stamp_ns) ||
         !parse_stamp_ns(row.words[1], next.reference_stamp_ns))
       return row_error(path, row, "expected two stamps in seconds first");
-    if (Status status = parse_pose(path, row, 2, next.T_camera_reference); !status.ok()) return status;
-    if (Status status = parse_covariance(path, row, 9, next.covariance); !status.ok()) return status;
+    if (Status parsed = parse_pose(path, row, 2, next.T_camera_reference); !parsed.ok()) return parsed;
+    if (Status parsed = parse_covariance(path, row, 9, next.covariance); !parsed.ok()) return parsed;
     motions.push_back(next);
-  }
+    return {};
+  });
   sort_by_stamp(motions);
-  return {};
+  return status;
 }
 
 }  // namespace plvo::eval

@@ -24,7 +24,7 @@ struct UncertainMotion {
   Matrix6 covariance;
 };
 
-// Sorted by stamp. kNotFound; kDamaged with file and line.
+// Sorted by stamp. As read_text_file; kDamaged with file and line.
 Status read_covariances(const std::filesystem::path& path, std::vector<StampedCovariance>& covariances);
 Status read_motions(const std::filesystem::path& path, std::vector<UncertainMotion>& motions);
 

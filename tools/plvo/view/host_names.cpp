@@ -30,10 +30,6 @@ std::size_t port_at(std::string_view name) {
   return std::min(colon, name.size());
 }
 
-std::string with_brackets(const std::string& host) {
-  return host.find(':') == std::string::npos || host.front() == '[' ? host : '[' + host + ']';
-}
-
 std::vector<std::string> addresses_of_this_machine() {
   std::vector<std::string> found;
   ifaddrs* first = nullptr;

@@ -21,9 +21,6 @@ class InertialSensor {
   Vector3 rate(const Trajectory& trajectory, double t_s, std::uint32_t sample) const;
   Vector3 force(const Trajectory& trajectory, double t_s, std::uint32_t sample) const;
 
-  const Vector3& gyro_offset() const { return gyro_offset_; }
-  const Vector3& accelerometer_offset() const { return accelerometer_offset_; }
-
  private:
   Vector3 noise(std::uint32_t sample, std::uint32_t sensor, double density) const;
 

@@ -92,7 +92,7 @@ CLI::Option* OptionGroup::path(const std::string& option, std::string& value, co
 }
 
 CLI::Option* OptionGroup::flag(const std::string& option, bool& value, const std::string& what) {
-  return command_.add_flag(option, value, what)->group(name_);
+  return command_.add_flag(option, value, what)->disable_flag_override()->group(name_);
 }
 
 void require(CLI::Option* option) { option->required(); }

@@ -4,12 +4,9 @@
 #include "plvo/camera/camera_info.hpp"
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/camera_options.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 
 namespace plvo::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr NumberRange kFocal_px = {1, 100'000};
 constexpr NumberRange kCentre_px = {-100'000, 100'000};
@@ -42,8 +39,10 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
   if (depth_scale == DepthScale::kAsked)
     group.number("--depth-scale", options.depth_scale, kUnitsPerMetre, "UNITS",
                  "Units of the depth images per metre: 5000 in TUM recordings, 1000 for millimetres");
-  group.number("--readout", options.readout_s, kReadout_s, "SECONDS",
-               "Rolling shutter: time from the first row to the last; Kinect v1: 0.0261, global shutter: 0");
+  group.number(
+      "--readout", options.readout_s, kReadout_s, "SECONDS",
+      fmt::format("Rolling shutter: time from the first row to the last; Kinect v1: {}, global shutter: 0",
+                  kKinectReadout_s));
   const auto add_lens = [&](const char* option, const char* model, const char* what, int least, int most) {
     CLI::Option* lens =
         group.add(option, "NUMBER", what, [&options, model = std::string(model)](const std::string& text) {
@@ -67,16 +66,6 @@ void check_calibration_options(const CLI::App& command) {
           given(command, "--distortion-equidistant") >
       1)
     refuse("--distortion", "give one of --distortion, --distortion-rational and --distortion-equidistant");
-}
-
-Status find_calibration(const CalibrationOptions& options, const fs::path& folder, Calibration& calibration,
-                        std::string& guess) {
-  guess.clear();
-  const auto own = [&folder, &guess](Calibration& found) {
-    return folder.empty() ? Status(StatusCode::kNotFound, "no sequence")
-                          : sequence_calibration(folder, found, guess);
-  };
-  return find_calibration(options, own, calibration);
 }
 
 Status find_calibration(const CalibrationOptions& options, const std::function<Status(Calibration&)>& own,

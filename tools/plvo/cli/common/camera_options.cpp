@@ -8,6 +8,7 @@
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/live/live_camera.hpp"
+#include "plvo/odometry/config.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/numbered_index.hpp"
 #include "plvo/replay/sequence_calibration.hpp"
@@ -173,9 +174,11 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   add_rate_option(group, options.rate_hz);
   group.whole(
       "--scale", options.scale, 1, kMostScale,
-      "Scale the images down by this factor, and the calibration, which is that of the whole images, "
-      "with them: for less time a frame (default 1; images above 2047 pixels a side: as little as they "
-      "need)");
+      fmt::format(
+          "Scale the images down by this factor, and the calibration, which is that of the whole images, "
+          "with them: for less time a frame (default 1; images above {} pixels a side: as little as they "
+          "need)",
+          Limits::kMostSide));
   add_bag_options(command, options.topics, BagImu::kKept);
   add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
   add_simulator_options(command, options.simulator);

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -45,9 +44,6 @@ void check_calibration_options(const CLI::App& command);
 // ways to give one, where `own` says kNotFound.
 Status find_calibration(const CalibrationOptions& options, const std::function<Status(Calibration&)>& own,
                         Calibration& calibration);
-// The same where the own one is that of a folder (see sequence_calibration, also for guess).
-Status find_calibration(const CalibrationOptions& options, const std::filesystem::path& folder,
-                        Calibration& calibration, std::string& guess);
 
 struct FrameRange {
   std::size_t first = 0;

@@ -39,6 +39,10 @@ void check_odometry_options(const OdometryOptions& options) {
     refuse("--surfaces",
            "does not apply to --preset paper, which matches a frame once: surfaces are looked for "
            "where a first estimate of the motion puts them");
+  if (options.preset == Preset::kTiny && options.reference == ReferencePolicy::kKeyframeAndPrevious)
+    refuse(
+        "--reference",
+        "both does not apply to --preset tiny, whose memory holds one reference: give keyframe or previous");
 }
 
 namespace {

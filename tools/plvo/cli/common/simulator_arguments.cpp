@@ -5,21 +5,20 @@
 
 #include <charconv>
 
+#include "plvo/camera/camera_model.hpp"
 #include "plvo/cli/common/arguments.hpp"
 #include "plvo/odometry/config.hpp"
 
 namespace plvo::cli {
 namespace {
 
-constexpr int kLeast_px = Limits::kLeastSide, kMost_px = Limits::kMostSide;
-
 bool parse_size(std::string_view text, int& width, int& height) {
   const char* end = text.data() + text.size();
   const auto [x, first_error] = std::from_chars(text.data(), end, width);
   if (first_error != std::errc() || x == end || *x != 'x') return false;
   const auto [stop, second_error] = std::from_chars(x + 1, end, height);
-  return second_error == std::errc() && stop == end && width >= kLeast_px && height >= kLeast_px &&
-         width <= kMost_px && height <= kMost_px;
+  return second_error == std::errc() && stop == end && width >= Limits::kLeastSide &&
+         height >= Limits::kLeastSide && width <= Limits::kMostSide && height <= Limits::kMostSide;
 }
 
 bool parse_range(std::string_view text, int& first, int& end) {
@@ -54,12 +53,14 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
   group.add("--size", "WIDTHxHEIGHT", "Image size in pixels (default 640x480)",
             [&arguments](const std::string& text) -> std::string {
               if (parse_size(text, arguments.width, arguments.height)) return {};
-              return expected(fmt::format("WIDTHxHEIGHT from {}x{} to {}x{}, such as 320x240", kLeast_px,
-                                          kLeast_px, kMost_px, kMost_px),
+              return expected(fmt::format("WIDTHxHEIGHT from {0}x{0} to {1}x{1}, such as 320x240",
+                                          Limits::kLeastSide, Limits::kMostSide),
                               text);
             });
-  group.number("--rolling-shutter", arguments.readout_s, {0, 1}, "SECONDS",
-               "Time from the first row to the last (default 0: all rows at once; a Kinect's: 0.0261)");
+  group.number(
+      "--rolling-shutter", arguments.readout_s, {0, 1}, "SECONDS",
+      fmt::format("Time from the first row to the last (default 0: all rows at once; a Kinect's: {})",
+                  kKinectReadout_s));
   group.number("--depth-delay", arguments.depth_schedule.delay_s, {-0.1, 0.1}, "SECONDS",
                "Depth is exposed this long after its stamp (default 0; negative: before)");
   group.number("--depth-readout", arguments.depth_schedule.readout_s, {0, 0.1}, "SECONDS",

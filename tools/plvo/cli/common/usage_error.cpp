@@ -44,15 +44,62 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-std::string unknown_word(const CLI::App& command) {
+// Of the words that nothing took, the first that looks like an option; empty: there is none.
+std::string unknown_option(const CLI::App& command) {
   const std::vector<std::string> words = command.remaining();
-  const auto option = std::find_if(words.begin(), words.end(),
-                                   [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
-  if (option != words.end()) {
-    const std::string name = option->substr(0, option->find('='));
-    return fmt::format("there is no option {}{}", name, did_you_mean(name, option_names(command)));
-  }
+  const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+    return word.size() > 1 && word[0] == '-' && word != "--";
+  });
+  if (option == words.end()) return {};
+  const std::string name = option->substr(0, option->find('='));
+  return fmt::format("there is no option {}{}", name, did_you_mean(name, option_names(command)));
+}
+
+// The words after "--" are left with the application.
+std::string surplus_word(const CLI::App& app, const CLI::App& command) {
+  std::vector<std::string> words = command.remaining();
+  for (const std::string& word : app.remaining()) words.push_back(word);
+  std::erase(words, "--");
   return fmt::format("'{}' is one word too many", words.empty() ? "" : words.front());
+}
+
+// "DIR|FILE.oni" in words.
+std::string words_of_type(const std::string& type) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= type.size();) {
+    const std::size_t end = std::min(type.find('|', begin), type.size());
+    words.push_back(type.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return any_of(words);
+}
+
+std::string wrong_count(const CLI::Option& option) {
+  const std::string name = option.get_name();
+  const int least = option.get_items_expected_min(), most = option.get_items_expected_max();
+  const std::size_t given = option.results().size();
+  if (given == 0)
+    return fmt::format("{}: a value is missing: {}", name, words_of_type(option.get_type_name()));
+  if (most == 1) return fmt::format("{}: may be given once, not {} times", name, given);
+  return least == most ? fmt::format("{}: takes {} values, not {}", name, most, given)
+                       : fmt::format("{}: takes {} to {} values, not {}", name, least, most, given);
+}
+
+// The library's own sentences begin with the option's name, and speak to programmers.
+std::string own_words(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const bool count = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+  const auto begins_with = [&text](const std::string& name, const char* next) {
+    return text.rfind(name + next, 0) == 0;
+  };
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    for (const std::string& bare : option->get_lnames())
+      if (begins_with(bare, " was given a disallowed flag override"))
+        return fmt::format("{}: is a switch and takes no value", name);
+    if (count && begins_with(name, ": ")) return wrong_count(*option);
+  }
+  return text;
 }
 
 std::string no_command(const CLI::App& app, const std::string& first) {
@@ -85,8 +132,11 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error, con
   if (chosen.empty()) return no_command(app, first) + " (see plvo --help)";
   const CLI::App& command = *chosen.front();
   const bool surplus = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  return fmt::format("{}: {} (see plvo {} --help)", command.get_name(),
-                     surplus ? unknown_word(command) : error.what(), command.get_name());
+  const bool missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  // What is missing may only be misspelt.
+  std::string wrong = surplus || missing ? unknown_option(command) : "";
+  if (wrong.empty()) wrong = surplus ? surplus_word(app, command) : own_words(command, error);
+  return fmt::format("{}: {} (see plvo {} --help)", command.get_name(), wrong, command.get_name());
 }
 
 }  // namespace plvo::cli

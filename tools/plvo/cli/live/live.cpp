@@ -116,7 +116,8 @@ void add_live(CLI::App& app, int& exit_code) {
   group.flag(
       "--imu", options->imu,
       "With a Kinect v1's accelerometer: gravity holds roll and pitch; with --record DIR it is kept, too");
-  group.number("--rate", options->rate_hz, positive(1000), "HZ", "Track so many frames a second at most");
+  group.number("--max-rate", options->max_rate_hz, positive(1000), "HZ",
+               "Track so many frames a second at most");
   group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
   add_limit_options(command, options->frames, options->seconds);
   add_bag_options(command, options->camera.topics, BagImu::kPassedOver);

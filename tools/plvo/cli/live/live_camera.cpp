@@ -147,8 +147,8 @@ class OpenNi2LiveCamera final : public LiveCamera {
 Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model) {
   if (!calibration_given(from)) return {};
   Calibration calibration;
-  std::string guess;  // no folder, no guess
-  Status status = find_calibration(from, {}, calibration, guess);
+  const auto none = [](Calibration&) { return Status(StatusCode::kNotFound, "no recording"); };
+  Status status = find_calibration(from, none, calibration);
   if (status.ok()) status = calibration.validate(width, height);
   if (status.ok() && calibration.depth_camera.known)
     status = {

@@ -13,7 +13,7 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/cli/live/rate_meter.hpp"
-#include "plvo/cli/record/recording.hpp"
+#include "plvo/cli/record/frame_recording.hpp"
 #include "plvo/host/frame_ring.hpp"
 
 namespace plvo::cli {
@@ -36,7 +36,7 @@ class LiveCapture {
   };
 
   // All are borrowed.
-  LiveCapture(LiveCamera& camera, FrameRing& ring, Recording& recording, Console& console)
+  LiveCapture(LiveCamera& camera, FrameRing& ring, FrameRecording& recording, Console& console)
       : camera_(camera), ring_(ring), recording_(recording), console_(console) {}
   ~LiveCapture() { stop(); }
   LiveCapture(const LiveCapture&) = delete;
@@ -55,7 +55,7 @@ class LiveCapture {
 
   LiveCamera& camera_;
   FrameRing& ring_;
-  Recording& recording_;
+  FrameRecording& recording_;
   Console& console_;
   std::thread thread_;
   std::atomic<bool> stop_{false};

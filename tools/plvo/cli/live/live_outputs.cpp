@@ -11,21 +11,22 @@ namespace {
 
 constexpr std::int64_t kStatusPeriod_ns = 250'000'000;
 
-std::string with_brackets(const std::string& host) {
-  return host.find(':') == std::string::npos ? host : '[' + host + ']';
-}
-
 }  // namespace
 
-Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
-  lens_is_straight_ = lens_is_straight;
+Status LiveOutputs::listen(const LiveOutputOptions& options) {
   base_ = options.files.base;
-  warn_of_base_option(base_, console_);
-  next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
   if (!options.view.empty())
     if (Status status = open_view(options.view, options.view_names); !status.ok()) return status;
   for (const std::string& address : options.streams)
     if (Status status = open_stream(address); !status.ok()) return status;
+  return {};
+}
+
+Status LiveOutputs::open(const LiveOutputOptions& options, bool lens_is_straight) {
+  lens_is_straight_ = lens_is_straight;
+  warn_of_base_option(base_, console_);
+  next_heartbeat_ns_ = posix_monotonic_ns() + kHeartbeat_ns;
+  for (const auto& [level, sentence] : announcements_) console_.write(level, sentence);
   const OutputOptions& files = options.files;
   has_files_ = files.has_poses() || !files.stats.empty();
   return files_.open(files);
@@ -41,12 +42,12 @@ Status LiveOutputs::open_view(const std::string& address, const std::vector<std:
   view_ = std::make_unique<ViewServer>();
   if (Status status = view_->start(host, port, names); !status.ok()) return status;
   if (!is_loopback(host))
-    console_.write(
+    announcements_.emplace_back(
         LogLevel::kWarning,
         "everybody who reaches this address can look through the camera; --view PORT alone stays on "
         "this machine");
-  console_.write(LogLevel::kInfo,
-                 fmt::format("live view: http://{}:{}/", with_brackets(host), view_->port()));
+  announcements_.emplace_back(LogLevel::kInfo,
+                              fmt::format("live view: http://{}:{}/", with_brackets(host), view_->port()));
   return {};
 }
 
@@ -58,8 +59,10 @@ Status LiveOutputs::open_stream(const std::string& address) {
     int port = 0;
     split_address(address, host, port);
     if (!is_loopback(host))
-      console_.write(LogLevel::kWarning, "everybody who reaches this address can read the poses");
-    console_.write(LogLevel::kInfo, fmt::format("poses: {}:{}", with_brackets(host), stream->port()));
+      announcements_.emplace_back(LogLevel::kWarning,
+                                  "everybody who reaches this address can read the poses");
+    announcements_.emplace_back(LogLevel::kInfo,
+                                fmt::format("poses: {}:{}", with_brackets(host), stream->port()));
   }
   streams_.push_back(std::move(stream));
   return {};

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plvo/cli/common/console.hpp"
@@ -30,7 +31,9 @@ class LiveOutputs {
 
   explicit LiveOutputs(Console& console) : console_(console) {}
 
-  // Addresses first, then the files: an address in use must not cost an old trajectory. Says where to look.
+  // Takes the addresses of the live view and the streams: one that is in use must not cost an old trajectory.
+  Status listen(const LiveOutputOptions& options);
+  // Then makes the files, and says where to look.
   Status open(const LiveOutputOptions& options, bool lens_is_straight);
 
   // After each frame.
@@ -60,6 +63,7 @@ class LiveOutputs {
   bool lens_is_straight_ = true;
   std::int64_t next_status_ns_ = 0;
   std::int64_t next_heartbeat_ns_ = 0;
+  std::vector<std::pair<LogLevel, std::string>> announcements_;  // of listen(): there may be no camera
   Status failure_;
 };
 

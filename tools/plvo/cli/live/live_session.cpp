@@ -27,35 +27,54 @@ constexpr std::uint64_t kWarmFrames = 30;  // the libraries have taken their mem
 int LiveSession::run() {
   catch_interrupt();
   ignore_broken_outputs();
-  if (const Status status = open(); !status.ok()) {
-    console_.clear();
-    fail(status);
-    return camera_ == nullptr ? exit_code_of_camera(status, options_.camera.device) : kExitFailure;
-  }
+  if (const Status status = prepare_outputs(); !status.ok()) return refused(status, kExitFailure);
+  if (const Status status = open_live_camera(options_.camera, console_, camera_); !status.ok())
+    return refused(status, exit_code_of_camera(status, options_.camera.device));
+  if (const Status status = open(); !status.ok()) return refused(status, kExitFailure);
   loop();
   finish();
   return judge();
 }
 
-// Everything that can be wrong is found before the first file is made.
+int LiveSession::refused(const Status& status, int exit_code) {
+  console_.clear();
+  fail(status);
+  return exit_code;
+}
+
+// What can be wrong with the outputs is found before a sensor is opened. Addresses are taken, files are only
+// tried: without a sensor an old trajectory must stay.
+Status LiveSession::prepare_outputs() {
+  if (!options_.summary.empty())
+    if (Status status = LineFile::check(options_.summary); !status.ok()) return status;
+  for (const auto& [option, path] : options_.outputs.files.named())
+    if (!path.empty())
+      if (Status status = LineFile::check(path); !status.ok()) return status;
+  if (!options_.record.empty()) {
+    if (Status status = FrameRecording::check(options_.record); !status.ok()) return status;
+    if (keeps_imu())
+      if (Status status = refuse_imu_files(options_.record); !status.ok()) return status;
+  }
+  return outputs_.listen(options_.outputs);
+}
+
+bool LiveSession::keeps_imu() const {
+  return options_.imu && !options_.record.empty() && !is_oni_file(options_.record);
+}
+
+// Everything else that can be wrong is found before the first file is made.
 Status LiveSession::open() {
-  if (Status status = open_live_camera(options_.camera, console_, camera_); !status.ok()) return status;
   const bool every = options_.every_frame || is_recorded_device(options_.camera.device);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
-  if (!options_.summary.empty())
-    if (Status status = LineFile::check(options_.summary); !status.ok()) return status;
   if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
     return status;
-  const bool keeps_imu = options_.imu && !options_.record.empty() && !is_oni_file(options_.record);
-  if (keeps_imu)
-    if (Status status = refuse_imu_files(options_.record); !status.ok()) return status;
   if (!options_.record.empty())
     if (Status status = recording_.open(options_.record, *camera_, every); !status.ok()) return status;
   if (options_.imu) {
-    if (keeps_imu) accelerometer_.keep_in(options_.record);
+    if (keeps_imu()) accelerometer_.keep_in(options_.record);
     if (Status status = accelerometer_.start(*camera_, options_.odometry.level_world); !status.ok())
       return status;
   }
@@ -94,7 +113,7 @@ void LiveSession::loop() {
 
 // False, after a short sleep, while the chosen rate says that it is too early for the next frame.
 bool LiveSession::wait_for_turn() {
-  if (options_.rate_hz <= 0) return true;
+  if (options_.max_rate_hz <= 0) return true;
   const std::int64_t now = posix_monotonic_ns();
   if (now < next_turn_ns_) {
     std::this_thread::sleep_for(
@@ -105,9 +124,9 @@ bool LiveSession::wait_for_turn() {
 }
 
 void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
-  if (options_.rate_hz > 0)
+  if (options_.max_rate_hz > 0)
     next_turn_ns_ =
-        std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.rate_hz), posix_monotonic_ns());
+        std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.max_rate_hz), posix_monotonic_ns());
   block_.track(frame, accelerometer_.prior(frame.stamp_ns, arrival_ns), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);

@@ -23,7 +23,7 @@ struct LiveOptions {
   std::string record;   // folder or .oni
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
   double seconds = std::numeric_limits<double>::infinity();
-  double rate_hz = 0;        // at most; 0: as they come
+  double max_rate_hz = 0;    // 0: as they come
   bool every_frame = false;  // the camera waits for the odometry
   bool imu = false;          // a Kinect's accelerometer
   bool quiet = false;
@@ -38,8 +38,11 @@ class LiveSession {
   int run();
 
  private:
+  Status prepare_outputs();
   Status open();
+  int refused(const Status& status, int exit_code);
   void loop();
+  bool keeps_imu() const;
   bool over() const;
   bool wait_for_turn();
   void handle(const RgbdFrame& frame, std::int64_t arrival_ns);
@@ -54,7 +57,7 @@ class LiveSession {
   LiveOutputs outputs_;
   std::unique_ptr<LiveCamera> camera_;
   std::unique_ptr<FrameRing> ring_;
-  Recording recording_;
+  FrameRecording recording_;
   std::unique_ptr<LiveCapture> capture_;
   OdometryBlock block_;
   LiveAccelerometer accelerometer_;

@@ -40,7 +40,7 @@ struct RecordOptions {
   bool quiet = false;
 };
 
-void show_line(Console& console, const LiveCapture::State& state, const Recording& recording) {
+void show_line(Console& console, const LiveCapture::State& state, const FrameRecording& recording) {
   std::string line = fmt::format("recorded {}  camera {:.1f} Hz  dropped {}", recording.frames(), state.hz,
                                  recording.dropped());
   if (!state.last.ok()) line += "  " + state.words;
@@ -59,11 +59,16 @@ int judge(const RecordOptions& options, const LiveCapture::State& state, const S
   return kExitNoSensor;
 }
 
-// What can be wrong with the readings is found before anything is made. readings: of a bag, all that it has.
-Status check_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
-  if (!options.imu) return {};
-  if (Status status = refuse_imu_files(options.path); !status.ok()) return status;
-  return is_bag_file(options.camera.device) ? camera.read_imu(readings) : Status();
+// What can be wrong with the outputs is found before a sensor is opened.
+Status check_outputs(const RecordOptions& options) {
+  Status status = FrameRecording::check(options.path);
+  if (status.ok() && options.imu) status = refuse_imu_files(options.path);
+  return status;
+}
+
+// All that a bag has, before anything is made.
+Status read_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
+  return options.imu && is_bag_file(options.camera.device) ? camera.read_imu(readings) : Status();
 }
 
 Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
@@ -78,6 +83,7 @@ int record_command(const RecordOptions& options) {
   catch_interrupt();
   ignore_broken_outputs();
   Console console(options.quiet);
+  if (Status status = check_outputs(options); !status.ok()) return fail(status);
   std::unique_ptr<LiveCamera> camera;
   if (Status status = open_live_camera(options.camera, console, camera); !status.ok()) {
     fail(status);
@@ -87,9 +93,9 @@ int record_command(const RecordOptions& options) {
   const CameraModel model = camera->model();
   FrameRing ring(model.width, model.height, 3, RingPolicy::kNewest);
   ImuRecording readings;
-  Recording recording;
+  FrameRecording recording;
   LiveAccelerometer accelerometer(console);
-  Status begun = check_imu(options, *camera, readings);
+  Status begun = read_imu(options, *camera, readings);
   if (begun.ok())
     begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);
   if (begun.ok()) begun = begin_imu(options, *camera, readings, accelerometer);
@@ -135,15 +141,13 @@ void check(const CLI::App& command, const RecordOptions& options) {
     refuse_group(
         command, kCalibrationGroup,
         "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
+    refuse_options(command, {"--imu"}, "an .oni file keeps no readings of it; record a folder instead");
+    if (is_bag_file(options.camera.device))
+      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
     for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
       files.writes("path", std::filesystem::path(options.path) / name);
-  }
-  if (is_oni_file(options.path)) {
-    refuse_options(command, {"--imu"}, "is for a folder, for an .oni file keeps no such readings");
-    if (is_bag_file(options.camera.device))
-      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
   }
   if (is_oni_file(options.camera.device))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");

@@ -16,17 +16,20 @@
 
 namespace plvo::cli {
 
-class Recording {
+class FrameRecording {
  public:
   // Frames that wait for the disk, at most: 1.6 s at 30 Hz, 74 MiB in VGA.
   static constexpr std::size_t kSlots = 48;
 
-  Recording() = default;
-  ~Recording();
-  Recording(const Recording&) = delete;
-  Recording& operator=(const Recording&) = delete;
+  FrameRecording() = default;
+  ~FrameRecording();
+  FrameRecording(const FrameRecording&) = delete;
+  FrameRecording& operator=(const FrameRecording&) = delete;
 
-  // path: FILE.oni or a folder, neither of which may hold a recording already (kInvalidArgument says so).
+  // What open() would refuse of the path, before there is a camera; nothing is left there. path: FILE.oni or
+  // a folder, neither of which may hold a recording already (kInvalidArgument says so), and that can be made.
+  static Status check(const std::string& path);
+
   // every_frame: push() waits for room instead of dropping the oldest frame (for cameras that can wait).
   // max_frames: a folder takes no more than these.
   Status open(const std::string& path, LiveCamera& camera, bool every_frame,
