@@ -10,7 +10,7 @@
 
 #include "command.hpp"
 #include "plvo/c/sequence.h"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "plvo/replay/recorded_imu.hpp"

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "command.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/odometry/odometry.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "procedural_sequence.hpp"
 #include "tiny_sequence.hpp"

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
 #include "scratch_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
 #include "scratch_file.hpp"
 
 namespace {

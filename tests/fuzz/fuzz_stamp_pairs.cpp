@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "plvo/replay/stamp_pairs.hpp"
+#include "plvo/replay/index/stamp_pairs.hpp"
 #include "scratch_file.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 // covariances: what is accepted is sorted and finite.
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/eval/uncertainty_file.hpp"
-#include "plvo/replay/numbered_index.hpp"
+#include "plvo/replay/index/numbered_index.hpp"
 #include "scratch_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

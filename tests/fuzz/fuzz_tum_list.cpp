@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "plvo/replay/tum_index.hpp"
+#include "plvo/replay/index/tum_index.hpp"
 #include "scratch_file.hpp"
 
 namespace {

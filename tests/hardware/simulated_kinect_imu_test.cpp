@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "kinect_command.hpp"
-#include "plvo/host/trajectory_reader.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "simulated_motor.hpp"

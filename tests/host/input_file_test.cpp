@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/host/input_file.hpp"
+#include "plvo/host/files/input_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

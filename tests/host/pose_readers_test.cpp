@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which reader of a pose stream yields its place to a newcomer. Over pairs of sockets, where what is written
 // is there at once, so that nothing depends on time.
-#include "plvo/host/pose_readers.hpp"
+#include "plvo/host/stream/pose_readers.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses as JSON lines: the text itself, several readers, and readers that do not read, vanish, or come late.
-#include "plvo/host/pose_stream.hpp"
+#include "plvo/host/stream/pose_stream.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "plvo/host/pose_json.hpp"
-#include "plvo/host/tcp_listener.hpp"
+#include "plvo/host/stream/pose_json.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <random>
 
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The budget of time: which steps it takes on which words, and what they do to the features of a frame; and
 // the hook between stages.
-#include "plvo/odometry/feature_budget.hpp"
+#include "plvo/odometry/features/feature_budget.hpp"
 
 #include <gtest/gtest.h>
 

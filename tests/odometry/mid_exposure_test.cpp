@@ -2,7 +2,7 @@
 // A camera that turns ever faster looks at points through a rolling shutter. What each row saw is computed
 // from the motion itself; the features at mid-exposure must then agree with one motion between the two
 // frames.
-#include "plvo/odometry/mid_exposure.hpp"
+#include "plvo/odometry/tracking/mid_exposure.hpp"
 
 #include <gtest/gtest.h>
 

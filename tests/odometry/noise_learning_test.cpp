@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the models of the noise are right, on matches whose noise is as many times the model's as we say.
-#include "plvo/odometry/noise_learning.hpp"
+#include "plvo/odometry/tracking/noise_learning.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From two depth images to constraints: a corridor and a room, ray-cast with a Kinect's noise, seen before
 // and after a known motion. And the odometry with surfaces: the same bits again, memory only where asked for.
-#include "plvo/odometry/surface_tracking.hpp"
+#include "plvo/odometry/tracking/surface_tracking.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 #include <gtest/gtest.h>
 

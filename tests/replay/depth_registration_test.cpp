@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth of another camera against the depth that colour's own rays meet: a floor that slants away, a box
 // before a wall.
-#include "plvo/replay/depth_registration.hpp"
+#include "plvo/replay/images/depth_registration.hpp"
 
 #include <gtest/gtest.h>
 

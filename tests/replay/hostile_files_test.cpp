@@ -11,12 +11,12 @@
 #include <string>
 
 #include "plvo/eval/uncertainty_file.hpp"
-#include "plvo/host/trajectory_reader.hpp"
-#include "plvo/replay/calibration.hpp"
-#include "plvo/replay/image_decoder.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/imu_files.hpp"
+#include "plvo/replay/index/tum_index.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/tum_index.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/replay/image_reduction.hpp"
+#include "plvo/replay/images/image_reduction.hpp"
 
 #include <gtest/gtest.h>
 

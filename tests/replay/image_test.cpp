@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
-#include "plvo/replay/image_decoder.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Folders of numbered frames: the same trajectory as from a TUM folder with the same images and stamps, and
 // every folder that is not as it should be refused in words.
-#include "plvo/replay/numbered_index.hpp"
+#include "plvo/replay/index/numbered_index.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,8 +12,8 @@
 
 #include "numbered_sequence.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 #include "says.hpp"
 
 namespace plvo {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "plvo/replay/paced_camera.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ScanNet's two cameras: what a calibration.txt with the same numbers gives, bit for bit, and of a walk whose
 // depth has half the size about the poses of the whole.
-#include "plvo/replay/scannet_cameras.hpp"
+#include "plvo/replay/calibration/scannet_cameras.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "numbered_sequence.hpp"
 #include "plvo/odometry/odometry.hpp"
-#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 #include "says.hpp"
 
 namespace plvo {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/replay/stamp_pairs.hpp"
+#include "plvo/replay/index/stamp_pairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dense.hpp"
-#include "plvo/odometry/feature_extraction.hpp"
-#include "plvo/odometry/reference_tracking.hpp"
+#include "plvo/odometry/features/feature_extraction.hpp"
+#include "plvo/odometry/tracking/reference_tracking.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "procedural_sequence.hpp"
 

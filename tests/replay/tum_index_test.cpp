@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/replay/tum_index.hpp"
+#include "plvo/replay/index/tum_index.hpp"
 
 #include <gtest/gtest.h>
 
-#include "plvo/host/stamp_text.hpp"
+#include "plvo/host/files/stamp_text.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "plvo/replay/tum_writer.hpp"
 #include "procedural_sequence.hpp"
 #include "temporary_folder.hpp"

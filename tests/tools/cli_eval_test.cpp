@@ -9,7 +9,7 @@
 #include "command.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/eval/trajectory.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {

@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "command.hpp"
-#include "plvo/host/trajectory_file.hpp"
-#include "plvo/host/trajectory_reader.hpp"
-#include "plvo/replay/image_decoder.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "simulated_walk.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
-#include "plvo/replay/image_decoder.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {

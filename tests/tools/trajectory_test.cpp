@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "plvo/eval/uncertainty_file.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo::eval {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/math/se3.hpp"
 
 namespace plvo::test {

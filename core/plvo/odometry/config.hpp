@@ -114,7 +114,7 @@ struct ReferenceConfig {
   int look_back_frames = 5;
 };
 
-// What a frame may take, where somebody waits for it (feature_budget.hpp). The caller measures.
+// What a frame may take, where somebody waits for it (features/feature_budget.hpp). The caller measures.
 struct BudgetConfig {
   std::int64_t frame_ns = 0;  // 0: as long as it takes, with all the features that Limits have room for
   // A step up again after so many frames in a row that took less than this share of it.

@@ -24,14 +24,14 @@
 #include "plvo/image/frame.hpp"
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
-#include "plvo/odometry/feature_budget.hpp"
-#include "plvo/odometry/feature_extraction.hpp"
-#include "plvo/odometry/frame_features.hpp"
+#include "plvo/odometry/features/feature_budget.hpp"
+#include "plvo/odometry/features/feature_extraction.hpp"
+#include "plvo/odometry/features/frame_features.hpp"
 #include "plvo/odometry/gravity_hold.hpp"
 #include "plvo/odometry/kept_keyframes.hpp"
-#include "plvo/odometry/reference_tracking.hpp"
 #include "plvo/odometry/sensed_motion.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/reference_tracking.hpp"
 
 namespace plvo {
 

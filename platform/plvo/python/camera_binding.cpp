@@ -5,7 +5,7 @@
 
 #include "plvo/camera/camera_info.hpp"
 #include "plvo/python/bindings.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::python {
 

@@ -12,7 +12,7 @@
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
 #include "plvo/python/settings.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::python {
 

@@ -2,7 +2,7 @@
 // Results for Python.
 #include <string>
 
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"

@@ -5,8 +5,8 @@
 
 #include <utility>
 
+#include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
 #endif

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
-#include "plvo/replay/calibration.hpp"
-#include "plvo/replay/image_reduction.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
+#include "plvo/replay/images/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
-#include "plvo/replay/sequence_index.hpp"
+#include "plvo/replay/index/sequence_index.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo {

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "plvo/host/input_file.hpp"
-#include "plvo/host/line_file.hpp"
-#include "plvo/host/stamp_text.hpp"
-#include "plvo/host/table_reader.hpp"
+#include "plvo/host/files/input_file.hpp"
+#include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/files/table_reader.hpp"
 
 namespace plvo {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded folder as a camera. Every buffer is made by open(): the pixels (frame_fit.hpp) and the bytes of
-// the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
+// A recorded folder as a camera. Every buffer is made by open(): the pixels (images/frame_fit.hpp) and the
+// bytes of the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
-#include "plvo/replay/calibration.hpp"
-#include "plvo/replay/frame_fit.hpp"
-#include "plvo/replay/image_decoder.hpp"
-#include "plvo/replay/sequence_index.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
+#include "plvo/replay/images/frame_fit.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
+#include "plvo/replay/index/sequence_index.hpp"
 
 namespace plvo {
 

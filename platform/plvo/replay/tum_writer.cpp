@@ -3,9 +3,9 @@
 
 #include <fmt/core.h>
 
-#include "plvo/host/stamp_text.hpp"
-#include "plvo/host/trajectory_file.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 
 namespace plvo {
 

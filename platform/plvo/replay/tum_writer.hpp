@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "plvo/base/status.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/math/se3.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo {
 

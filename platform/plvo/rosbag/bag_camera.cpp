@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "plvo/replay/stamp_pairs.hpp"
+#include "plvo/replay/index/stamp_pairs.hpp"
 #include "plvo/rosbag/messages.hpp"
 
 namespace plvo {

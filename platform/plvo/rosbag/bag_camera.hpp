@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
-#include "plvo/replay/frame_fit.hpp"
-#include "plvo/replay/sequence_index.hpp"
+#include "plvo/replay/images/frame_fit.hpp"
+#include "plvo/replay/index/sequence_index.hpp"
 #include "plvo/rosbag/bag_file.hpp"
 #include "plvo/rosbag/bag_imu.hpp"
 #include "plvo/rosbag/bag_topics.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plvo/camera/camera_info.hpp"
-#include "plvo/replay/image_decoder.hpp"
+#include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/rosbag/wire_reader.hpp"
 
 namespace plvo {

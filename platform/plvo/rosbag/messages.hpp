@@ -10,7 +10,7 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/math/types.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo {
 
@@ -29,7 +29,7 @@ struct ImageMessage {
 };
 
 // kDamaged where the bytes end early, or there are fewer pixels than the size says; kInvalidArgument for an
-// image larger than a recording's may be (image_decoder.hpp).
+// image larger than a recording's may be (plvo/replay/images/image_decoder.hpp).
 Status parse_image(std::span<const unsigned char> bytes, ImageMessage& image);
 
 // Camera and size. kDamaged where the bytes end early, kUnsupported for a lens that plvo does not know,

@@ -8,9 +8,9 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
-#include "plvo/cli/common/usage_error.hpp"
 #include "plvo/cli/common/version.hpp"
 #include "plvo/cli/documentation/help_format.hpp"
+#include "plvo/cli/options/usage_error.hpp"
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_camera.hpp"
 #endif

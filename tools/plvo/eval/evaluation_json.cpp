@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plvo/eval/evaluation.hpp"
-#include "plvo/host/stamp_text.hpp"
+#include "plvo/host/files/stamp_text.hpp"
 
 namespace plvo::eval {
 namespace {

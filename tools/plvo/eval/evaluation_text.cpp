@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "plvo/eval/evaluation.hpp"
-#include "plvo/host/stamp_text.hpp"
+#include "plvo/host/files/stamp_text.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::eval {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "plvo/host/trajectory_reader.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/math/se3.hpp"
 
 namespace plvo::eval {

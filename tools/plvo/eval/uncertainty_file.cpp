@@ -3,10 +3,10 @@
 
 #include <fmt/core.h>
 
-#include "plvo/host/input_file.hpp"
-#include "plvo/host/stamp_text.hpp"
-#include "plvo/host/table_reader.hpp"
-#include "plvo/host/trajectory_reader.hpp"
+#include "plvo/host/files/input_file.hpp"
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/files/table_reader.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 
 namespace plvo::eval {
 namespace {

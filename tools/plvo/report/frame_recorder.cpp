@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "plvo/report/drawing.hpp"
 
 namespace plvo::report {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/report/base64.hpp"
 #include "plvo/report/depth_palette.hpp"
 #include "plvo/report/drawing.hpp"

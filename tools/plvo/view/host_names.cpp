@@ -10,7 +10,7 @@
 #include <array>
 #include <charconv>
 
-#include "plvo/host/tcp_listener.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 
 namespace plvo {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <iterator>
 
-#include "plvo/host/pose_json.hpp"
+#include "plvo/host/files/stamp_text.hpp"
 #include "plvo/host/posix_clock.hpp"
-#include "plvo/host/stamp_text.hpp"
-#include "plvo/replay/image_writer.hpp"
+#include "plvo/host/stream/pose_json.hpp"
+#include "plvo/replay/images/image_writer.hpp"
 #include "plvo/view/view_server.hpp"
 
 namespace plvo {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "plvo/host/posix_clock.hpp"
-#include "plvo/host/tcp_listener.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 #include "plvo/view/connection_table.hpp"
 #include "plvo/view/host_names.hpp"
 #include "plvo/view/page.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "plvo/host/trajectory_reader.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/simulator/motion/trajectory.hpp"
 

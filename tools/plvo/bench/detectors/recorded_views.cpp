@@ -6,8 +6,8 @@
 #include "plvo/bench/systems/ideal_images.hpp"
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/image/gray.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 
 namespace plvo::bench {
 namespace {

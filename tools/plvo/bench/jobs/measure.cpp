@@ -10,12 +10,12 @@
 #include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/systems/system.hpp"
 #include "plvo/eval/statistics.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/resident_memory.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
+#include "plvo/replay/index/sequence_index.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
-#include "plvo/replay/sequence_index.hpp"
 
 namespace plvo::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::bench {
 

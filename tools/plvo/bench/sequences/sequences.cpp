@@ -15,7 +15,7 @@
 #include "plvo/bench/sequences/paper_table2.hpp"
 #include "plvo/bench/systems/system.hpp"
 #include "plvo/bench/table.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::bench {
 namespace {

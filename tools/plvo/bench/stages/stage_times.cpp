@@ -4,8 +4,8 @@
 #include "plvo/base/random.hpp"
 #include "plvo/bench/stages/track_counted.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
-#include "plvo/replay/sequence_calibration.hpp"
 
 namespace plvo::bench {
 namespace {

@@ -26,7 +26,7 @@
 #include "plvo/lines/lsd/lsd.hpp"
 #include "plvo/lines/msld.hpp"
 #include "plvo/odometry/config.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 
 namespace {

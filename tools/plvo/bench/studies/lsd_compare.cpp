@@ -19,7 +19,7 @@
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 
 namespace {

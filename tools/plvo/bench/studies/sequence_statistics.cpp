@@ -19,7 +19,7 @@
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/eval/statistics.hpp"
 #include "plvo/eval/trajectory.hpp"
-#include "plvo/replay/calibration.hpp"
+#include "plvo/replay/calibration/calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 
 namespace plvo::bench {

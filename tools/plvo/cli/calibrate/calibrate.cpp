@@ -11,9 +11,6 @@
 
 #include "plvo/calibrate/timing_report.hpp"
 #include "plvo/calibrate/timing_search.hpp"
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/bag_options.hpp"
-#include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
@@ -21,7 +18,10 @@
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_camera.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/bag_options.hpp"
+#include "plvo/cli/options/camera_options.hpp"
+#include "plvo/host/files/line_file.hpp"
 
 namespace plvo::cli {
 namespace {

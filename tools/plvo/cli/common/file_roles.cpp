@@ -7,8 +7,8 @@
 
 #include <optional>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/files/line_file.hpp"
 
 namespace plvo::cli {
 namespace {

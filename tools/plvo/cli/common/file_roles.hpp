@@ -20,7 +20,7 @@ class FileRoles {
 
   // True where an output is there already: only then can it be an input.
   bool may_overwrite() const;
-  // Refuses with exit code 2 (arguments.hpp), before anything is opened.
+  // Refuses with exit code 2 (options/arguments.hpp), before anything is opened.
   void check() const;
 
  private:

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo::cli {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/files/line_file.hpp"
 
 namespace plvo::cli {
 

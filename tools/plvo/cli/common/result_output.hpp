@@ -8,7 +8,7 @@
 #include <string>
 
 #include "plvo/base/status.hpp"
-#include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/options/arguments.hpp"
 
 namespace plvo::cli {
 

@@ -5,7 +5,7 @@
 // command_line.cpp calls them all; adding one is a file, a declaration here and a line there.
 #pragma once
 
-#include "plvo/cli/common/arguments.hpp"
+#include "plvo/cli/options/arguments.hpp"
 
 namespace plvo::cli {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "plvo/odometry/feature_budget.hpp"
+#include "plvo/odometry/features/feature_budget.hpp"
 
 namespace plvo::cli {
 namespace {

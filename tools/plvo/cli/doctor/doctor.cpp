@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/doctor/doctor_page.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/usb/usb_bus.hpp"
 

@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/documentation/command_text.hpp"
+#include "plvo/cli/options/arguments.hpp"
 
 namespace plvo::cli {
 namespace {

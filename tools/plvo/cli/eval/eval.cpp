@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/camera_options.hpp"
 #include "plvo/eval/evaluation.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/recording/recording.hpp"
-#include "plvo/replay/numbered_index.hpp"
+#include "plvo/replay/index/numbered_index.hpp"
 #include "plvo/report/report.hpp"
 
 namespace plvo::cli {

@@ -3,13 +3,13 @@
 #include <memory>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_session.hpp"
-#include "plvo/host/tcp_listener.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/bag_options.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/view/host_names.hpp"
 

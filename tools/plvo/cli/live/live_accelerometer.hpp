@@ -11,7 +11,7 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/host/arrival_clock.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/inertial/imu_integrator.hpp"
 
 namespace plvo {

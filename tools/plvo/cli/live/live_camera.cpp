@@ -5,9 +5,9 @@
 
 #include <charconv>
 
-#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/live/bag_device.hpp"
+#include "plvo/cli/options/bag_options.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/camera_options.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/camera_options.hpp"
 #include "plvo/hal/log.hpp"
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/openni2/openni2_camera.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "plvo/host/posix_clock.hpp"
-#include "plvo/host/tcp_listener.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 
 namespace plvo::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/frame_record.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
-#include "plvo/host/pose_stream.hpp"
+#include "plvo/host/stream/pose_stream.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/view/view_server.hpp"
 

@@ -11,7 +11,7 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/replay/imu_files.hpp"
 

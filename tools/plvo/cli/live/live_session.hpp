@@ -7,11 +7,11 @@
 #include <memory>
 #include <string>
 
-#include "plvo/cli/common/odometry_options.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/live/live_outputs.hpp"
 #include "plvo/cli/live/live_summary.hpp"
+#include "plvo/cli/options/odometry_options.hpp"
 
 namespace plvo::cli {
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "plvo/host/line_file.hpp"
+#include "plvo/host/files/line_file.hpp"
 
 namespace plvo::cli {
 

@@ -6,8 +6,6 @@
 #include <memory>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/bag_options.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
@@ -15,6 +13,8 @@
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/bag_options.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/replay/imu_files.hpp"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/live/live_camera.hpp"
+#include "plvo/cli/options/arguments.hpp"
 
 namespace plvo::cli {
 

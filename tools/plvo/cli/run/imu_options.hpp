@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "plvo/cli/common/camera_options.hpp"
+#include "plvo/cli/options/camera_options.hpp"
 #include "plvo/replay/recorded_imu.hpp"
 
 namespace plvo::cli {

@@ -8,14 +8,14 @@
 #include <optional>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/odometry_options.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/camera_options.hpp"
+#include "plvo/cli/options/odometry_options.hpp"
 #include "plvo/cli/run/imu_options.hpp"
 #include "plvo/cli/run/overlay.hpp"
 #include "plvo/cli/run/run_history.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "plvo/cli/common/camera_options.hpp"
 #include "plvo/cli/common/frame_record.hpp"
+#include "plvo/cli/options/camera_options.hpp"
 #include "plvo/cli/run/run_summary.hpp"
 #include "plvo/report/report.hpp"
 

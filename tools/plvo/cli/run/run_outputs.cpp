@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/host/stamp_text.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/files/stamp_text.hpp"
 
 namespace plvo::cli {
 namespace {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "plvo/cli/common/arguments.hpp"
-#include "plvo/cli/common/base_option.hpp"
 #include "plvo/cli/common/frame_record.hpp"
-#include "plvo/host/line_file.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/base_option.hpp"
+#include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 
 namespace plvo::cli {
 

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/simulator_arguments.hpp"
 #include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/cli/options/simulator_arguments.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"

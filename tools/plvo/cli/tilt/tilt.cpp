@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "plvo/cli/common/arguments.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_camera.hpp"
+#include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/usb/kinect_motor.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "plvo/eval/evaluation.hpp"
-#include "plvo/host/trajectory_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/python/error.hpp"
 #include "plvo/recording/recording.hpp"
 

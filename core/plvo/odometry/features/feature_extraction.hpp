@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P1–P3 and L1–L3: from the two images of a frame to features with 3D positions and
+// covariances.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/frame.hpp"
+#include "plvo/image/pyramid.hpp"
+#include "plvo/image/undistortion.hpp"
+#include "plvo/lines/lsd/lsd.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/features/frame_features.hpp"
+#include "plvo/odometry/stage_timer.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/points/detector.hpp"
+#include "plvo/surfaces/surface_sampling.hpp"
+
+namespace plvo {
+
+class FeatureExtraction {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    map_.carve(memory, limits.width, limits.height);
+    pyramid_.carve(memory, limits.width, limits.height);
+    segment_search_ = segment_search(limits);
+    segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
+  }
+  // Scratch: the stages come one after the other, so the largest counts; on two cores the points have their
+  // own.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("raw grey image", pixels_of(limits.width, limits.height));
+    }
+    reserve_points(memory, limits.width, limits.height);
+    {
+      const ScratchScope scope(memory);
+      if (limits.cores > 1)
+        memory.template take<std::byte>("points beside segments", point_scratch(limits.width, limits.height));
+      memory.template take<std::byte>("segment detection",
+                                      SegmentDetector::scratch_bytes(segment_search(limits)));
+    }
+    reserve_surface_sampling(memory, limits.width, limits.height, limits.surfaces);
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("segments with 3D", static_cast<std::size_t>(limits.segments));
+    }
+  }
+
+  void init(const CameraModel& camera, const Config& config);
+
+  const CameraModel& camera() const { return camera_; }
+  const Config& config() const { return config_; }
+
+  // A sampler of the frame's own depth: as long as the frame's views are valid.
+  DepthSampler depth_sampler(const RgbdFrame& frame) const {
+    return {frame.depth, map_, config_.depth_noise};
+  }
+
+  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Points and
+  // lines have no 3D yet.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
+               TrackResult& result);
+  // What a reference needs besides lines: lift_points, and samples of surfaces. When the motion during the
+  // exposure is known as well as it will be.
+  void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+            FrameFeatures& features) const;
+  // L2, L3, for the motion during the exposure. The segments that get 3D move to the front and are described.
+  // Again, with a better idea of the motion, these are lifted anew where depth was exposed apart from colour;
+  // one that has no 3D any more keeps what it had.
+  void lift_lines(const DepthSampler& depth, const Exposure& exposure, const NoiseScales& noise,
+                  Arena& scratch, LineFeatures& lines, TrackResult& result) const;
+
+  // Of the last frame: what matching refines against.
+  const Pyramid& pyramid() const { return pyramid_; }
+
+ private:
+  // On half the resolution. In bands, what is found is bounded as well.
+  static constexpr SegmentSearch segment_search(const Limits& limits) {
+    SegmentSearch search{(limits.width + 1) / 2, (limits.height + 1) / 2, limits.line_bands};
+    if (limits.line_bands > 1) search.most_candidates = 8 * static_cast<std::size_t>(limits.segments);
+    return search;
+  }
+  static constexpr std::size_t pixels_of(int width, int height) {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  template <typename Memory>
+  static constexpr void reserve_points(Memory& memory, int width, int height) {
+    {
+      const ScratchScope scope(memory);
+      memory.template take<std::uint8_t>("smoothed image", pixels_of(width, height));
+      take_smoothing_row(memory, width);
+    }
+    reserve_detection(memory, width, height);
+  }
+  // Of an arena that holds what reserve_points counts, wherever it starts.
+  static constexpr std::size_t point_scratch(int width, int height) {
+    ArenaSizer sizer;
+    reserve_points(sizer, width, height);
+    return sizer.peak() + kArenaAlignment;
+  }
+  void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
+  void prepare_image(const ColourView& colour, Arena& scratch);
+  void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                   TrackResult& result) const;
+  void find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result);
+  // Moves the segments that have 3D to the front, with their lines and descriptors.
+  void lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+                     LineFeatures& lines) const;
+  void lift_segments_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
+  bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
+                 Line3d& line) const;
+  // P2, P3, and what belongs to each keypoint's own surface.
+  void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
+  void describe_points(Arena& scratch, PointFeatures& points) const;
+
+  CameraModel camera_;
+  Config config_;
+  UndistortionMap map_;
+  Pyramid pyramid_;
+  SegmentSearch segment_search_;
+  std::span<SegmentDetector> segment_detector_;  // one
+};
+
+}  // namespace plvo

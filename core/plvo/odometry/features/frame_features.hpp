@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that is kept of a frame: its features in 2D and 3D. They serve as the reference for later frames: the
+// next one, or many, when the frame is a keyframe.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/lines/line_features.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/features/feature_budget.hpp"
+#include "plvo/points/keypoint.hpp"
+#include "plvo/surfaces/surface_features.hpp"
+
+namespace plvo {
+
+struct FrameFeatures {
+  std::int64_t stamp_ns = 0;
+  PointFeatures points;
+  LineFeatures lines;
+  SurfaceFeatures surfaces;
+
+  // Empty, with room for so many of what was carved.
+  void clear(const FeatureRoom& room) {
+    points.clear(room.keypoints);
+    lines.clear(room.segments);
+    surfaces.samples.clear();
+  }
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    points.carve(memory, limits.keypoints);
+    lines.carve(memory, limits.segments);
+    surfaces.carve(memory, limits.surfaces);
+  }
+};
+
+}  // namespace plvo

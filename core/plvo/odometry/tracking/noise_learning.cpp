@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/tracking/noise_learning.hpp"
+
+#include <algorithm>
+
+#include "plvo/base/fixed_vector.hpp"
+
+namespace plvo {
+namespace {
+
+// Medians of χ²(1), χ²(2), χ²(4).
+constexpr double kMedian1 = 0.4549;
+constexpr double kMedian2 = 1.3863;
+constexpr double kMedian4 = 3.3567;
+// Squared distances, in the model's SDs, beyond which a residual is a wrong match rather than noise. RANSAC
+// takes for inliers what lies within the 99 % quantile of χ²: 11.34 for a point's three degrees of freedom,
+// 13.28 for a line's four. Noise with twice the SD that the models state must be able to show, so here it is
+// four times these. A sample of a surface has one degree of freedom, and only lies far off if the scale has
+// yet to be learnt: points' bound, 6.7 SDs, serves it too.
+constexpr double kFarthestPoint = 45;
+constexpr double kFarthestLine = 53;
+constexpr double kFarthestSurface = 45;
+constexpr std::size_t kLeastMatches = 12;
+// One frame may not say more than this, and the scales stay within these bounds.
+constexpr double kMostOfAFrame = 4;
+constexpr double kLeastScale = 0.04;
+// A rendered depth image has no smooth error at all.
+constexpr double kLeastSharedScale = 0.0025;
+// A sample of a surface is a mean of many readings.
+constexpr double kLeastSurfaceScale = 0.0025;
+constexpr double kMostScale = 25;
+
+double median_over(FixedVector<double>& values, double expected) {
+  if (values.size() < kLeastMatches) return 1;
+  double* const middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle / expected;
+}
+
+// Of one point match: e across the image against its covariance, and along the ray.
+struct PointResidual {
+  double image = 0, depth = 0;
+};
+
+PointResidual residual_of(const Pinhole& pinhole, const Point3d& reference, const Point3d& current,
+                          const Se3& T) {
+  const Vector3 p = T * reference.p;
+  const Matrix3 Sigma = T.R * reference.Sigma * T.R.transpose() + current.Sigma;
+  const Matrix<2, 3> J = project_derivative(pinhole, p);
+  const Matrix2 S = J * Sigma * J.transpose();
+  const Vector2 e = project(pinhole, p) - project(pinhole, current.p);
+  const double d = p.z() - current.p.z();
+  const double determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(0, 1);
+  return {(e.x() * e.x() * S(1, 1) - 2 * e.x() * e.y() * S(0, 1) + e.y() * e.y() * S(0, 0)) / determinant,
+          d * d / Sigma(2, 2)};
+}
+
+double step(double scale, double shown, double rate, double least = kLeastScale) {
+  const double bounded = std::clamp(shown, 1 / kMostOfAFrame, kMostOfAFrame);
+  return std::clamp(scale * (1 + rate * (bounded - 1)), least, kMostScale);
+}
+
+double mean_square(const SharedErrors& shared, const SharedErrorEstimate& estimate, int first, int count) {
+  const double sigma = shared.sigma(first);
+  if (!(sigma > 0)) return 1;
+  const double sum =
+      estimate.value.segment(first, count).squaredNorm() + estimate.variance.segment(first, count).sum();
+  return sum / (count * sigma * sigma);
+}
+
+}  // namespace
+
+NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
+                            const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch) {
+  const ScratchScope scope(scratch);
+  FixedVector<double> image(scratch.take<double>("residuals", points.size()));
+  FixedVector<double> depth(scratch.take<double>("residuals", points.size()));
+  FixedVector<double> line(scratch.take<double>("residuals", lines.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.usable(i) ||
+        !(points.mahalanobis_squared(i, T_current_reference, kFarthestPoint) < kFarthestPoint))
+      continue;
+    const PointResidual residual =
+        residual_of(pinhole, points.reference_point(i), points.current_point(i), T_current_reference);
+    image.push_back(residual.image);
+    depth.push_back(residual.depth);
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!lines.usable(i)) continue;
+    const double s = lines.mahalanobis_squared(i, T_current_reference, kFarthestLine);
+    if (s < kFarthestLine) line.push_back(s);
+  }
+  NoiseScales shown;
+  shown.image = median_over(image, kMedian2);
+  shown.depth = median_over(depth, kMedian1);
+  shown.lines = median_over(line, kMedian4);
+  return shown;
+}
+
+double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch) {
+  if (surfaces.size() == 0) return 1;
+  const ScratchScope scope(scratch);
+  FixedVector<double> residuals(scratch.take<double>("residuals", surfaces.size()));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const double s = surfaces.mahalanobis_squared(i, T_current_reference, kFarthestSurface);
+    if (s < kFarthestSurface) residuals.push_back(s);
+  }
+  return median_over(residuals, kMedian1);
+}
+
+void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown) {
+  shown.turning = mean_square(shared, estimate, 0, SharedErrors::kTurning);
+  shown.shared_depth = mean_square(shared, estimate, SharedErrors::kTurning, SharedErrors::kDepth);
+}
+
+void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales) {
+  scales.image = step(scales.image, shown.image, config.learning_rate);
+  scales.depth = step(scales.depth, shown.depth, config.learning_rate);
+  scales.lines = step(scales.lines, shown.lines, config.learning_rate);
+  scales.surfaces = step(scales.surfaces, shown.surfaces, config.learning_rate, kLeastSurfaceScale);
+  scales.turning = step(scales.turning, shown.turning, config.learning_rate, kLeastSharedScale);
+  scales.shared_depth =
+      step(scales.shared_depth, shown.shared_depth, config.learning_rate, kLeastSharedScale);
+}
+
+}  // namespace plvo

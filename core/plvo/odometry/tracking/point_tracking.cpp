@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/tracking/point_tracking.hpp"
+
+#include "plvo/base/build.hpp"
+#include "plvo/math/trigonometry.hpp"
+#include "plvo/points/alignment.hpp"
+
+namespace plvo {
+namespace {
+
+// What only serves to find the motion roughly need not be registered finely.
+constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
+
+// σ_p of a keypoint where registration put it, in pixels of its level.
+double registered_sigma_px(const PointConfig& config, const Alignment& alignment) {
+  return sqrt(config.sigma_px * config.sigma_px + alignment.sigma_px * alignment.sigma_px);
+}
+
+// Where the reference keypoint's 3D point is seen after the motion.
+Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
+  if (!(point.p.z() > 0)) return {};
+  const Vector3 p = view.exposure.as_seen(T_current_reference * point.p);
+  if (!(p.z() > kNearestSeen_m)) return {};
+  const Vector2 pixel = project(view.pinhole, p);
+  const GrayView image = view.pyramid.level(0);
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height)) return {};
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+}
+
+// Adds a track of reference keypoint i, found at `pixel`, if there is depth.
+void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, double sigma_px,
+               PointTracks& tracks) {
+  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y(), view.config.depth_reach_px);
+  if (!(depth.depth_m > 0)) return;
+  const std::size_t track = tracks.matches.size();
+  if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
+  tracks.pixels[track] = pixel;
+  Point3d& point = tracks.points[track];
+  point = observe_point(view.pinhole, pixel.x(), pixel.y(), depth.depth_m, sqrt(view.noise.image) * sigma_px,
+                        sqrt(view.noise.depth) * depth.sigma_m);
+  point.p = view.exposure.at_mid_exposure(point.p);
+}
+
+// What a small patch around reference point p becomes, taken to face the camera there: by the derivative of
+// its projection after the motion.
+PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current_reference) {
+  Matrix<3, 2> facing = T_current_reference.R.block<3, 2>(0, 0);
+  facing.col(0) *= p.z() / pinhole.fx;
+  facing.col(1) *= p.z() / pinhole.fy;
+  return {project_derivative(pinhole, T_current_reference * p) * facing};
+}
+
+// Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
+void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i, double u,
+                       double v, const AlignmentOptions& options, const PatchWarp& warp,
+                       PointTracks& tracks) {
+  const Keypoint& keypoint = reference.keypoints[i];
+  const double scale = 1 << keypoint.level;
+  // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
+  const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
+  const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
+  const Alignment alignment =
+      align_patch(reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
+                  u / scale - offset_x, v / scale - offset_y, options, warp);
+  if (!alignment.ok) return;
+  add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
+            scale * registered_sigma_px(view.config, alignment), tracks);
+}
+
+// The room from `first` on.
+PointTracks from(const PointTracks& tracks, std::size_t first) {
+  return {FixedVector<Match>(tracks.matches.storage().subspan(first)), tracks.pixels.subspan(first),
+          tracks.points.subspan(first)};
+}
+
+// `later`, whose room begins at or behind the last of `tracks`, moves up to it.
+void append(const PointTracks& later, PointTracks& tracks) {
+  for (std::size_t i = 0; i < later.matches.size(); ++i) {
+    const std::size_t track = tracks.matches.size();
+    if (!tracks.matches.push_back({later.matches[i].reference, static_cast<std::uint16_t>(track)})) return;
+    tracks.pixels[track] = later.pixels[i];
+    tracks.points[track] = later.points[i];
+  }
+}
+
+}  // namespace
+
+void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
+                         std::span<const Point3d> reference_points, const PointFeatures& current,
+                         const Se3& T_current_reference, double radius_px, Arena& scratch,
+                         PointTracks& tracks) {
+  tracks.matches.clear();
+  if constexpr (!kPointsBuilt) return;
+  const ScratchScope scope(scratch);
+  const std::size_t n = reference.keypoints.size();
+  const std::span<Prediction> predictions = scratch.take<Prediction>("predictions", n);
+  FixedVector<Match> putative(scratch.take<Match>("putative matches", n));
+  if (predictions.size() < n || putative.capacity() < n) return;
+  for (std::size_t i = 0; i < n; ++i)
+    predictions[i] = predict(view, reference_points[i], T_current_reference);
+
+  PointMatchConfig config = view.config.match;
+  config.radius_px = radius_px;
+  const GrayView image = view.pyramid.level(0);
+  match_points(reference, predictions, current, image.width, image.height, config, scratch, putative);
+  for (const Match& match : putative) {
+    const Keypoint& found = current.keypoints[match.current];
+    if (view.config.registered)
+      register_keypoint(view, reference, match.reference, found.u, found.v, kRough,
+                        warp_of(view.pinhole, reference_points[match.reference].p, T_current_reference),
+                        tracks);
+    else
+      add_track(view, match.reference, {static_cast<double>(found.u), static_cast<double>(found.v)},
+                view.config.sigma_px * (1 << found.level), tracks);
+  }
+}
+
+void track_by_motion(const TrackingView& view, const PointFeatures& reference,
+                     std::span<const Point3d> reference_points, const Se3& T_current_reference,
+                     PointTracks& tracks) {
+  tracks.matches.clear();
+  if constexpr (!kPointsBuilt) return;
+  const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
+    found.matches.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Prediction prediction = predict(view, reference_points[i], T_current_reference);
+      if (prediction.visible)
+        register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{},
+                          warp_of(view.pinhole, reference_points[i].p, T_current_reference), found);
+    }
+  };
+  const std::size_t n = reference.keypoints.size();
+  if (!view.side_by_side) return track(0, n, tracks);
+  const std::size_t middle = n / 2;
+  PointTracks later = from(tracks, middle);
+  view.side_by_side.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
+  append(later, tracks);
+}
+
+}  // namespace plvo

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/tracking/reference_tracking.hpp"
+
+#include <algorithm>
+
+#include "plvo/base/build.hpp"
+#include "plvo/motion/prior_constraint.hpp"
+#include "plvo/odometry/stage_timer.hpp"
+
+namespace plvo {
+namespace {
+
+// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
+// The second stops far below what the sensor can tell.
+constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4, .cost_tolerance = 1e-3};
+constexpr LmOptions kFineSolve{.max_iterations = 20, .step_tolerance = 1e-5, .cost_tolerance = 1e-6};
+
+// Sparse alignment, at most: rounds over a level, and Gauss–Newton steps in each. After a step of less (m and
+// rad) another round is in vain.
+constexpr int kCoarseRounds = 4;
+constexpr int kFineRounds = 1;
+constexpr int kStepsOfRound = 2;
+constexpr double kAligned = 5e-4;
+
+// Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
+// and two such weigh as 2 / (1 + ½) independent ones.
+constexpr double kWeightOfTwo = 2.0 / 3;
+
+// What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
+constexpr double kHeld = 1e6;
+
+// The sets of constraints of an estimate, by which it counts inliers: points and lines of each reference,
+// then the sensed motion, then surfaces, of which nothing is asked by number.
+constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
+constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
+constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
+static_assert(matched_sets(kMaxReferences) < kInformedKinds, "and the sensed motion");
+
+void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
+  result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
+  for (std::size_t r = 0; r < tracks.size(); ++r) {
+    const int points = estimate.inliers[points_set(r)];
+    const int lines = estimate.inliers[lines_set(r)];
+    tracks[r].inliers = points + lines;
+    result.points.matched += static_cast<int>(tracks[r].points.matches.size());
+    result.lines.matched += static_cast<int>(tracks[r].lines.size());
+    result.points.inliers += points;
+    result.lines.inliers += lines;
+  }
+  result.ransac_iterations += estimate.ransac.iterations;
+  result.lm_iterations += estimate.lm.iterations;
+}
+
+// What the matches with each reference say of the motion; empty for a reference that there is not.
+struct FeatureConstraints {
+  std::array<PointConstraints, kMaxReferences> points;
+  std::array<LineConstraints, kMaxReferences> lines;
+  std::array<SurfaceConstraints, kMaxReferences> surfaces;
+};
+
+FeatureConstraints constraints_of(std::span<const MidExposure> features,
+                                  std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
+                                  Arena& scratch) {
+  static_assert(kMaxReferences == 2);
+  const bool two = features.size() > 1;
+  const double weight = two ? kWeightOfTwo : 1;
+  const auto points = [&](std::size_t r) {
+    const PointTracks& found = tracks[r].points;
+    PointConstraints set(features[r].reference_points, found.points, found.matches.span(),
+                         PointConstraints::Workspace::take(scratch, found.matches.size()));
+    set.set_reference(r, noise.point_correlation, weight);
+    return set;
+  };
+  const auto lines = [&](std::size_t r) {
+    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks[r].lines.span(),
+                        LineConstraints::Workspace::take(scratch, tracks[r].lines.size()));
+    set.set_reference(r, noise.line_correlation, weight);
+    return set;
+  };
+  const auto surfaces = [&](std::size_t r) {
+    SurfaceConstraints set(tracks[r].surfaces.span(),
+                           SurfaceConstraints::Workspace::take(scratch, tracks[r].surfaces.size()));
+    set.set_reference(r, noise.surface_correlation, weight);
+    return set;
+  };
+  return {{points(0), two ? points(1) : PointConstraints({}, {}, {}, {})},
+          {lines(0), two ? lines(1) : LineConstraints({}, {}, {}, {})},
+          {surfaces(0), two ? surfaces(1) : SurfaceConstraints({}, {})}};
+}
+
+SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
+  return {exposure, config.turning_rad_per_s * sqrt(noise.turning),
+          config.shared_depth_m * sqrt(noise.shared_depth)};
+}
+
+TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, const Exposure& exposure) {
+  const Config& config = current.extraction.config();
+  return {current.extraction.camera().pinhole,
+          config.points,
+          current.extraction.pyramid(),
+          depth,
+          exposure,
+          current.noise,
+          config.side_by_side};
+}
+
+}  // namespace
+
+void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
+                              const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
+                              const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
+                              TrackResult& result) {
+  const Config& config = current.extraction.config();
+  const StageTimer timer(config, result, Stage::kMotion);
+  const ScratchScope scope(scratch);
+  FeatureConstraints constraints = constraints_of(features, tracks_, config.noise, scratch);
+  std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    sets[points_set(r)] = &constraints.points[r];
+    sets[lines_set(r)] = &constraints.lines[r];
+  }
+  std::size_t set_count = matched_sets(features.size());
+  const SensedMotion& sensed = current.sensed;
+  MotionConfig motion_config = config.motion;
+  std::uint8_t sensed_flag = 0;
+  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&sensed_flag, 1});
+  if (sensed.known()) {
+    prior.set_reference(last_index, 0);
+    sets[set_count++] = &prior;
+    motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
+  }
+  for (SurfaceConstraints& set : constraints.surfaces)
+    if (set.size() > 0) sets[set_count++] = &set;
+
+  tracked.exposure = {};
+  tracked.shown = {};
+  estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
+                  tracked.motion);
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    const std::span<const std::uint8_t> points = constraints.points[r].inliers();
+    const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
+    std::copy(points.begin(), points.end(), tracks_[r].point_inliers.begin());
+    std::copy(lines.begin(), lines.end(), tracks_[r].line_inliers.begin());
+  }
+  count(tracked.motion, std::span(tracks_).first(features.size()), result);
+  if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
+    const std::size_t last = features.size() - 1;
+    const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
+    const Pinhole& pinhole = current.extraction.camera().pinhole;
+    tracked.shown =
+        residual_scales(pinhole, constraints.points[last], constraints.lines[last], T_current_last, scratch);
+    tracked.shown.surfaces = surface_scale(constraints.surfaces[last], T_current_last, scratch);
+    note_shared(start.shared, tracked.motion.shared, tracked.shown);
+  }
+}
+
+bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
+                              Se3& T_current_reference, TrackResult& result) const {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
+  if (!kPointsBuilt || !alignment_.holds(reference.features->stamp_ns)) return false;
+  const StageTimer timer(config, result, Stage::kMatching);
+  const ScratchScope scope(scratch);
+  const PointFeatures& features = reference.features->points;
+  const std::span<AlignmentWindow> room = SparseAlignment::take_windows(scratch);
+  const Pyramid& pyramid = current.extraction.pyramid();
+  Se3 T = reference.prior.T_current_reference;
+  AlignmentStep step;
+  const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
+    for (int round = 0; round < rounds; ++round) {
+      const ScratchScope exposed(scratch);
+      // What a rolling shutter does depends on the motion: anew for each better idea of it.
+      const MidExposure at = points_at_mid_exposure(camera, reference.prior, T, *reference.features, scratch);
+      for (int i = 0; i < kStepsOfRound; ++i)
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
+          return false;
+      if (step.size < kAligned) break;
+    }
+    return true;
+  };
+  if (!take_rounds(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
+  T_current_reference = T;
+  return true;
+}
+
+void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, double radius_px,
+                             Arena& scratch, TrackedMotion& tracked, TrackResult& result) {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
+  const ScratchScope scope(scratch);
+  const Se3& T_predicted = reference.prior.T_current_reference;
+  current.extraction.lift_lines(current.depth, current_exposure(camera, reference.prior, T_predicted),
+                                current.noise, scratch, current.features.lines, result);
+  const MidExposure features =
+      at_mid_exposure(camera, reference.prior, T_predicted, *reference.features, current.features, scratch);
+  {
+    const StageTimer timer(config, result, Stage::kMatching);
+    const DepthSampler depth = current.depth.with(features.current_exposure);
+    track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
+                        features.reference_points, current.features.points, T_predicted, radius_px, scratch,
+                        tracks_[0].points);
+    LineMatchConfig gates = config.lines.match;
+    gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
+    match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
+                          features.reference_lines, current.features.lines, T_predicted, gates, scratch,
+                          tracks_[0].lines);
+    tracks_[0].surfaces.clear();  // projecting them takes a good idea of the motion
+  }
+  // Without registration this is the whole estimate, else it only leads to it.
+  const bool whole = !config.points.registered;
+  const SharedErrors shared =
+      whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
+  const bool is_last = reference.prior.reference_is_last;
+  MotionReferences poses;
+  if (!is_last) poses[1] = reference.last;
+  solve({&features, 1}, poses, current, is_last ? 0 : 1, {&T_predicted, shared},
+        whole ? kFineSolve : kRoughSolve, scratch, tracked, result);
+  if (tracked.motion.status == StatusCode::kOk)
+    tracked.exposure = current_exposure(camera, reference.prior, tracked.motion.T_current_reference);
+}
+
+void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
+                               const Se3& T_current_base, Arena& scratch, TrackedMotion& tracked,
+                               TrackResult& result) {
+  const Config& config = current.extraction.config();
+  const CameraModel& camera = current.extraction.camera();
+  const ScratchScope scope(scratch);
+  MotionReferences poses;
+  for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
+  const bool base_is_last = references[0].prior.reference_is_last;
+  if (!base_is_last) poses[1] = references[0].last;
+  const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
+  const std::size_t last = references.size() - 1;
+  const Exposure exposure = current_exposure(camera, references[last].prior, motions[last]);
+  const DepthSampler depth = current.depth.with(exposure);
+  current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,
+                                result);
+  std::array<MidExposure, kMaxReferences> features;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const Reference& reference = references[r];
+    features[r] =
+        at_mid_exposure(camera, reference.prior, motions[r], *reference.features, current.features, scratch);
+    const StageTimer timer(config, result, Stage::kMatching);
+    track_by_motion(view_of(current, depth, exposure), reference.features->points,
+                    features[r].reference_points, motions[r], tracks_[r].points);
+    LineMatchConfig gates = config.lines.match;
+    gates.max_offset_px = config.lines.guided_offset_px;
+    gates.max_angle_rad = config.lines.guided_angle_rad;
+    match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features[r].reference_lines,
+                          current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
+    track_surfaces(depth, camera.pinhole, config.noise, current.noise.surfaces,
+                   features[r].reference_surfaces, motions[r], tracks_[r].surfaces);
+  }
+  solve(std::span(features).first(references.size()), poses, current, base_is_last ? 0 : 1,
+        {&T_current_base, shared_errors(config.noise, exposure, current.noise), true}, kFineSolve, scratch,
+        tracked, result);
+  if (tracked.motion.status == StatusCode::kOk)
+    tracked.exposure = current_exposure(camera, references[last].prior,
+                                        motions_to_current(tracked.motion.T_current_reference, poses)[last]);
+}
+
+}  // namespace plvo

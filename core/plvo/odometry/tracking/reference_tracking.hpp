@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. A first motion, from
+// one reference, comes from align(), by the images, or where that fails from find(), by descriptors; refine()
+// registers the features of all references with it and solves for one motion over all of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/motion/motion_estimator.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/features/feature_extraction.hpp"
+#include "plvo/odometry/features/frame_features.hpp"
+#include "plvo/odometry/sensed_motion.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/line_tracking.hpp"
+#include "plvo/odometry/tracking/mid_exposure.hpp"
+#include "plvo/odometry/tracking/noise_learning.hpp"
+#include "plvo/odometry/tracking/point_tracking.hpp"
+#include "plvo/odometry/tracking/surface_tracking.hpp"
+#include "plvo/points/sparse_alignment.hpp"
+
+namespace plvo {
+
+// A frame to match against, and what is known beforehand. pose: relative to the base, the first of the
+// references.
+struct Reference {
+  const FrameFeatures* features = nullptr;
+  PairPrior prior;
+  MotionReference pose;
+  MotionReference last;  // pose of the last good frame relative to this one
+};
+
+// What was found of one reference in the current frame.
+struct ReferenceTracks {
+  PointTracks points;
+  std::span<std::uint8_t> point_inliers;  // a flag for each of points.matches
+  FixedVector<Match> lines;               // indices of both frames' 3D lines
+  std::span<std::uint8_t> line_inliers;
+  FixedVector<SurfaceMatch> surfaces;
+  int inliers = 0;  // points and lines
+
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    points.carve(memory, limits.keypoints);
+    point_inliers =
+        memory.template take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    lines = FixedVector<Match>(memory.template take<Match>("line tracks", segments));
+    line_inliers = memory.template take<std::uint8_t>("line tracks", segments);
+    if (limits.surfaces > 0)
+      surfaces = FixedVector<SurfaceMatch>(
+          memory.template take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
+  }
+};
+
+// The frame that is being tracked.
+struct CurrentFrame {
+  FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
+  const FeatureExtraction& extraction;  // of its image; with the camera and the configuration of both
+  const DepthSampler& depth;
+  const NoiseScales& noise;
+  const SensedMotion& sensed;
+};
+
+struct TrackedMotion {
+  MotionEstimate motion;  // from the base
+  Exposure exposure;      // how the camera moved while the current frame was exposed
+  NoiseScales shown;      // what the residuals say of the noise
+};
+
+class ReferenceTracking {
+ public:
+  template <typename Memory>
+  constexpr void carve(Memory& memory, const Limits& limits) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
+      tracks_[r].carve(memory, limits);
+    alignment_.carve(memory, limits.width, limits.height);
+  }
+  // Scratch: the larger of the stages, which come one after the other.
+  template <typename Memory>
+  static constexpr void reserve(Memory& memory, const Limits& limits) {
+    const ScratchScope scope(memory);
+    {
+      const ScratchScope aligning(memory);
+      SparseAlignment::take_windows(memory);
+      take_points_at_mid_exposure(memory, limits);
+    }
+    const auto references = static_cast<std::size_t>(limits.references);
+    for (std::size_t r = 0; r < references; ++r) take_mid_exposure(memory, limits);
+    reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
+    reserve_line_tracking(memory, limits.segments);
+    reserve_noise_learning(memory, limits);
+    size_motion(memory, references, static_cast<std::size_t>(limits.keypoints),
+                static_cast<std::size_t>(limits.segments), static_cast<std::size_t>(limits.surfaces));
+  }
+
+  // Of the frame with this stamp, for align(), until the next call.
+  void keep_image(const Pyramid& pyramid, std::int64_t stamp_ns) { alignment_.keep(pyramid, stamp_ns); }
+
+  // T_current_reference of the reference whose image was kept, by sparse image alignment, from its prior.
+  // False for any other, and where the alignment cannot be trusted.
+  bool align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
+             Se3& T_current_reference, TrackResult& result) const;
+  // T_current_reference of one reference: features are looked for within radius_px of where its prior has
+  // them. Where points are not registered this is the whole estimate.
+  void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
+            TrackedMotion& tracked, TrackResult& result);
+  // The motion from the base, from all references at once (1 … Limits::references), registered from
+  // T_current_base.
+  void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
+              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+
+  // Of the last call, in the order of its references.
+  const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
+
+ private:
+  // last_index: of the last good frame among the poses.
+  void solve(std::span<const MidExposure> features, const MotionReferences& poses,
+             const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
+             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+  std::array<ReferenceTracks, kMaxReferences> tracks_;
+  SparseAlignment alignment_;
+};
+
+}  // namespace plvo

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calibrations as plain text: numbers by their place, keys, or numbers first and then keys; and the writer of
+// the same.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "plvo/camera/camera_info.hpp"
+#include "plvo/replay/calibration/calibration_keys.hpp"
+
+namespace plvo {
+namespace {
+
+using namespace calibration_form;
+namespace fs = std::filesystem;
+
+constexpr std::string_view kForm =
+    "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]', or the 4x4 matrix fx 0 cx 0, 0 fy cy 0, 0 0 1 "
+    "0, 0 0 0 1";
+
+bool is_camera_matrix(const std::vector<double>& m) {
+  if (m.size() != 16) return false;
+  constexpr std::size_t kZeros[] = {1, 3, 4, 7, 8, 9, 11, 12, 13, 14};
+  for (const std::size_t zero : kZeros)
+    if (m[zero] != 0) return false;
+  return m[10] == 1 && m[15] == 1;
+}
+
+// Words without comments; ':', '=', ',' count as white space.
+std::vector<std::string_view> words_of(std::string_view content) {
+  std::vector<std::string_view> words;
+  while (!content.empty()) {
+    std::string_view line = content.substr(0, content.find('\n'));
+    content.remove_prefix(std::min(content.size(), line.size() + 1));
+    line = line.substr(0, line.find('#'));
+    constexpr std::string_view kSeparators = " \t\r:=,";
+    for (std::size_t begin = 0; (begin = line.find_first_not_of(kSeparators, begin)) != line.npos;) {
+      const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
+      words.push_back(line.substr(begin, end - begin));
+      begin = end;
+    }
+  }
+  return words;
+}
+
+}  // namespace
+
+namespace calibration_form {
+
+Status parse_text(const fs::path& path, std::string_view content, Calibration& calibration) {
+  const std::vector<std::string_view> words = words_of(content);
+  if (words.empty()) return damaged(path, fmt::format("is empty; expected {}", kForm));
+  Collector collector(path);
+  std::vector<double> values;
+  for (double value = 0; values.size() < words.size() && parse_number(words[values.size()], value);)
+    values.push_back(value);
+  const std::size_t numbers = values.size();
+  const bool known_word = numbers < words.size() && is_key(words[numbers]);
+  if (numbers > 0 && numbers < words.size() && !known_word)
+    return damaged(path, fmt::format("'{}' is not a number", words[numbers].substr(0, 40)));
+  const bool matrix = is_camera_matrix(values);
+  if (matrix) values = {values[0], values[5], values[2], values[6]};
+  if (!matrix && numbers != 0 && numbers != 4 && numbers != 5 && numbers != 10 && numbers != kPlaces)
+    return damaged(path, fmt::format("has {} numbers; expected {}", numbers, kForm));
+  for (std::size_t place = 0; place < values.size(); ++place) collector.set_place(place, values[place]);
+  for (std::size_t i = numbers; i < words.size(); i += 2) {
+    const std::string_view value = i + 1 < words.size() ? words[i + 1] : std::string_view();
+    if (Status status = collector.set(words[i], value); !status.ok()) return status;
+  }
+  return collector.finish(calibration);
+}
+
+}  // namespace calibration_form
+
+std::string calibration_text(const Calibration& calibration) {
+  Numbers numbers;
+  numbers.calibration = calibration;
+  Numbers defaults;
+  const auto is_default = [&](const Key& key) { return key.of(numbers) == key.of(defaults); };
+  std::size_t places = 5;
+  if (!calibration.camera.distortion.is_zero()) places = 10;
+  if (calibration.readout_given) places = kPlaces;
+  std::string text;
+  for (std::size_t i = 0; i < places; ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
+  for (const Key& key : keys().subspan(kPlaces)) {
+    const bool timed = key.kind == KeyKind::kSensor && calibration.camera.depth_timing.known;
+    const bool of_depth = key.kind == KeyKind::kDepthCamera && calibration.depth_camera.known;
+    const bool others = key.kind == KeyKind::kSensor || key.kind == KeyKind::kLens;
+    if (timed || of_depth || (others && !is_default(key)))
+      text += fmt::format("\n{} {}", key.name, key.of(numbers));
+  }
+  const Distortion& lens = calibration.camera.distortion;
+  if (!lens.is_plumb_bob()) text += fmt::format("\n{} {}", kLensModelKey, lens_model_name(lens));
+  return text;
+}
+
+std::string calibration_lines(const Calibration& calibration) {
+  Numbers numbers;
+  numbers.calibration = calibration;
+  numbers.width = calibration.camera.width;
+  numbers.height = calibration.camera.height;
+  const Distortion& lens = calibration.camera.distortion;
+  const bool timed = calibration.camera.depth_timing.known;
+  const auto written = [&](const Key& key) {
+    if (key.kind == KeyKind::kSize) return calibration.has_size;
+    if (key.kind == KeyKind::kDepthCamera) return calibration.depth_camera.known;
+    if (key.name.starts_with("depth_") && key.name != "depth_scale") return timed;
+    if (key.name == "readout_s") return calibration.readout_given;
+    const bool of_pinhole = key.name == "fx" || key.name == "fy" || key.name == "cx" || key.name == "cy";
+    const bool of_rational = key.name == "k4" || key.name == "k5" || key.name == "k6";
+    return key.kind == KeyKind::kSensor || of_pinhole ||
+           (of_rational ? !lens.is_plumb_bob() : !lens.is_zero());
+  };
+  std::string text;
+  for (const Key& key : keys())
+    if (written(key)) text += fmt::format("{}: {}\n", key.name, key.of(numbers));
+  if (!lens.is_plumb_bob()) text += fmt::format("{}: {}\n", kLensModelKey, lens_model_name(lens));
+  return text;
+}
+
+}  // namespace plvo

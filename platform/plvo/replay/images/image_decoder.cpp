@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/images/image_decoder.hpp"
+
+#include <fmt/core.h>
+#include <spng.h>
+#include <turbojpeg.h>
+
+#include <memory>
+
+#include "plvo/host/files/input_file.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using PngContext = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
+
+// Texts and colour profiles of a PNG unpack to as much as they like; nothing of them is wanted.
+constexpr std::size_t kMaxChunk = 1u << 20;
+constexpr std::size_t kMaxChunks = 4u << 20;  // together
+
+Status image_error(StatusCode code, const fs::path& path, std::string_view what) {
+  return {code, fmt::format("{}: {}", (path.parent_path().filename() / path.filename()).string(), what)};
+}
+
+Status wrong_size(const fs::path& path, int has_width, int has_height, int width, int height) {
+  return image_error(
+      StatusCode::kInvalidArgument, path,
+      fmt::format("is {}x{} where {}x{} is expected; colour and depth must have one size throughout",
+                  has_width, has_height, width, height));
+}
+
+Status check_size(const fs::path& path, const ImageInfo& info) {
+  if (info.width >= 1 && info.height >= 1 && info.width <= kMaxImageSide && info.height <= kMaxImageSide)
+    return {};
+  return image_error(
+      StatusCode::kInvalidArgument, path,
+      fmt::format("says that it is {}x{}; images of at most {}x{} are read (make the images smaller, "
+                  "and the calibration with them)",
+                  info.width, info.height, kMaxImageSide, kMaxImageSide));
+}
+
+PngContext open_png(std::span<const unsigned char> file) {
+  PngContext png(spng_ctx_new(0), spng_ctx_free);
+  if (png != nullptr) {
+    // The size is judged by check_size, in words.
+    spng_set_chunk_limits(png.get(), kMaxChunk, kMaxChunks);
+    spng_set_png_buffer(png.get(), file.data(), file.size());
+  }
+  return png;
+}
+
+Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
+  spng_ihdr header{};
+  if (const int error = spng_get_ihdr(png, &header); error != 0) {
+    return image_error(StatusCode::kDamaged, path,
+                       fmt::format("not a readable PNG or JPEG image ({})", spng_strerror(error)));
+  }
+  info = {static_cast<int>(header.width), static_cast<int>(header.height), header.bit_depth,
+          header.color_type == SPNG_COLOR_TYPE_GRAYSCALE};
+  return check_size(path, info);
+}
+
+Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t bytes, int format) {
+  int error = spng_decode_image(png, pixels, bytes, format, 0);
+  // On to the end: the checksum of the last piece of the image is compared only then.
+  if (error == 0) error = spng_decode_chunks(png);
+  if (error != 0)
+    return image_error(StatusCode::kDamaged, path,
+                       fmt::format("damaged or cut off ({})", spng_strerror(error)));
+  return {};
+}
+
+}  // namespace
+
+ImageDecoder::~ImageDecoder() {
+  if (jpeg_ != nullptr) tjDestroy(jpeg_);
+}
+
+Status ImageDecoder::load(const fs::path& path) {
+  const Status status = read_input_file(path, kMaxImageBytes, file_);
+  if (status.code() == StatusCode::kNotFound) return image_error(StatusCode::kNotFound, path, "is not there");
+  return status;
+}
+
+bool ImageDecoder::is_jpeg() const { return file_.size() > 2 && file_[0] == 0xff && file_[1] == 0xd8; }
+
+Status ImageDecoder::jpeg_header(const fs::path& path, ImageInfo& info) {
+  if (jpeg_ == nullptr) jpeg_ = tjInitDecompress();
+  int subsampling = 0;
+  int colour_space = 0;
+  if (tjDecompressHeader3(jpeg_, file_.data(), file_.size(), &info.width, &info.height, &subsampling,
+                          &colour_space) != 0)
+    return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
+  info.bits = 8;
+  info.grey = colour_space == TJCS_GRAY;
+  return check_size(path, info);
+}
+
+Status ImageDecoder::read_header(const fs::path& path, ImageInfo& info) {
+  if (Status status = load(path); !status.ok()) return status;
+  if (is_jpeg()) return jpeg_header(path, info);
+  return png_header(open_png(file_).get(), path, info);
+}
+
+Status ImageDecoder::decode_rgb(const fs::path& path, int width, int height, std::span<std::uint8_t> rgb) {
+  if (Status status = load(path); !status.ok()) return status;
+  ImageInfo info;
+  const bool jpeg = is_jpeg();
+  const PngContext png = open_png(file_);
+  if (Status status = jpeg ? jpeg_header(path, info) : png_header(png.get(), path, info); !status.ok())
+    return status;
+  if (info.width != width || info.height != height)
+    return wrong_size(path, info.width, info.height, width, height);
+  if (!jpeg) return png_pixels(png.get(), path, rgb.data(), rgb.size(), SPNG_FMT_RGB8);
+  // A JPEG that ends early decodes to grey bars with a mere warning: it counts as damaged here.
+  // A progressive one may go over its pixels as often as it likes: not more than 500 times here.
+  if (tjDecompress2(jpeg_, file_.data(), file_.size(), rgb.data(), width, 0, height, TJPF_RGB,
+                    TJFLAG_LIMITSCANS) != 0)
+    return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
+  return {};
+}
+
+Status ImageDecoder::decode_depth(const fs::path& path, int width, int height,
+                                  std::span<std::uint16_t> depth) {
+  if (Status status = load(path); !status.ok()) return status;
+  ImageInfo info;
+  const PngContext png = open_png(file_);
+  if (Status status = png_header(png.get(), path, info); !status.ok()) return status;
+  if (info.bits != 16 || !info.grey) {
+    return image_error(
+        StatusCode::kInvalidArgument, path,
+        fmt::format("depth has {} bits per channel{}; depth must be a 16-bit grey PNG (export it "
+                    "again without converting to 8 bits or to colour)",
+                    info.bits, info.grey ? "" : " and colour"));
+  }
+  if (info.width != width || info.height != height)
+    return wrong_size(path, info.width, info.height, width, height);
+  return png_pixels(png.get(), path, depth.data(), depth.size_bytes(),
+                    SPNG_FMT_PNG);  // 16 bits in host order
+}
+
+}  // namespace plvo

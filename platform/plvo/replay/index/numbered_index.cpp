@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/index/numbered_index.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxDigits = 8;
+constexpr std::uintmax_t kMaxPoseBytes = 1u << 16;
+
+// The names of one kind of file: folder/prefix NUMBER suffix .extension
+struct Kind {
+  const char* folder;
+  std::string_view prefix, suffix;
+  bool image;  // else text
+};
+struct Layout {
+  Kind colour, depth, pose;
+};
+constexpr Layout kSevenScenes = {
+    {"", "frame-", ".color", true}, {"", "frame-", ".depth", true}, {"", "frame-", ".pose", false}};
+constexpr Layout kScanNet = {{"color", "", "", true}, {"depth", "", "", true}, {"pose", "", "", false}};
+
+using Numbered = std::map<std::uint32_t, std::string>;  // file relative to the sequence's folder
+
+// What stands between prefix and suffix; nothing for a name of another form, or one that begins with a dot.
+std::optional<std::string> middle(const std::string& name, const Kind& kind) {
+  if (name.starts_with('.') || !(kind.image ? ends_as_image(name) : name.ends_with(".txt"))) return {};
+  const std::string stem = fs::path(name).stem().string();
+  if (stem.size() < kind.prefix.size() + kind.suffix.size() || !stem.starts_with(kind.prefix) ||
+      !stem.ends_with(kind.suffix))
+    return {};
+  return stem.substr(kind.prefix.size(), stem.size() - kind.prefix.size() - kind.suffix.size());
+}
+
+bool parse_frame_number(const std::string& text, std::uint32_t& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() && text.size() <= kMaxDigits;
+}
+
+bool has_frames(const fs::path& folder, const Kind& kind) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder / kind.folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (middle(entry->path().filename().string(), kind)) return true;
+  return false;
+}
+
+std::optional<Layout> layout_of(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / "rgb.txt", error) || fs::exists(folder / "associations.txt", error)) return {};
+  for (const Layout& layout : {kScanNet, kSevenScenes})
+    if (has_frames(folder, layout.colour) && has_frames(folder, layout.depth)) return layout;
+  return {};
+}
+
+// Without the folder there are none.
+Status list_files(const fs::path& folder, const Kind& kind, Numbered& files) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder / kind.folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::optional<std::string> digits = middle(name, kind);
+    if (!digits) continue;
+    const std::string file = (fs::path(kind.folder) / name).string();
+    std::uint32_t number = 0;
+    if (!parse_frame_number(*digits, number)) {
+      return {
+          StatusCode::kDamaged,
+          fmt::format("{}: expected a number of at most {} digits in place of '{}'; a folder without rgb.txt "
+                      "and associations.txt has numbered frames",
+                      file, kMaxDigits, *digits)};
+    }
+    const auto [there, added] = files.emplace(number, file);
+    if (!added) {
+      return {StatusCode::kDamaged,
+              fmt::format("{} and {} have the same number; keep one of them", std::min(there->second, file),
+                          std::max(there->second, file))};
+    }
+  }
+  if (!error || error == std::errc::no_such_file_or_directory) return {};
+  return {StatusCode::kIo,
+          fmt::format("cannot list {}: {}", (folder / kind.folder).string(), error.message())};
+}
+
+// Frames may have been taken out evenly, but where some are missing between others, a copy may be incomplete.
+std::string gaps(const std::vector<std::uint32_t>& numbers) {
+  std::uint32_t step = UINT32_MAX;
+  for (std::size_t i = 1; i < numbers.size(); ++i) step = std::min(step, numbers[i] - numbers[i - 1]);
+  std::size_t missing = 0;
+  std::uint32_t first = 0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const std::uint32_t jump = (numbers[i] - numbers[i - 1]) / step;
+    if (jump > 1 && missing == 0) first = numbers[i - 1] + step;
+    missing += jump - 1;
+  }
+  if (missing == 0) return {};
+  return fmt::format(
+      "numbers without a pair of images between the frames {} and {}: {}, the first is {}; they are taken as "
+      "gaps in time (if the images should be there, copy the recording again)",
+      numbers.front(), numbers.back(), missing, first);
+}
+
+}  // namespace
+
+bool is_numbered_folder(const fs::path& folder) { return layout_of(folder).has_value(); }
+
+Status read_numbered_index(const fs::path& folder, double frames_per_s, SequenceIndex& index) {
+  index = {};
+  index.numbered = true;
+  const Layout layout = layout_of(folder).value_or(kSevenScenes);
+  Numbered colour, depth, poses;
+  Status status = list_files(folder, layout.colour, colour);
+  if (status.ok()) status = list_files(folder, layout.depth, depth);
+  if (status.ok()) status = list_files(folder, layout.pose, poses);
+  if (!status.ok()) return status;
+  const auto stamped = [frames_per_s](const auto& numbered) {
+    return StampedFile{std::llround(numbered.first * 1e9 / frames_per_s), numbered.second};
+  };
+  std::vector<std::uint32_t> numbers;
+  for (const auto& image : colour) {
+    const auto partner = depth.find(image.first);
+    if (partner == depth.end()) continue;
+    index.pairs.push_back({stamped(image), stamped(*partner)});
+    numbers.push_back(image.first);
+  }
+  for (const auto& pose : poses) index.poses.push_back(stamped(pose));
+  index.unpaired_colour = colour.size() - index.pairs.size();
+  index.unpaired_depth = depth.size() - index.pairs.size();
+  if (index.pairs.empty())
+    return {StatusCode::kInvalidArgument,
+            fmt::format("{}: no colour image has a depth image of the same number", folder.string())};
+  index.remark = gaps(numbers);
+  return {};
+}
+
+Status read_matrix_pose(const fs::path& path, Se3& pose, bool& usable) {
+  std::vector<TableRow> rows;
+  const auto keep = [&rows](const TableRow& row) {
+    rows.push_back(row);
+    return Status();
+  };
+  if (Status status = each_row(path, kMaxPoseBytes, keep); !status.ok()) return status;
+  std::vector<double> matrix;
+  for (const TableRow& row : rows) {
+    std::vector<double> numbers(4);
+    if (row.words.size() != numbers.size()) break;
+    if (Status status = parse_numbers(path, row, 0, numbers); !status.ok()) return status;
+    matrix.insert(matrix.end(), numbers.begin(), numbers.end());
+  }
+  if (rows.size() != 4 || matrix.size() != 16)
+    return {StatusCode::kDamaged, fmt::format("{}: expected four rows of four numbers", path.string())};
+  usable = std::all_of(matrix.begin(), matrix.end(), [](double value) { return std::isfinite(value); });
+  if (!usable) return {};
+  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
+    return row_error(path, rows[3], "the last row of a pose must be 0 0 0 1");
+  return matrix_pose(path, rows[0], matrix, pose);
+}
+
+Status read_numbered_poses(const fs::path& folder, const std::vector<StampedFile>& files,
+                           Trajectory& trajectory) {
+  trajectory = {};
+  for (const StampedFile& file : files) {
+    StampedPose pose{file.stamp_ns, {}};
+    bool usable = false;
+    if (Status status = read_matrix_pose(folder / file.file, pose.T_world_camera, usable); !status.ok())
+      return status;
+    if (usable) {
+      trajectory.poses.push_back(pose);
+    } else {
+      ++trajectory.ignored_rows;
+    }
+  }
+  if (!trajectory.poses.empty()) return {};
+  return {StatusCode::kInvalidArgument,
+          fmt::format("{}: none of the {} pose files holds a pose", folder.string(), files.size())};
+}
+
+}  // namespace plvo

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/index/tum_index.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "plvo/host/files/input_file.hpp"
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/replay/index/stamp_pairs.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status damaged(const fs::path& list, int line, std::string_view what) {
+  return {StatusCode::kDamaged, fmt::format("{} line {}: {}", list.filename().string(), line, what)};
+}
+
+// Stamps that run backwards or repeat are refused, not repaired: which of the two images is right, nobody can
+// know.
+Status check_order(const fs::path& list, int line, const StampedFile& next,
+                   const std::vector<StampedFile>& files) {
+  if (files.empty() || next.stamp_ns > files.back().stamp_ns) return {};
+  const bool doubled = next.stamp_ns == files.back().stamp_ns;
+  return damaged(list, line,
+                 fmt::format("stamp {} {}; sort the list by stamp and keep each stamp once",
+                             format_stamp(next.stamp_ns), doubled ? "appears twice" : "runs backwards"));
+}
+
+constexpr std::string_view kBlank = " \t\r";
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
+  text.remove_prefix(begin);
+  return text.substr(0, text.find_last_not_of(kBlank) + 1);
+}
+
+// Takes the next word off the front of the line.
+std::string_view take_word(std::string_view& line) {
+  line = trim(line);
+  const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+// Takes a file's name off the front: the words up to the first one that ends as an image's name does, with
+// what is between them; without such an end, one word.
+std::string take_name(std::string_view& line) {
+  line = trim(line);
+  const std::string_view whole = line;
+  std::string_view rest = line;
+  while (!trim(rest).empty()) {
+    if (!ends_as_image(take_word(rest))) continue;
+    line = rest;
+    return std::string(whole.substr(0, whole.size() - rest.size()));
+  }
+  return std::string(take_word(line));
+}
+
+// Whether a part of the path is one of the names that folders of depth, or of colour, have.
+bool names(std::string_view path, std::initializer_list<std::string_view> folders) {
+  for (const fs::path& part : fs::path(path))
+    if (std::find(folders.begin(), folders.end(), part.string()) != folders.end()) return true;
+  return false;
+}
+
+bool depth_first(const std::vector<StampedFile>& left, const std::vector<StampedFile>& right) {
+  const auto all = [](const std::vector<StampedFile>& files,
+                      std::initializer_list<std::string_view> folders) {
+    return std::all_of(files.begin(), files.end(),
+                       [&](const StampedFile& file) { return names(file.file, folders); });
+  };
+  return all(left, {"depth"}) && all(right, {"rgb", "color", "colour"});
+}
+
+// `columns` pairs of stamp and file name a line, into one list per pair.
+Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* lists) {
+  std::string content;
+  if (Status status = read_text_file(list, kMaxTextBytes, content); !status.ok()) {
+    if (status.code() != StatusCode::kNotFound) return status;
+    return {StatusCode::kNotFound,
+            fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), an "
+                        "associations.txt, or numbered frames (docs/formats.md)",
+                        list.string())};
+  }
+  std::string_view rest = content;
+  for (int line = 1; !rest.empty(); ++line) {
+    std::string_view text = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), text.size() + 1));
+    text = trim(text);
+    if (text.empty() || text.front() == '#') continue;
+    for (int column = 0; column < columns; ++column) {
+      StampedFile next;
+      const bool is_stamp = parse_stamp_ns(take_word(text), next.stamp_ns);
+      next.file = take_name(text);
+      if (next.file.empty() || !is_stamp)
+        return damaged(list, line,
+                       columns == 1 ? "expected 'stamp file'" : "expected 'stamp rgb stamp depth'");
+      if (Status status = check_order(list, line, next, lists[column]); !status.ok()) return status;
+      lists[column].push_back(std::move(next));
+    }
+  }
+  if (lists[0].empty())
+    return {StatusCode::kInvalidArgument, fmt::format("{} lists no image", list.string())};
+  return {};
+}
+
+Status pair_up(const std::vector<StampedFile>& colour, const std::vector<StampedFile>& depth,
+               std::int64_t tolerance_ns, SequenceIndex& index) {
+  const auto stamps = [](const std::vector<StampedFile>& files) {
+    std::vector<std::int64_t> result;
+    for (const StampedFile& file : files) result.push_back(file.stamp_ns);
+    return result;
+  };
+  for (const auto& [c, d] : associate(stamps(colour), stamps(depth), tolerance_ns))
+    index.pairs.push_back({colour[c], depth[d]});
+  index.unpaired_colour = colour.size() - index.pairs.size();
+  index.unpaired_depth = depth.size() - index.pairs.size();
+  if (index.pairs.empty()) {
+    return {StatusCode::kInvalidArgument,
+            fmt::format(
+                "no colour image has a depth image within {:.3f} s; are both lists of the same recording? "
+                "(a larger --tolerance pairs more)",
+                static_cast<double>(tolerance_ns) * 1e-9)};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status read_tum_index(const fs::path& folder, const fs::path& associations, std::int64_t tolerance_ns,
+                      SequenceIndex& index) {
+  index = {};
+  std::error_code error;
+  std::vector<StampedFile> lists[2];
+  fs::path joint = associations;
+  if (joint.empty() && !fs::exists(folder / "rgb.txt", error) &&
+      fs::exists(folder / "associations.txt", error))
+    joint = folder / "associations.txt";
+  if (!joint.empty()) {
+    if (Status status = read_lists(joint, 2, lists); !status.ok()) return status;
+    if (depth_first(lists[0], lists[1])) std::swap(lists[0], lists[1]);
+    for (std::size_t i = 0; i < lists[0].size(); ++i) index.pairs.push_back({lists[0][i], lists[1][i]});
+    return {};
+  }
+  if (Status status = read_lists(folder / "rgb.txt", 1, &lists[0]); !status.ok()) return status;
+  if (Status status = read_lists(folder / "depth.txt", 1, &lists[1]); !status.ok()) return status;
+  return pair_up(lists[0], lists[1], tolerance_ns, index);
+}
+
+}  // namespace plvo

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which topics of a ROS 1 bag are read: options of every command that reads bags.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/recording/recording.hpp"
+
+namespace plvo::cli {
+
+inline constexpr const char* kBagGroup = "ROS bag";
+// kKept: the topics of gyro and accelerometer can be chosen too, for --imu.
+enum class BagImu : std::uint8_t { kPassedOver, kKept };
+void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu);
+// Where no recording is a bag.
+void refuse_bag_options(const CLI::App& command);
+
+}  // namespace plvo::cli

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/cli/options/simulator_arguments.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/cli/options/arguments.hpp"
+#include "plvo/odometry/config.hpp"
+
+namespace plvo::cli {
+namespace {
+
+bool parse_size(std::string_view text, int& width, int& height) {
+  const char* end = text.data() + text.size();
+  const auto [x, first_error] = std::from_chars(text.data(), end, width);
+  if (first_error != std::errc() || x == end || *x != 'x') return false;
+  const auto [stop, second_error] = std::from_chars(x + 1, end, height);
+  return second_error == std::errc() && stop == end && width >= Limits::kLeastSide &&
+         height >= Limits::kLeastSide && width <= Limits::kMostSide && height <= Limits::kMostSide;
+}
+
+bool parse_range(std::string_view text, int& first, int& end) {
+  const char* stop = text.data() + text.size();
+  const auto [colon, first_error] = std::from_chars(text.data(), stop, first);
+  if (first_error != std::errc() || colon == stop || *colon != ':') return false;
+  const auto [rest, end_error] = std::from_chars(colon + 1, stop, end);
+  return end_error == std::errc() && rest == stop && first >= 0 && first < end && end <= kMostSimulatedFrames;
+}
+
+// Names as the simulator writes them.
+template <typename Name, std::size_t N>
+std::vector<std::pair<std::string, Name>> names_of(const Name (&values)[N]) {
+  std::vector<std::pair<std::string, Name>> names;
+  for (const Name value : values) names.emplace_back(to_string(value), value);
+  return names;
+}
+
+}  // namespace
+
+void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
+  OptionGroup group(command, kSimulatorGroup);
+  group.choice("--scene", arguments.scene,
+               names_of({SceneName::kCorridor, SceneName::kStaircase, SceneName::kHall, SceneName::kDesk,
+                         SceneName::kBare}),
+               "Room to walk through (default corridor)");
+  group.choice("--light", arguments.light, names_of({LightName::kConstant, LightName::kVarying}),
+               "varying: a lamp that swings and dims (default constant)");
+  group.whole("--seed", arguments.seed, 0, UINT64_MAX,
+              "Another room, walk and noise of the same kind (default 1)");
+  group.number("--fps", arguments.fps, {1, 1000}, "HZ", "Frames per second (default 30)");
+  group.add("--size", "WIDTHxHEIGHT", "Image size in pixels (default 640x480)",
+            [&arguments](const std::string& text) -> std::string {
+              if (parse_size(text, arguments.width, arguments.height)) return {};
+              return expected(fmt::format("WIDTHxHEIGHT from {0}x{0} to {1}x{1}, such as 320x240",
+                                          Limits::kLeastSide, Limits::kMostSide),
+                              text);
+            });
+  group.number(
+      "--rolling-shutter", arguments.readout_s, {0, 1}, "SECONDS",
+      fmt::format("Time from the first row to the last (default 0: all rows at once; a Kinect's: {})",
+                  kKinectReadout_s));
+  group.number("--depth-delay", arguments.depth_schedule.delay_s, {-0.1, 0.1}, "SECONDS",
+               "Depth is exposed this long after its stamp (default 0; negative: before)");
+  group.number("--depth-readout", arguments.depth_schedule.readout_s, {0, 0.1}, "SECONDS",
+               "Time from the first row of depth to the last (default: --rolling-shutter)");
+  group.number("--depth-stamp-offset", arguments.depth_schedule.stamp_offset_s, {-0.5, 0.5}, "SECONDS",
+               "Depth is stamped, and taken, this long after colour: at most half a frame (default 0)");
+  group.number(
+      "--depth-fps", arguments.depth_schedule.fps, {1, 1000}, "HZ",
+      "Depth images per second on a clock of their own, at least --fps (default: the colour's clock)");
+  group.number("--depth-stamp-jitter", arguments.depth_schedule.stamp_jitter_s, {0, 0.1}, "SECONDS",
+               "Standard deviation of depth's stamps; the exposures keep their time (default 0)");
+  group.number("--depth-scale-error", arguments.depth_scale_error, {0.5, 2}, "FACTOR",
+               "Reported depth over true depth (default 1)");
+  group.add("--covered", "FIRST:END", "A hand over the lens from frame FIRST to before END: black, no depth",
+            [&arguments](const std::string& text) -> std::string {
+              if (parse_range(text, arguments.covered_first, arguments.covered_end)) return {};
+              return expected("a range of frames such as 100:115", text);
+            });
+  group.path("--trajectory", arguments.trajectory,
+             "TUM trajectory along which the camera moves, instead of the seeded walk");
+  group.whole("--threads", arguments.threads, 1, 256,
+              "Threads of the rendering; the images do not depend on it (default 2)");
+  group.flag("--clean", arguments.clean, "No noise, no blur: the exact twin of the same walk");
+}
+
+Status make_simulator_options(const SimulatorArguments& arguments, int frames, SimulatorOptions& options) {
+  options.scene = arguments.scene;
+  options.light = arguments.light;
+  options.seed = arguments.seed;
+  options.frames = frames;
+  options.fps = arguments.fps;
+  options.noise = !arguments.clean;
+  options.trajectory_file = arguments.trajectory;
+  options.threads = arguments.threads;
+  CameraModel& camera = options.camera;
+  camera.readout_s = arguments.readout_s;
+  options.depth_schedule = arguments.depth_schedule;
+  options.depth.scale_error = arguments.depth_scale_error;
+  options.covered_first = arguments.covered_first;
+  options.covered_end = arguments.covered_end;
+  if (arguments.width > 0) {
+    const double scale = static_cast<double>(arguments.width) / camera.width;
+    camera.pinhole.fx *= scale;
+    camera.pinhole.fy *= scale;
+    camera.pinhole.cx = (arguments.width - 1) / 2.0;
+    camera.pinhole.cy = (arguments.height - 1) / 2.0;
+    camera.width = arguments.width;
+    camera.height = arguments.height;
+  }
+  return options.validate();
+}
+
+}  // namespace plvo::cli
