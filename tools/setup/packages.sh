@@ -34,6 +34,7 @@ install_packages() {
   fi
   if [ "$(id -u)" -ne 0 ]; then root=(sudo); fi
   say "installing ${#missing[@]} packages: ${missing[*]}"
-  "${root[@]}" apt-get update -qq >&2
+  # A mirror that is just being renewed may lack one list of several; what cannot do without it fails at the installing.
+  "${root[@]}" apt-get update -qq >&2 || say "not every list of packages could be fetched; going on with those that could"
   "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
 }

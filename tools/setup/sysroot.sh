@@ -22,7 +22,7 @@ make_sysroot() {
   : >"$apt/status"  # nothing is installed there: so everything is fetched
   options=(-o "Dir::State=$apt" -o "Dir::State::lists=$apt/lists" -o "Dir::State::status=$apt/status" -o "Dir::Cache=$apt"
     -o "APT::Architecture=$architecture" -o "APT::Architectures=$architecture" -o Debug::NoLocking=1 -qq)
-  apt-get "${options[@]}" update >&2
+  apt-get "${options[@]}" update >&2 || say "not every list of packages could be fetched; going on with those that could"
   apt-get "${options[@]}" -y --no-install-recommends --download-only install "$@" >&2
   for package in "$apt"/archives/*.deb; do dpkg-deb -x "$package" "$folder"; done
   # Links to absolute paths would lead out of the folder.
