@@ -42,7 +42,7 @@ void write_estimate(const fs::path& sequence, const fs::path& estimate) {
   for (int frame = 0; std::getline(list, line);) {
     if (line[0] == '#') continue;
     const auto stamp = static_cast<std::int64_t>(std::llround(std::stod(line) * 1e6)) * 1000;
-    const auto sampled = eval::sample(truth, {stamp}, eval::GroundTruthSampling::kNearest, 1'000'000'000);
+    const auto sampled = eval::sample(truth, {stamp}, {eval::GroundTruthSampling::kNearest, 1'000'000'000});
     Vector6 step;
     step << noise(0.004), noise(0.004), noise(0.004), noise(0.003), noise(0.003), noise(0.003);
     drift = boxplus(drift, step);

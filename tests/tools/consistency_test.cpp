@@ -29,7 +29,7 @@ Consistency monte_carlo(double sigma, double claimed) {
     motions.push_back({i * 30'000'000LL, (i - 1) * 30'000'000LL, boxplus(motion, error),
                        Matrix6::Identity() * (claimed * claimed)});
   }
-  return motion_consistency(motions, truth, {.max_difference_ns = 1});
+  return motion_consistency(motions, truth, {.max_difference_ns = 1}, {});
 }
 
 TEST(Consistency, TrueCovarianceLiesInTheBand) {

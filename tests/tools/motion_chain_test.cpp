@@ -80,10 +80,10 @@ std::vector<UncertainMotion> draw(const Drawing& how) {
 }
 
 Consistency per_motion(const std::vector<UncertainMotion>& motions) {
-  return motion_consistency(motions, ground_truth(), {.max_difference_ns = 1});
+  return motion_consistency(motions, ground_truth(), {.max_difference_ns = 1}, {});
 }
 Consistency per_second(const std::vector<UncertainMotion>& motions) {
-  return span_consistency(motions, kSecond_ns, ground_truth(), {.max_difference_ns = 1});
+  return span_consistency(motions, kSecond_ns, ground_truth(), {.max_difference_ns = 1}, {});
 }
 
 bool in_its_band(const Nees& nees) {

@@ -132,7 +132,7 @@ Trajectory turning() {
 
 TEST(Sampling, InterpolatesBetweenNeighbours) {
   const SampledPoses s = sample(turning(), {25'000'000, 50'000'000, 200'000'000, -1'000'000, 400'000'000},
-                                GroundTruthSampling::kInterpolated, 20'000'000);
+                                {GroundTruthSampling::kInterpolated, 20'000'000});
   EXPECT_EQ(s.valid, (std::vector<bool>{true, true, false, false, true}));
   EXPECT_NEAR(s.poses[0].t.x(), 0.5, 1e-12);
   EXPECT_NEAR(rotation_log(s.poses[0].R).z(), 0.1, 1e-12);
@@ -141,12 +141,12 @@ TEST(Sampling, InterpolatesBetweenNeighbours) {
 
 TEST(Sampling, NearestTakesTheEarlierOfTwo) {
   const SampledPoses s = sample(turning(), {25'000'000, 26'000'000, -25'000'000, 415'000'000},
-                                GroundTruthSampling::kNearest, 25'000'000);
+                                {GroundTruthSampling::kNearest, 25'000'000});
   EXPECT_EQ(s.valid, (std::vector<bool>{true, true, true, true}));
   EXPECT_EQ(s.poses[0].t.x(), 0);
   EXPECT_EQ(s.poses[1].t.x(), 1);
   EXPECT_EQ(s.poses[3].t.x(), 3);
-  EXPECT_FALSE(sample(turning(), {430'000'001}, GroundTruthSampling::kNearest, 25'000'000).valid[0]);
+  EXPECT_FALSE(sample(turning(), {430'000'001}, {GroundTruthSampling::kNearest, 25'000'000}).valid[0]);
 }
 
 TEST(UncertaintyFile, ReadsBackWhatTheWriterWrote) {

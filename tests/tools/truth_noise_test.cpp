@@ -100,8 +100,8 @@ TEST(TruthSigma, MakesTheNormalisedErrorWhatItIs) {
                        boxplus(exact_pose(i).inverse() * exact_pose(i - 1), error),
                        Matrix6::Identity() * (sigma * sigma)});
   }
-  EXPECT_GT(motion_consistency(motions, truth, {}).all.mean, 30);
-  const Consistency c = motion_consistency(motions, truth, {.sigma = kTruth});
+  EXPECT_GT(motion_consistency(motions, truth, {}, {}).all.mean, 30);
+  const Consistency c = motion_consistency(motions, truth, {}, kTruth);
   for (const Nees& nees : {c.all, c.translation, c.rotation}) {
     EXPECT_GT(nees.mean, nees.mean_band.low);
     EXPECT_LT(nees.mean, nees.mean_band.high);

@@ -120,29 +120,29 @@ Consistency pose_consistency(const PairedPoses& poses, const std::vector<Stamped
 }
 
 Consistency motion_consistency(const std::vector<UncertainMotion>& motions, const Trajectory& ground_truth,
-                               const TruthSampling& sampling) {
+                               const TruthSampling& sampling, const TruthSigma& truth_sigma) {
   std::vector<std::int64_t> stamps, references;
   for (const UncertainMotion& motion : motions) {
     stamps.push_back(motion.stamp_ns);
     references.push_back(motion.reference_stamp_ns);
   }
-  const SampledPoses now = sample(ground_truth, stamps, sampling.sampling, sampling.max_difference_ns);
-  const SampledPoses before = sample(ground_truth, references, sampling.sampling, sampling.max_difference_ns);
+  const SampledPoses now = sample(ground_truth, stamps, sampling);
+  const SampledPoses before = sample(ground_truth, references, sampling);
   Accumulator accumulator;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (!now.valid[i] || !before.valid[i]) continue;
     const Se3 truth = now.poses[i].inverse() * before.poses[i];
     accumulator.add(boxminus(motions[i].T_camera_reference, truth),
-                    motions[i].covariance + sampling.sigma.of_motion(truth.t));
+                    motions[i].covariance + truth_sigma.of_motion(truth.t));
   }
   return accumulator.finish(accumulator.count());
 }
 
 Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::int64_t span_ns,
-                             const Trajectory& ground_truth, const TruthSampling& sampling) {
+                             const Trajectory& ground_truth, const TruthSampling& sampling,
+                             const TruthSigma& truth_sigma) {
   const MotionChain chain(motions);
-  const SampledPoses truth =
-      sample(ground_truth, chain.stamps_ns(), sampling.sampling, sampling.max_difference_ns);
+  const SampledPoses truth = sample(ground_truth, chain.stamps_ns(), sampling);
   Accumulator accumulator;
   std::size_t independent = 0;
   std::size_t counted_to = 0;  // the frame at which the last of the independent ones ends
@@ -156,7 +156,7 @@ Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::i
     }
     const std::size_t before = accumulator.count();
     const Se3 true_motion = truth.poses[to].inverse() * truth.poses[from];
-    accumulator.add(boxminus(T_to_from, true_motion), covariance + sampling.sigma.of_motion(true_motion.t));
+    accumulator.add(boxminus(T_to_from, true_motion), covariance + truth_sigma.of_motion(true_motion.t));
     if (accumulator.count() == before || from < counted_to) continue;
     ++independent;
     counted_to = to;

@@ -37,13 +37,6 @@ struct TruthSigma {
   Matrix6 of_motion(const Vector3& t) const;
 };
 
-// Of the truth that estimates are compared with.
-struct TruthSampling {
-  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
-  std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
-  TruthSigma sigma = {};
-};
-
 struct Consistency {
   std::size_t count = 0;        // samples with a usable covariance and truth
   std::size_t independent = 0;  // how many of them share no stretch of the recording: the bands are for these
@@ -66,10 +59,11 @@ Consistency pose_consistency(const PairedPoses& poses, const std::vector<Stamped
                              const TruthSigma& truth_sigma);
 // Of the single motions, frame to reference: the sharper test, where the truth is sharp enough.
 Consistency motion_consistency(const std::vector<UncertainMotion>& motions, const Trajectory& ground_truth,
-                               const TruthSampling& sampling);
+                               const TruthSampling& sampling, const TruthSigma& truth_sigma);
 // Of the motions over span_ns, chained from the single ones: over a second the jitter of motion capture
 // counts little, and what neighbouring errors have in common adds up. One sample from each frame on.
 Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::int64_t span_ns,
-                             const Trajectory& ground_truth, const TruthSampling& sampling);
+                             const Trajectory& ground_truth, const TruthSampling& sampling,
+                             const TruthSigma& truth_sigma);
 
 }  // namespace plvo::eval

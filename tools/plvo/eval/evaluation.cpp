@@ -42,12 +42,12 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result) {
   result = {};
-  result.truth = options.truth;
+  result.sampling = options.sampling.method;
+  result.truth_sigma = options.truth_sigma;
   result.estimate_poses = estimate.poses.size();
   std::vector<std::int64_t> stamps;
   for (const StampedPose& pose : estimate.poses) stamps.push_back(pose.stamp_ns + options.offset_ns);
-  const SampledPoses truth =
-      sample(ground_truth, stamps, options.truth.sampling, options.truth.max_difference_ns);
+  const SampledPoses truth = sample(ground_truth, stamps, options.sampling);
   PairedPoses& poses = result.poses;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!truth.valid[i]) continue;
@@ -77,15 +77,16 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
   result.without_truth = find_gaps(stamps, truth.valid);
 
   result.errors = pose_errors(poses, covariances);
-  if (!covariances.empty()) result.pose_nees = pose_consistency(poses, covariances, options.truth.sigma);
+  if (!covariances.empty()) result.pose_nees = pose_consistency(poses, covariances, options.truth_sigma);
   if (!motions.empty()) {
     std::vector<UncertainMotion> shifted = motions;
     for (UncertainMotion& motion : shifted) {
       motion.stamp_ns += options.offset_ns;
       motion.reference_stamp_ns += options.offset_ns;
     }
-    result.motion_nees = motion_consistency(shifted, ground_truth, options.truth);
-    result.second_nees = span_consistency(shifted, kSecondNs, ground_truth, options.truth);
+    result.motion_nees = motion_consistency(shifted, ground_truth, options.sampling, options.truth_sigma);
+    result.second_nees =
+        span_consistency(shifted, kSecondNs, ground_truth, options.sampling, options.truth_sigma);
   }
   return {};
 }

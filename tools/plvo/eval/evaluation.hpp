@@ -17,7 +17,8 @@
 namespace plvo::eval {
 
 struct EvaluationOptions {
-  TruthSampling truth;
+  TruthSampling sampling;
+  TruthSigma truth_sigma;        // joins the covariance in the NEES
   std::int64_t offset_ns = 0;    // added to the stamps of the estimate
   std::vector<RpeDelta> deltas;  // empty: one frame and one second
 };
@@ -28,7 +29,8 @@ struct Interval {
 };
 
 struct Evaluation {
-  TruthSampling truth;  // how it was asked for
+  GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
+  TruthSigma truth_sigma;
   std::size_t estimate_poses = 0;
   PairedPoses poses;  // those with ground truth
   double duration_s = 0;

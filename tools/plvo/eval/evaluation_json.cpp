@@ -55,10 +55,9 @@ Json to_json(const std::vector<Interval>& intervals) {
 
 nlohmann::ordered_json to_json(const Evaluation& e) {
   Json json;
-  json["ground_truth_sampling"] =
-      e.truth.sampling == GroundTruthSampling::kNearest ? "nearest" : "interpolated";
-  json["ground_truth_sigma"] = {{"position_m", e.truth.sigma.position_m},
-                                {"orientation_rad", e.truth.sigma.orientation_rad}};
+  json["ground_truth_sampling"] = e.sampling == GroundTruthSampling::kNearest ? "nearest" : "interpolated";
+  json["ground_truth_sigma"] = {{"position_m", e.truth_sigma.position_m},
+                                {"orientation_rad", e.truth_sigma.orientation_rad}};
   json["estimate_poses"] = e.estimate_poses;
   json["poses"] = e.poses.truth.size();
   json["duration_s"] = e.duration_s;

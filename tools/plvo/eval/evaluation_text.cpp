@@ -81,10 +81,10 @@ void add_all_nees(Text& text, const Evaluation& e) {
   if (e.pose_nees) add_nees(text, "of the poses", *e.pose_nees);
   if (e.motion_nees) add_nees(text, "of the motions", *e.motion_nees);
   if (e.second_nees) add_nees(text, "over a second", *e.second_nees);
-  if (e.truth.sigma.position_m > 0 || e.truth.sigma.orientation_rad > 0) {
+  if (e.truth_sigma.position_m > 0 || e.truth_sigma.orientation_rad > 0) {
     text.line("{:<18} of a true pose, in the covariance as well: {:.3f} mm, {:.4f} deg in each axis",
-              "standard deviation", 1e3 * e.truth.sigma.position_m,
-              e.truth.sigma.orientation_rad * 180 / kPi);
+              "standard deviation", 1e3 * e.truth_sigma.position_m,
+              e.truth_sigma.orientation_rad * 180 / kPi);
   }
 }
 
@@ -103,8 +103,7 @@ void add_intervals(Text& text, const char* name, const std::vector<Interval>& in
 std::string to_text(const Evaluation& e) {
   Text text;
   text.line("{} of {} poses have ground truth ({}); {:.3f} s, {:.3f} m", e.poses.truth.size(),
-            e.estimate_poses,
-            e.truth.sampling == GroundTruthSampling::kNearest ? "nearest stamp" : "interpolated",
+            e.estimate_poses, e.sampling == GroundTruthSampling::kNearest ? "nearest stamp" : "interpolated",
             e.duration_s, e.path_m);
   text.line("identity: what a camera that never moves would score\n");
   text.line("{:<28} {:>10} {:>9} {:>9} {:>9}   {:>8} {:>8} {:>8} {:>8}", "", "RMSE mm", "median", "p95",

@@ -35,7 +35,7 @@ Quaternion slerp(const Quaternion& a, Quaternion b, double fraction) {
 }  // namespace
 
 SampledPoses sample(const Trajectory& ground_truth, const std::vector<std::int64_t>& stamps_ns,
-                    GroundTruthSampling sampling, std::int64_t max_difference_ns) {
+                    const TruthSampling& sampling) {
   const auto& truth = ground_truth.poses;
   SampledPoses result;
   for (std::int64_t stamp : stamps_ns) {
@@ -48,9 +48,9 @@ SampledPoses sample(const Trajectory& ground_truth, const std::vector<std::int64
     const StampedPose& b = truth[static_cast<std::size_t>(j)];
     const std::int64_t to_a = std::abs(a.stamp_ns - stamp);
     const std::int64_t to_b = std::abs(b.stamp_ns - stamp);
-    if (sampling == GroundTruthSampling::kNearest || a.stamp_ns == b.stamp_ns) {
+    if (sampling.method == GroundTruthSampling::kNearest || a.stamp_ns == b.stamp_ns) {
       result.poses.push_back(to_a <= to_b ? a.T_world_camera : b.T_world_camera);
-      result.valid.push_back(std::min(to_a, to_b) <= max_difference_ns);
+      result.valid.push_back(std::min(to_a, to_b) <= sampling.max_difference_ns);
       continue;
     }
     const double fraction = std::clamp(

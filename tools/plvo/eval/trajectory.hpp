@@ -21,6 +21,11 @@ enum class GroundTruthSampling : std::uint8_t {
   kInterpolated,  // between the two neighbours: linear, slerp; they may be at most 0.1 s apart
 };
 
+struct TruthSampling {
+  GroundTruthSampling method = GroundTruthSampling::kInterpolated;
+  std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
+};
+
 // The true pose at each stamp. valid[i] is false where there is none within max_difference_ns (nearest) or
 // between close enough neighbours (interpolated).
 struct SampledPoses {
@@ -28,7 +33,7 @@ struct SampledPoses {
   std::vector<bool> valid;
 };
 SampledPoses sample(const Trajectory& ground_truth, const std::vector<std::int64_t>& stamps_ns,
-                    GroundTruthSampling sampling, std::int64_t max_difference_ns);
+                    const TruthSampling& sampling);
 
 // Metres travelled up to each pose.
 std::vector<double> path_lengths(const std::vector<Se3>& poses);

@@ -39,8 +39,7 @@ double sigma_of(double product, double motions) {
 TruthNoise truth_noise(const Trajectory& ground_truth, const Trajectory& first, const Trajectory& second,
                        const TruthSampling& sampling) {
   const CommonPoses common = common_poses(first, second);
-  const SampledPoses truth =
-      sample(ground_truth, common.stamps_ns, sampling.sampling, sampling.max_difference_ns);
+  const SampledPoses truth = sample(ground_truth, common.stamps_ns, sampling);
   TruthNoise noise;
   Vector2 squares_a = Vector2::Zero(), squares_b = Vector2::Zero(), product = Vector2::Zero();
   for (std::size_t i = 1; i < common.stamps_ns.size(); ++i) {

@@ -52,7 +52,7 @@ Status read_views(const NamedFolder& folder, const JobOptions& options, ViewSequ
     if (status.code() == StatusCode::kEndOfStream) break;
     if (status.code() == StatusCode::kDamaged) continue;
     if (!status.ok()) return status;
-    const eval::SampledPoses pose = eval::sample(truth, {frame.stamp_ns}, options.sampling, 20'000'000);
+    const eval::SampledPoses pose = eval::sample(truth, {frame.stamp_ns}, {.method = options.sampling});
     if (!pose.valid[0]) continue;
     sequence.views.push_back(make_view(images, frame));
     sequence.views.back().T_world_camera = pose.poses[0];

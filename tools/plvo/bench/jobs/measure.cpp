@@ -48,7 +48,7 @@ Status evaluate_tracks(const Job& job, const Tracks& tracks, Result& result) {
   eval::Trajectory truth;
   if (Status status = read_ground_truth(job.folder, {}, truth); !status.ok()) return status;
   eval::EvaluationOptions options;
-  options.truth.sampling = job.options.sampling;
+  options.sampling.method = job.options.sampling;
   eval::Evaluation evaluation;
   if (Status status = eval::evaluate(truth, tracks.trajectory, {}, {}, options, evaluation); !status.ok())
     return status;

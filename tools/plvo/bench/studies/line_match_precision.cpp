@@ -249,8 +249,7 @@ int run(const Settings& settings) {
   plvo::RgbdFrame image;
   while (static_cast<int>(frames.size()) < settings.frames && camera.next(image).ok()) {
     frames.push_back(front_end->look(image, settings.line));
-    const auto pose = plvo::eval::sample(truth, {image.stamp_ns},
-                                         plvo::eval::GroundTruthSampling::kInterpolated, 20'000'000);
+    const auto pose = plvo::eval::sample(truth, {image.stamp_ns}, {});
     frames.back().has_truth = pose.valid[0];
     frames.back().T_world_camera = pose.poses[0];
   }

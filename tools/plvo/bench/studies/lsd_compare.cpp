@@ -67,8 +67,7 @@ plvo::Status load(const Options& options, Sequence& sequence) {
     const plvo::Status status = camera.next(image);
     if (status.code() == plvo::StatusCode::kEndOfStream) break;
     if (!status.ok()) return status;
-    const plvo::eval::SampledPoses pose = plvo::eval::sample(
-        truth, {image.stamp_ns}, plvo::eval::GroundTruthSampling::kInterpolated, 20'000'000);
+    const plvo::eval::SampledPoses pose = plvo::eval::sample(truth, {image.stamp_ns}, {});
     if (!pose.valid[0]) continue;
     Frame frame;
     frame.T_world_camera = pose.poses[0];

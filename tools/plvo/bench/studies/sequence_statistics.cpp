@@ -174,8 +174,7 @@ Status collect(const std::string& folder, Samples& samples) {
     if (!status.ok()) return status;
     const Picture picture = [&] {
       Picture p = make_picture(images, frame);
-      const eval::SampledPoses pose =
-          eval::sample(truth, {frame.stamp_ns}, eval::GroundTruthSampling::kInterpolated, 0);
+      const eval::SampledPoses pose = eval::sample(truth, {frame.stamp_ns}, {});
       if (pose.valid[0]) p.T_world_camera = pose.poses[0];
       return p;
     }();

@@ -73,11 +73,11 @@ Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, e
 
 int eval_command(EvalOptions options) {
   eval::EvaluationOptions settings;
-  settings.truth.sampling = options.sampling;
-  settings.truth.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
+  settings.sampling.method = options.sampling;
+  settings.sampling.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
   settings.offset_ns = static_cast<std::int64_t>(options.offset_s * 1e9);
   settings.deltas = options.deltas;
-  if (!options.sigma.empty()) settings.truth.sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
+  if (!options.sigma.empty()) settings.truth_sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
   options.ground_truth.kitti_times = options.estimate.kitti_times = options.kitti_times;
 
   eval::Trajectory ground_truth, estimate;

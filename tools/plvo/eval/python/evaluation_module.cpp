@@ -43,17 +43,17 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
                              const py::iterable& deltas, double sigma_m, double sigma_rad) {
   EvaluationOptions options;
   if (sampling == "nearest")
-    options.truth.sampling = GroundTruthSampling::kNearest;
+    options.sampling.method = GroundTruthSampling::kNearest;
   else if (sampling != "interpolated")
     throw py::value_error("sampling: expected interpolated or nearest, got '" + sampling + "'");
   constexpr double kDay_s = 86400;
   if (!(max_difference_s > 0 && max_difference_s <= kDay_s) || !(offset_s >= -kDay_s && offset_s <= kDay_s))
     throw py::value_error("max_difference_s and offset_s must be seconds within a day");
-  options.truth.max_difference_ns = static_cast<std::int64_t>(max_difference_s * 1e9);
+  options.sampling.max_difference_ns = static_cast<std::int64_t>(max_difference_s * 1e9);
   options.offset_ns = static_cast<std::int64_t>(offset_s * 1e9);
   if (!(sigma_m >= 0 && sigma_m <= 1) || !(sigma_rad >= 0 && sigma_rad <= 1))
     throw py::value_error("truth_sigma must be metres and radians from 0 to 1");
-  options.truth.sigma = {sigma_m, sigma_rad};
+  options.truth_sigma = {sigma_m, sigma_rad};
   for (const py::handle item : deltas) {
     RpeDelta delta;
     const auto text = item.cast<std::string>();
