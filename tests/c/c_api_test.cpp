@@ -92,7 +92,7 @@ TEST(CApi, TheTinyPresetIsThatOfConfigAndLimits) {
   EXPECT_GE(tracked_alike(doors, 5), 4);
   EXPECT_LE(plvo_keypoints(doors.c_odometry, nullptr, 0), 200U);
 
-  limits.references = 3;
+  limits.references = 4;
   EXPECT_EQ(plvo_required_bytes(&limits), 0U);
   for (const std::int32_t preset : {PLVO_PRESET_DEFAULT, PLVO_PRESET_PAPER}) {
     ASSERT_EQ(plvo_limits_of_preset(preset, &limits).code, PLVO_OK);

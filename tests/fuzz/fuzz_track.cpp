@@ -39,11 +39,12 @@ class Bytes {
 };
 
 // The smallest images that are taken: the most executions a second.
-constexpr Limits kLimits{.width = 64, .height = 64, .keypoints = 60, .segments = 30, .surfaces = 20};
+constexpr Limits kLimits{
+    .width = 64, .height = 64, .keypoints = 60, .segments = 30, .references = 3, .surfaces = 20};
 
 Config read_config(Bytes& bytes) {
   Config config;
-  config.features = static_cast<Features>(bytes.take<std::uint8_t>() % 3);
+  config.features = static_cast<Features>(bytes.take<std::uint8_t>() % 4);
   config.references.policy = static_cast<ReferencePolicy>(bytes.take<std::uint8_t>() % 3);
   config.points.sigma_px = bytes.number(0.1, 2);
   config.points.detector.levels = bytes.take<std::uint8_t>() % 6;

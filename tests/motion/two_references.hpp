@@ -43,23 +43,32 @@ struct TwoReferences {
     return pair;
   }
 
-  std::vector<ConstraintSet*> sets_of(const SimulatedPair& first, const SimulatedPair& second,
-                                      std::size_t reference_of_second, double correlation = 0) {
+  struct MatchedWith {
+    const SimulatedPair& pair;
+    std::size_t reference;
+  };
+  std::vector<ConstraintSet*> sets_of(std::span<const MatchedWith> matched, double correlation = 0) {
     points.clear();
     lines.clear();
+    points.reserve(matched.size());
+    lines.reserve(matched.size());
     arena.rewind(0);
-    for (const SimulatedPair* pair : {&first, &second}) {
-      points.emplace_back(pair->points_reference, pair->points_current, pair->point_matches,
-                          PointConstraints::Workspace::take(arena, pair->point_matches.size()));
-      lines.emplace_back(pair->lines_reference, pair->lines_current, pair->line_matches,
-                         LineConstraints::Workspace::take(arena, pair->line_matches.size()));
-      const std::size_t reference = pair == &first ? 0 : reference_of_second;
+    std::vector<ConstraintSet*> sets;
+    for (const auto& [pair, reference] : matched) {
+      points.emplace_back(pair.points_reference, pair.points_current, pair.point_matches,
+                          PointConstraints::Workspace::take(arena, pair.point_matches.size()));
+      lines.emplace_back(pair.lines_reference, pair.lines_current, pair.line_matches,
+                         LineConstraints::Workspace::take(arena, pair.line_matches.size()));
       points.back().set_reference(reference, correlation);
       lines.back().set_reference(reference, correlation);
+      sets.insert(sets.end(), {&points.back(), &lines.back()});
     }
-    std::vector<ConstraintSet*> sets{&points[0], &lines[0], &points[1], &lines[1]};
     for (ConstraintSet* set : sets) flag_all(*set);
     return sets;
+  }
+  std::vector<ConstraintSet*> sets_of(const SimulatedPair& first, const SimulatedPair& second,
+                                      std::size_t reference_of_second, double correlation = 0) {
+    return sets_of(std::array{MatchedWith{first, 0}, MatchedWith{second, reference_of_second}}, correlation);
   }
 
   std::vector<std::byte> memory;

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "plvo/math/symmetric_eigen.hpp"
+
 namespace plvo {
 namespace {
 
@@ -39,6 +41,51 @@ TEST(TwoReferences, WithAnExactPoseAreOneProblem) {
       EXPECT_LT(difference(a.H, b.H), c.tolerance);
       EXPECT_LT(difference(a.g, b.g, b.H), 10 * c.tolerance * difference(b.g, Vector6::Zero(), b.H));
     }
+}
+
+// Of the pair's matches every second one, the first of them or the one after it.
+SimulatedPair half_of(const SimulatedPair& pair, std::size_t first) {
+  SimulatedPair half = pair;
+  half.point_matches.clear();
+  half.line_matches.clear();
+  for (std::size_t i = first; i < pair.point_matches.size(); i += 2)
+    half.point_matches.push_back(pair.point_matches[i]);
+  for (std::size_t i = first; i < pair.line_matches.size(); i += 2)
+    half.line_matches.push_back(pair.line_matches[i]);
+  return half;
+}
+
+TEST(ThreeReferences, TwoOfThemWithOnePoseAreOne) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TwoReferences two(seed, 30, 10);
+    TwoReferences three(seed, 30, 10);
+    const SimulatedPair even = half_of(three.pairs[1], 0), odd = half_of(three.pairs[1], 1);
+    three.references[2].T_reference_base = three.T_1_0;
+    const auto sets_two = two.sets_of(two.pairs[0], two.pairs[1], 1);
+    const auto sets_three =
+        three.sets_of(std::array{TwoReferences::MatchedWith{three.pairs[0], 0},
+                                 TwoReferences::MatchedWith{even, 1}, TwoReferences::MatchedWith{odd, 2}});
+    const Se3 T = boxplus(two.truth, kAway);
+    const Linearization a = linearize(sets_three, three.references, T);
+    const Linearization b = linearize(sets_two, two.references, T);
+    EXPECT_NEAR(a.cost, b.cost, 1e-10 * b.cost);
+    EXPECT_LT(difference(a.H, b.H), 1e-10);
+    EXPECT_LT(difference(a.g, b.g, b.H), 1e-9 * difference(b.g, Vector6::Zero(), b.H));
+
+    // Their poses err independently, and each half has its own: more is known than where one error moves all.
+    two.references[1].covariance = three.references[1].covariance = three.references[2].covariance =
+        1e-6 * Matrix6::Identity();
+    const Linearization apart = linearize(sets_three, three.references, T);
+    const Linearization together = linearize(sets_two, two.references, T);
+    const Matrix6 more = apart.H - together.H;
+    EXPECT_GT(symmetric_eigen<6>(more).values.minCoeff(), -1e-9 * more.trace());
+    EXPECT_GT(more.trace(), 0.01 * together.H.trace());
+    const MotionEstimate estimate =
+        estimate_motion(sets_three, three.references, {}, {}, 5, nullptr, three.arena);
+    ASSERT_EQ(estimate.status, StatusCode::kOk);
+    const Vector6 error = boxminus(estimate.T_current_reference, three.truth);
+    EXPECT_LT(error.dot(Vector6(test::solve_positive(estimate.C_H, error))), 30);  // 6 in the mean
+  }
 }
 
 TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {

@@ -103,6 +103,8 @@ std::vector<Entry> all_entries() {
           PLVO_ENTRY(motion.max_sigma_m),
           PLVO_ENTRY(motion.max_sigma_rad),
           PLVO_ENTRY(references.keyframe_inlier_ratio),
+          PLVO_ENTRY(references.window_inlier_ratio),
+          PLVO_ENTRY(references.older_inlier_ratio),
           PLVO_ENTRY(references.wide_search_px),
           PLVO_ENTRY(references.max_lost_frames),
           PLVO_ENTRY(references.unseen_m_per_s),

@@ -14,7 +14,7 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kLimits{160, 120, 250, 64};
+constexpr Limits kLimits{.width = 160, .height = 120, .keypoints = 250, .segments = 64, .references = 3};
 constexpr int kFrames = 10;
 
 using Pixels = std::set<std::pair<float, float>>;
@@ -28,7 +28,8 @@ struct Shown {
   std::size_t line_tracks = 0;
 };
 
-std::vector<Shown> run(const Config& config) {
+// step: of the frames of the sequence, so many at a time.
+std::vector<Shown> run(const Config& config, int step = 1) {
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   std::vector<std::byte> memory(required_bytes(kLimits));
   Odometry odometry;
@@ -37,7 +38,7 @@ std::vector<Shown> run(const Config& config) {
   std::vector<Shown> all;
   for (int i = 0; i < kFrames; ++i) {
     Shown shown;
-    shown.result = odometry.track(sequence.render(i));
+    shown.result = odometry.track(sequence.render(step * i));
     EXPECT_NE(shown.result.state, TrackState::kLost) << shown.result.status.message();
     const FeatureView view = odometry.features();
     for (const Keypoint& keypoint : view.keypoints) shown.keypoints.insert({keypoint.u, keypoint.v});
@@ -98,6 +99,68 @@ TEST(References, BothTheKeyframeAndTheLastFrameServeByDefault) {
     EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
   }
   EXPECT_GE(with_both, 3) << "a keyframe must be kept for some frames";
+}
+
+// Three references have more matches together than so many times those of the last frame, two have not.
+constexpr double kOfThree = 2.4;
+
+// With a keyframe every few frames: how many points are matched, and with which frame the motion is.
+std::vector<Shown> run_window(double older_inlier_ratio) {
+  Config config;
+  config.references.policy = ReferencePolicy::kWindow;
+  config.references.window_inlier_ratio = 0.6;
+  config.references.older_inlier_ratio = older_inlier_ratio;
+  return run(config, 4);
+}
+
+TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
+  const std::vector<Shown> window = run_window(0.1);
+  int after_a_change = 0, with_three = 0;
+  for (std::size_t i = 2; i < window.size(); ++i) {
+    const TrackResult& result = window[i].result;
+    ASSERT_EQ(result.state, TrackState::kTracking);
+    expect_shows_the_last_frame(window, i);
+    const Se3 expected = [&] {
+      std::size_t k = 0;
+      while (window[k].result.stamp_ns != result.reference_stamp_ns) ++k;
+      return result.T_world_camera.inverse() * window[k].result.T_world_camera;
+    }();
+    EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
+    const int shown = static_cast<int>(window[i].point_tracks.size());
+
+    if (result.reference_stamp_ns == window[i - 1].result.stamp_ns) {
+      // The keyframe is the last frame: what is matched besides is the keyframe before.
+      ++after_a_change;
+      EXPECT_GT(result.points.matched, shown + 10) << i;
+    } else if (result.reference_stamp_ns != window[0].result.stamp_ns) {
+      with_three += result.points.matched > kOfThree * shown ? 1 : 0;
+    }
+  }
+  EXPECT_GE(after_a_change, 2);
+  EXPECT_GE(with_three, 1);
+}
+
+TEST(References, AnOlderKeyframeIsLeftWhenLittleOfItIsFound) {
+  const std::vector<Shown> window = run_window(1);
+  int longer = 0;
+  for (std::size_t i = 2; i < window.size(); ++i) {
+    const int shown = static_cast<int>(window[i].point_tracks.size());
+    if (window[i].result.reference_stamp_ns != window[i - 1].result.stamp_ns)
+      longer += window[i].result.points.matched > kOfThree * shown ? 1 : 0;
+  }
+  EXPECT_EQ(longer, 0) << "never all of it is found, so it serves for one frame";
+}
+
+TEST(References, APolicyNeedsLimitsForAllThatItNames) {
+  Limits limits = kLimits;
+  limits.references = 2;
+  Config config;
+  config.references.policy = ReferencePolicy::kWindow;
+  std::vector<std::byte> memory(required_bytes(limits));
+  Odometry odometry;
+  const Status status = odometry.init(memory, ProceduralSequence(160, 120).camera(), config, limits);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_STREQ(status.message(), "config: references.policy needs Limits::references = 3");
 }
 
 TEST(References, AKeyframeAloneIsWhatIsShown) {

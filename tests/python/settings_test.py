@@ -30,7 +30,7 @@ def test_limits_decide_the_memory(walk):
     assert plvo.Odometry(camera, kept_keyframes=0).memory_bytes < whole
     assert plvo.Odometry(camera, surfaces=0).memory_bytes < whole
     assert plvo.Odometry(camera, plvo.Config(reference="keyframe"), references=1).memory_bytes < whole
-    for wrong in ({"references": 3}, {"line_bands": 9}, {"kept_keyframes": -1}, {"surfaces": 1001}):
+    for wrong in ({"references": 4}, {"line_bands": 9}, {"kept_keyframes": -1}, {"surfaces": 1001}):
         with pytest.raises(plvo.Error, match=f"Limits::{next(iter(wrong))}"):
             plvo.Odometry(camera, **wrong)
     with pytest.raises(plvo.Error, match="Limits::references"):

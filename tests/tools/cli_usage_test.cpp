@@ -34,7 +34,7 @@ void expect_usage(const std::string& arguments, const std::string& words) {
 TEST(CliUsage, AllowedValuesAreNamedInWords) {
   expect_usage("run x --features circles", "--features: expected points, lines or both, not 'circles'");
   expect_usage("run x --preset fast", "--preset: expected default, paper or tiny, not 'fast'");
-  expect_usage("run x --reference next", "--reference: expected previous, keyframe or both, not 'next'");
+  expect_usage("run x --reference next", "--reference: expected previous, keyframe, both or window, not 'next'");
   expect_usage("run x --pace slow", "--pace: expected fast, realtime or step, not 'slow'");
   expect_usage("run --camera film", "--camera: expected sim, not 'film'");
   expect_usage("run x --camera-model tum-fr9",
@@ -153,8 +153,10 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run --camera sim --frames 5:9", "a simulated walk starts at frame 0");
   expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
   expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
-  expect_usage("run x --preset tiny --reference both", "--reference: both does not apply to --preset tiny");
-  expect_usage("live --preset tiny --reference both", "--reference: both does not apply to --preset tiny");
+  expect_usage("run x --preset tiny --reference both",
+               "--reference: both and window do not apply to --preset tiny");
+  expect_usage("live --preset tiny --reference window",
+               "--reference: both and window do not apply to --preset tiny");
   expect_usage("run x --report-frames 3", "--report-frames: is for a report");
   expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
   expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");

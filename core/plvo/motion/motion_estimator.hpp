@@ -32,9 +32,10 @@ struct MotionEstimate {
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
   // Per kind, in the order of the sets, of the first of them: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹
   // (26). Zero for an empty kind.
-  static_assert(kInformedKinds == 5, "Eigen leaves a matrix that has no initialiser as it was");
+  static_assert(kInformedKinds == 7, "Eigen leaves a matrix that has no initialiser as it was");
   std::array<Matrix6, kInformedKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
-                                                     Matrix6::Zero(), Matrix6::Zero()};
+                                                     Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
+                                                     Matrix6::Zero()};
   SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};

@@ -12,7 +12,7 @@
 
 namespace plvo {
 
-inline constexpr std::size_t kMaxReferences = 2;
+inline constexpr std::size_t kMaxReferences = 3;
 // Sets: points and lines of each reference, and a motion that other sensors tell; then surfaces of each.
 inline constexpr std::size_t kMaxConstraintKinds = 3 * kMaxReferences + 1;
 // Of the first sets the information is kept: of all but surfaces.

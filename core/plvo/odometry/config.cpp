@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/config.hpp"
 
+#include <algorithm>
+
 #include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/pyramid.hpp"
@@ -133,6 +135,8 @@ void check(RangeCheck& ranges, const MotionConfig& motion) {
 
 void check(RangeCheck& ranges, const ReferenceConfig& references) {
   ranges.require("references.keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
+  ranges.require("references.window_inlier_ratio", references.window_inlier_ratio, 0, 1);
+  ranges.require("references.older_inlier_ratio", references.older_inlier_ratio, 0, 1);
   ranges.require("references.wide_search_px", references.wide_search_px, 1, 4000);
   ranges.require("references.max_lost_frames", references.max_lost_frames, 1, 1000000);
   ranges.require("references.unseen_m_per_s", references.unseen_m_per_s, 0, 100);
@@ -156,7 +160,8 @@ Status Limits::validate() const {
   ranges.require("Limits::segments", segments, 1, 60000);
   ranges.require("Limits::references", references, 1, kMaxReferences);
   ranges.require("Limits::line_bands", line_bands, 1, 8);
-  ranges.require("Limits::kept_keyframes", kept_keyframes, 0, kMostKeptKeyframes);
+  ranges.require("Limits::kept_keyframes", kept_keyframes, 0,
+                 std::min(kMostKeptKeyframes, kMostOtherFrames - references));
   ranges.require("Limits::cores", cores, 1, 2);
   ranges.require("Limits::surfaces", surfaces, 0, 1000);
   return ranges.status();

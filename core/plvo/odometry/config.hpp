@@ -28,13 +28,14 @@ struct Limits {
   int height = 480;     // px
   int keypoints = 400;  // per frame
   int segments = 256;   // per frame
-  // Frames that one is matched with, 1 … 2. 1 saves a third of the features' memory, half of the matches',
-  // and allows the policies with one reference alone.
+  // Frames that one is matched with, 1 … 3: a policy needs as many as it names. 1 saves a third of the
+  // features' memory and half of the matches' that 2 take.
   int references = 2;
   // Bands of the image, one below the other, that segments are searched in, 1 … 8, each in the memory of the
   // one before. A segment that crosses from one into the next comes out as two.
   int line_bands = 1;
-  // Keyframes that are kept after a loss, 0 … 4, each as large as a reference (kept_keyframes.hpp).
+  // Keyframes that are kept after a loss, 0 … 4 (3 with 3 references), each as large as a reference
+  // (kept_keyframes.hpp).
   int kept_keyframes = 1;
   // 2: points are searched for in scratch of their own, so that Config::side_by_side may be set.
   int cores = 1;
@@ -56,7 +57,17 @@ enum class ReferencePolicy : std::uint8_t {
   // Against both in one estimate: the keyframe keeps the drift small, and most features are found again in
   // the last frame.
   kKeyframeAndPrevious,
+  // Against these and the keyframe before: less drift where the camera walks, none where it turns fast, and
+  // more time and memory (docs/sensors.md).
+  kWindow,
 };
+constexpr int references_of(ReferencePolicy policy) {
+  switch (policy) {
+    case ReferencePolicy::kKeyframeAndPrevious: return 2;
+    case ReferencePolicy::kWindow: return 3;
+    default: return 1;
+  }
+}
 
 struct PointConfig {
   DetectorConfig detector;
@@ -103,6 +114,9 @@ struct ReferenceConfig {
   ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;
+  // kWindow: it makes way sooner, and goes on being matched beside the next one while the second share is.
+  double window_inlier_ratio = 0.35;
+  double older_inlier_ratio = 0.2;
   // When tracking fails, features are looked for this far from where they were, whatever the prediction.
   double wide_search_px = 120;
   // After so many lost frames in a row the references are given up and tracking starts anew from the last

@@ -9,8 +9,9 @@
 
 namespace plvo {
 
-// What Limits::kept_keyframes may ask for.
+// What Limits::kept_keyframes may ask for, and that and Limits::references together.
 inline constexpr int kMostKeptKeyframes = 4;
+inline constexpr int kMostOtherFrames = 6;
 
 class KeptKeyframes {
  public:

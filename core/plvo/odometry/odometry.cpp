@@ -23,9 +23,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
         .append(camera.width)
         .append("x")
         .append(camera.height);
-  if (config.references.policy == ReferencePolicy::kKeyframeAndPrevious && limits.references < 2)
-    return {StatusCode::kInvalidArgument,
-            "config: references.policy with both references needs Limits::references = 2"};
+  if (const int references = references_of(config.references.policy); limits.references < references)
+    return Status(StatusCode::kInvalidArgument, "config: references.policy needs Limits::references = ")
+        .append(references);
   if (config.side_by_side && limits.cores < 2)
     return {StatusCode::kInvalidArgument, "config: side_by_side needs Limits::cores = 2"};
   if (memory.size() < required_bytes(limits))

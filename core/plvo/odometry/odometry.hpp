@@ -58,8 +58,8 @@ struct FeatureView {
   std::span<const LineTrackView> line_tracks;
 };
 
-// The keyframe, the last good frame, the frame being tracked; and those that are kept.
-inline constexpr std::size_t kFrames = 3 + kMostKeptKeyframes;
+// The frame being tracked, those that it is matched with, and those that are kept.
+inline constexpr std::size_t kFrames = 1 + kMostOtherFrames;
 
 // What init carves, in order; on an ArenaSizer the same code counts it.
 struct OdometryRooms {
@@ -164,8 +164,7 @@ class Odometry {
   std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
   // Without registration find() is the whole estimate, of the base alone.
   bool uses_both_references() const {
-    return last_ != keyframe_ && config().points.registered &&
-           config().references.policy == ReferencePolicy::kKeyframeAndPrevious;
+    return last_ != keyframe_ && config().points.registered && references_of(config().references.policy) > 1;
   }
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
 
@@ -179,7 +178,9 @@ class Odometry {
   void note_velocity(std::int64_t motion_ns);
   void choose_keyframe();
   void keep_image();
-  bool still_seen(int slot) const;
+  bool still_seen(int slot, std::size_t reference, double share) const;
+  bool affordable(int slot) const;
+  void replace_keyframe();
   int free_slot() const;
   void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
   const char* first_word_of_loss() const;
@@ -187,7 +188,8 @@ class Odometry {
   // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
   HeldPose held(int slot) const;
   void hold(int slot, const HeldPose& pose);
-  MotionReference last_from_keyframe() const;
+  MotionReference from_keyframe(int slot) const;
+  void move_keyframe(const HeldPose& pose);
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
 
@@ -216,6 +218,7 @@ class Odometry {
   // Slots of frames_. Until the first usable frame there is no keyframe.
   int keyframe_ = kNobody;
   int last_ = kNobody;
+  int older_ = kNobody;  // the keyframe before, while it is matched
   int current_ = 0;
   KeptKeyframes kept_;
   int frames_since_look_back_ = 0;

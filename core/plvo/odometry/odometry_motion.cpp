@@ -44,17 +44,22 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return prior;
 }
 
-// The keyframe, which is the base, and the last good frame, as far as the policy wants both.
+// The keyframe, which is the base, the last good frame, and the keyframe before, as far as the policy wants
+// them.
 std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
-  const MotionReference last = last_from_keyframe();
+  const MotionReference last = from_keyframe(last_);
   references[0] = {.features = &frame(keyframe_).features,
                    .prior = prior_of(keyframe_, stamp_ns),
                    .pose = {},
                    .last = last};
-  if (!uses_both_references()) return 1;
-  references[1] = {
-      .features = &frame(last_).features, .prior = prior_of(last_, stamp_ns), .pose = last, .last = {}};
-  return 2;
+  std::size_t count = 1;
+  const auto add = [&](int slot, const MotionReference& pose) {
+    references[count++] = {
+        .features = &frame(slot).features, .prior = prior_of(slot, stamp_ns), .pose = pose, .last = {}};
+  };
+  if (uses_both_references()) add(last_, last);
+  if (older_ != kNobody) add(older_, from_keyframe(older_));
+  return count;
 }
 
 // A first motion from the latest reference: by its image; failing that by its features, where they are
@@ -66,7 +71,7 @@ void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
-  const Reference& latest = all.back();
+  const Reference& latest = all[latest_of(all)];
   const auto refine = [&](const Se3& T_current_base) {
     rooms_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
     return tracked.motion.status == StatusCode::kOk;

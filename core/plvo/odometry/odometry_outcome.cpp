@@ -106,6 +106,7 @@ void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = last_ = current_;
+  older_ = kNobody;
   keep_image();
   current_ = free_slot();
   lost_frames_ = 0;
@@ -131,11 +132,8 @@ void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, Tr
   HeldPose from = held(keyframe_);
   HeldPose pose = advance(from, motion.T_current_reference, motion.C_H);
   if (prior.gravity) {
-    // The last frame's pose is not needed again but for the velocity: it moves with the keyframe's.
-    const Se3 T_last_keyframe = last_from_keyframe().T_reference_base;
     gravity_.read(*prior.gravity, from, pose);
-    hold(keyframe_, from);
-    if (keyframe_ != last_) frame(last_).T_world_camera = from.T_world_camera * T_last_keyframe.inverse();
+    move_keyframe(from);
   }
   result.T_world_camera = pose.T_world_camera;
   result.pose_covariance = pose.covariance;
@@ -162,17 +160,30 @@ void Odometry::note_velocity(std::int64_t motion_ns) {
 // The tracked frame becomes the last good one, and the keyframe too, unless the keyframe goes on being a good
 // one.
 void Odometry::choose_keyframe() {
+  const ReferenceConfig& references = config().references;
+  const bool window = references.policy == ReferencePolicy::kWindow;
+  const std::size_t older_index = uses_both_references() ? 2 : 1;
+  if (older_ != kNobody &&
+      !(affordable(older_) && still_seen(older_, older_index, references.older_inlier_ratio)))
+    older_ = kNobody;
   last_ = current_;
-  const FrameFeatures& features = frame(keyframe_).features;
-  // Too full a keyframe for the budget goes on costing what it did.
-  const FeatureRoom room = budget_.room();
-  const bool affordable =
-      features.points.keypoints.size() <= room.keypoints && features.lines.segments.size() <= room.segments;
   const bool keep =
-      config().references.policy != ReferencePolicy::kPreviousFrame && affordable && still_seen(keyframe_);
-  if (!keep) keyframe_ = last_;
+      references.policy != ReferencePolicy::kPreviousFrame && affordable(keyframe_) &&
+      still_seen(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
+  if (!keep) replace_keyframe();
   if (!keep || uses_both_references()) keep_image();
   current_ = free_slot();
+}
+
+// By the last good frame.
+void Odometry::replace_keyframe() {
+  const bool window = config().references.policy == ReferencePolicy::kWindow;
+  if (window && config().points.registered) {
+    const MotionReference last = from_keyframe(last_);
+    frame(keyframe_).motion_covariance = inverse_covariance(last.T_reference_base, last.covariance);
+    older_ = keyframe_;
+  }
+  keyframe_ = last_;
 }
 
 // Of the current frame, which is the latest reference from now on.
@@ -180,19 +191,26 @@ void Odometry::keep_image() {
   rooms_.tracking.keep_image(rooms_.extraction.pyramid(), frame(current_).features.stamp_ns);
 }
 
-// Whether the last estimate, whose base was that frame, found enough of its features.
-bool Odometry::still_seen(int slot) const {
+// Whether the last estimate, whose reference of this index was that frame, found this share of its features.
+bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   const FrameFeatures& features = frame(slot).features;
   std::size_t available = features.lines.count_3d;
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
-  return rooms_.tracking.tracks(0).inliers >=
-         config().references.keyframe_inlier_ratio * static_cast<double>(available);
+  return rooms_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
+}
+
+// Too full a frame for the budget goes on costing what it did.
+bool Odometry::affordable(int slot) const {
+  const FrameFeatures& features = frame(slot).features;
+  const FeatureRoom room = budget_.room();
+  return features.points.keypoints.size() <= room.keypoints &&
+         features.lines.segments.size() <= room.segments;
 }
 
 int Odometry::free_slot() const {
   int slot = 0;
-  while (slot == keyframe_ || slot == last_ || kept_.holds(slot)) ++slot;
+  while (slot == keyframe_ || slot == last_ || slot == older_ || kept_.holds(slot)) ++slot;
   return slot;
 }
 
@@ -205,7 +223,7 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
   // starts anew at the last good pose.
   kept_.keep(keyframe_);
-  keyframe_ = kNobody;
+  keyframe_ = older_ = kNobody;
   current_ = free_slot();
 }
 

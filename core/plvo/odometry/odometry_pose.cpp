@@ -26,7 +26,7 @@ void Odometry::reset() {
     each = Frame();
     each.features = features;
   }
-  keyframe_ = last_ = kNobody;
+  keyframe_ = last_ = older_ = kNobody;
   kept_.clear();
   frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
@@ -56,9 +56,10 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   kept_.clear();  // their poses are in the world that was
   if (last_ == kNobody) return {};
   // The keyframe moves with the last frame: the motion between them stays what it is.
-  const MotionReference last = last_from_keyframe();
-  if (keyframe_ != kNobody && keyframe_ != last_)
-    hold(keyframe_, advance(start_, last.T_reference_base.inverse(), Matrix6::Zero()));
+  if (keyframe_ != kNobody)
+    move_keyframe(keyframe_ == last_
+                      ? start_
+                      : advance(start_, from_keyframe(last_).T_reference_base.inverse(), Matrix6::Zero()));
   hold(last_, start_);
   return {};
 }
@@ -73,11 +74,23 @@ void Odometry::hold(int slot, const HeldPose& pose) {
   frame(slot).covariance_with_gravity = pose.covariance_with_gravity;
 }
 
-// The last good frame as a reference whose pose relative to the keyframe is known.
-MotionReference Odometry::last_from_keyframe() const {
-  if (keyframe_ == kNobody || keyframe_ == last_) return {};
-  return {frame(last_).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
-          frame(last_).motion_covariance};
+// A frame as a reference whose pose relative to the keyframe is known.
+MotionReference Odometry::from_keyframe(int slot) const {
+  if (keyframe_ == kNobody || keyframe_ == slot) return {};
+  return {frame(slot).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
+          frame(slot).motion_covariance};
+}
+
+// The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
+void Odometry::move_keyframe(const HeldPose& pose) {
+  const auto carry = [&, T_world_before = frame(keyframe_).T_world_camera](int slot) {
+    if (slot == kNobody || slot == keyframe_) return;
+    Se3& T = frame(slot).T_world_camera;
+    T = pose.T_world_camera * (T.inverse() * T_world_before).inverse();
+  };
+  carry(last_);
+  carry(older_);
+  hold(keyframe_, pose);
 }
 
 // Takes in what the prior says of the motion since the frame before.
@@ -94,7 +107,7 @@ void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
 // gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
 HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
   const int anchor = keyframe_ != kNobody ? keyframe_ : last_;
-  const MotionReference last = last_from_keyframe();
+  const MotionReference last = from_keyframe(last_);
   result.T_camera_reference = sensed_.T_current_last() * last.T_reference_base;
   result.motion_covariance = compose_covariance(sensed_.T_current_last(), sensed_.covariance(),
                                                 last.T_reference_base, last.covariance);

@@ -47,7 +47,8 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
     const Se3 T_current_reference = tracked.motion.T_current_reference;
     rooms_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
   }
-  return tracked.motion.status == StatusCode::kOk && still_seen(slot) &&
+  return tracked.motion.status == StatusCode::kOk &&
+         still_seen(slot, 0, config().references.keyframe_inlier_ratio) &&
          agree(held(slot), tracked.motion, believed);
 }
 
@@ -88,12 +89,10 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
   result.stage_ns = trial.stage_ns;
   if (!found) return;
   const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
-  if (keyframe_ != last_) {
-    const MotionReference from_keyframe = last_from_keyframe();
-    const Se3& T_last_keyframe = from_keyframe.T_reference_base;
-    hold(keyframe_, advance(pose, T_last_keyframe.inverse(),
-                            inverse_covariance(T_last_keyframe, from_keyframe.covariance)));
-  }
+  const MotionReference from = from_keyframe(last_);
+  move_keyframe(keyframe_ == last_ ? pose
+                                   : advance(pose, from.T_reference_base.inverse(),
+                                             inverse_covariance(from.T_reference_base, from.covariance)));
   hold(last_, pose);
   kept_.drop(slot);
   result.T_world_camera = pose.T_world_camera;

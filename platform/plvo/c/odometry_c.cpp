@@ -93,6 +93,7 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
     case PLVO_REFERENCE_PREVIOUS: config.references.policy = ReferencePolicy::kPreviousFrame; break;
     case PLVO_REFERENCE_KEYFRAME: config.references.policy = ReferencePolicy::kKeyframe; break;
     case PLVO_REFERENCE_BOTH: config.references.policy = ReferencePolicy::kKeyframeAndPrevious; break;
+    case PLVO_REFERENCE_WINDOW: config.references.policy = ReferencePolicy::kWindow; break;
     default: return refuse("config: reference must be one of PLVO_REFERENCE_…");
   }
   config.seed = whole.seed;

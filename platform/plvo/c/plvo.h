@@ -88,9 +88,9 @@ typedef struct plvo_limits {
   uint32_t struct_size;
   int32_t width, height;       /* the largest image */
   int32_t keypoints, segments; /* per frame */
-  int32_t references;          /* frames that one is matched with, 1 or 2; 0: the default, 2 */
+  int32_t references;          /* frames that one is matched with, 1 to 3; 0: the default, 2 */
   int32_t line_bands;          /* of the image, searched for segments one by one, 1 to 8; 0: the default, 1 */
-  int32_t kept_keyframes;      /* after a loss, 0 to 4 */
+  int32_t kept_keyframes;      /* after a loss, 0 to 4, or 3 beside 3 references */
   int32_t cores;               /* 2: room for plvo_config.side_by_side; 0: the default, 1 */
   int32_t surfaces;            /* samples of bare surfaces per frame, 0 to 1000; 0: none */
 } plvo_limits;
@@ -104,7 +104,8 @@ enum {
   PLVO_REFERENCE_OF_PRESET = 0,
   PLVO_REFERENCE_PREVIOUS, /* the frame before */
   PLVO_REFERENCE_KEYFRAME,
-  PLVO_REFERENCE_BOTH
+  PLVO_REFERENCE_BOTH,
+  PLVO_REFERENCE_WINDOW /* both and the keyframe before; needs plvo_limits.references = 3 */
 };
 
 enum { PLVO_STAGE_IMAGE = 0, PLVO_STAGE_POINTS, PLVO_STAGE_LINES, PLVO_STAGE_MATCHING, PLVO_STAGE_MOTION };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the odometry is set, for Python: a preset, and what is asked for beside it.
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -45,11 +46,16 @@ Settings make_settings(const std::string& preset, const std::optional<std::strin
       {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}};
   constexpr Choice<ReferencePolicy> kReferences[] = {{"previous", ReferencePolicy::kPreviousFrame},
                                                      {"keyframe", ReferencePolicy::kKeyframe},
-                                                     {"both", ReferencePolicy::kKeyframeAndPrevious}};
-  Settings settings = of_preset(choose("preset", preset, kPresets));
+                                                     {"both", ReferencePolicy::kKeyframeAndPrevious},
+                                                     {"window", ReferencePolicy::kWindow}};
+  const Preset chosen = choose("preset", preset, kPresets);
+  Settings settings = of_preset(chosen);
   Config& config = settings.config;
   if (features) config.features = choose("features", *features, kFeatures);
   if (reference) config.references.policy = choose("reference", *reference, kReferences);
+  if (chosen != Preset::kTiny)
+    settings.limits.references =
+        std::max(settings.limits.references, references_of(config.references.policy));
   if (seed) config.seed = *seed;
   config.budget = budget;
   config.level_world = level_world;

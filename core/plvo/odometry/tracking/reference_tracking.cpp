@@ -22,9 +22,9 @@ constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
 constexpr double kAligned = 5e-4;
 
-// Two references are matched with the same measurements of the current frame: their residuals correlate by ½,
-// and two such weigh as 2 / (1 + ½) independent ones.
-constexpr double kWeightOfTwo = 2.0 / 3;
+// All references are matched with the same measurements of the current frame: their residuals correlate by ½,
+// and n such weigh as n / (1 + (n − 1) / 2) independent ones.
+double weight_of_one(std::size_t references) { return 2 / (1 + static_cast<double>(references)); }
 
 // What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
 constexpr double kHeld = 1e6;
@@ -61,10 +61,11 @@ struct FeatureConstraints {
 FeatureConstraints constraints_of(std::span<const MidExposure> features,
                                   std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
                                   Arena& scratch) {
-  static_assert(kMaxReferences == 2);
-  const bool two = features.size() > 1;
-  const double weight = two ? kWeightOfTwo : 1;
+  static_assert(kMaxReferences == 3);
+  const std::size_t count = features.size();
+  const double weight = weight_of_one(count);
   const auto points = [&](std::size_t r) {
+    if (r >= count) return PointConstraints({}, {}, {}, {});
     const PointTracks& found = tracks[r].points;
     PointConstraints set(features[r].reference_points, found.points, found.matches.span(),
                          PointConstraints::Workspace::take(scratch, found.matches.size()));
@@ -72,20 +73,22 @@ FeatureConstraints constraints_of(std::span<const MidExposure> features,
     return set;
   };
   const auto lines = [&](std::size_t r) {
+    if (r >= count) return LineConstraints({}, {}, {}, {});
     LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks[r].lines.span(),
                         LineConstraints::Workspace::take(scratch, tracks[r].lines.size()));
     set.set_reference(r, noise.line_correlation, weight);
     return set;
   };
   const auto surfaces = [&](std::size_t r) {
+    if (r >= count) return SurfaceConstraints({}, {});
     SurfaceConstraints set(tracks[r].surfaces.span(),
                            SurfaceConstraints::Workspace::take(scratch, tracks[r].surfaces.size()));
     set.set_reference(r, noise.surface_correlation, weight);
     return set;
   };
-  return {{points(0), two ? points(1) : PointConstraints({}, {}, {}, {})},
-          {lines(0), two ? lines(1) : LineConstraints({}, {}, {}, {})},
-          {surfaces(0), two ? surfaces(1) : SurfaceConstraints({}, {})}};
+  return {{points(0), points(1), points(2)},
+          {lines(0), lines(1), lines(2)},
+          {surfaces(0), surfaces(1), surfaces(2)}};
 }
 
 SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
@@ -105,6 +108,12 @@ TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, con
 }
 
 }  // namespace
+
+std::size_t latest_of(std::span<const Reference> references) {
+  for (std::size_t r = 1; r < references.size(); ++r)
+    if (references[r].prior.reference_is_last) return r;
+  return 0;
+}
 
 void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
                               const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
@@ -144,7 +153,7 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
-    const std::size_t last = features.size() - 1;
+    const std::size_t last = last_index < features.size() ? last_index : 0;
     const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
     const Pinhole& pinhole = current.extraction.camera().pinhole;
     tracked.shown =
@@ -231,7 +240,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const bool base_is_last = references[0].prior.reference_is_last;
   if (!base_is_last) poses[1] = references[0].last;
   const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
-  const std::size_t last = references.size() - 1;
+  const std::size_t last = latest_of(references);
   const Exposure exposure = current_exposure(camera, references[last].prior, motions[last]);
   const DepthSampler depth = current.depth.with(exposure);
   current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,

@@ -33,6 +33,9 @@ struct Reference {
   MotionReference last;  // pose of the last good frame relative to this one
 };
 
+// Of the last good frame among the references; the base, where it is none of them.
+std::size_t latest_of(std::span<const Reference> references);
+
 // What was found of one reference in the current frame.
 struct ReferenceTracks {
   PointTracks points;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/options/odometry_options.hpp"
 
+#include <algorithm>
+
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/posix_clock.hpp"
 
@@ -20,8 +22,11 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.choice("--reference", options.reference,
                Choices<ReferencePolicy>{{"previous", ReferencePolicy::kPreviousFrame},
                                         {"keyframe", ReferencePolicy::kKeyframe},
-                                        {"both", ReferencePolicy::kKeyframeAndPrevious}},
-               "What a frame is matched against: the frame before it, the last keyframe, or both (default)");
+                                        {"both", ReferencePolicy::kKeyframeAndPrevious},
+                                        {"window", ReferencePolicy::kWindow}},
+               "What a frame is matched against: the frame before it, the last keyframe, both (default), or "
+               "window: both and the keyframe before, which drifts less where the camera walks and takes "
+               "more time and memory; docs/sensors.md");
   group.number("--frame-budget", options.budget_ms, positive(1e6), "MS",
                "Fewer features after a frame that took more processor time than this, and more again when "
                "there is time to spare; results then depend on the machine");
@@ -39,10 +44,12 @@ void check_odometry_options(const OdometryOptions& options) {
     refuse("--surfaces",
            "does not apply to --preset paper, which matches a frame once: surfaces are looked for "
            "where a first estimate of the motion puts them");
-  if (options.preset == Preset::kTiny && options.reference == ReferencePolicy::kKeyframeAndPrevious)
+  if (options.preset == Preset::kTiny && options.reference &&
+      references_of(*options.reference) > Limits::tiny().references)
     refuse(
         "--reference",
-        "both does not apply to --preset tiny, whose memory holds one reference: give keyframe or previous");
+        "both and window do not apply to --preset tiny, whose memory holds one reference: give keyframe or "
+        "previous");
 }
 
 namespace {
@@ -61,10 +68,11 @@ Config make_config(const OdometryOptions& options) {
   return config;
 }
 
-Limits make_limits(const OdometryOptions& options, const CameraModel& camera) {
+Limits make_limits(const OdometryOptions& options, const Config& config, const CameraModel& camera) {
   Limits limits = options.preset == Preset::kTiny ? Limits::tiny() : Limits();
   limits.width = camera.width;
   limits.height = camera.height;
+  limits.references = std::max(limits.references, references_of(config.references.policy));
   limits.cores = options.cores;
   limits.surfaces = options.surfaces.value_or(limits.surfaces);
   return limits;
@@ -79,7 +87,7 @@ Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& opt
     pair_ = std::make_unique<ThreadPair>();
     config.side_by_side = pair_->side_by_side();
   }
-  const Limits limits = make_limits(options, camera);
+  const Limits limits = make_limits(options, config, camera);
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});
   return odometry_.init(memory_, camera, config, limits);
 }
