@@ -78,6 +78,16 @@ TEST(CApi, PresetsAndChoicesAreThoseOfConfig) {
   config.seed = 7;
   Doors with_choice(config, &chosen);
   EXPECT_GE(tracked_alike(with_choice, 4), 3);
+
+  plvo_config window;
+  plvo_config_init(&window, sizeof window);
+  window.reference = PLVO_REFERENCE_WINDOW;
+  config = {};
+  config.references.policy = ReferencePolicy::kWindow;
+  Limits limits = kLimits;
+  limits.references = 3;
+  Doors with_window(config, &window, limits, c_limits(limits));
+  EXPECT_GE(tracked_alike(with_window, 10), 7);
 }
 
 TEST(CApi, TheTinyPresetIsThatOfConfigAndLimits) {

@@ -30,11 +30,21 @@ def test_limits_decide_the_memory(walk):
     assert plvo.Odometry(camera, kept_keyframes=0).memory_bytes < whole
     assert plvo.Odometry(camera, surfaces=0).memory_bytes < whole
     assert plvo.Odometry(camera, plvo.Config(reference="keyframe"), references=1).memory_bytes < whole
+    assert plvo.Odometry(camera, plvo.Config(reference="window")).memory_bytes > whole
     for wrong in ({"references": 4}, {"line_bands": 9}, {"kept_keyframes": -1}, {"surfaces": 1001}):
         with pytest.raises(plvo.Error, match=f"Limits::{next(iter(wrong))}"):
             plvo.Odometry(camera, **wrong)
     with pytest.raises(plvo.Error, match="Limits::references"):
         plvo.Odometry(camera, plvo.Config(preset="tiny", reference="both"))
+
+
+def test_a_window_tracks_what_both_references_track(walk):
+    poses = {
+        reference: [r.position for r in plvo.run(walk, config=plvo.Config(reference=reference))]
+        for reference in ("both", "window")
+    }
+    assert len(poses["window"]) == len(poses["both"])
+    assert np.allclose(poses["window"], poses["both"], atol=0.02)
 
 
 def test_a_budget_steps_the_features_by_what_one_says(walk):

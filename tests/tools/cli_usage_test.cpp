@@ -34,7 +34,8 @@ void expect_usage(const std::string& arguments, const std::string& words) {
 TEST(CliUsage, AllowedValuesAreNamedInWords) {
   expect_usage("run x --features circles", "--features: expected points, lines or both, not 'circles'");
   expect_usage("run x --preset fast", "--preset: expected default, paper or tiny, not 'fast'");
-  expect_usage("run x --reference next", "--reference: expected previous, keyframe, both or window, not 'next'");
+  expect_usage("run x --reference next",
+               "--reference: expected previous, keyframe, both or window, not 'next'");
   expect_usage("run x --pace slow", "--pace: expected fast, realtime or step, not 'slow'");
   expect_usage("run --camera film", "--camera: expected sim, not 'film'");
   expect_usage("run x --camera-model tum-fr9",

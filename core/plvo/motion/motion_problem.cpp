@@ -71,9 +71,12 @@ Matrix6 root(const Matrix6& S) {
 }  // namespace
 
 void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                          const SharedErrors& shared, const Kernels& kernels, const Se3& T) {
+                          const SharedErrors& shared, const Kernels& kernels, const Se3& T,
+                          bool exact_poses) {
   sets_ = sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds);
   references_ = references;
+  if (exact_poses)
+    for (MotionReference& reference : references_) reference.covariance.setZero();
   kernels_ = kernels;
   T_ = candidate_ = T;
   shared_ = shared;

@@ -36,8 +36,6 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& ref
       config_(config),
       kernels_(kernels),
       solver_(solver) {
-  // A hypothesis needs no honest weights: the references' poses are taken for exact.
-  for (MotionReference& reference : references_) reference.covariance.setZero();
   for (const bool samplable : {true, false})
     for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
       const ConstraintSet& set = *sets_[kind];
@@ -171,7 +169,8 @@ void Ransac::refine(Se3& T) {
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
-    solver_.problem.start(sets_, references_, {}, kernels_, T);
+    // A hypothesis needs no honest weights: the references' poses are taken for exact.
+    solver_.problem.start(sets_, references_, {}, kernels_, T, true);
     LmOptions options;
     options.max_iterations = kRefinementSteps;
     options.step_tolerance = 1e-4;

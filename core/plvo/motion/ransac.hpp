@@ -46,7 +46,7 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Memory& memory, std::si
 class Ransac {
  public:
   // scratch holds a RansacCandidate for every match of all sets; what does not fit is not looked at. solver:
-  // for the refinements, between which it may be used otherwise.
+  // for the refinements, between which it may be used otherwise. The references must outlive it.
   Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
          const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch, MotionSolver& solver);
 
@@ -78,7 +78,7 @@ class Ransac {
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
-  MotionReferences references_;
+  const MotionReferences& references_;
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
   MotionSolver& solver_;

@@ -62,27 +62,31 @@ FeatureConstraints constraints_of(std::span<const MidExposure> features,
                                   std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
                                   Arena& scratch) {
   static_assert(kMaxReferences == 3);
-  const std::size_t count = features.size();
-  const double weight = weight_of_one(count);
+  const double weight = weight_of_one(features.size());
+  const MidExposure nothing;
+  const auto at = [&](std::size_t r) -> const MidExposure& {
+    return r < features.size() ? features[r] : nothing;
+  };
+  const auto count = [&](std::size_t r, std::size_t matches) { return r < features.size() ? matches : 0; };
   const auto points = [&](std::size_t r) {
-    if (r >= count) return PointConstraints({}, {}, {}, {});
     const PointTracks& found = tracks[r].points;
-    PointConstraints set(features[r].reference_points, found.points, found.matches.span(),
-                         PointConstraints::Workspace::take(scratch, found.matches.size()));
+    const std::size_t n = count(r, found.matches.size());
+    PointConstraints set(at(r).reference_points, found.points, found.matches.span().first(n),
+                         PointConstraints::Workspace::take(scratch, n));
     set.set_reference(r, noise.point_correlation, weight);
     return set;
   };
   const auto lines = [&](std::size_t r) {
-    if (r >= count) return LineConstraints({}, {}, {}, {});
-    LineConstraints set(features[r].reference_lines, features[r].current_lines, tracks[r].lines.span(),
-                        LineConstraints::Workspace::take(scratch, tracks[r].lines.size()));
+    const std::size_t n = count(r, tracks[r].lines.size());
+    LineConstraints set(at(r).reference_lines, at(r).current_lines, tracks[r].lines.span().first(n),
+                        LineConstraints::Workspace::take(scratch, n));
     set.set_reference(r, noise.line_correlation, weight);
     return set;
   };
   const auto surfaces = [&](std::size_t r) {
-    if (r >= count) return SurfaceConstraints({}, {});
-    SurfaceConstraints set(tracks[r].surfaces.span(),
-                           SurfaceConstraints::Workspace::take(scratch, tracks[r].surfaces.size()));
+    const std::size_t n = count(r, tracks[r].surfaces.size());
+    SurfaceConstraints set(tracks[r].surfaces.span().first(n),
+                           SurfaceConstraints::Workspace::take(scratch, n));
     set.set_reference(r, noise.surface_correlation, weight);
     return set;
   };

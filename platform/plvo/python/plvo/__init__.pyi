@@ -75,7 +75,7 @@ class Config:
         *,
         preset: Literal["default", "paper", "tiny"] = "default",
         features: Literal["points", "lines", "both"] | None = None,
-        reference: Literal["previous", "keyframe", "both"] | None = None,
+        reference: Literal["previous", "keyframe", "both", "window"] | None = None,
         seed: int | None = None,
         frame_budget_ns: int = 0,
         budget_patience_frames: int = ...,
