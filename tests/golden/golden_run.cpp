@@ -109,13 +109,18 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
   print("run frame state x_um y_um z_um image points lines matching motion result");
   ProceduralRenderer sequence;
   if (!print_input(memory, sequence, print)) return false;
-  Config points, lines, keyframe, lost;
+  Config points, lines, keyframe, lost, window;
   Limits surfaces = Limits::qvga();
+  Limits three = Limits::qvga();
   surfaces.surfaces = 200;
   points.features = Features::kPoints;
   lines.features = Features::kLines;
   keyframe.references.policy = ReferencePolicy::kKeyframe;
   lost.references.max_lost_frames = 3;
+  // A new keyframe every few frames, though the camera is slow.
+  window.references.policy = ReferencePolicy::kWindow;
+  window.references.window_inlier_ratio = 0.8;
+  three.references = 3;
   const GoldenCase cases[] = {
       {.name = "default", .config = {}, .frames = 20, .dark_from = 8},
       {.name = "paper", .config = Config::paper()},
@@ -131,6 +136,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
        .limits = surfaces,
        .readout_s = kKinectReadout_s,
        .depth_timing = {true, -0.01, 0.03}},
+      {.name = "window", .config = window, .limits = three, .frames = 12},
       {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
   };
   for (const GoldenCase& golden : cases)
