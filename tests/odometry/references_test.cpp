@@ -104,14 +104,15 @@ TEST(References, BothTheKeyframeAndTheLastFrameServeByDefault) {
 // Three references have more matches together than so many times those of the last frame, two have not.
 constexpr double kOfThree = 2.4;
 
-// With a keyframe every few frames: how many points are matched, and with which frame the motion is.
-std::vector<Shown> run_window(double older_inlier_ratio) {
+// With a keyframe every few frames.
+Config window_config(double older_inlier_ratio) {
   Config config;
   config.references.policy = ReferencePolicy::kWindow;
   config.references.window_inlier_ratio = 0.6;
   config.references.older_inlier_ratio = older_inlier_ratio;
-  return run(config, 4);
+  return config;
 }
+std::vector<Shown> run_window(double older_inlier_ratio) { return run(window_config(older_inlier_ratio), 4); }
 
 TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
   const std::vector<Shown> window = run_window(0.1);
@@ -149,6 +150,31 @@ TEST(References, AnOlderKeyframeIsLeftWhenLittleOfItIsFound) {
       longer += window[i].result.points.matched > kOfThree * shown ? 1 : 0;
   }
   EXPECT_EQ(longer, 0) << "never all of it is found, so it serves for one frame";
+}
+
+// The frames of a window stand to each other as they did, wherever the caller puts the last of them: right
+// after a change of keyframes (frame 4), and when all three are apart (frame 6).
+TEST(References, AWindowMovesAsOne) {
+  for (const int moved : {4, 6}) {
+    ProceduralSequence sequence(kLimits.width, kLimits.height);
+    std::vector<std::byte> memory(required_bytes(kLimits)), other_memory(required_bytes(kLimits));
+    Odometry odometry, other;
+    ASSERT_TRUE(odometry.init(memory, sequence.camera(), window_config(0.1), kLimits).ok());
+    ASSERT_TRUE(other.init(other_memory, sequence.camera(), window_config(0.1), kLimits).ok());
+    const Se3 T_other_world = boxplus(Se3{}, (Vector6() << 3, -2, 1, 0.5, 1.2, -0.7).finished());
+    for (int i = 0; i < kFrames; ++i) {
+      const RgbdFrame frame = sequence.render(4 * i);
+      const TrackResult a = odometry.track(frame), b = other.track(frame);
+      ASSERT_EQ(b.state, a.state) << i;
+      EXPECT_EQ(b.reference_stamp_ns, a.reference_stamp_ns) << i;
+      EXPECT_EQ(b.points.matched, a.points.matched) << i;
+      const Se3 expected = i > moved ? T_other_world * a.T_world_camera : a.T_world_camera;
+      EXPECT_LT(boxminus(b.T_world_camera, expected).cwiseAbs().maxCoeff(), 1e-6) << i;
+      if (i != moved) continue;
+      const Status status = other.set_pose(T_other_world * b.T_world_camera, b.pose_covariance);
+      ASSERT_TRUE(status.ok()) << status.message();
+    }
+  }
 }
 
 TEST(References, APolicyNeedsLimitsForAllThatItNames) {
