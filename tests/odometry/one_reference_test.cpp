@@ -81,7 +81,7 @@ TEST(OneReference, APolicyOfTwoIsRefused) {
   EXPECT_NE(std::string(status.message()).find("Limits::references"), std::string::npos) << status.message();
   EXPECT_TRUE(odometry.init(memory, camera, Config::tiny(), kLimits).ok());
   EXPECT_FALSE(with_references(kLimits, 0).validate().ok());
-  EXPECT_FALSE(with_references(kLimits, 3).validate().ok());
+  EXPECT_FALSE(with_references(kLimits, 4).validate().ok());
 }
 
 }  // namespace
