@@ -128,7 +128,6 @@ TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
     }();
     EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
     const int shown = static_cast<int>(window[i].point_tracks.size());
-
     if (result.reference_stamp_ns == window[i - 1].result.stamp_ns) {
       // The keyframe is the last frame: what is matched besides is the keyframe before.
       ++after_a_change;

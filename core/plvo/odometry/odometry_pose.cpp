@@ -83,13 +83,9 @@ MotionReference Odometry::from_keyframe(int slot) const {
 
 // The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
 void Odometry::move_keyframe(const HeldPose& pose) {
-  const auto carry = [&, T_world_before = frame(keyframe_).T_world_camera](int slot) {
-    if (slot == kNobody || slot == keyframe_) return;
-    Se3& T = frame(slot).T_world_camera;
-    T = pose.T_world_camera * (T.inverse() * T_world_before).inverse();
-  };
-  carry(last_);
-  carry(older_);
+  for (const int slot : {last_, older_})
+    if (slot != kNobody && slot != keyframe_)
+      frame(slot).T_world_camera = pose.T_world_camera * from_keyframe(slot).T_reference_base.inverse();
   hold(keyframe_, pose);
 }
 
