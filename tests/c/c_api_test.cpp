@@ -328,6 +328,28 @@ TEST(CApi, SizesTellHowTheProgramWasCompiled) {
   EXPECT_EQ(config.struct_size, 4U) << "nothing is written past what the caller says there is";
 }
 
+TEST(CApi, WhatStampsErrIsThatOfCpp) {
+  CameraModel model;
+  model.stamp_sigma_s = 0.002;
+  plvo_camera camera = c_camera(model);
+  EXPECT_EQ(camera.stamp_sigma_s, 0.002);
+  CameraModel back;
+  ASSERT_TRUE(c::from_c(camera, back).ok());
+  EXPECT_EQ(back.stamp_sigma_s, 0.002);
+  // A program that was compiled before there was such a thing has exact stamps, whatever lies behind.
+  camera.struct_size = static_cast<std::uint32_t>(offsetof(plvo_camera, stamp_sigma_s));
+  camera.stamp_sigma_s = 77;
+  const plvo_limits limits = c_limits(kLimits);
+  std::vector<std::byte> memory(plvo_required_bytes(&limits));
+  plvo_odometry* odometry = nullptr;
+  camera.width = kLimits.width;
+  camera.height = kLimits.height;
+  camera.cx = kLimits.width / 2.0;
+  camera.cy = kLimits.height / 2.0;
+  const plvo_status status = plvo_init(memory.data(), memory.size(), &camera, nullptr, &limits, &odometry);
+  EXPECT_EQ(status.code, PLVO_OK) << status.message;
+}
+
 TEST(CApi, LensesAreThoseOfCpp) {
   const plvo_limits limits = c_limits(kLimits);
   std::vector<std::byte> memory(plvo_required_bytes(&limits));

@@ -140,11 +140,13 @@ def test_arrays_outlive_what_they_look_into(walk):
 def test_cameras(tmp_path):
     tum = plvo.Camera.builtin("tum-fr1")
     assert tum.fx == pytest.approx(517.3, abs=0.1) and tum.depth_units_per_metre == 5000
-    assert len(tum.distortion) == 5 and tum.readout_s > 0
+    assert len(tum.distortion) == 5 and tum.readout_s > 0 and tum.stamp_sigma_s == 0.0012
     (tmp_path / "c.txt").write_text("300 301 160 120 1000\n")
     assert plvo.Camera.read(tmp_path / "c.txt").fy == 301
     camera = plvo.Camera(640, 480, 525, 525, 319.5, 239.5, (0.1, 0, 0, 0), depth_units_per_metre=5000)
     assert camera.distortion == (0.1, 0, 0, 0, 0) and camera.distortion_model == "plumb_bob"
+    assert camera.stamp_sigma_s == 0
+    assert plvo.Camera(640, 480, 525, 525, 319.5, 239.5, stamp_sigma_s=0.002).stamp_sigma_s == 0.002
 
 
 def test_lenses(tmp_path):

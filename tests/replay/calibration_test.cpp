@@ -142,6 +142,24 @@ TEST(Calibration, CarriesTheTimingOfDepth) {
   EXPECT_TRUE(c.camera.depth_timing.known);
 }
 
+TEST(Calibration, CarriesWhatStampsErr) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 525 319.5 239.5 5000\nstamp_sigma_s 0.002\n", c).ok());
+  EXPECT_EQ(c.camera.stamp_sigma_s, 0.002);
+  EXPECT_FALSE(c.camera.depth_timing.known);
+  Calibration again;
+  ASSERT_TRUE(read_text(calibration_text(c), again).ok()) << calibration_text(c);
+  EXPECT_EQ(again.camera.stamp_sigma_s, 0.002);
+  again = {};
+  ASSERT_TRUE(read_text(calibration_lines(c), again).ok()) << calibration_lines(c);
+  EXPECT_EQ(again.camera.stamp_sigma_s, 0.002);
+  c.camera.stamp_sigma_s = 0;
+  EXPECT_EQ(calibration_text(c).find("stamp_sigma_s"), std::string::npos);
+  EXPECT_EQ(calibration_lines(c).find("stamp_sigma_s"), std::string::npos);
+  c.camera.stamp_sigma_s = 0.2;
+  EXPECT_TRUE(says(c.validate(640, 480), "deviation of the stamps"));
+}
+
 TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
   Calibration c;
   EXPECT_EQ(read_text("", c).code(), StatusCode::kDamaged);

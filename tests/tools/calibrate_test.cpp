@@ -10,6 +10,7 @@
 
 #include "plvo/base/random.hpp"
 #include "plvo/calibrate/quadratic_fit.hpp"
+#include "plvo/calibrate/stamp_jitter.hpp"
 #include "plvo/calibrate/timing_report.hpp"
 #include "plvo/calibrate/timing_search.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
@@ -37,6 +38,41 @@ MatrixXd costs_of(const MatrixXd& design, const VectorXd& place, const VectorXd&
     }
   }
   return costs;
+}
+
+// Frames 33.4 ms apart, whose stamps err by up to ± `most_s`, and which lack one in seven.
+TrackedRecording stamped(int frames, double most_s, std::int64_t start_ns) {
+  Random random(11);
+  TrackedRecording recording;
+  for (int i = 0; i < frames; ++i) {
+    if (i % 7 == 3) continue;
+    TrackedFrame frame;
+    frame.stamp_ns =
+        start_ns + 33'400'000LL * i + static_cast<std::int64_t>(1e9 * most_s * (2 * random.uniform() - 1));
+    recording.frames.push_back(frame);
+  }
+  return recording;
+}
+
+TEST(StampJitter, IsWhatIsNotEven) {
+  // Uniform over ± 3 ms: an SD of 1.732 ms. The second recording has a clock of its own.
+  const std::vector<TrackedRecording> two = {stamped(300, 0.003, 0), stamped(200, 0.003, 77'123'456'789)};
+  EXPECT_NEAR(stamp_jitter_s(two), 0.003 / std::sqrt(3), 0.0001);
+  EXPECT_LT(stamp_jitter_s(std::vector{stamped(300, 0, 5)}), 1e-9);
+}
+
+TEST(StampJitter, IsNotToldByTooFewFramesOrByNoPace) {
+  EXPECT_LT(stamp_jitter_s({}), 0);
+  EXPECT_LT(stamp_jitter_s(std::vector{stamped(15, 0.003, 0)}), 0);
+  // An exposure that follows the light: frames 33 to 100 ms apart.
+  TrackedRecording slow;
+  Random random(5);
+  for (std::int64_t stamp_ns = 0; slow.frames.size() < 200;
+       stamp_ns += static_cast<std::int64_t>(33e6 * (1 + 2 * random.uniform()))) {
+    slow.frames.emplace_back();
+    slow.frames.back().stamp_ns = stamp_ns;
+  }
+  EXPECT_LT(stamp_jitter_s(std::vector{slow}), 0);
 }
 
 TEST(QuadraticFit, FindsTheMinimumAndHowFarItScatters) {

@@ -39,6 +39,7 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   EXPECT_GT(json["depth_delay_s"]["sigma"].get<double>(), 0);
   EXPECT_LT(json["depth_delay_s"]["sigma"].get<double>(), 0.002);
   EXPECT_EQ(json["readout_s"]["value"], 0);
+  EXPECT_LT(json["stamp_sigma_s"].get<double>(), 1e-6) << "the simulator's stamps are whole microseconds";
 
   Calibration found;
   ASSERT_TRUE(read_calibration(yaml, found).ok());

@@ -56,6 +56,7 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
   expect_usage("run x --depth-scale 0", "--depth-scale: expected a number from 1 to 100000, not '0'");
   expect_usage("run x --fx nan", "--fx: expected a number from 1 to 100000, not 'nan'");
   expect_usage("run x --readout 20", "--readout: expected a number from 0 to 1, not '20'");
+  expect_usage("run x --stamp-sigma 0.2", "--stamp-sigma: expected a number from 0 to 0.1, not '0.2'");
   expect_usage("run x --distortion 1 2 3 nan",
                "--distortion: expected a number from -1000 to 1000, not 'nan'");
   expect_usage("run x --distortion-rational 1 2 3 4 5", "--distortion-rational: takes 8 values, not 5");

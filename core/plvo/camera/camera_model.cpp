@@ -27,6 +27,8 @@ Status CameraModel::validate() const {
     return invalid("the readout of depth must lie between 0 and 0.1 s");
   if (!(depth_timing.delay_s >= -0.1 && depth_timing.delay_s <= 0.1))
     return invalid("the delay of depth must lie between -0.1 and 0.1 s");
+  if (!(stamp_sigma_s >= 0 && stamp_sigma_s <= 0.1))
+    return invalid("the standard deviation of the stamps must lie between 0 and 0.1 s");
   if (distortion.model == LensModel::kEquidistant) return {};  // no tangential part
   // The lens must keep the order of the pixels: the Jacobian of the distortion keeps a positive determinant.
   constexpr int kSteps = 16;

@@ -35,10 +35,14 @@ struct CameraModel {
   // Rolling shutter: from the exposure of the first row to that of the last, in seconds. 0: all rows at once.
   double readout_s = 0;
   DepthTiming depth_timing = {};
+  // How far a colour stamp is off the exposure of the middle row, each on its own: standard deviation in
+  // seconds; 0: exact. A clock that is off by a constant is none of it. Poses are those of the stamps, so
+  // their covariance and that of the motions hold what the camera moves in this time.
+  double stamp_sigma_s = 0;
 
   // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, a
-  // readout that is negative or above 0.1 s, a depth delay beyond ±0.1 s, or a lens that folds back on itself
-  // inside the image.
+  // readout or a deviation of the stamps that is negative or above 0.1 s, a depth delay beyond ±0.1 s, or a
+  // lens that folds back on itself inside the image.
   Status validate() const;
 };
 

@@ -73,8 +73,7 @@ TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   const bool has_pose = last_ != kNobody;
-  result.T_world_camera = has_pose ? frame(last_).T_world_camera : start_.T_world_camera;
-  result.pose_covariance = has_pose ? frame(last_).covariance : start_.covariance;
+  report(has_pose ? held(last_) : start_, has_pose ? frame(last_).velocity : Vector6::Zero(), result);
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   Status status = check(input);
   if (status.ok()) status = prior.validate();

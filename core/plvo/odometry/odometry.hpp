@@ -188,6 +188,7 @@ class Odometry {
   // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
   HeldPose held(int slot) const;
   void hold(int slot, const HeldPose& pose);
+  void report(const HeldPose& pose, const Vector6& velocity, TrackResult& result) const;
   MotionReference from_keyframe(int slot) const;
   void move_keyframe(const HeldPose& pose);
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);

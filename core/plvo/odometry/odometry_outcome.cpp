@@ -3,6 +3,7 @@
 // without. And which frame the next ones are matched with.
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/odometry/stamp_error.hpp"
 
 namespace plvo {
 namespace {
@@ -95,8 +96,7 @@ void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
 
 // The current frame becomes the keyframe and the last good one, with no motion behind it.
 void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
-  result.T_world_camera = pose.T_world_camera;
-  result.pose_covariance = pose.covariance;
+  report(pose, Vector6::Zero(), result);
   hold(current_, pose);
   Frame& current = frame(current_);
   current.motion_covariance.setZero();
@@ -128,18 +128,20 @@ void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, Tr
   const MotionEstimate& motion = tracked.motion;
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
-  result.motion_covariance = motion.C_H;
   HeldPose from = held(keyframe_);
   HeldPose pose = advance(from, motion.T_current_reference, motion.C_H);
   if (prior.gravity) {
     gravity_.read(*prior.gravity, from, pose);
     move_keyframe(from);
   }
-  result.T_world_camera = pose.T_world_camera;
-  result.pose_covariance = pose.covariance;
   hold(current_, pose);
   frame(current_).motion_covariance = motion.C_H;
   note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
+  const Vector6& velocity = frame(current_).velocity;
+  report(pose, velocity, result);
+  result.motion_covariance =
+      motion.C_H + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
+                                              camera().stamp_sigma_s);
   lost_frames_ = 0;
   sensed_.restart();
   learn(config().noise, tracked.shown, noise_);

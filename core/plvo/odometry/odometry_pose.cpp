@@ -3,6 +3,7 @@
 #include "plvo/math/symmetric_eigen.hpp"
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/odometry/stamp_error.hpp"
 
 namespace plvo {
 namespace {
@@ -74,6 +75,13 @@ void Odometry::hold(int slot, const HeldPose& pose) {
   frame(slot).covariance_with_gravity = pose.covariance_with_gravity;
 }
 
+// What the caller is told of a pose: of its stamp, which may err.
+void Odometry::report(const HeldPose& pose, const Vector6& velocity, TrackResult& result) const {
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance =
+      pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera().stamp_sigma_s);
+}
+
 // A frame as a reference whose pose relative to the keyframe is known.
 MotionReference Odometry::from_keyframe(int slot) const {
   if (keyframe_ == kNobody || keyframe_ == slot) return {};
@@ -112,8 +120,7 @@ HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result)
   HeldPose pose = advance(from, result.T_camera_reference, result.motion_covariance);
   GravityHold gravity = gravity_;
   if (prior.gravity && gravity.known()) gravity.read(*prior.gravity, from, pose);
-  result.T_world_camera = pose.T_world_camera;
-  result.pose_covariance = pose.covariance;
+  report(pose, frame(last_).velocity, result);
   result.state = TrackState::kPredicted;
   return pose;
 }

@@ -95,8 +95,7 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
                                              inverse_covariance(from.T_reference_base, from.covariance)));
   hold(last_, pose);
   kept_.drop(slot);
-  result.T_world_camera = pose.T_world_camera;
-  result.pose_covariance = pose.covariance;
+  report(pose, last.velocity, result);
   result.returned = true;
 }
 

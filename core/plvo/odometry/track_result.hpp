@@ -38,13 +38,14 @@ struct TrackResult {
 
   // Camera to world; the world is the camera frame of the first frame, unless Config::level_world or
   // set_pose() say otherwise. Covariance of the ⊞-perturbation (position, then orientation; m and rad) in the
-  // axes of the world, accumulated from the motions. While lost, it is that of the last good pose; of a
+  // axes of the world, accumulated from the motions, with what the stamp errs
+  // (CameraModel::stamp_sigma_s) at this frame alone. While lost, it is that of the last good pose; of a
   // predicted pose it has grown by what the priors leave open.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
 
-  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance C_H
-  // (23).
+  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance: C_H
+  // (23), and what both stamps err.
   Se3 T_camera_reference;
   Matrix6 motion_covariance = Matrix6::Zero();
 

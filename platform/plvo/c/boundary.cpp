@@ -37,6 +37,7 @@ Status from_c(const plvo_camera& camera, CameraModel& model) {
   model.pinhole = {camera.fx, camera.fy, camera.cx, camera.cy};
   model.readout_s = camera.readout_s;
   model.depth_timing = {camera.depth_timing_known != 0, camera.depth_delay_s, camera.depth_readout_s};
+  model.stamp_sigma_s = camera.stamp_sigma_s;
   return {};
 }
 
@@ -62,11 +63,12 @@ plvo_camera to_c(const CameraModel& model) {
   camera.readout_s = model.readout_s;
   camera.depth_delay_s = model.depth_timing.delay_s;
   camera.depth_readout_s = model.depth_timing.readout_s;
+  camera.stamp_sigma_s = model.stamp_sigma_s;
   return camera;
 }
 
 Status give_camera(const plvo_camera& whole, plvo_camera* caller) {
-  const bool older = caller->struct_size < sizeof whole;
+  const bool older = caller->struct_size < offsetof(plvo_camera, stamp_sigma_s);
   const double* more = whole.distortion_more;
   if (older && (whole.lens != PLVO_LENS_RATIONAL || more[0] != 0 || more[1] != 0 || more[2] != 0))
     return refuse(

@@ -80,7 +80,8 @@ typedef struct plvo_camera {
   double depth_delay_s;   /* the depth's middle row is exposed so long after the depth's stamp */
   double depth_readout_s; /* as readout_s, of the depth image */
   double distortion_more[3];
-  int64_t lens; /* PLVO_LENS_… */
+  int64_t lens;         /* PLVO_LENS_… */
+  double stamp_sigma_s; /* how far colour stamps err, standard deviation; 0: they are exact */
 } plvo_camera;
 
 /* Capacities. They decide the memory; what does not fit is dropped by a stated rule and counted. */

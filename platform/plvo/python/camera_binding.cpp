@@ -16,7 +16,7 @@ namespace {
 Calibration make_camera(int width, int height, double fx, double fy, double cx, double cy,
                         const py::sequence& distortion, double depth_units_per_metre, double readout_s,
                         const py::object& depth_delay_s, double depth_readout_s,
-                        const std::string& distortion_model) {
+                        const std::string& distortion_model, double stamp_sigma_s) {
   Calibration camera;
   camera.camera.width = width;
   camera.camera.height = height;
@@ -29,6 +29,7 @@ Calibration make_camera(int width, int height, double fx, double fy, double cx, 
     throw py::value_error(status.message());
   camera.depth_units_per_metre = depth_units_per_metre;
   camera.camera.readout_s = readout_s;
+  camera.camera.stamp_sigma_s = stamp_sigma_s;
   if (!depth_delay_s.is_none())
     camera.camera.depth_timing = {true, depth_delay_s.cast<double>(), depth_readout_s};
   throw_unless_ok(camera.validate(width, height));
@@ -55,7 +56,7 @@ void bind_camera(py::module_& module) {
       .def(py::init(&make_camera), "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a,
            "distortion"_a = py::tuple(), "depth_units_per_metre"_a = 1000.0, "readout_s"_a = model.readout_s,
            "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s,
-           "distortion_model"_a = "")
+           "distortion_model"_a = "", "stamp_sigma_s"_a = model.stamp_sigma_s)
       .def_static("builtin", &builtin_camera, "name"_a)
       .def_static("read", &read_camera, "path"_a)
       .def_property_readonly("width", [](const Calibration& c) { return c.camera.width; })
@@ -77,6 +78,7 @@ void bind_camera(py::module_& module) {
       .def_property_readonly("distortion_model",
                              [](const Calibration& c) { return lens_model_name(c.camera.distortion); })
       .def_property_readonly("readout_s", [](const Calibration& c) { return c.camera.readout_s; })
+      .def_property_readonly("stamp_sigma_s", [](const Calibration& c) { return c.camera.stamp_sigma_s; })
       .def_readonly("depth_units_per_metre", &Calibration::depth_units_per_metre);
 }
 

@@ -23,6 +23,13 @@ std::string found_text(const TimingResult& result, std::size_t i) {
   return fmt::format("{:.2f} ms, SD {:.2f} ms", value_ms, kMs * result.sigma_s[i]);
 }
 
+constexpr const char* kStampSigmaKey = "stamp_sigma_s";
+
+std::string stamps_text(const TimingResult& result) {
+  return result.stamp_sigma_s < 0 ? "no even pace in these recordings; left as it was"
+                                  : fmt::format("{:.2f} ms", kMs * result.stamp_sigma_s);
+}
+
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -111,7 +118,7 @@ std::string to_text(const TimingResult& result) {
                                  result.settled ? "" : " (not settled)", kDegrees * result.turn_rad_per_s);
   for (std::size_t i = 0; i < 3; ++i)
     text += fmt::format("{:<16} {}\n", kTimingNames[i].key, found_text(result, i));
-  return text;
+  return text + fmt::format("{:<16} {}\n", kStampSigmaKey, stamps_text(result));
 }
 
 nlohmann::ordered_json to_json(const TimingResult& result) {
@@ -127,6 +134,8 @@ nlohmann::ordered_json to_json(const TimingResult& result) {
     for (const CurvePoint& p : result.curves[i]) entry["curve"].push_back({p.seconds, p.disagreement});
     json[kTimingNames[i].key] = entry;
   }
+  json[kStampSigmaKey] = result.stamp_sigma_s;
+  if (result.stamp_sigma_s < 0) json[kStampSigmaKey] = nullptr;
   json["passes"] = nlohmann::ordered_json::array();
   for (const SensorTiming& t : result.passes)
     json["passes"].push_back({t.depth_delay_s, t.depth_readout_s, t.readout_s});
@@ -145,6 +154,8 @@ std::string to_html(const TimingResult& result, const std::vector<std::string>& 
   for (std::size_t i = 0; i < 3; ++i)
     page += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td></tr>\n", kTimingNames[i].key,
                         kTimingNames[i].what, found_text(result, i));
+  page += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td></tr>\n", kStampSigmaKey,
+                      "colour's stamps about an even pace, SD", stamps_text(result));
   page +=
       "</table>\n<p>How much points and lines of two frames disagree, against each of the three with the "
       "others as "

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "plvo/calibrate/quadratic_fit.hpp"
+#include "plvo/calibrate/stamp_jitter.hpp"
 
 namespace plvo::calibrate {
 namespace {
@@ -75,6 +76,7 @@ class Search {
     recordings_.clear();
     if (Status status = task_.track(timing_at(x_), recordings_); !status.ok()) return status;
     result_.frames = result_.pairs = 0;
+    result_.stamp_sigma_s = stamp_jitter_s(recordings_);
     double turn = 0;
     std::size_t turns = 0;
     for (const TrackedRecording& recording : recordings_) {

@@ -34,6 +34,7 @@ struct TimingResult {
   bool settled = false;                           // the last pass changed little
   std::size_t frames = 0, pairs = 0;
   double turn_rad_per_s = 0;  // RMS
+  double stamp_sigma_s = -1;  // stamp_jitter_s()
 };
 
 struct TimingSearch {

@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kBuiltinNames = {"tum-fr1", "tum-fr2", "tum-fr3", "7scenes",
                                                            "kinect-v1-default"};
+// TUM's computer stamped colour in steps of 4 ms (the 32 and 36 ms between two of fr1's), at random within
+// one.
+constexpr double kTumStampSigma_s = 0.0012;
 constexpr std::uintmax_t kMaxBytes = 1u << 20;  // of a calibration, whatever comments it has
 
 }  // namespace
@@ -104,6 +107,7 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   result.readout_given = true;
   result.depth_scale_given =
       name.starts_with("tum-");  // a Kinect's own depth is in whatever its program wrote
+  if (name.starts_with("tum-")) camera.stamp_sigma_s = kTumStampSigma_s;
   if (name == "tum-fr1") {
     camera.pinhole = {517.306408, 516.469215, 318.643040, 255.313989};
     camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};

@@ -35,6 +35,7 @@ constexpr auto kKeys = std::to_array<Key>({
      [](N& n) -> double& { return n.calibration.camera.depth_timing.delay_s; }},
     {"depth_readout_s", KeyKind::kSensor,
      [](N& n) -> double& { return n.calibration.camera.depth_timing.readout_s; }},
+    {"stamp_sigma_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.stamp_sigma_s; }},
     {"depth_fx", KeyKind::kDepthCamera,
      [](N& n) -> double& { return n.calibration.depth_camera.pinhole.fx; }},
     {"depth_fy", KeyKind::kDepthCamera,

@@ -27,6 +27,11 @@ bool is_camera_matrix(const std::vector<double>& m) {
   return m[10] == 1 && m[15] == 1;
 }
 
+// Written where depth's own time is known, as one.
+bool is_depth_timing(const Key& key) {
+  return key.kind == KeyKind::kSensor && key.name.starts_with("depth_") && key.name != "depth_scale";
+}
+
 // Words without comments; ':', '=', ',' count as white space.
 std::vector<std::string_view> words_of(std::string_view content) {
   std::vector<std::string_view> words;
@@ -85,7 +90,7 @@ std::string calibration_text(const Calibration& calibration) {
   for (std::size_t i = 0; i < places; ++i)
     text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
   for (const Key& key : keys().subspan(kPlaces)) {
-    const bool timed = key.kind == KeyKind::kSensor && calibration.camera.depth_timing.known;
+    const bool timed = is_depth_timing(key) && calibration.camera.depth_timing.known;
     const bool of_depth = key.kind == KeyKind::kDepthCamera && calibration.depth_camera.known;
     const bool others = key.kind == KeyKind::kSensor || key.kind == KeyKind::kLens;
     if (timed || of_depth || (others && !is_default(key)))
@@ -106,7 +111,8 @@ std::string calibration_lines(const Calibration& calibration) {
   const auto written = [&](const Key& key) {
     if (key.kind == KeyKind::kSize) return calibration.has_size;
     if (key.kind == KeyKind::kDepthCamera) return calibration.depth_camera.known;
-    if (key.name.starts_with("depth_") && key.name != "depth_scale") return timed;
+    if (is_depth_timing(key)) return timed;
+    if (key.name == "stamp_sigma_s") return calibration.camera.stamp_sigma_s > 0;
     if (key.name == "readout_s") return calibration.readout_given;
     const bool of_pinhole = key.name == "fx" || key.name == "fy" || key.name == "cx" || key.name == "cy";
     const bool of_rational = key.name == "k4" || key.name == "k5" || key.name == "k6";

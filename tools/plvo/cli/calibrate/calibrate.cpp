@@ -187,7 +187,9 @@ class Calibrate {
         text += fmt::format("# {}: SD {:.5f} s\n", calibrate::kTimingNames[i].key, result_.sigma_s[i]);
     // Numbers of a thousandth of a millisecond say all there is to say.
     DepthTiming& depth = calibration_.camera.depth_timing;
-    for (double* seconds : {&depth.delay_s, &depth.readout_s, &calibration_.camera.readout_s})
+    double& stamp_sigma_s = calibration_.camera.stamp_sigma_s;
+    if (result_.stamp_sigma_s >= 0) stamp_sigma_s = result_.stamp_sigma_s;
+    for (double* seconds : {&depth.delay_s, &depth.readout_s, &calibration_.camera.readout_s, &stamp_sigma_s})
       *seconds = std::round(*seconds * 1e6) / 1e6;
     text += calibration_lines(calibration_);
     text.pop_back();  // the file adds it

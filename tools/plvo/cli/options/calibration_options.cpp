@@ -12,6 +12,7 @@ constexpr NumberRange kFocal_px = {1, 100'000};
 constexpr NumberRange kCentre_px = {-100'000, 100'000};
 constexpr NumberRange kUnitsPerMetre = {1, 100'000};
 constexpr NumberRange kReadout_s = {0, 1};
+constexpr NumberRange kStampSigma_s = {0, 0.1};
 constexpr NumberRange kDistortion = {-1000, 1000};
 
 std::vector<std::string> builtin_names() {
@@ -43,6 +44,9 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
       "--readout", options.readout_s, kReadout_s, "SECONDS",
       fmt::format("Rolling shutter: time from the first row to the last; Kinect v1: {}, global shutter: 0",
                   kKinectReadout_s));
+  group.number("--stamp-sigma", options.stamp_sigma_s, kStampSigma_s, "SECONDS",
+               "How far a colour stamp is off the exposure, standard deviation; widens the covariances (TUM "
+               "recordings: 0.0012)");
   const auto add_lens = [&](const char* option, const char* model, const char* what, int least, int most) {
     CLI::Option* lens =
         group.add(option, "NUMBER", what, [&options, model = std::string(model)](const std::string& text) {
@@ -96,6 +100,7 @@ Status find_calibration(const CalibrationOptions& options, const std::function<S
     status = distortion_of(options.distortion_model, options.distortion, calibration.camera.distortion);
   if (options.readout_s) calibration.camera.readout_s = *options.readout_s;
   calibration.readout_given |= options.readout_s.has_value();
+  if (options.stamp_sigma_s) calibration.camera.stamp_sigma_s = *options.stamp_sigma_s;
   if (options.depth_scale) calibration.depth_units_per_metre = *options.depth_scale;
   calibration.depth_scale_given |= options.depth_scale.has_value();
   return status;

@@ -27,7 +27,7 @@ namespace plvo::cli {
 
 struct CalibrationOptions {
   std::string file, model_name;
-  std::optional<double> fx, fy, cx, cy, depth_scale, readout_s;
+  std::optional<double> fx, fy, cx, cy, depth_scale, readout_s, stamp_sigma_s;
   std::vector<double> distortion;  // of the lens distortion_model (plvo/camera/camera_info.hpp)
   std::string distortion_model;
 };

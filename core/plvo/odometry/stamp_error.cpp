@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/stamp_error.hpp"
+
+namespace plvo {
+namespace {
+
+Matrix6 moved_by(const Vector6& rate, double sigma_s) {
+  const Vector6 moved = sigma_s * rate;
+  return moved.lazyProduct(moved.transpose());
+}
+
+// What leads out of the camera turns against the scene.
+Vector6 out_of_camera(const Matrix3& R, const Vector6& velocity) {
+  Vector6 rate;
+  rate << -(R * velocity.head<3>()), -(R * velocity.tail<3>());
+  return rate;
+}
+
+}  // namespace
+
+Matrix6 stamp_covariance_of_pose(const Se3& T_world_camera, const Vector6& velocity, double stamp_sigma_s) {
+  return moved_by(out_of_camera(T_world_camera.R, velocity), stamp_sigma_s);
+}
+
+Matrix6 stamp_covariance_of_motion(const Se3& T_current_reference, const Vector6& current_velocity,
+                                   const Vector6& reference_velocity, double stamp_sigma_s) {
+  const Vector3 omega = current_velocity.tail<3>();
+  Vector6 rate;
+  rate << current_velocity.head<3>() + skew(omega) * T_current_reference.t, omega;
+  return moved_by(rate, stamp_sigma_s) +
+         moved_by(out_of_camera(T_current_reference.R, reference_velocity), stamp_sigma_s);
+}
+
+}  // namespace plvo
