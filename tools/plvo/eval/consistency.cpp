@@ -144,8 +144,7 @@ Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::i
   const MotionChain chain(motions);
   const SampledPoses truth = sample(ground_truth, chain.stamps_ns(), sampling);
   Accumulator accumulator;
-  std::size_t independent = 0;
-  std::size_t counted_to = 0;  // the frame at which the last of the independent ones ends
+  std::vector<std::pair<std::size_t, std::size_t>> counted;
   for (const auto& [from, to] : pairs_by_seconds(chain.stamps_ns(), span_ns)) {
     if (!truth.valid[from] || !truth.valid[to]) continue;
     Se3 T_to_from;
@@ -157,11 +156,9 @@ Consistency span_consistency(const std::vector<UncertainMotion>& motions, std::i
     const std::size_t before = accumulator.count();
     const Se3 true_motion = truth.poses[to].inverse() * truth.poses[from];
     accumulator.add(boxminus(T_to_from, true_motion), covariance + truth_sigma.of_motion(true_motion.t));
-    if (accumulator.count() == before || from < counted_to) continue;
-    ++independent;
-    counted_to = to;
+    if (accumulator.count() > before) counted.emplace_back(from, to);
   }
-  return accumulator.finish(independent);
+  return accumulator.finish(count_apart(counted));
 }
 
 }  // namespace plvo::eval

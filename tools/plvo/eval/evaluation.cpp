@@ -35,9 +35,21 @@ std::vector<Interval> find_gaps(const std::vector<std::int64_t>& stamps, const s
   return gaps;
 }
 
+// The poses of the estimate that have a true one.
+PairedPoses pair_poses(const Trajectory& estimate, const SampledPoses& truth) {
+  PairedPoses poses;
+  for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
+    if (!truth.valid[i]) continue;
+    poses.stamps_ns.push_back(estimate.poses[i].stamp_ns);
+    poses.estimate.push_back(estimate.poses[i].T_world_camera);
+    poses.truth.push_back(truth.poses[i]);
+  }
+  return poses;
+}
+
 }  // namespace
 
-Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
+Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<StampedCovariance>& covariances,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result) {
@@ -47,14 +59,10 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
   result.estimate_poses = estimate.poses.size();
   std::vector<std::int64_t> stamps;
   for (const StampedPose& pose : estimate.poses) stamps.push_back(pose.stamp_ns + options.offset_ns);
-  const SampledPoses truth = sample(ground_truth, stamps, options.sampling);
+  Trajectory ground_truth = measured_truth;
+  SampledPoses truth = sample(ground_truth, stamps, options.sampling);
   PairedPoses& poses = result.poses;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (!truth.valid[i]) continue;
-    poses.stamps_ns.push_back(estimate.poses[i].stamp_ns);
-    poses.estimate.push_back(estimate.poses[i].T_world_camera);
-    poses.truth.push_back(truth.poses[i]);
-  }
+  poses = pair_poses(estimate, truth);
   if (poses.truth.size() < 2) {
     return {StatusCode::kInvalidArgument,
             fmt::format(
@@ -62,11 +70,21 @@ Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
                 "with the same clock? (--offset shifts the estimate's stamps)",
                 poses.truth.size(), stamps.size())};
   }
+  const RpeDelta second = {1, RpeDelta::Unit::kSeconds, "1s"};
+  if (options.fit_truth) {
+    result.second_before_fit = relative_pose_error(poses, second).estimate;
+    TruthFit& fit = result.truth_fit.emplace();
+    if (Status status = fit_truth(measured_truth, estimate, options.offset_ns, fit); !status.ok())
+      return status;
+    ground_truth = corrected(measured_truth, fit);
+    truth = sample(ground_truth, stamps, options.sampling);
+    poses = pair_poses(estimate, truth);
+  }
   result.duration_s = static_cast<double>(poses.stamps_ns.back() - poses.stamps_ns.front()) * 1e-9;
   result.path_m = path_lengths(poses.truth).back();
 
   std::vector<RpeDelta> deltas = options.deltas;
-  if (deltas.empty()) deltas = {{1, RpeDelta::Unit::kFrames, "1f"}, {1, RpeDelta::Unit::kSeconds, "1s"}};
+  if (deltas.empty()) deltas = {{1, RpeDelta::Unit::kFrames, "1f"}, second};
   for (const RpeDelta& delta : deltas) result.rpe.push_back(relative_pose_error(poses, delta));
   result.ate = absolute_trajectory_error(poses.estimate, poses.truth);
   result.ate_identity = identity_absolute_error(poses.truth);

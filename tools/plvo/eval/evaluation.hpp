@@ -13,12 +13,14 @@
 #include "plvo/eval/consistency.hpp"
 #include "plvo/eval/relative_error.hpp"
 #include "plvo/eval/trajectory.hpp"
+#include "plvo/eval/truth_fit.hpp"
 
 namespace plvo::eval {
 
 struct EvaluationOptions {
   TruthSampling sampling;
   TruthSigma truth_sigma;        // joins the covariance in the NEES
+  bool fit_truth = false;        // compares with the truth as the fit has it; it must be interpolated
   std::int64_t offset_ns = 0;    // added to the stamps of the estimate
   std::vector<RpeDelta> deltas;  // empty: one frame and one second
 };
@@ -31,6 +33,8 @@ struct Interval {
 struct Evaluation {
   GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
   TruthSigma truth_sigma;
+  std::optional<TruthFit> truth_fit;  // all else is after it, but
+  RpeErrors second_before_fit;
   std::size_t estimate_poses = 0;
   PairedPoses poses;  // those with ground truth
   double duration_s = 0;
@@ -54,8 +58,8 @@ struct Evaluation {
   std::optional<Consistency> second_nees;  // of the motions over a second
 };
 
-// kInvalidArgument when fewer than two poses of the estimate have a true pose.
-Status evaluate(const Trajectory& ground_truth, const Trajectory& estimate,
+// kInvalidArgument when fewer than two poses of the estimate have a true pose, and as fit_truth().
+Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<StampedCovariance>& covariances,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result);

@@ -3,6 +3,7 @@
 
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/files/stamp_text.hpp"
+#include "plvo/math/trigonometry.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -20,6 +21,20 @@ Json to_json(const RpeErrors& errors) {
 
 Json to_json(const EndDrift& drift) {
   return {{"translation_m", drift.translation_m}, {"rotation_deg", drift.rotation_deg}};
+}
+
+Json to_json(const TruthFit& fit, const RpeErrors& before) {
+  const auto degrees = [](const Vector3& radians) {
+    const Vector3 v = radians * (180 / kPi);
+    return Json{v.x(), v.y(), v.z()};
+  };
+  return {{"rotation_deg", degrees(fit.rotation_rad)},
+          {"rotation_sigma_deg", degrees(fit.rotation_sigma_rad)},
+          {"clock_ms", 1e3 * fit.clock_s},
+          {"clock_sigma_ms", 1e3 * fit.clock_sigma_s},
+          {"motions", fit.motions},
+          {"independent", fit.independent},
+          {"second_before", to_json(before)}};
 }
 
 Json to_json(const Nees& n) {
@@ -58,6 +73,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
   json["ground_truth_sampling"] = e.sampling == GroundTruthSampling::kNearest ? "nearest" : "interpolated";
   json["ground_truth_sigma"] = {{"position_m", e.truth_sigma.position_m},
                                 {"orientation_rad", e.truth_sigma.orientation_rad}};
+  if (e.truth_fit) json["truth_fit"] = to_json(*e.truth_fit, e.second_before_fit);
   json["estimate_poses"] = e.estimate_poses;
   json["poses"] = e.poses.truth.size();
   json["duration_s"] = e.duration_s;

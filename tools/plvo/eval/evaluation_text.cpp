@@ -27,6 +27,16 @@ std::string delta_name(const RpeDelta& delta) {
   return "RPE over " + delta.text;
 }
 
+void add_truth_fit(Text& text, const TruthFit& fit, const RpeErrors& before) {
+  const Vector3 deg = fit.rotation_rad * (180 / kPi), sigma_deg = fit.rotation_sigma_rad * (180 / kPi);
+  text.line(
+      "truth fitted to the estimate (standard deviation): turned by {:.2f} ({:.2f}), {:.2f} ({:.2f}), {:.2f} "
+      "({:.2f}) deg, "
+      "clock {:.1f} ({:.1f}) ms; all figures are after it, RPE per second before: {:.3f} mm, {:.4f} deg",
+      deg.x(), sigma_deg.x(), deg.y(), sigma_deg.y(), deg.z(), sigma_deg.z(), 1e3 * fit.clock_s,
+      1e3 * fit.clock_sigma_s, 1e3 * before.translation_m.rmse, before.rotation_deg.rmse);
+}
+
 void add_rpe(Text& text, const RpeResult& r) {
   const auto row = [&text](const std::string& name, const char* who, const RpeErrors& e) {
     const Statistics& t = e.translation_m;
@@ -105,6 +115,7 @@ std::string to_text(const Evaluation& e) {
   text.line("{} of {} poses have ground truth ({}); {:.3f} s, {:.3f} m", e.poses.truth.size(),
             e.estimate_poses, e.sampling == GroundTruthSampling::kNearest ? "nearest stamp" : "interpolated",
             e.duration_s, e.path_m);
+  if (e.truth_fit) add_truth_fit(text, *e.truth_fit, e.second_before_fit);
   text.line("identity: what a camera that never moves would score\n");
   text.line("{:<28} {:>10} {:>9} {:>9} {:>9}   {:>8} {:>8} {:>8} {:>8}", "", "RMSE mm", "median", "p95",
             "max", "RMSE deg", "median", "p95", "max");

@@ -60,6 +60,21 @@ std::vector<Pair> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns, s
   return pairs;
 }
 
+std::size_t count_apart(const std::vector<Pair>& pairs) {
+  std::size_t count = 0, counted_to = 0;
+  for (const auto& [from, to] : pairs) {
+    if (from < counted_to) continue;
+    ++count;
+    counted_to = to;
+  }
+  return count;
+}
+
+Se3 motion_error(const PairedPoses& poses, std::size_t i, std::size_t j) {
+  const Se3 true_motion = poses.truth[i].inverse() * poses.truth[j];
+  return true_motion.inverse() * (poses.estimate[i].inverse() * poses.estimate[j]);
+}
+
 bool parse_rpe_delta(std::string_view text, RpeDelta& delta) {
   if (text.size() < 2) return false;
   RpeDelta result;
@@ -86,7 +101,7 @@ RpeResult relative_pose_error(const PairedPoses& poses, const RpeDelta& delta) {
   std::vector<double> translation, rotation, still_translation, still_rotation;
   for (const auto& [i, j] : choose_pairs(poses, delta)) {
     const Se3 true_motion = poses.truth[i].inverse() * poses.truth[j];
-    const Se3 error = true_motion.inverse() * (poses.estimate[i].inverse() * poses.estimate[j]);
+    const Se3 error = motion_error(poses, i, j);
     translation.push_back(error.t.norm());
     rotation.push_back(rotation_angle_deg(error.R));
     still_translation.push_back(true_motion.t.norm());
@@ -99,8 +114,7 @@ RpeResult relative_pose_error(const PairedPoses& poses, const RpeDelta& delta) {
 
 EndDrift end_drift(const PairedPoses& poses) {
   if (poses.truth.empty()) return {};
-  const Se3 true_motion = poses.truth.front().inverse() * poses.truth.back();
-  const Se3 error = true_motion.inverse() * (poses.estimate.front().inverse() * poses.estimate.back());
+  const Se3 error = motion_error(poses, 0, poses.truth.size() - 1);
   return {error.t.norm(), rotation_angle_deg(error.R)};
 }
 
@@ -117,8 +131,7 @@ std::vector<DistanceError> distance_errors(const PairedPoses& poses) {
       const double length_m = decade * factor;
       std::vector<double> translation, rotation;
       for (const auto& [i, j] : pairs_by_metres(poses.truth, length_m)) {
-        const Se3 error = (poses.truth[i].inverse() * poses.truth[j]).inverse() *
-                          (poses.estimate[i].inverse() * poses.estimate[j]);
+        const Se3 error = motion_error(poses, i, j);
         translation.push_back(100 * error.t.norm() / length_m);
         rotation.push_back(rotation_angle_deg(error.R) / length_m);
       }

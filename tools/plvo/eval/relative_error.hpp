@@ -36,6 +36,13 @@ struct PairedPoses {
 std::vector<std::pair<std::size_t, std::size_t>> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns,
                                                                   std::int64_t delta_ns);
 
+// How many of these pairs, in the order of their beginnings, share no stretch of the recording: each that
+// begins where the last one counted has ended.
+std::size_t count_apart(const std::vector<std::pair<std::size_t, std::size_t>>& pairs);
+
+// E of the pair (i, j), see above.
+Se3 motion_error(const PairedPoses& poses, std::size_t i, std::size_t j);
+
 struct RpeErrors {
   Statistics translation_m;
   Statistics rotation_deg;

@@ -32,12 +32,13 @@ def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, co
 
 
 def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02, offset_s=0.0, rpe_deltas=("1f", "1s"),
-             truth_sigma=(0.0, 0.0)):
+             truth_sigma=(0.0, 0.0), fit_truth=False):
     """Errors of an estimate, which is a file or an iterable of Result, against the true poses, which are a file, or those of
     a recorded folder or ROS 1 bag (FILE-groundtruth.txt beside FILE.bag): what `plvo eval --json` says, as a dictionary. truth_sigma: how far
-    a true pose is off, in each axis (m, rad); joins the covariances in the NEES."""
+    a true pose is off, in each axis (m, rad); joins the covariances in the NEES. fit_truth: compare with the truth turned and
+    its clock shifted as explains the estimate best."""
     if isinstance(estimate, (str, bytes, _os.PathLike)):
         estimate = _os.fsdecode(estimate)
     text = _evaluation.evaluate(_os.fsdecode(truth), estimate, sampling, max_difference_s, offset_s, list(rpe_deltas),
-                                tuple(truth_sigma))
+                                tuple(truth_sigma), fit_truth)
     return _json.loads(text)

@@ -291,4 +291,5 @@ def evaluate(
     offset_s: float = 0.0,
     rpe_deltas: Iterable[str] = ("1f", "1s"),
     truth_sigma: tuple[float, float] = (0.0, 0.0),
+    fit_truth: bool = False,
 ) -> dict[str, Any]: ...

@@ -38,6 +38,7 @@ struct EvalOptions {
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
   std::vector<double> sigma;  // of a true pose: m, degrees
+  bool fit_truth = false;
   double offset_s = 0;
   SequenceOptions folder;  // where the ground truth is a folder
   std::vector<eval::RpeDelta> deltas;
@@ -78,6 +79,7 @@ int eval_command(EvalOptions options) {
   settings.offset_ns = static_cast<std::int64_t>(options.offset_s * 1e9);
   settings.deltas = options.deltas;
   if (!options.sigma.empty()) settings.truth_sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
+  settings.fit_truth = options.fit_truth;
   options.ground_truth.kitti_times = options.estimate.kitti_times = options.kitti_times;
 
   eval::Trajectory ground_truth, estimate;
@@ -97,7 +99,8 @@ int eval_command(EvalOptions options) {
   if (!options.report.empty()) {
     report::ReportInput input;
     input.title = options.estimate.path.filename().string();
-    input.subtitle = "plvo " PLVO_VERSION ": compared with " + options.ground_truth.path.string();
+    input.subtitle = "plvo " PLVO_VERSION ": compared with " + options.ground_truth.path.string() +
+                     (options.fit_truth ? ", turned and shifted to fit" : "");
     input.trajectory = estimate;
     input.evaluation = evaluation;
     if (const Status written = report::write_report(options.report, input); !written.ok())
@@ -110,6 +113,9 @@ int eval_command(EvalOptions options) {
 void check(const CLI::App& command, const EvalOptions& options) {
   if (options.sampling != eval::GroundTruthSampling::kNearest)
     refuse_options(command, {"--max-dt"}, "is for --gt-sampling nearest; add that, or leave it away");
+  if (options.sampling == eval::GroundTruthSampling::kNearest)
+    refuse_options(command, {"--fit-truth"},
+                   "shifts the truth's clock, so that it is interpolated; leave --gt-sampling nearest away");
   if (options.covariance.empty() && options.motions.empty())
     refuse_options(command, {"--gt-sigma"}, "is for the NEES; add --est-covariance or --est-motions");
   const std::filesystem::path& truth = options.ground_truth.path;
@@ -185,6 +191,9 @@ void add_eval(CLI::App& app, int& exit_code) {
                   return wrong;
                 }),
       2, 2);
+  group.flag("--fit-truth", options->fit_truth,
+             "Compare with the truth turned (3 angles) and its clock shifted as explains the estimate best; "
+             "not for comparing systems, for it flatters each");
   group.number("--offset", options->offset_s, {-4e9, 4e9}, "SECONDS", "Added to the stamps of the estimate");
   repeatable(group.add(
       "--rpe-delta", "DELTA",

@@ -40,7 +40,7 @@ Estimate estimate_of(const py::iterable& results) {
 }
 
 EvaluationOptions options_of(const std::string& sampling, double max_difference_s, double offset_s,
-                             const py::iterable& deltas, double sigma_m, double sigma_rad) {
+                             const py::iterable& deltas, double sigma_m, double sigma_rad, bool fit_truth) {
   EvaluationOptions options;
   if (sampling == "nearest")
     options.sampling.method = GroundTruthSampling::kNearest;
@@ -54,6 +54,10 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
   if (!(sigma_m >= 0 && sigma_m <= 1) || !(sigma_rad >= 0 && sigma_rad <= 1))
     throw py::value_error("truth_sigma must be metres and radians from 0 to 1");
   options.truth_sigma = {sigma_m, sigma_rad};
+  if (fit_truth && options.sampling.method == GroundTruthSampling::kNearest)
+    throw py::value_error(
+        "fit_truth shifts the truth's clock, so that it is interpolated; leave sampling='nearest' away");
+  options.fit_truth = fit_truth;
   for (const py::handle item : deltas) {
     RpeDelta delta;
     const auto text = item.cast<std::string>();
@@ -67,9 +71,9 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
 
 std::string evaluate_json(const std::string& truth_path, const py::object& estimated,
                           const std::string& sampling, double max_difference_s, double offset_s,
-                          const py::iterable& deltas, std::pair<double, double> truth_sigma) {
-  const EvaluationOptions options =
-      options_of(sampling, max_difference_s, offset_s, deltas, truth_sigma.first, truth_sigma.second);
+                          const py::iterable& deltas, std::pair<double, double> truth_sigma, bool fit_truth) {
+  const EvaluationOptions options = options_of(sampling, max_difference_s, offset_s, deltas,
+                                               truth_sigma.first, truth_sigma.second, fit_truth);
   Trajectory truth;
   throw_unless_ok(is_recording(truth_path) ? read_true_poses(truth_path, {}, truth)
                                            : read_trajectory({truth_path, {}, {}}, truth));
