@@ -27,6 +27,10 @@ CommonPoses common_poses(const Trajectory& first, const Trajectory& second) {
   return common;
 }
 
+Vector2 products(const Vector6& a, const Vector6& b) {
+  return {a.head<3>().dot(b.head<3>()), a.tail<3>().dot(b.tail<3>())};
+}
+
 double rms(double sum_of_squares, double count) { return std::sqrt(sum_of_squares / count); }
 
 // Of a pose in each axis, when `product` sums e_aᵀ e_b over motions, which have two poses and three axes.
@@ -36,33 +40,36 @@ double sigma_of(double product, double motions) {
 
 }  // namespace
 
+void CommonErrors::add(const Vector6& first, const Vector6& second) {
+  first_squares_ += products(first, first);
+  second_squares_ += products(second, second);
+  products_ += products(first, second);
+  ++motions_;
+}
+
+TruthNoise CommonErrors::noise() const {
+  if (motions_ == 0) return {};
+  const auto n = static_cast<double>(motions_);
+  return {motions_,
+          rms(first_squares_[0], n),
+          rms(first_squares_[1], n),
+          rms(second_squares_[0], n),
+          rms(second_squares_[1], n),
+          {sigma_of(products_[0], n), sigma_of(products_[1], n)}};
+}
+
 TruthNoise truth_noise(const Trajectory& ground_truth, const Trajectory& first, const Trajectory& second,
                        const TruthSampling& sampling) {
   const CommonPoses common = common_poses(first, second);
   const SampledPoses truth = sample(ground_truth, common.stamps_ns, sampling);
-  TruthNoise noise;
-  Vector2 squares_a = Vector2::Zero(), squares_b = Vector2::Zero(), product = Vector2::Zero();
+  CommonErrors errors;
   for (std::size_t i = 1; i < common.stamps_ns.size(); ++i) {
     if (!truth.valid[i - 1] || !truth.valid[i]) continue;
     const Se3 motion = truth.poses[i].inverse() * truth.poses[i - 1];
-    const Vector6 a = boxminus(common.first[i].inverse() * common.first[i - 1], motion);
-    const Vector6 b = boxminus(common.second[i].inverse() * common.second[i - 1], motion);
-    const auto parts = [](const Vector6& u, const Vector6& v) {
-      return Vector2(u.head<3>().dot(v.head<3>()), u.tail<3>().dot(v.tail<3>()));
-    };
-    squares_a += parts(a, a);
-    squares_b += parts(b, b);
-    product += parts(a, b);
-    ++noise.motions;
+    errors.add(boxminus(common.first[i].inverse() * common.first[i - 1], motion),
+               boxminus(common.second[i].inverse() * common.second[i - 1], motion));
   }
-  if (noise.motions == 0) return noise;
-  const auto n = static_cast<double>(noise.motions);
-  noise.first_m = rms(squares_a[0], n);
-  noise.first_rad = rms(squares_a[1], n);
-  noise.second_m = rms(squares_b[0], n);
-  noise.second_rad = rms(squares_b[1], n);
-  noise.sigma = {sigma_of(product[0], n), sigma_of(product[1], n)};
-  return noise;
+  return errors.noise();
 }
 
 }  // namespace plvo::eval

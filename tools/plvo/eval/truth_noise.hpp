@@ -11,7 +11,7 @@
 namespace plvo::eval {
 
 struct TruthNoise {
-  std::size_t motions = 0;  // from one common stamp to the next
+  std::size_t motions = 0;
   // RMS errors of these motions against the truth (m, rad).
   double first_m = 0, first_rad = 0;
   double second_m = 0, second_rad = 0;
@@ -19,7 +19,19 @@ struct TruthNoise {
   TruthSigma sigma;
 };
 
-// Of the motions between poses that both estimates have, and the truth.
+// Sums up the errors of two estimates of the same motions against the truth.
+class CommonErrors {
+ public:
+  void add(const Vector6& first, const Vector6& second);
+  TruthNoise noise() const;
+
+ private:
+  std::size_t motions_ = 0;
+  // Of translation and of rotation.
+  Vector2 first_squares_ = Vector2::Zero(), second_squares_ = Vector2::Zero(), products_ = Vector2::Zero();
+};
+
+// Of the motions from one stamp that both estimates have, and the truth, to the next.
 TruthNoise truth_noise(const Trajectory& ground_truth, const Trajectory& first, const Trajectory& second,
                        const TruthSampling& sampling);
 
