@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """plvo.evaluate says what `plvo eval --json` says."""
 import json
+import math
 import os
 import subprocess
 
@@ -51,6 +52,24 @@ def test_of_results(walk, tracked):
                        tracked / "m")
     assert "rpe" in found and "ate_m" in found
     assert close(found, expected)
+
+
+def test_the_truth_is_fitted(walk, tracked, tmp_path):
+    def rows(delay):
+        for i in range(500):
+            a, b, c = (0.2 * math.sin(0.01 * i * f) for f in (2.1, 1.7, 2.9))
+            w = math.sqrt(1 - a * a - b * b - c * c)
+            yield f"{0.01 * i + delay:.6f} {a} {b} {c} {a} {b} {c} {w}\n"
+
+    (tmp_path / "groundtruth.txt").write_text("".join(rows(0.02)))
+    (tmp_path / "t").write_text("".join(rows(0)))
+    found = plvo.evaluate(tmp_path / "groundtruth.txt", tmp_path / "t", fit_truth=True)
+    assert found == command(tmp_path, tmp_path, "--fit-truth")
+    assert found["truth_fit"]["clock_ms"] == pytest.approx(20, abs=0.1)
+    with pytest.raises(plvo.Error, match="the truth cannot be fitted"):  # too short
+        plvo.evaluate(walk, tracked / "t", fit_truth=True)
+    with pytest.raises(ValueError, match="interpolated"):
+        plvo.evaluate(walk, tracked / "t", sampling="nearest", fit_truth=True)
 
 
 def test_errors_are_the_librarys_words(walk, tracked, tmp_path):

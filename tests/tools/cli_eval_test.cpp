@@ -186,6 +186,63 @@ TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
   EXPECT_GT(json["nees_second"]["mean"].get<double>(), json["nees_second"]["mean_band_95"][1].get<double>());
 }
 
+// The truth's camera is turned by half a degree and its clock 20 ms late: a perfect estimate is charged with
+// it, and no more once it is fitted.
+TEST_F(CliEvalFiles, ATruthThatIsTurnedAndLateIsFitted) {
+  const Matrix3 turn = rotation_exp(Vector3(0.003, -0.006, 0.005));
+  const auto exact = [](int i) {
+    const double t = 0.01 * i;
+    return Se3{
+        rotation_exp(Vector3(0.3 * std::sin(2.1 * t), 0.4 * std::sin(1.7 * t), 0.3 * std::sin(2.9 * t))),
+        Vector3(0.3 * std::sin(1.3 * t), 0.2 * std::sin(2.3 * t), 0)};
+  };
+  std::string truth, estimate, motions;
+  for (int i = 0; i < 1000; ++i) {
+    const Se3 T = exact(i);
+    truth += trajectory_line((i + 2) * 10'000'000LL, {T.R * turn.transpose(), T.t}) + '\n';
+    if (i % 4 != 0) continue;
+    estimate += trajectory_line(i * 10'000'000LL, T) + '\n';
+    if (i == 0) continue;
+    TrackResult result;
+    result.stamp_ns = i * 10'000'000LL;
+    result.reference_stamp_ns = (i - 4) * 10'000'000LL;
+    result.T_camera_reference = T.inverse() * exact(i - 4);
+    result.motion_covariance = 1e-8 * Matrix6::Identity();
+    motions += motion_line(result) + '\n';
+  }
+  write_file(folder_ / "gt.txt", truth);
+  write_file(folder_ / "est.txt", estimate);
+  write_file(folder_ / "motions.txt", motions);
+  const std::string more = "--est-motions " + (folder_ / "motions.txt").string();
+  const auto plain = nlohmann::json::parse(eval(more + " --json -").out);
+  const auto fitted = nlohmann::json::parse(eval(more + " --fit-truth --json -").out);
+  EXPECT_FALSE(plain.contains("truth_fit"));
+  EXPECT_NEAR(fitted["truth_fit"]["rotation_deg"][1].get<double>(), -0.006 * 57.29578, 0.01);
+  EXPECT_LT(fitted["truth_fit"]["rotation_sigma_deg"][1].get<double>(), 0.01);
+  EXPECT_NEAR(fitted["truth_fit"]["clock_ms"].get<double>(), 20, 0.1);
+  EXPECT_LT(fitted["truth_fit"]["clock_sigma_ms"].get<double>(), 0.1);
+  const auto second = [](const nlohmann::json& json) {
+    return json["rpe"][1]["rotation_deg"]["rmse"].get<double>();
+  };
+  EXPECT_EQ(fitted["truth_fit"]["second_before"]["rotation_deg"]["rmse"], second(plain));
+  EXPECT_GT(second(plain), 0.1);
+  EXPECT_LT(second(fitted), 0.01);
+  EXPECT_GT(plain["nees_second"]["mean"].get<double>(), 6);
+  EXPECT_LT(fitted["nees_second"]["mean"].get<double>(), 6);
+  EXPECT_LT(fitted["ate_m"]["max"].get<double>(), 1e-3);
+  EXPECT_NE(eval("--fit-truth").out.find("truth fitted to the estimate"), std::string::npos);
+  const CommandResult nearest = eval("--fit-truth --gt-sampling nearest");
+  EXPECT_EQ(nearest.exit_code, 2);
+  EXPECT_NE(nearest.err.find("leave --gt-sampling nearest away"), std::string::npos) << nearest.err;
+}
+
+TEST_F(CliEvalFiles, TooShortARecordingIsNotFitted) {
+  const CommandResult r = eval("--fit-truth");
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("the truth cannot be fitted"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("take a longer recording"), std::string::npos) << r.err;
+}
+
 TEST_F(CliEvalFiles, MissingAndDamagedFilesAreOneLine) {
   for (const char* more : {"--est-covariance /nowhere", "--est-motions /nowhere", "--est /nowhere"}) {
     const CommandResult r = run_command(

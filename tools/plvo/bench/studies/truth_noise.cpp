@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the ground truth of a recording is off itself, from estimates that err independently of each other.
 // docs/evaluation.md shows what it said.
-//   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…   of every pair, from frame to frame
-//   truth_noise --returns SEQUENCE CAMERA_MODEL      of points and lines, where the camera comes back to a
-//   view
+//   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…            of every pair, from frame to frame
+//   truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]  of points and lines, where the camera comes
+//   back
+//                                                             to a view; the truth fitted to the trajectory
 // Each prints a Markdown table on standard output.
 #include <fmt/core.h>
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "plvo/eval/relative_error.hpp"
+#include "plvo/eval/truth_fit.hpp"
 #include "plvo/eval/truth_noise.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/odometry/odometry.hpp"
@@ -172,13 +174,25 @@ Status measure(const Recorded& recorded, const CameraModel& camera, const std::v
   return status;
 }
 
-int study_returns(const std::string& sequence, const std::string& camera_model) {
+// Puts right what is constantly wrong with it.
+Status fit_to(const std::string& file, eval::Trajectory& ground_truth) {
+  eval::Trajectory estimate;
+  eval::TruthFit fit;
+  Status status = read_trajectory({file, {}, {}}, estimate);
+  if (status.ok()) status = fit_truth(ground_truth, estimate, 0, fit);
+  if (status.ok()) ground_truth = corrected(ground_truth, fit);
+  return status;
+}
+
+int study_returns(const std::string& sequence, const std::string& camera_model,
+                  const std::string& fitted_to) {
   Recorded recorded{sequence, {}};
   RecordedCamera camera;
   eval::Trajectory ground_truth;
   Status status = named_calibration(camera_model, recorded.calibration);
   if (status.ok()) status = camera.open(recorded.folder, recorded.calibration);
   if (status.ok()) status = read_ground_truth(recorded.folder, {}, ground_truth);
+  if (status.ok() && !fitted_to.empty()) status = fit_to(fitted_to, ground_truth);
   if (!status.ok()) return fail(std::string(status.message()));
   std::vector<std::int64_t> stamps;
   for (const ImagePair& pair : camera.index().pairs) stamps.push_back(pair.colour.stamp_ns);
@@ -204,13 +218,15 @@ int study_returns(const std::string& sequence, const std::string& camera_model) 
 }  // namespace plvo::bench
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 3 && words[0] == "--returns") return plvo::bench::study_returns(words[1], words[2]);
-  if (words.size() < 3 || words[0].starts_with("--")) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const bool returns = !words.empty() && words[0] == "--returns";
+  if (words.size() < 3 || (returns && words.size() > 4)) {
     fmt::print(stderr,
                "usage: truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY...\n"
-               "       truth_noise --returns SEQUENCE CAMERA_MODEL\n");
+               "       truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]\n");
     return 2;
   }
-  return plvo::bench::study_frames(words);
+  if (!returns) return plvo::bench::study_frames(words);
+  words.resize(4);
+  return plvo::bench::study_returns(words[1], words[2], words[3]);
 }
