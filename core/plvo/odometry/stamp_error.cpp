@@ -12,7 +12,8 @@ Matrix6 moved_by(const Vector6& rate, double sigma_s) {
 // What leads out of the camera turns against the scene.
 Vector6 out_of_camera(const Matrix3& R, const Vector6& velocity) {
   Vector6 rate;
-  rate << -(R * velocity.head<3>()), -(R * velocity.tail<3>());
+  rate.head<3>() = -(R * velocity.head<3>());
+  rate.tail<3>() = -(R * velocity.tail<3>());
   return rate;
 }
 
@@ -24,9 +25,8 @@ Matrix6 stamp_covariance_of_pose(const Se3& T_world_camera, const Vector6& veloc
 
 Matrix6 stamp_covariance_of_motion(const Se3& T_current_reference, const Vector6& current_velocity,
                                    const Vector6& reference_velocity, double stamp_sigma_s) {
-  const Vector3 omega = current_velocity.tail<3>();
-  Vector6 rate;
-  rate << current_velocity.head<3>() + skew(omega) * T_current_reference.t, omega;
+  Vector6 rate = current_velocity;
+  rate.head<3>() += skew(current_velocity.tail<3>()) * T_current_reference.t;
   return moved_by(rate, stamp_sigma_s) +
          moved_by(out_of_camera(T_current_reference.R, reference_velocity), stamp_sigma_s);
 }
