@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the ground truth of a recording is off itself, from estimates that err independently of each other.
 // docs/evaluation.md shows what it said.
-//   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…            of every pair, from frame to frame
-//   truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]  of points and lines, where the camera comes
-//   back
-//                                                             to a view; the truth fitted to the trajectory
-// Each prints a Markdown table on standard output.
+//   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…
+// of every pair of trajectories, from frame to frame;
+//   truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]
+// of points and of lines, where the camera comes back to a view, the truth fitted to the trajectory if one is
+// given. Each prints a Markdown table on standard output.
 #include <fmt/core.h>
 
 #include <algorithm>
