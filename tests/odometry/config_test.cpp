@@ -93,6 +93,7 @@ std::vector<Entry> all_entries() {
           PLVO_ENTRY(noise.point_correlation),
           PLVO_ENTRY(noise.line_correlation),
           PLVO_ENTRY(noise.surface_correlation),
+          PLVO_ENTRY(noise.repeated_share),
           PLVO_ENTRY(noise.depth_moment_s),
           PLVO_ENTRY(noise.depth_offset_m),
           PLVO_ENTRY(motion.inlier_probability),

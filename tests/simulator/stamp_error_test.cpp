@@ -6,10 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "plvo/math/cholesky.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
-#include "simulator_support.hpp"
+#include "tracked_walk.hpp"
 
 namespace plvo {
 namespace {
@@ -47,71 +46,41 @@ TEST(StampError, OfAMotionIsThatOfBothItsEnds) {
   EXPECT_LT((C - expected).norm(), 1e-6 * expected.norm());
 }
 
-struct Tracked {
-  std::vector<TrackResult> results;
-  double nees_motion = 0,
-         nees_pose = 0;  // means, against the truth at the stamps; 6 if the covariance is true
-};
-
-double nees(const Vector6& error, const Matrix6& covariance) {
-  Cholesky<6> cholesky;
-  EXPECT_TRUE(cholesky.factor(covariance));
-  return error.dot(cholesky.solve(error));
-}
-
 // A walk whose stamps err by kSigma_s, tracked by an odometry that is told so, or not.
-Tracked track_walk(double stamp_sigma_s) {
+test::TrackedWalk walk_with_stamps(double stamp_sigma_s) {
   constexpr int kFrames = 40;
-  SimulatorOptions options = test::small_options(SceneName::kDesk);
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
-  options.frames = kFrames;
-  std::unique_ptr<SimulatedCamera> camera;
-  EXPECT_TRUE(SimulatedCamera::create(options, camera).ok());
-  CameraModel model = camera->model();
-  model.stamp_sigma_s = stamp_sigma_s;
-  const Limits limits = Limits::qvga();
-  std::vector<std::byte> memory(required_bytes(limits));
-  Odometry odometry;
-  const Status status = odometry.init(memory, model, Config{}, limits);
-  EXPECT_TRUE(status.ok()) << status.message();
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
-  Tracked tracked;
-  std::vector<Se3> truth;
-  RgbdFrame frame;
-  while (camera->next(frame).ok()) {
-    // The world is where the first frame was exposed, whatever its stamp: that one is right.
-    if (!truth.empty()) frame.stamp_ns += static_cast<std::int64_t>(1e9 * kSigma_s * normal(random));
-    truth.push_back(camera->ground_truth(frame.stamp_ns));
-    const TrackResult result = odometry.track(frame);
-    EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
-    tracked.results.push_back(result);
-    if (result.state != TrackState::kTracking) continue;
-    std::size_t reference = 0;
-    while (tracked.results[reference].stamp_ns != result.reference_stamp_ns) ++reference;
-    const Vector6 of_motion = boxminus(result.T_camera_reference, truth.back().inverse() * truth[reference]);
-    tracked.nees_motion += nees(of_motion, result.motion_covariance) / (kFrames - 1);
-    const Vector6 of_pose = boxminus(result.T_world_camera, truth.front().inverse() * truth.back());
-    tracked.nees_pose += nees(of_pose, result.pose_covariance) / (kFrames - 1);
+  return test::track_walk(SceneName::kDesk, kFrames, Config{}, stamp_sigma_s,
+                          [&] { return static_cast<std::int64_t>(1e9 * kSigma_s * normal(random)); });
+}
+
+struct Means {
+  double of_motion = 0, of_pose = 0;  // 6 if the covariance is true
+};
+
+Means mean_nees(const test::TrackedWalk& walk) {
+  Means means;
+  double tracked = 0;
+  for (std::size_t i = 0; i < walk.results.size(); ++i) {
+    if (walk.results[i].state != TrackState::kTracking) continue;
+    means.of_motion += walk.nees_of_motion(i);
+    means.of_pose += walk.nees_of_pose(i);
+    ++tracked;
   }
-  return tracked;
+  return {means.of_motion / tracked, means.of_pose / tracked};
 }
 
 TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
-  const Tracked told = track_walk(kSigma_s), not_told = track_walk(0);
-  ASSERT_EQ(told.results.size(), not_told.results.size());
-  for (std::size_t i = 0; i < told.results.size(); ++i) {
-    EXPECT_EQ(told.results[i].T_world_camera.t, not_told.results[i].T_world_camera.t) << i;
-    EXPECT_EQ(told.results[i].T_world_camera.R, not_told.results[i].T_world_camera.R) << i;
-  }
-  EXPECT_GT(not_told.nees_motion, 60);
-  EXPECT_GT(told.nees_motion, 2);
-  EXPECT_LT(told.nees_motion, 10);
-  EXPECT_GT(not_told.nees_pose, 60);
-  EXPECT_GT(told.nees_pose, 2);
-  EXPECT_LT(told.nees_pose, 10);
+  const test::TrackedWalk told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
+  test::expect_same_poses(told, not_told);
+  const Means with = mean_nees(told), without = mean_nees(not_told);
+  EXPECT_GT(without.of_motion, 30);
+  EXPECT_GT(with.of_motion, 1);
+  EXPECT_LT(with.of_motion, 10);
+  EXPECT_GT(without.of_pose, 30);
+  EXPECT_GT(with.of_pose, 1);
+  EXPECT_LT(with.of_pose, 10);
 }
 
 TEST(StampError, StaysWithTheLastGoodPose) {

@@ -107,6 +107,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     shared.value = estimate.shared.value;
     for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
       estimate.information[kind] = problem.information(kind);
+    estimate.references = problem.references();
   }
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||

@@ -86,6 +86,7 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   gain_.setZero();
   candidate_gain_.setZero();
   for (Matrix6& information : information_) information.setZero();
+  of_references_ = {};
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
     sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind]);
@@ -99,7 +100,11 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   const MotionsToCurrent motions = motions_to_current(candidate_, references_);
   sum_.set_zero();
   double cost = 0;
-  for (std::size_t r = 0; r < kMaxReferences; ++r) cost += add_reference(r, motions[r]);
+  for (std::size_t r = 0; r < kMaxReferences; ++r) {
+    cost += add_reference(r, motions[r]);
+    if (r == 0) candidate_of_references_.base = sum_.H.block<6, 6>(0, 0);
+  }
+  candidate_of_references_.others = sum_.H.block<6, 6>(0, 0) - candidate_of_references_.base;
   if (shared_.any()) cost += eliminate_shared();
   H = sum_.H.block<6, 6>(0, 0);
   g = sum_.g.head<6>();
@@ -188,6 +193,7 @@ void MotionProblem::accept() {
   inverse_ = candidate_inverse_;
   gain_ = candidate_gain_;
   information_ = candidate_information_;
+  of_references_ = candidate_of_references_;
 }
 
 }  // namespace plvo

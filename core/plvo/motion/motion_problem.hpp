@@ -9,6 +9,7 @@
 
 #include "plvo/math/levenberg_marquardt.hpp"
 #include "plvo/motion/constraint_set.hpp"
+#include "plvo/motion/repeated_error.hpp"
 
 namespace plvo {
 
@@ -60,6 +61,8 @@ class MotionProblem {
   // The Schur complement of one kind at the accepted state, the shared errors taken for known: C_P⁻¹ (14),
   // C_L⁻¹ (19). Of the first kInformedKinds sets.
   const Matrix6& information(std::size_t kind) const { return information_[kind]; }
+  // Of all sets at the accepted state, the shared errors taken for known.
+  const ReferenceInformation& references() const { return of_references_; }
 
  private:
   using SharedMatrix = Matrix<SharedErrors::kCount, SharedErrors::kCount>;
@@ -83,6 +86,7 @@ class MotionProblem {
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
   std::array<Matrix6, kInformedKinds> information_, candidate_information_;
+  ReferenceInformation of_references_, candidate_of_references_;
   // What a linearisation sums up: of all references, of one, of one kind of it.
   JointInformation sum_, of_reference_, of_kind_;
 };

@@ -89,6 +89,7 @@ void check(RangeCheck& ranges, const NoiseConfig& noise) {
   ranges.require("noise.point_correlation", noise.point_correlation, 0, 1);
   ranges.require("noise.line_correlation", noise.line_correlation, 0, 1);
   ranges.require("noise.surface_correlation", noise.surface_correlation, 0, 1);
+  ranges.require("noise.repeated_share", noise.repeated_share, 0, 1);
   ranges.require("noise.depth_moment_s", noise.depth_moment_s, 0, 1);
   ranges.require("noise.depth_offset_m", noise.depth_offset_m, 0, 1);
 }
@@ -190,7 +191,8 @@ Config Config::paper() {
                   .turning_rad_per_s = 0,
                   .shared_depth_m = 0,
                   .point_correlation = 0,
-                  .line_correlation = 0};
+                  .line_correlation = 0,
+                  .repeated_share = 0};
   config.points.registered = false;
   config.points.sigma_px = 1;
   config.points.depth_reach_px = 0;

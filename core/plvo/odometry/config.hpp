@@ -104,6 +104,8 @@ struct NoiseConfig {
   double point_correlation = 0.1;
   double line_correlation = 0.02;
   double surface_correlation = 0.1;
+  // How much of what matches with a keyframe err is the same in the next frame (repeated_error.hpp).
+  double repeated_share = 0.6;
   // What the samples of surfaces in a depth image share, SD: when it was taken is off by so much, and its
   // depths by so much at 1 m, growing with their square.
   double depth_moment_s = 0.005;

@@ -143,11 +143,16 @@ class Odometry {
     Se3 T_world_camera;
     Matrix6 covariance = Matrix6::Zero();               // of T_world_camera
     Matrix6 covariance_with_gravity = Matrix6::Zero();  // of its error with those of gravity_
-    Matrix6 motion_covariance = Matrix6::Zero();  // of T_camera_keyframe, the keyframe being the present one
     // Per second (exposure.hpp): since the good frame before it, which was motion_ns earlier (0: there is
     // none and the velocity is not known); once the next one is tracked, the mean of both.
     Vector6 velocity = Vector6::Zero();
     std::int64_t motion_ns = 0;
+  };
+  // How uncertain T_frame_keyframe is.
+  struct FromKeyframe {
+    Matrix6 covariance = Matrix6::Zero();  // for weighing it against what is matched with the keyframe
+    Matrix6 repeated = Matrix6::Zero();    // besides: repeated_error.hpp
+    Matrix6 total() const { return covariance + repeated; }
   };
   using References = std::array<Reference, kMaxReferences>;
   static constexpr int kNobody = -1;
@@ -219,7 +224,9 @@ class Odometry {
   // Slots of frames_. Until the first usable frame there is no keyframe.
   int keyframe_ = kNobody;
   int last_ = kNobody;
-  int older_ = kNobody;  // the keyframe before, while it is matched
+  int older_ = kNobody;       // the keyframe before, while it is matched
+  FromKeyframe last_motion_;  // of last_: zero while it is the keyframe, or there is none
+  Matrix6 older_covariance_ = Matrix6::Zero();
   int current_ = 0;
   KeptKeyframes kept_;
   int frames_since_look_back_ = 0;

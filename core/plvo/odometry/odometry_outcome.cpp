@@ -98,9 +98,8 @@ void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
 void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
   report(pose, Vector6::Zero(), result);
   hold(current_, pose);
-  Frame& current = frame(current_);
-  current.motion_covariance.setZero();
-  current.motion_ns = 0;
+  frame(current_).motion_ns = 0;
+  last_motion_ = {};
   result.T_camera_reference = Se3();
   result.motion_covariance.setZero();
   result.state = TrackState::kInitialising;
@@ -128,19 +127,22 @@ void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, Tr
   const MotionEstimate& motion = tracked.motion;
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
+  // Of the last frame until here, of the current one from here on.
+  last_motion_ = {motion.C_H,
+                  repeated_error(motion.references, last_motion_.repeated, config().noise.repeated_share)};
+  const Matrix6 covariance = last_motion_.total();
   HeldPose from = held(keyframe_);
-  HeldPose pose = advance(from, motion.T_current_reference, motion.C_H);
+  HeldPose pose = advance(from, motion.T_current_reference, covariance);
   if (prior.gravity) {
     gravity_.read(*prior.gravity, from, pose);
     move_keyframe(from);
   }
   hold(current_, pose);
-  frame(current_).motion_covariance = motion.C_H;
   note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
   const Vector6& velocity = frame(current_).velocity;
   report(pose, velocity, result);
   result.motion_covariance =
-      motion.C_H + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
+      covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
                                               camera().stamp_sigma_s);
   lost_frames_ = 0;
   sensed_.restart();
@@ -182,9 +184,10 @@ void Odometry::replace_keyframe() {
   const bool window = config().references.policy == ReferencePolicy::kWindow;
   if (window && config().points.registered) {
     const MotionReference last = from_keyframe(last_);
-    frame(keyframe_).motion_covariance = inverse_covariance(last.T_reference_base, last.covariance);
+    older_covariance_ = inverse_covariance(last.T_reference_base, last.covariance);
     older_ = keyframe_;
   }
+  last_motion_ = {};
   keyframe_ = last_;
 }
 
@@ -226,6 +229,7 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   // starts anew at the last good pose.
   kept_.keep(keyframe_);
   keyframe_ = older_ = kNobody;
+  last_motion_ = {};
   current_ = free_slot();
 }
 

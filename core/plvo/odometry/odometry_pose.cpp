@@ -28,6 +28,7 @@ void Odometry::reset() {
     each.features = features;
   }
   keyframe_ = last_ = older_ = kNobody;
+  last_motion_ = {};
   kept_.clear();
   frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
@@ -86,7 +87,7 @@ void Odometry::report(const HeldPose& pose, const Vector6& velocity, TrackResult
 MotionReference Odometry::from_keyframe(int slot) const {
   if (keyframe_ == kNobody || keyframe_ == slot) return {};
   return {frame(slot).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
-          frame(slot).motion_covariance};
+          slot == older_ ? older_covariance_ : last_motion_.covariance};
 }
 
 // The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
@@ -114,7 +115,7 @@ HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result)
   const MotionReference last = from_keyframe(last_);
   result.T_camera_reference = sensed_.T_current_last() * last.T_reference_base;
   result.motion_covariance = compose_covariance(sensed_.T_current_last(), sensed_.covariance(),
-                                                last.T_reference_base, last.covariance);
+                                                last.T_reference_base, last_motion_.total());
   result.reference_stamp_ns = frame(anchor).features.stamp_ns;
   HeldPose from = held(anchor);
   HeldPose pose = advance(from, result.T_camera_reference, result.motion_covariance);

@@ -90,9 +90,10 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
   if (!found) return;
   const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
   const MotionReference from = from_keyframe(last_);
-  move_keyframe(keyframe_ == last_ ? pose
-                                   : advance(pose, from.T_reference_base.inverse(),
-                                             inverse_covariance(from.T_reference_base, from.covariance)));
+  move_keyframe(keyframe_ == last_
+                    ? pose
+                    : advance(pose, from.T_reference_base.inverse(),
+                              inverse_covariance(from.T_reference_base, last_motion_.total())));
   hold(last_, pose);
   kept_.drop(slot);
   report(pose, last.velocity, result);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A keyframe that is kept for long goes on erring alike: what is reported of the motion from it must not get
+// surer with every frame, and the estimate must stay what it is (repeated_error.hpp).
+#include "tracked_walk.hpp"
+
+namespace plvo {
+namespace {
+
+// Mean over the motions from a keyframe that is at least eight frames old; 6 if the covariance is true.
+double nees_of_old_keyframes(const test::TrackedWalk& walk) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < walk.results.size(); ++i) {
+    if (walk.results[i].state != TrackState::kTracking || i < walk.reference(i) + 8) continue;
+    sum += walk.nees_of_motion(i);
+    ++count;
+  }
+  EXPECT_GE(count, 20);
+  return sum / count;
+}
+
+TEST(KeptKeyframe, DoesNotMakeTheCovarianceSurerWithEveryFrame) {
+  Config config, as_if_new;
+  as_if_new.noise.repeated_share = 0;
+  const test::TrackedWalk walk = test::track_walk(SceneName::kBare, 60, config);
+  const test::TrackedWalk other = test::track_walk(SceneName::kBare, 60, as_if_new);
+  test::expect_same_poses(walk, other);
+  const double honest = nees_of_old_keyframes(walk), surer = nees_of_old_keyframes(other);
+  EXPECT_GT(surer, 1.5 * honest);
+  EXPECT_GT(honest, 0.5);
+  EXPECT_LT(honest, 12);
+}
+
+}  // namespace
+}  // namespace plvo
