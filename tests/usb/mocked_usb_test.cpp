@@ -274,7 +274,9 @@ struct FakeAudio {
     for (int i = 0; i < 4; ++i) to.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
   }
   static std::uint32_t get(const std::uint8_t* from) {
-    return from[0] | (from[1] << 8) | (from[2] << 16) | (static_cast<std::uint32_t>(from[3]) << 24);
+    std::uint32_t value = 0;
+    for (int i = 4; i-- > 0;) value = value << 8 | from[i];
+    return value;
   }
   MockBehaviour behaviour() {
     MockBehaviour b;
