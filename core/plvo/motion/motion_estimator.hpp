@@ -36,7 +36,7 @@ struct MotionEstimate {
   std::array<Matrix6, kInformedKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
                                                      Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
                                                      Matrix6::Zero()};
-  ReferenceInformation references;                 // of all kinds
+  ReferenceInformation references;                 // of all kinds, the shared errors taken for known
   SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
