@@ -16,22 +16,21 @@ struct Small {
   std::uint8_t tag = 1;
 };
 
-// What a room does at init: the same code for the Arena and for the sizer.
-template <typename Memory>
-constexpr void carve(Memory& memory, std::size_t n) {
-  (void)memory.template take<std::uint8_t>("pixels", 3 * n + 1);
-  (void)memory.template take<double>("table", n);
+// What a room does at init: the same code with memory and without.
+constexpr void carve(Arena& memory, std::size_t n) {
+  (void)memory.take<std::uint8_t>("pixels", 3 * n + 1);
+  (void)memory.take<double>("table", n);
   {
     ScratchScope scope(memory);
-    (void)memory.template take<std::int16_t>("scratch", 10 * n);
+    (void)memory.take<std::int16_t>("scratch", 10 * n);
     ScratchScope inner(memory);
-    (void)memory.template take<Small>("scratch", n);
+    (void)memory.take<Small>("scratch", n);
   }
-  (void)memory.template take<Small>("records", n);
+  (void)memory.take<Small>("records", n);
 }
 
 constexpr std::size_t carve_bytes(std::size_t n) {
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   carve(sizer, n);
   return sizer.peak();
 }
@@ -54,18 +53,18 @@ class ArenaOf {
 
 bool aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kArenaAlignment == 0; }
 
-TEST(ArenaSizer, CountsAtCompileTime) {
+TEST(CountingArena, CountsAtCompileTime) {
   static_assert(carve_bytes(0) > 0);
   static_assert(carve_bytes(100) > carve_bytes(10));
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   carve(sizer, 100);
   EXPECT_EQ(sizer.peak(), carve_bytes(100));
   EXPECT_LT(sizer.used(), sizer.peak());
 }
 
-TEST(ArenaSizer, AgreesWithTheArenaToTheByte) {
+TEST(CountingArena, AgreesWithTheArenaToTheByte) {
   for (std::size_t n : {0U, 1U, 2U, 63U, 64U, 65U, 1000U}) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     carve(sizer, n);
     ArenaOf exact(sizer.peak());
     carve(exact.arena, n);
@@ -133,9 +132,9 @@ TEST(Arena, ACountWhoseBytesOverflowIsRefused) {
   EXPECT_EQ(owner.arena.used(), 0U);
 }
 
-TEST(ArenaSizer, ACountWhoseBytesOverflowSaturates) {
+TEST(CountingArena, ACountWhoseBytesOverflowSaturates) {
   const std::size_t most = std::numeric_limits<std::size_t>::max();
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   (void)sizer.take<double>("a", most / 8 + 2);
   EXPECT_EQ(sizer.peak(), most / kArenaAlignment * kArenaAlignment);
   (void)sizer.take<double>("a", 100);

@@ -22,7 +22,7 @@ class Owned {
   Pyramid pyramid;
 
   static constexpr std::size_t bytes(int width, int height) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     Pyramid counted;
     counted.carve(sizer, width, height);
     return sizer.peak() + kArenaAlignment;

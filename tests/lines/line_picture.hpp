@@ -110,7 +110,7 @@ class DetectorRig {
 
  private:
   static std::size_t pyramid_bytes(int width, int height) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     Pyramid pyramid;
     pyramid.carve(sizer, width, height);
     return sizer.peak();

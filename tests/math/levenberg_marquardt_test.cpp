@@ -73,6 +73,22 @@ TEST(LevenbergMarquardt, WalksDownTheCurvedValley) {
       << "one pass over the residuals per iteration, and one to begin";
 }
 
+// What small code does.
+TEST(LevenbergMarquardt, AProblemWhoseTypeIsForgottenIsSolvedAlike) {
+  LmOptions options;
+  options.max_iterations = 50;
+  Rosenbrock known, forgotten;
+  LevenbergMarquardt<2> of_known, of_any;
+  LmAnyProblem<2> any(forgotten);
+  const LmSummary expected = of_known.solve(known, options);
+  const LmSummary summary = of_any.solve(any, options);
+  EXPECT_EQ(summary.status, expected.status);
+  EXPECT_EQ(summary.iterations, expected.iterations);
+  EXPECT_EQ(forgotten.x, known.x);
+  EXPECT_EQ(forgotten.calls, known.calls);
+  EXPECT_EQ(of_any.hessian(), of_known.hessian());
+}
+
 TEST(LevenbergMarquardt, HessianIsThatOfTheFinalState) {
   Rosenbrock problem;
   LevenbergMarquardt<2> solver;

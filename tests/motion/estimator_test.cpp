@@ -234,7 +234,7 @@ TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
   Gaussian gaussian(21);
   const SimulatedPair pair = test::simulate(gaussian, 100, 30);
   constexpr std::size_t kNeeded = [] {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     size_motion(sizer, 1, 100, 30);
     return sizer.peak();
   }();

@@ -128,7 +128,7 @@ TEST(ResidualScales, GiveTheirScratchBackAndReserveEnoughOfIt) {
   Limits limits;
   limits.keypoints = 300;
   limits.segments = 100;
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   reserve_noise_learning(sizer, limits);
   const SimulatedPair pair = simulate(24, limits.keypoints, limits.segments, {});
   Bench bench;

@@ -40,7 +40,7 @@ class DetectorFrame {
 
  private:
   static std::size_t bytes() {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     Pyramid counted;
     counted.carve(sizer, kWidth, kHeight);
     return sizer.peak() + kArenaAlignment;
@@ -57,7 +57,7 @@ struct Detection {
 };
 
 Detection detect(const DetectorFrame& frame, const DetectorConfig& options, std::size_t capacity) {
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   reserve_detection(sizer, kWidth, kHeight);
   std::vector<std::byte> memory(sizer.peak() + kArenaAlignment);
   Arena scratch(memory);

@@ -17,7 +17,7 @@ constexpr int kViewHeight = 250;
 constexpr int kCapacity = 400;
 
 constexpr std::size_t scratch_bytes() {
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   reserve_point_match(sizer, kCapacity, kViewWidth, kViewHeight);
   return sizer.peak() + kArenaAlignment;
 }

@@ -23,8 +23,7 @@ struct Rooms {
   ReferenceTracking tracking;
   std::array<FrameFeatures, 2> frames;
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Arena& memory, const Limits& limits) {
     for (FrameFeatures& frame : frames) frame.carve(memory, limits);
     extraction.carve(memory, limits);
     tracking.carve(memory, limits);
@@ -74,7 +73,7 @@ class Pairs {
 
  private:
   static std::size_t bytes() {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     Rooms rooms;
     rooms.carve(sizer, Limits::vga());
     FeatureExtraction::reserve(sizer, Limits::vga());

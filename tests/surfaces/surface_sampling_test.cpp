@@ -84,7 +84,7 @@ TEST(SurfaceSampling, WithoutRoomThereAreNone) {
   Room room(0);
   room.sample(wall_and_floor());
   EXPECT_TRUE(room.features.samples.empty());
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   reserve_surface_sampling(sizer, kImageWidth, kImageHeight, 0);
   EXPECT_EQ(sizer.peak(), 0U);
 }

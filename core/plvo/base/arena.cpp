@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/base/arena.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 namespace plvo {
@@ -14,14 +15,18 @@ Arena::Arena(std::span<std::byte> memory) {
 }
 
 std::byte* Arena::take_bytes(const char* who, std::size_t aligned_bytes) {
+  if (counts_) {
+    add(std::min(aligned_bytes, capacity_ - used_));
+    return nullptr;
+  }
   if (base_ == nullptr || aligned_bytes > capacity_ - used_) {
     exhausted_ = true;
     return nullptr;
   }
   std::byte* start = base_ + used_;
-  used_ += aligned_bytes;
-  if (used_ > peak_) peak_ = used_;
-  if (!sealed_) record(who, aligned_bytes);
+  add(aligned_bytes);
+  if constexpr (kMaxRecords > 0)
+    if (!sealed_) record(who, aligned_bytes);
   return start;
 }
 

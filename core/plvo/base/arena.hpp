@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only memory of the core: one block that the caller owns. What lives for ever is carved at init, from
 // the front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A
-// component states what it needs by carving from any "memory" with take/mark/rewind: run on an Arena it gets
-// bytes, run on an ArenaSizer (at compile time, if need be) the same code counts them, so the two can never
-// disagree.
+// component states what it needs by carving: from an arena with memory it gets bytes, from one that only
+// counts (at compile time, if need be) the same code adds them up, so the two can never disagree.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +13,8 @@
 #include <new>
 #include <span>
 #include <type_traits>
+
+#include "plvo/base/build.hpp"
 
 namespace plvo {
 
@@ -31,71 +33,66 @@ constexpr std::size_t array_bytes(std::size_t count, std::size_t element_bytes) 
   return align_up(count > most / element_bytes ? most : count * element_bytes);
 }
 
-// Counts what the same calls would take from an Arena. peak() is what the Arena must hold.
-class ArenaSizer {
- public:
-  template <typename T>
-  constexpr std::span<T> take(const char* /*who*/, std::size_t count) {
-    add(array_bytes(count, sizeof(T)));
-    return {};
-  }
-  constexpr std::size_t mark() const { return used_; }
-  constexpr void rewind(std::size_t mark) { used_ = mark; }
-  constexpr std::size_t used() const { return used_; }
-  constexpr std::size_t peak() const { return peak_; }
-
- private:
-  constexpr void add(std::size_t aligned_bytes) {
-    const std::size_t room = align_up(std::numeric_limits<std::size_t>::max()) - used_;
-    used_ += aligned_bytes < room ? aligned_bytes : room;
-    if (used_ > peak_) peak_ = used_;
-  }
-
-  std::size_t used_ = 0;
-  std::size_t peak_ = 0;
-};
-
 class Arena {
  public:
   // Who took what before seal(): the source of docs/memory.md. Names are compared as text; those beyond the
-  // last free record share one named "others".
+  // last free record share one named "others". Small code keeps no records, and no names.
   struct Record {
     const char* who = nullptr;
     std::size_t bytes = 0;
   };
-  static constexpr std::size_t kMaxRecords = 64;
+  static constexpr std::size_t kMaxRecords = kSmallCode ? 0 : 64;
 
-  Arena() = default;
+  Arena() = default;  // room for nothing
   // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
   explicit Arena(std::span<std::byte> memory);
+  // Without memory: every array is empty, and peak() is what an Arena must hold.
+  static constexpr Arena counting() {
+    Arena arena;
+    arena.counts_ = true;
+    arena.capacity_ = align_up(std::numeric_limits<std::size_t>::max());
+    return arena;
+  }
 
   // An array of count elements, or an empty span (and exhausted() from then on) when the block is full. They
   // are default-initialised: members with an initialiser have its value, all others hold what happened to lie
   // there. T is trivially destructible: nothing is ever destroyed here, only rewound.
   template <typename T>
-  std::span<T> take(const char* who, std::size_t count) {
+  constexpr std::span<T> take(const char* who, std::size_t count) {
     static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);
-    std::byte* bytes = take_bytes(who, array_bytes(count, sizeof(T)));
-    if (bytes == nullptr) return {};
-    T* first = reinterpret_cast<T*>(bytes);
-    for (std::size_t i = 0; i < count; ++i) new (first + i) T;
-    return {first, count};
+    const std::size_t bytes = array_bytes(count, sizeof(T));
+    if (std::is_constant_evaluated()) {  // without memory
+      add(std::min(bytes, capacity_ - used_));
+      return {};
+    }
+    return construct<T>(take_bytes(kSmallCode ? nullptr : who, bytes), count);
   }
 
   // Scratch: take after mark(), give back with rewind(). Stages nest like a stack.
-  std::size_t mark() const { return used_; }
-  void rewind(std::size_t mark) { used_ = mark; }
+  constexpr std::size_t mark() const { return used_; }
+  constexpr void rewind(std::size_t mark) { used_ = mark; }
 
   // Ends the carving of init: later takes are scratch and leave no record.
   void seal() { sealed_ = true; }
 
   bool exhausted() const { return exhausted_; }
-  std::size_t used() const { return used_; }
-  std::size_t peak() const { return peak_; }
+  constexpr std::size_t used() const { return used_; }
+  constexpr std::size_t peak() const { return peak_; }
   std::size_t capacity() const { return capacity_; }
   std::span<const Record> records() const { return {records_.data(), record_count_}; }
 
  private:
+  template <typename T>
+  static std::span<T> construct(std::byte* bytes, std::size_t count) {
+    if (bytes == nullptr) return {};
+    T* first = reinterpret_cast<T*>(bytes);
+    for (std::size_t i = 0; i < count; ++i) new (first + i) T;
+    return {first, count};
+  }
+  constexpr void add(std::size_t aligned_bytes) {
+    used_ += aligned_bytes;
+    if (used_ > peak_) peak_ = used_;
+  }
   // aligned_bytes is a multiple of kArenaAlignment.
   std::byte* take_bytes(const char* who, std::size_t aligned_bytes);
   void record(const char* who, std::size_t aligned_bytes);
@@ -104,6 +101,7 @@ class Arena {
   std::size_t capacity_ = 0;
   std::size_t used_ = 0;
   std::size_t peak_ = 0;
+  bool counts_ = false;
   bool exhausted_ = false;
   bool sealed_ = false;
   std::array<Record, kMaxRecords> records_{};
@@ -111,16 +109,15 @@ class Arena {
 };
 
 // Rewinds the memory to where it stood, whichever way a stage is left.
-template <typename Memory>
 class ScratchScope {
  public:
-  constexpr explicit ScratchScope(Memory& memory) : memory_(memory), mark_(memory.mark()) {}
+  constexpr explicit ScratchScope(Arena& memory) : memory_(memory), mark_(memory.mark()) {}
   constexpr ~ScratchScope() { memory_.rewind(mark_); }
   ScratchScope(const ScratchScope&) = delete;
   ScratchScope& operator=(const ScratchScope&) = delete;
 
  private:
-  Memory& memory_;
+  Arena& memory_;
   std::size_t mark_;
 };
 

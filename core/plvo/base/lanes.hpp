@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight 16-bit integers side by side, and four of 32 bits, in the vector types of GCC and Clang: one register
-// where a processor has such, plain instructions where not, the same bits everywhere. Pass them by reference
-// or inline: how they travel by value differs between boards. What is read in parts is put together in
-// registers: a wide load just behind narrower stores waits for them.
+// where a processor has such, the same bits everywhere. Pass them by reference or inline: how they travel by
+// value differs between boards. What is read in parts is put together in registers: a wide load just behind
+// narrower stores waits for them. Small code has loops in their place (base/lane_loops.hpp): for a processor
+// without such registers compilers write out every lane of every operation.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
+#include "plvo/base/lane_loops.hpp"
+
 namespace plvo {
+
+#ifdef PLVO_SMALL_CODE
+
+using lane_loops::Lanes;
+using lane_loops::WideLanes;
+
+#else
 
 using Lanes = std::int16_t __attribute__((vector_size(16)));
 using WideLanes = std::int32_t __attribute__((vector_size(16)));
@@ -62,6 +72,32 @@ inline __attribute__((always_inline)) void load_halves(const std::int16_t* first
   std::memcpy(&lanes, &words, sizeof lanes);
 }
 
+inline __attribute__((always_inline)) void load(const std::int16_t* from, Lanes& lanes) {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+
+inline __attribute__((always_inline)) void store(const Lanes& lanes, std::int16_t* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+inline __attribute__((always_inline)) void store(const WideLanes& lanes, std::int32_t* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+// Eight numbers of 32 bits.
+inline __attribute__((always_inline)) void store_wide(const Lanes& lanes, std::int32_t* out) {
+  using Eight = std::int32_t __attribute__((vector_size(32)));
+  const Eight eight = __builtin_convertvector(lanes, Eight);
+  std::memcpy(out, &eight, sizeof eight);
+}
+
+// Lane by lane, low becomes the lesser and high the greater of itself and value.
+inline __attribute__((always_inline)) void take_range(const WideLanes& value, WideLanes& low,
+                                                      WideLanes& high) {
+  low = value < low ? value : low;
+  high = value > high ? value : high;
+}
+
 // sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1], which must not pass 32 bits.
 inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {
 #ifdef __SSE2__
@@ -70,5 +106,7 @@ inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes
   for (int i = 0; i < 4; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
 #endif
 }
+
+#endif
 
 }  // namespace plvo

@@ -17,11 +17,10 @@ class Pyramid {
   static constexpr int kMaxLevels = 4;
 
   // Takes ≤ 4/3 × width × height bytes.
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int width, int height) {
+  constexpr void carve(Arena& memory, int width, int height) {
     row_sums_ = take_smoothing_row(memory, width);
     for (int level = 0; level < kMaxLevels; ++level) {
-      storage_[static_cast<std::size_t>(level)] = memory.template take<std::uint8_t>(
+      storage_[static_cast<std::size_t>(level)] = memory.take<std::uint8_t>(
           "pyramid", static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
       width = (width + 1) / 2;
       height = (height + 1) / 2;

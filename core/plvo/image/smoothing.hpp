@@ -12,9 +12,8 @@
 namespace plvo {
 
 // Scratch of both functions: one row of 16-bit sums and its padding.
-template <typename Memory>
-constexpr std::span<std::uint16_t> take_smoothing_row(Memory& memory, int width) {
-  return memory.template take<std::uint16_t>("smoothing row", static_cast<std::size_t>(width) + 16);
+constexpr std::span<std::uint16_t> take_smoothing_row(Arena& memory, int width) {
+  return memory.take<std::uint16_t>("smoothing row", static_cast<std::size_t>(width) + 16);
 }
 
 // out = in ∗ [1 6 15 20 15 6 1]/64 in both directions (σ = 1.22 px), down first and rounded to quarters of a

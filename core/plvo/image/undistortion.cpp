@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/rounding.hpp"
 
 namespace plvo {
 namespace {
-
-using Offsets = std::int32_t __attribute__((vector_size(32)));
 
 constexpr int kWeightBits = 7;  // of a position's fraction in the blend
 constexpr int kLaneBits = 10;   // of a position's fraction within a row of a cell
@@ -111,12 +108,11 @@ std::ptrdiff_t UndistortionMap::locate_plain(const Cell& c, int j, std::ptrdiff_
   constexpr std::int16_t kWeightMask = (1 << kWeightBits) - 1;
   const Lanes fx = (lane_x >> kToWeight) & kWeightMask;
   const Lanes fy = (lane_y >> kToWeight) & kWeightMask;
-  const Offsets offset = __builtin_convertvector(
-      (lane_y >> kLaneBits) * static_cast<std::int16_t>(stride) + (lane_x >> kLaneBits), Offsets);
+  const Lanes offset = (lane_y >> kLaneBits) * static_cast<std::int16_t>(stride) + (lane_x >> kLaneBits);
   const auto at = static_cast<std::size_t>(first);
-  std::memcpy(&row.fx[at], &fx, sizeof fx);
-  std::memcpy(&row.fy[at], &fy, sizeof fy);
-  std::memcpy(&row.offset[at], &offset, sizeof offset);
+  store(fx, &row.fx[at]);
+  store(fy, &row.fy[at]);
+  store_wide(offset, &row.offset[at]);
   return (y >> kFractionBits) * stride + (x >> kFractionBits);
 }
 

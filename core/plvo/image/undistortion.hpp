@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/image_view.hpp"
 
@@ -21,9 +22,8 @@ class UndistortionMap {
   static constexpr int kCell = 8;        // px
 
   // Takes width × height × ¾ bytes.
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int width, int height) {
-    cells_ = memory.template take<Cell>("undistortion map", cells_along(width) * cells_along(height));
+  constexpr void carve(Arena& memory, int width, int height) {
+    cells_ = memory.take<Cell>("undistortion map", cells_along(width) * cells_along(height));
   }
 
   // For a lens without distortion the map stays unused and the images pass through untouched.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/lines/plane_line.hpp"
 #include "plvo/math/cholesky.hpp"
@@ -125,6 +126,9 @@ int find_consensus(Samples& samples, const PlaneLine& line, double threshold) {
   return count;
 }
 
+// Small code has one solver for all: of its six parameters the last four see nothing and stay.
+constexpr int kParameters = kSmallCode ? 6 : 2;
+
 // (9) for the house's Levenberg–Marquardt: the depths (z_a, z_b) at the line's two pixels; A = z_a (t_a, 1),
 // B = z_b (t_b, 1).
 struct EndDepths {
@@ -132,8 +136,9 @@ struct EndDepths {
   PlaneLine line;
   PlaneLine candidate;
 
-  double linearize(const Vector2& step, Matrix2& H, Vector2& g) {
-    candidate = {line.t_a, line.z_a + step.x(), line.t_b, line.z_b + step.y()};
+  double linearize(const Vector<kParameters>& step, Matrix<kParameters, kParameters>& H,
+                   Vector<kParameters>& g) {
+    candidate = {line.t_a, line.z_a + step[0], line.t_b, line.z_b + step[1]};
     if (!(candidate.z_a > 0 && candidate.z_b > 0)) return std::numeric_limits<double>::infinity();
     const Chord chord(candidate);
     double cost = 0, g_a = 0, g_b = 0, h_aa = 0, h_ab = 0, h_bb = 0;
@@ -150,8 +155,12 @@ struct EndDepths {
       h_ab += j_a * j_b * d.inverse_norm2;
       h_bb += j_b * j_b * d.inverse_norm2;
     }
-    H << h_aa, h_ab, h_ab, h_bb;
-    g << g_a, g_b;
+    H = h_aa * Matrix<kParameters, kParameters>::Identity();
+    H(0, 1) = H(1, 0) = h_ab;
+    H(1, 1) = h_bb;
+    g.setZero();
+    g[0] = g_a;
+    g[1] = g_b;
     return 0.5 * cost;
   }
   void accept() { line = candidate; }
@@ -159,7 +168,7 @@ struct EndDepths {
 
 bool refine(const Samples& samples, PlaneLine& line, double& cost) {
   EndDepths problem{samples, line, line};
-  LevenbergMarquardt<2> solver;
+  LevenbergMarquardt<kParameters> solver;
   // The steps shrink quadratically: after one that gained 0.001 of the cost, the next would move the line by
   // less than a hundredth of its own SD.
   const LmOptions options{.max_iterations = 10, .step_tolerance = 1e-6, .cost_tolerance = 1e-3};
@@ -303,8 +312,10 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
 
 }  // namespace
 
-Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken, const Pinhole& pinhole,
-                        const Line3dConfig& config, std::uint64_t seed, Line3d& out) {
+// Apart: the caller's samples of depth are not on the stack beside the fit's.
+[[gnu::noinline]] Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken,
+                                          const Pinhole& pinhole, const Line3dConfig& config,
+                                          std::uint64_t seed, Line3d& out) {
   Line3dReport report;
   report.asked = taken.asked;
   report.with_depth = taken.count;

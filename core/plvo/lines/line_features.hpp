@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/lines/msld.hpp"
@@ -27,12 +28,11 @@ struct LineFeatures {
     lifted = false;
   }
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int capacity) {
+  constexpr void carve(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
-    segments = FixedVector<Segment>(memory.template take<Segment>("line features", n));
-    descriptors = memory.template take<LineDescriptor>("line features", n);
-    lines = memory.template take<Line3d>("line features", n);
+    segments = FixedVector<Segment>(memory.take<Segment>("line features", n));
+    descriptors = memory.take<LineDescriptor>("line features", n);
+    lines = memory.take<Line3d>("line features", n);
   }
 
   std::span<const Segment> segments_3d() const { return segments.span().first(count_3d); }

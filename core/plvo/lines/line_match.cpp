@@ -63,7 +63,7 @@ void match_lines(std::span<const Segment> predicted, std::span<const LineDescrip
                  std::span<const Segment> current, std::span<const LineDescriptor> current_descriptors,
                  const LineMatchConfig& config, Arena& memory, FixedVector<Match>& matches) {
   matches.clear();
-  ScratchScope<Arena> scope(memory);
+  ScratchScope scope(memory);
   const LineMatchScratch scratch = take_line_match_scratch(memory, predicted.size(), current.size());
   if (memory.exhausted()) return;
   for (std::size_t j = 0; j < current.size(); ++j) {

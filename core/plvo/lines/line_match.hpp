@@ -44,13 +44,11 @@ struct LineMatchScratch {
   std::span<LineCandidate> candidates, best_of_current;
   std::span<std::uint16_t> best_of_reference;
 };
-template <typename Memory>
-constexpr LineMatchScratch take_line_match_scratch(Memory& memory, std::size_t references,
+constexpr LineMatchScratch take_line_match_scratch(Arena& memory, std::size_t references,
                                                    std::size_t currents) {
-  return {memory.template take<LinePose>("line match", currents),
-          memory.template take<LineCandidate>("line match", currents),
-          memory.template take<LineCandidate>("line match", currents),
-          memory.template take<std::uint16_t>("line match", references)};
+  return {memory.take<LinePose>("line match", currents), memory.take<LineCandidate>("line match", currents),
+          memory.take<LineCandidate>("line match", currents),
+          memory.take<std::uint16_t>("line match", references)};
 }
 
 // predicted: the reference segments where the motion predicts them in the current image (or where they were,

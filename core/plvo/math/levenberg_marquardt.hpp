@@ -20,6 +20,7 @@
 
 #include <cstdint>
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/types.hpp"
 
@@ -54,11 +55,49 @@ struct LmSummary {
   double final_cost = 0;    // … at the state the problem is left in; never above initial_cost
 };
 
+// A problem whose type is forgotten: small code has one solver for all of N parameters.
+template <int N>
+class LmAnyProblem {
+ public:
+  template <typename Problem>
+  explicit LmAnyProblem(Problem& problem)
+      : problem_(&problem),
+        linearize_([](void* p, const Vector<N>& step, Matrix<N, N>& H, Vector<N>& g) {
+          return static_cast<Problem*>(p)->linearize(step, H, g);
+        }),
+        accept_([](void* p) { static_cast<Problem*>(p)->accept(); }) {}
+
+  double linearize(const Vector<N>& step, Matrix<N, N>& H, Vector<N>& g) {
+    return linearize_(problem_, step, H, g);
+  }
+  void accept() { accept_(problem_); }
+
+ private:
+  void* problem_;
+  double (*linearize_)(void*, const Vector<N>&, Matrix<N, N>&, Vector<N>&);
+  void (*accept_)(void*);
+};
+
 template <int N>
 class LevenbergMarquardt {
  public:
   template <typename Problem>
   LmSummary solve(Problem& problem, const LmOptions& options = {}) {
+    if constexpr (kSmallCode) {
+      LmAnyProblem<N> any(problem);
+      return run(any, options);
+    } else {
+      return run(problem, options);
+    }
+  }
+
+  // H and g at the state where solve() left the problem; g for proofs alone, that it is where solve() says.
+  const Matrix<N, N>& hessian() const { return H_; }
+  const Vector<N>& gradient() const { return g_; }
+
+ private:
+  template <typename Problem>
+  LmSummary run(Problem& problem, const LmOptions& options) {
     LmSummary summary;
     double cost = problem.linearize(Vector<N>::Zero(), H_, g_);
     summary.initial_cost = summary.final_cost = cost;
@@ -107,11 +146,6 @@ class LevenbergMarquardt {
     }
   }
 
-  // H and g at the state where solve() left the problem; g for proofs alone, that it is where solve() says.
-  const Matrix<N, N>& hessian() const { return H_; }
-  const Vector<N>& gradient() const { return g_; }
-
- private:
   static LmSummary finish(LmSummary& summary, LmStatus status) {
     summary.status = status;
     return summary;

@@ -139,6 +139,22 @@ struct Assignment<To, Product<Left, Right, LazyProduct>, Functor, Dense2Dense> {
   }
 };
 
+// A product within an expression is worked out first, and the expression reads the result.
+template <plvo::one_product::Numbers Left, plvo::one_product::Numbers Right>
+requires(plvo::one_product::knows_depth(
+    Left::ColsAtCompileTime)) struct evaluator<Product<Left, Right, LazyProduct>>
+    : evaluator<typename Product<Left, Right, LazyProduct>::PlainObject> {
+  using Result = typename Product<Left, Right, LazyProduct>::PlainObject;
+
+  explicit evaluator(const Product<Left, Right, LazyProduct>& product)
+      : evaluator<Result>(result_), result_(product.rows(), product.cols()) {
+    call_assignment_no_alias(result_, product);
+  }
+
+ private:
+  Result result_;
+};
+
 // Squared norms of matrices; what is shorter than nine entries is no longer than the call.
 template <plvo::one_product::Long Entries>
 struct redux_impl<scalar_sum_op<double, double>, Entries, DefaultTraversal, CompleteUnrolling> {

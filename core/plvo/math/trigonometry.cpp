@@ -4,7 +4,9 @@
 // place.
 #include "plvo/math/trigonometry.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -25,29 +27,29 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 bool in_range(double radians) { return radians >= -kLargestAngle && radians <= kLargestAngle; }
 
+// c_0 z^(N − 1) + … + c_(N − 1), by Horner's rule.
+template <std::size_t N>
+double polynomial(const std::array<double, N>& c, double z) {
+  double sum = c[0];
+  for (std::size_t i = 1; i < N; ++i) sum = c[i] + z * sum;
+  return sum;
+}
+
+constexpr std::array kSine = {
+    1.0 / 355687428096000.0, -1.0 / 1307674368000.0, 1.0 / 6227020800.0, -1.0 / 39916800.0,
+    1.0 / 362880.0,          -1.0 / 5040.0,          1.0 / 120.0,        -1.0 / 6.0};
+constexpr std::array kCosine = {
+    1.0 / 20922789888000.0, -1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0,
+    1.0 / 40320.0,          -1.0 / 720.0,         1.0 / 24.0};
+
 double sin_polynomial(double x) {  // |x| ≤ π/4
   const double z = x * x;
-  double sum = 1.0 / 355687428096000.0;
-  sum = -1.0 / 1307674368000.0 + z * sum;
-  sum = 1.0 / 6227020800.0 + z * sum;
-  sum = -1.0 / 39916800.0 + z * sum;
-  sum = 1.0 / 362880.0 + z * sum;
-  sum = -1.0 / 5040.0 + z * sum;
-  sum = 1.0 / 120.0 + z * sum;
-  sum = -1.0 / 6.0 + z * sum;
-  return x + x * (z * sum);
+  return x + x * (z * polynomial(kSine, z));
 }
 
 double cos_polynomial(double x) {  // |x| ≤ π/4
   const double z = x * x;
-  double sum = 1.0 / 20922789888000.0;
-  sum = -1.0 / 87178291200.0 + z * sum;
-  sum = 1.0 / 479001600.0 + z * sum;
-  sum = -1.0 / 3628800.0 + z * sum;
-  sum = 1.0 / 40320.0 + z * sum;
-  sum = -1.0 / 720.0 + z * sum;
-  sum = 1.0 / 24.0 + z * sum;
-  return 1.0 - 0.5 * z + z * z * sum;
+  return 1.0 - 0.5 * z + z * z * polynomial(kCosine, z);
 }
 
 struct Reduced {
@@ -57,10 +59,10 @@ struct Reduced {
 
 Reduced reduce(double radians) {
   const double turns = radians * (2.0 / kPi);
-  const auto k = round_to<std::int64_t>(turns);
+  const auto k = round_to<std::int32_t>(turns);
   const auto n = static_cast<double>(k);
   const double x = ((radians - n * kHalfPiHigh) - n * kHalfPiMiddle) - n * kHalfPiLow;
-  return {x, static_cast<int>(k & 3)};
+  return {x, k & 3};
 }
 
 double from_bits(std::uint64_t bits) {
@@ -92,14 +94,11 @@ double atan_small(double x) {  // 0 ≤ x ≤ 1
   return kPi / 4 + atan_polynomial((x - 1) / (1 + x));
 }
 
-}  // namespace
-
-double sqrt(double x) { return std::sqrt(x); }
-
-double sin(double radians) {
+// The sine, so many quadrants further on.
+double sin_ahead(double radians, int quadrants) {
   if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
-  switch (r.quadrant) {
+  switch ((r.quadrant + quadrants) % 4) {
     case 0: return sin_polynomial(r.x);
     case 1: return cos_polynomial(r.x);
     case 2: return -sin_polynomial(r.x);
@@ -107,16 +106,12 @@ double sin(double radians) {
   }
 }
 
-double cos(double radians) {
-  if (!in_range(radians)) return kNoNumber;
-  const Reduced r = reduce(radians);
-  switch (r.quadrant) {
-    case 0: return cos_polynomial(r.x);
-    case 1: return -sin_polynomial(r.x);
-    case 2: return -cos_polynomial(r.x);
-    default: return sin_polynomial(r.x);
-  }
-}
+}  // namespace
+
+double sqrt(double x) { return std::sqrt(x); }
+
+double sin(double radians) { return sin_ahead(radians, 0); }
+double cos(double radians) { return sin_ahead(radians, 1); }
 
 double atan2(double y, double x) {
   if (y == 0 && x == 0) return 0;

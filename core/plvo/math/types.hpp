@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
 // In plvo's own files alone (tools/cmake/plvo.cmake): a user's Eigen stays as it is.
 #ifdef PLVO_ROLLED_LOOPS
@@ -11,6 +13,7 @@
 #endif
 #ifdef PLVO_SMALL_CODE
 #include "plvo/math/one_product.hpp"
+#include "plvo/math/written_entries.hpp"
 #endif
 
 namespace plvo {
@@ -29,6 +32,14 @@ using Matrix2 = Matrix<2, 2>;
 using Matrix3 = Matrix<3, 3>;
 using Matrix4 = Matrix<4, 4>;
 using Matrix6 = Matrix<6, 6>;
+
+// Eigen leaves the entries of a matrix without an initialiser as they were.
+template <std::size_t Count>
+std::array<Matrix6, Count> zero_matrices() {
+  std::array<Matrix6, Count> matrices;
+  for (Matrix6& matrix : matrices) matrix.setZero();
+  return matrices;
+}
 
 constexpr bool is_finite(double x) { return x - x == 0; }
 

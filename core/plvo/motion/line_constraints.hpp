@@ -26,6 +26,7 @@
 // the joint problem, as nearly as one step brings the landmark to its optimum there.
 #pragma once
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/math/cholesky.hpp"
@@ -53,12 +54,11 @@ class LineConstraints final : public ConstraintSet {
     std::span<std::uint8_t> inliers, usable;
     std::span<Reference> references;
     std::span<Held> held;
-    template <typename Memory>
-    static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
-      return {memory.template take<std::uint8_t>("motion: line inliers", max_matches),
-              memory.template take<std::uint8_t>("motion: usable lines", max_matches),
-              memory.template take<Reference>("motion: reference lines", max_matches),
-              memory.template take<Held>("motion: lines held", max_matches)};
+    static constexpr Workspace take(Arena& memory, std::size_t max_matches) {
+      return {memory.take<std::uint8_t>("motion: line inliers", max_matches),
+              memory.take<std::uint8_t>("motion: usable lines", max_matches),
+              memory.take<Reference>("motion: reference lines", max_matches),
+              memory.take<Held>("motion: lines held", max_matches)};
     }
   };
 

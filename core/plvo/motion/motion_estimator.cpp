@@ -43,14 +43,17 @@ bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C
 }
 
 // These two are apart, for an estimate on the stack would else be there while the next one is made.
-[[gnu::noinline]] void reset(MotionEstimate& estimate) { estimate = MotionEstimate(); }
+[[gnu::noinline]] void reset(MotionEstimate& estimate) {
+  // In place: 3 kB less of stack than another one to copy from.
+  ::new (static_cast<void*>(&estimate)) MotionEstimate;
+}
 
 // What a failure leaves of an estimate: how it came to it.
-[[gnu::noinline]] void forget_motion(MotionEstimate& estimate) {
+void forget_motion(MotionEstimate& estimate) {
   const StatusCode status = estimate.status;
   const RansacSummary ransac = estimate.ransac;
   const LmSummary lm = estimate.lm;
-  estimate = MotionEstimate();
+  reset(estimate);
   estimate.status = status;
   estimate.ransac = ransac;
   estimate.lm = lm;
@@ -133,7 +136,7 @@ void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReference
     matches += set->size();
     for (std::uint8_t& flag : set->inliers()) flag = 0;
   }
-  const ScratchScope<Arena> scope(arena);
+  const ScratchScope scope(arena);
   const std::span<RansacCandidate> scratch = take_ransac_scratch(arena, matches);
   const std::span<MotionSolver> solver = take_solver(arena);
   reset(estimate);

@@ -32,10 +32,7 @@ struct MotionEstimate {
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
   // Per kind, in the order of the sets, of the first of them: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹
   // (26). Zero for an empty kind.
-  static_assert(kInformedKinds == 7, "Eigen leaves a matrix that has no initialiser as it was");
-  std::array<Matrix6, kInformedKinds> information = {Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
-                                                     Matrix6::Zero(), Matrix6::Zero(), Matrix6::Zero(),
-                                                     Matrix6::Zero()};
+  std::array<Matrix6, kInformedKinds> information = zero_matrices<kInformedKinds>();
   ReferenceInformation references;                 // of all kinds, the shared errors taken for known
   SharedErrorEstimate shared;                      // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
@@ -78,17 +75,15 @@ inline MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets,
   return estimate;
 }
 
-template <typename Memory>
-constexpr std::span<MotionSolver> take_solver(Memory& memory) {
-  return memory.template take<MotionSolver>("motion: solver", 1);
+constexpr std::span<MotionSolver> take_solver(Arena& memory) {
+  return memory.take<MotionSolver>("motion: solver", 1);
 }
 
 // What points, lines, surfaces (of each reference), a sensed motion and estimate_motion take between mark and
 // rewind, for sizing.
-template <typename Memory>
-constexpr void size_motion(Memory& memory, std::size_t references, std::size_t max_points,
+constexpr void size_motion(Arena& memory, std::size_t references, std::size_t max_points,
                            std::size_t max_lines, std::size_t max_surfaces = 0) {
-  const ScratchScope<Memory> scope(memory);
+  const ScratchScope scope(memory);
   for (std::size_t r = 0; r < references; ++r) {
     (void)PointConstraints::Workspace::take(memory, max_points);
     (void)LineConstraints::Workspace::take(memory, max_lines);

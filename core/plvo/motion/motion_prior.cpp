@@ -32,9 +32,8 @@ Status MotionPrior::validate() const {
     return refuse("rotation", "must be a rotation matrix");
   if (rotation && !is_positive_definite_covariance(rotation->covariance))
     return refuse("rotation", kCovariance);
-  if (translation && !(translation->t_now_before.cwiseAbs().maxCoeff() <= kFarthest_m))
-    return refuse("translation", "must be finite and at most 1000 m");
-  if (translation && !translation->t_now_before.allFinite())
+  if (translation && !(translation->t_now_before.allFinite() &&
+                       translation->t_now_before.cwiseAbs().maxCoeff() <= kFarthest_m))
     return refuse("translation", "must be finite and at most 1000 m");
   if (translation && !is_positive_definite_covariance(translation->covariance))
     return refuse("translation", kCovariance);

@@ -7,6 +7,7 @@
 // not an approximation of the joint problem; tests/motion compares it with a dense joint solve.
 #pragma once
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/match.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/motion/constraint_set.hpp"
@@ -17,10 +18,9 @@ class PointConstraints final : public ConstraintSet {
  public:
   struct Workspace {
     std::span<std::uint8_t> inliers, usable;
-    template <typename Memory>
-    static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
-      return {memory.template take<std::uint8_t>("motion: point inliers", max_matches),
-              memory.template take<std::uint8_t>("motion: usable points", max_matches)};
+    static constexpr Workspace take(Arena& memory, std::size_t max_matches) {
+      return {memory.take<std::uint8_t>("motion: point inliers", max_matches),
+              memory.take<std::uint8_t>("motion: usable points", max_matches)};
     }
   };
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <span>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/constraint_set.hpp"
@@ -38,9 +39,8 @@ struct RansacCandidate {
   std::uint16_t index = 0;
 };
 
-template <typename Memory>
-constexpr std::span<RansacCandidate> take_ransac_scratch(Memory& memory, std::size_t max_matches) {
-  return memory.template take<RansacCandidate>("motion: candidates", max_matches);
+constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::size_t max_matches) {
+  return memory.take<RansacCandidate>("motion: candidates", max_matches);
 }
 
 class Ransac {

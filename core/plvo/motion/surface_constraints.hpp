@@ -17,6 +17,7 @@
 // same time however many there are.
 #pragma once
 
+#include "plvo/base/arena.hpp"
 #include "plvo/motion/constraint_set.hpp"
 
 namespace plvo {
@@ -42,11 +43,10 @@ class SurfaceConstraints final : public ConstraintSet {
   struct Workspace {
     std::span<std::uint8_t> inliers;
     std::span<SurfaceForm> form;  // one
-    template <typename Memory>
-    static constexpr Workspace take(Memory& memory, std::size_t max_matches) {
+    static constexpr Workspace take(Arena& memory, std::size_t max_matches) {
       if (max_matches == 0) return {};
-      return {memory.template take<std::uint8_t>("motion: surface inliers", max_matches),
-              memory.template take<SurfaceForm>("motion: surfaces' form", 1)};
+      return {memory.take<std::uint8_t>("motion: surface inliers", max_matches),
+              memory.take<SurfaceForm>("motion: surfaces' form", 1)};
     }
   };
 

@@ -26,13 +26,26 @@ Status check_built(Features features) {
 // Keeps the first number that is outside its range. Each range stands once: the message is made from it.
 class RangeCheck {
  public:
+  // What the entries that follow belong to.
+  void group(const char* name) { group_ = name; }
+
   // Both bounds are allowed; NaN is not.
   void require(const char* entry, double value, double low, double high) {
     if (!status_.ok() || (value >= low && value <= high)) return;
-    status_ = Status(StatusCode::kInvalidArgument, "config: ").append(entry).append(" must lie between ");
+    status_ = Status(StatusCode::kInvalidArgument, "config: ")
+                  .append(group_)
+                  .append(entry)
+                  .append(" must lie between ");
     append_bound(low);
     status_.append(" and ");
     append_bound(high);
+  }
+  // Whole numbers are fewer instructions.
+  void require(const char* entry, double value, int low, int high) {
+    require(entry, value, static_cast<double>(low), static_cast<double>(high));
+  }
+  void require(const char* entry, int value, int low, int high) {
+    require(entry, static_cast<double>(value), low, high);
   }
   const Status& status() const { return status_; }
 
@@ -53,118 +66,132 @@ class RangeCheck {
     }
   }
 
+  const char* group_ = "";
   Status status_;
 };
 
 void check(RangeCheck& ranges, const DepthNoise& noise) {
-  ranges.require("depth_noise.c1", noise.c1, -1, 1);
-  ranges.require("depth_noise.c2", noise.c2, -1, 1);
-  ranges.require("depth_noise.c3", noise.c3, -1, 1);
-  ranges.require("depth_noise.floor_m", noise.floor_m, 1e-6, 1);
-  ranges.require("depth_noise.registration_px", noise.registration_px, 0, 20);
+  ranges.group("depth_noise.");
+  ranges.require("c1", noise.c1, -1, 1);
+  ranges.require("c2", noise.c2, -1, 1);
+  ranges.require("c3", noise.c3, -1, 1);
+  ranges.require("floor_m", noise.floor_m, 1e-6, 1.0);
+  ranges.require("registration_px", noise.registration_px, 0, 20);
 }
 
 void check(RangeCheck& ranges, const PointConfig& points) {
-  ranges.require("points.sigma_px", points.sigma_px, 0.01, 20);
-  ranges.require("points.depth_reach_px", points.depth_reach_px, 0, DepthSampler::kMaxRadius);
-  ranges.require("points.detector.levels", points.detector.levels, 1, Pyramid::kMaxLevels);
-  ranges.require("points.detector.cell_px", points.detector.cell_px, kMinCell, kMaxCell);
-  ranges.require("points.detector.noise_floor", points.detector.noise_floor, 1, 64);
-  ranges.require("points.detector.min_strength", points.detector.min_strength, 0, 1e5);
-  ranges.require("points.match.radius_px", points.match.radius_px, 1, 1000);
-  ranges.require("points.match.max_distance", points.match.max_distance, 0, 256);
-  ranges.require("points.match.max_ratio", points.match.max_ratio, 0.1, 1);
+  ranges.group("points.");
+  ranges.require("sigma_px", points.sigma_px, 0.01, 20.0);
+  ranges.require("depth_reach_px", points.depth_reach_px, 0, DepthSampler::kMaxRadius);
+  ranges.group("points.detector.");
+  ranges.require("levels", points.detector.levels, 1, Pyramid::kMaxLevels);
+  ranges.require("cell_px", points.detector.cell_px, kMinCell, kMaxCell);
+  ranges.require("noise_floor", points.detector.noise_floor, 1, 64);
+  ranges.require("min_strength", points.detector.min_strength, 0, 100000);
+  ranges.group("points.match.");
+  ranges.require("radius_px", points.match.radius_px, 1, 1000);
+  ranges.require("max_distance", points.match.max_distance, 0, 256);
+  ranges.require("max_ratio", points.match.max_ratio, 0.1, 1.0);
 }
 
 void check(RangeCheck& ranges, const NoiseConfig& noise) {
-  ranges.require("noise.initial.image", noise.initial.image, 0.01, 100);
-  ranges.require("noise.initial.depth", noise.initial.depth, 0.01, 100);
-  ranges.require("noise.initial.lines", noise.initial.lines, 0.01, 100);
-  ranges.require("noise.initial.surfaces", noise.initial.surfaces, 0.01, 100);
-  ranges.require("noise.initial.turning", noise.initial.turning, 0.01, 100);
-  ranges.require("noise.initial.shared_depth", noise.initial.shared_depth, 0.01, 100);
-  ranges.require("noise.learning_rate", noise.learning_rate, 0, 0.5);
-  ranges.require("noise.turning_rad_per_s", noise.turning_rad_per_s, 0, 10);
-  ranges.require("noise.shared_depth_m", noise.shared_depth_m, 0, 1);
-  ranges.require("noise.point_correlation", noise.point_correlation, 0, 1);
-  ranges.require("noise.line_correlation", noise.line_correlation, 0, 1);
-  ranges.require("noise.surface_correlation", noise.surface_correlation, 0, 1);
-  ranges.require("noise.repeated_share", noise.repeated_share, 0, 1);
-  ranges.require("noise.depth_moment_s", noise.depth_moment_s, 0, 1);
-  ranges.require("noise.depth_offset_m", noise.depth_offset_m, 0, 1);
+  ranges.group("noise.initial.");
+  ranges.require("image", noise.initial.image, 0.01, 100.0);
+  ranges.require("depth", noise.initial.depth, 0.01, 100.0);
+  ranges.require("lines", noise.initial.lines, 0.01, 100.0);
+  ranges.require("surfaces", noise.initial.surfaces, 0.01, 100.0);
+  ranges.require("turning", noise.initial.turning, 0.01, 100.0);
+  ranges.require("shared_depth", noise.initial.shared_depth, 0.01, 100.0);
+  ranges.group("noise.");
+  ranges.require("learning_rate", noise.learning_rate, 0.0, 0.5);
+  ranges.require("turning_rad_per_s", noise.turning_rad_per_s, 0, 10);
+  ranges.require("shared_depth_m", noise.shared_depth_m, 0, 1);
+  ranges.require("point_correlation", noise.point_correlation, 0, 1);
+  ranges.require("line_correlation", noise.line_correlation, 0, 1);
+  ranges.require("surface_correlation", noise.surface_correlation, 0, 1);
+  ranges.require("repeated_share", noise.repeated_share, 0, 1);
+  ranges.require("depth_moment_s", noise.depth_moment_s, 0, 1);
+  ranges.require("depth_offset_m", noise.depth_offset_m, 0, 1);
 }
 
 void check(RangeCheck& ranges, const Line3dConfig& fit) {
-  ranges.require("lines.fit.max_samples", fit.max_samples, 2, kMaxLineSamples);
-  ranges.require("lines.fit.sample_spacing_px", fit.sample_spacing_px, 1, 1000);
-  ranges.require("lines.fit.min_consensus", fit.min_consensus, 0, 1);
-  ranges.require("lines.fit.min_agreement", fit.min_agreement, 0, 1);
-  ranges.require("lines.fit.sigma_p_px", fit.sigma_p_px, 0.01, 20);
-  ranges.require("lines.fit.inlier_chi_square", fit.inlier_chi_square, 0.1, 100);
-  ranges.require("lines.fit.max_ransac_iterations", fit.max_ransac_iterations, 1, 1000);
-  ranges.require("lines.fit.side_reach_px", fit.side_reach_px, 0, kMaxSideReach);
-  ranges.require("lines.fit.depth_correlation_px", fit.depth_correlation_px, 0.01, 1000);
-  ranges.require("lines.fit.transverse_floor_px", fit.transverse_floor_px, 0, 20);
+  ranges.group("lines.fit.");
+  ranges.require("max_samples", fit.max_samples, 2, kMaxLineSamples);
+  ranges.require("sample_spacing_px", fit.sample_spacing_px, 1, 1000);
+  ranges.require("min_consensus", fit.min_consensus, 0, 1);
+  ranges.require("min_agreement", fit.min_agreement, 0, 1);
+  ranges.require("sigma_p_px", fit.sigma_p_px, 0.01, 20.0);
+  ranges.require("inlier_chi_square", fit.inlier_chi_square, 0.1, 100.0);
+  ranges.require("max_ransac_iterations", fit.max_ransac_iterations, 1, 1000);
+  ranges.require("side_reach_px", fit.side_reach_px, 0, kMaxSideReach);
+  ranges.require("depth_correlation_px", fit.depth_correlation_px, 0.01, 1000.0);
+  ranges.require("transverse_floor_px", fit.transverse_floor_px, 0, 20);
 }
 
 void check(RangeCheck& ranges, const LineMatchConfig& match) {
-  ranges.require("lines.match.max_angle_rad", match.max_angle_rad, 0, 4);
-  ranges.require("lines.match.max_offset_px", match.max_offset_px, 0, 4000);
-  ranges.require("lines.match.min_overlap", match.min_overlap, 0, 1);
-  ranges.require("lines.match.max_distance", match.max_distance, 0, 300000);
-  ranges.require("lines.match.max_ratio", match.max_ratio, 0, 1);
-  ranges.require("lines.match.same_line_px", match.same_line_px, 0, 4000);
-  ranges.require("lines.match.same_line_rad", match.same_line_rad, 0, 4);
+  ranges.group("lines.match.");
+  ranges.require("max_angle_rad", match.max_angle_rad, 0, 4);
+  ranges.require("max_offset_px", match.max_offset_px, 0, 4000);
+  ranges.require("min_overlap", match.min_overlap, 0, 1);
+  ranges.require("max_distance", match.max_distance, 0, 300000);
+  ranges.require("max_ratio", match.max_ratio, 0, 1);
+  ranges.require("same_line_px", match.same_line_px, 0, 4000);
+  ranges.require("same_line_rad", match.same_line_rad, 0, 4);
 }
 
 void check(RangeCheck& ranges, const LineConfig& lines) {
   check(ranges, lines.fit);
   check(ranges, lines.match);
-  ranges.require("lines.guided_offset_px", lines.guided_offset_px, 0, 4000);
-  ranges.require("lines.guided_angle_rad", lines.guided_angle_rad, 0, 4);
+  ranges.group("lines.");
+  ranges.require("guided_offset_px", lines.guided_offset_px, 0, 4000);
+  ranges.require("guided_angle_rad", lines.guided_angle_rad, 0, 4);
 }
 
 void check(RangeCheck& ranges, const MotionConfig& motion) {
-  ranges.require("motion.inlier_probability", motion.inlier_probability, 0.5, 0.99999);
-  ranges.require("motion.ransac_confidence", motion.ransac_confidence, 0.5, 0.999999);
-  ranges.require("motion.max_ransac_iterations", motion.max_ransac_iterations, 1, 100000);
-  ranges.require("motion.min_inliers", motion.min_inliers, 3, 10000);
-  ranges.require("motion.min_inlier_ratio", motion.min_inlier_ratio, 0, 1);
-  ranges.require("motion.max_sigma_m", motion.max_sigma_m, 1e-6, 100);
-  ranges.require("motion.max_sigma_rad", motion.max_sigma_rad, 1e-6, 10);
+  ranges.group("motion.");
+  ranges.require("inlier_probability", motion.inlier_probability, 0.5, 0.99999);
+  ranges.require("ransac_confidence", motion.ransac_confidence, 0.5, 0.999999);
+  ranges.require("max_ransac_iterations", motion.max_ransac_iterations, 1, 100000);
+  ranges.require("min_inliers", motion.min_inliers, 3, 10000);
+  ranges.require("min_inlier_ratio", motion.min_inlier_ratio, 0, 1);
+  ranges.require("max_sigma_m", motion.max_sigma_m, 1e-6, 100.0);
+  ranges.require("max_sigma_rad", motion.max_sigma_rad, 1e-6, 10.0);
 }
 
 void check(RangeCheck& ranges, const ReferenceConfig& references) {
-  ranges.require("references.keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
-  ranges.require("references.window_inlier_ratio", references.window_inlier_ratio, 0, 1);
-  ranges.require("references.older_inlier_ratio", references.older_inlier_ratio, 0, 1);
-  ranges.require("references.wide_search_px", references.wide_search_px, 1, 4000);
-  ranges.require("references.max_lost_frames", references.max_lost_frames, 1, 1000000);
-  ranges.require("references.unseen_m_per_s", references.unseen_m_per_s, 0, 100);
-  ranges.require("references.unseen_rad_per_s", references.unseen_rad_per_s, 0, 100);
-  ranges.require("references.look_back_frames", references.look_back_frames, 1, 1000000);
+  ranges.group("references.");
+  ranges.require("keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
+  ranges.require("window_inlier_ratio", references.window_inlier_ratio, 0, 1);
+  ranges.require("older_inlier_ratio", references.older_inlier_ratio, 0, 1);
+  ranges.require("wide_search_px", references.wide_search_px, 1, 4000);
+  ranges.require("max_lost_frames", references.max_lost_frames, 1, 1000000);
+  ranges.require("unseen_m_per_s", references.unseen_m_per_s, 0, 100);
+  ranges.require("unseen_rad_per_s", references.unseen_rad_per_s, 0, 100);
+  ranges.require("look_back_frames", references.look_back_frames, 1, 1000000);
 }
 
 void check(RangeCheck& ranges, const BudgetConfig& budget) {
-  ranges.require("budget.frame_ns", static_cast<double>(budget.frame_ns), 0, 1e12);
-  ranges.require("budget.patience_frames", budget.patience_frames, 1, 1000000);
-  ranges.require("budget.spare_share", budget.spare_share, 0, 1);
+  ranges.group("budget.");
+  ranges.require("frame_ns", static_cast<double>(budget.frame_ns), 0.0, 1e12);
+  ranges.require("patience_frames", budget.patience_frames, 1, 1000000);
+  ranges.require("spare_share", budget.spare_share, 0, 1);
 }
 
 }  // namespace
 
 Status Limits::validate() const {
   RangeCheck ranges;
-  ranges.require("Limits::width", width, kLeastSide, kMostSide);
-  ranges.require("Limits::height", height, kLeastSide, kMostSide);
-  ranges.require("Limits::keypoints", keypoints, 10, 60000);
-  ranges.require("Limits::segments", segments, 1, 60000);
-  ranges.require("Limits::references", references, 1, kMaxReferences);
-  ranges.require("Limits::line_bands", line_bands, 1, 8);
-  ranges.require("Limits::kept_keyframes", kept_keyframes, 0,
+  ranges.group("Limits::");
+  ranges.require("width", width, kLeastSide, kMostSide);
+  ranges.require("height", height, kLeastSide, kMostSide);
+  ranges.require("keypoints", keypoints, 10, 60000);
+  ranges.require("segments", segments, 1, 60000);
+  ranges.require("references", references, 1, kMaxReferences);
+  ranges.require("line_bands", line_bands, 1, 8);
+  ranges.require("kept_keyframes", kept_keyframes, 0,
                  std::min(kMostKeptKeyframes, kMostOtherFrames - references));
-  ranges.require("Limits::cores", cores, 1, 2);
-  ranges.require("Limits::surfaces", surfaces, 0, 1000);
+  ranges.require("cores", cores, 1, 2);
+  ranges.require("surfaces", surfaces, 0, 1000);
   return ranges.status();
 }
 

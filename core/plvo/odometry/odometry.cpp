@@ -11,8 +11,10 @@ namespace plvo {
 // Here, not in the header: a user's program need not hold its code once more.
 Odometry::Odometry() = default;
 
-Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
-                      const Limits& limits) {
+// init and track stay calls of their own in whatever way a program is put together: what stack they need is
+// stated, and found in its call graph by their names.
+[[gnu::noinline]] Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera,
+                                        const Config& config, const Limits& limits) {
   // In place: another one on the stack, to be copied from, would be all that the stack of a board holds.
   ::new (static_cast<void*>(this)) Odometry;
   if (Status status = camera.validate(); !status.ok()) return status;
@@ -28,9 +30,9 @@ Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera, co
         .append(references);
   if (config.side_by_side && limits.cores < 2)
     return {StatusCode::kInvalidArgument, "config: side_by_side needs Limits::cores = 2"};
-  if (memory.size() < required_bytes(limits))
+  if (const std::size_t bytes = required_bytes(limits); memory.size() < bytes)
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
-        .append(static_cast<std::ptrdiff_t>(required_bytes(limits)))
+        .append(static_cast<std::ptrdiff_t>(bytes))
         .append(" bytes for these Limits, got ")
         .append(static_cast<std::ptrdiff_t>(memory.size()));
   arena_ = Arena(memory);
@@ -67,9 +69,9 @@ Status Odometry::check(const RgbdFrame& input) const {
   return {};
 }
 
-TrackResult Odometry::track(const RgbdFrame& input) { return track(input, MotionPrior()); }
+[[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input) { return track(input, MotionPrior()); }
 
-TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
+[[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   const bool has_pose = last_ != kNobody;
@@ -123,9 +125,9 @@ void Odometry::take_feature_memory() {
   FrameFeatures& mine = frame(current_).features;
   for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
     if (slot == keyframe_ || kept_.holds(slot)) continue;
-    std::swap(mine.points, frame(slot).features.points);
-    std::swap(mine.lines, frame(slot).features.lines);
-    std::swap(mine.surfaces, frame(slot).features.surfaces);
+    FrameFeatures& theirs = frame(slot).features;
+    std::swap(mine, theirs);
+    std::swap(mine.stamp_ns, theirs.stamp_ns);  // each keeps its own
   }
 }
 

@@ -61,7 +61,7 @@ struct FeatureView {
 // The frame being tracked, those that it is matched with, and those that are kept.
 inline constexpr std::size_t kFrames = 1 + kMostOtherFrames;
 
-// What init carves, in order; on an ArenaSizer the same code counts it.
+// What init carves, in order; an arena without memory counts it.
 struct OdometryRooms {
   FeatureExtraction extraction;
   ReferenceTracking tracking;
@@ -69,22 +69,20 @@ struct OdometryRooms {
   std::span<LineTrackView> line_track_views;
   std::span<SegmentView> segment_views, reference_segment_views;
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
+  constexpr void carve(Arena& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
       frames[i].carve(memory, limits);
     point_track_views =
-        memory.template take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
+        memory.take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
-    line_track_views = memory.template take<LineTrackView>("feature view", segments);
-    segment_views = memory.template take<SegmentView>("feature view", segments);
-    reference_segment_views = memory.template take<SegmentView>("feature view", segments);
+    line_track_views = memory.take<LineTrackView>("feature view", segments);
+    segment_views = memory.take<SegmentView>("feature view", segments);
+    reference_segment_views = memory.take<SegmentView>("feature view", segments);
     extraction.carve(memory, limits);
     tracking.carve(memory, limits);
   }
   // The stages of one frame come one after the other: of their scratch the largest counts.
-  template <typename Memory>
-  static constexpr void reserve(Memory& memory, const Limits& limits) {
+  static constexpr void reserve(Arena& memory, const Limits& limits) {
     FeatureExtraction::reserve(memory, limits);
     ReferenceTracking::reserve(memory, limits);
   }
@@ -92,7 +90,7 @@ struct OdometryRooms {
 
 // Bytes that init needs for these capacities, wherever the block starts.
 constexpr std::size_t required_bytes(const Limits& limits) {
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   OdometryRooms rooms;
   std::array<FrameFeatures, kFrames> frames;
   rooms.carve(sizer, limits, frames);
@@ -205,6 +203,7 @@ class Odometry {
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
   void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
+  void return_to(int slot, const MotionEstimate& motion);
 
   // odometry_views.cpp: what features() shows.
   static std::size_t fill_segment_views(const LineFeatures& lines, std::span<SegmentView> views);

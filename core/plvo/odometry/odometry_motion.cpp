@@ -45,8 +45,9 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 }
 
 // The keyframe, which is the base, the last good frame, and the keyframe before, as far as the policy wants
-// them.
-std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& references) const {
+// them. Apart: what it makes them of is not on the stack while the motion is looked for.
+[[gnu::noinline]] std::size_t Odometry::choose_references(std::int64_t stamp_ns,
+                                                          References& references) const {
   const MotionReference last = from_keyframe(last_);
   references[0] = {.features = &frame(keyframe_).features,
                    .prior = prior_of(keyframe_, stamp_ns),
@@ -65,7 +66,8 @@ std::size_t Odometry::choose_references(std::int64_t stamp_ns, References& refer
 // A first motion from the latest reference: by its image; failing that by its features, where they are
 // predicted; failing that from each, wherever it may be, unless other sensors say where. Then the motion from
 // all of them.
-void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
+[[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
+                                                 TrackResult& result) {
   References references;
   const std::size_t count = choose_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
@@ -89,9 +91,8 @@ void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked
     return;
   if (find(latest, config().points.match.radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
-    Reference anywhere = references[r];
-    if (!sensed_.known()) anywhere.prior.T_current_reference = Se3{};
-    if (find(anywhere, config().references.wide_search_px)) return;
+    if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
+    if (find(references[r], config().references.wide_search_px)) return;
   }
 }
 

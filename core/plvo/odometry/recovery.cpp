@@ -88,7 +88,15 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
   const bool found = recognise(slot, last.features, last.velocity, depth, held(last_), tracked, trial);
   result.stage_ns = trial.stage_ns;
   if (!found) return;
-  const HeldPose pose = advance(held(slot), tracked.motion.T_current_reference, tracked.motion.C_H);
+  return_to(slot, tracked.motion);
+  report(held(last_), last.velocity, result);
+  result.returned = true;
+}
+
+// All poses are moved so that the last frame stands where `motion` leads from the kept keyframe. Apart, for
+// its matrices would else be on the stack while that keyframe is looked for.
+[[gnu::noinline]] void Odometry::return_to(int slot, const MotionEstimate& motion) {
+  const HeldPose pose = advance(held(slot), motion.T_current_reference, motion.C_H);
   const MotionReference from = from_keyframe(last_);
   move_keyframe(keyframe_ == last_
                     ? pose
@@ -96,8 +104,6 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
                               inverse_covariance(from.T_reference_base, last_motion_.total())));
   hold(last_, pose);
   kept_.drop(slot);
-  report(pose, last.velocity, result);
-  result.returned = true;
 }
 
 }  // namespace plvo

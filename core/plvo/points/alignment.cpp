@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -61,7 +61,7 @@ void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
   for (int i = 0; i < kTaps; ++i) load_bytes(p + i, tap[i]);
   const Lanes blended =
       (tap[0] * w[0] + tap[1] * w[1] + tap[2] * w[2] + tap[3] * w[3] + std::int16_t{4}) >> 3;
-  std::memcpy(out, &blended, sizeof blended);
+  store(blended, out);
 }
 std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
   return static_cast<std::int16_t>(
@@ -96,8 +96,6 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
   for (const std::int16_t value : smoothed) total += value;
   const std::int32_t mean = total / (kSmoothedSide * kSmoothedSide);
   constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
-  const auto load = [](const std::int16_t* from, Lanes& lanes) { std::memcpy(&lanes, from, sizeof lanes); };
-  const auto store = [](const Lanes& lanes, std::int16_t* to) { std::memcpy(to, &lanes, sizeof lanes); };
   for (std::size_t y = 0; y < kRows; ++y) {
     const std::int16_t* row = smoothed.data() + (y + 1) * kSmoothedSide + 1;
     Lanes here, left, right, above, below;
@@ -191,6 +189,28 @@ WarpedWindow warp_window(const PatchWarp& warp) {
   return window;
 }
 
+// Each pixel at a fraction of its own: down its four columns, then across.
+Window read_each(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+  Window values;
+  for (std::size_t k = 0; k < kPixels; ++k) {
+    const std::int32_t at_x = x + window.x[k];
+    const std::int32_t at_y = y + window.y[k];
+    const std::uint8_t* p =
+        image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
+    const Weights& down = kWeights[static_cast<std::size_t>(at_y & (kOnePixel - 1))];
+    const Weights& across = kWeights[static_cast<std::size_t>(at_x & (kOnePixel - 1))];
+    std::int32_t sum = 64;
+    for (std::size_t c = 0; c < kTaps; ++c) {
+      std::int32_t column = 4;
+      for (std::size_t r = 0; r < kTaps; ++r)
+        column += p[static_cast<std::ptrdiff_t>(r) * image.stride + static_cast<std::ptrdiff_t>(c)] * down[r];
+      sum += (column >> 3) * across[c];
+    }
+    values[k] = static_cast<std::int16_t>(sum >> 7);
+  }
+  return values;
+}
+
 // Every weight four times: for the four columns of a pixel.
 constexpr auto kColumnWeights = [] {
   std::array<std::array<std::array<std::int16_t, kTaps>, kTaps>, 1 << kFractionBits> table{};
@@ -199,8 +219,9 @@ constexpr auto kColumnWeights = [] {
   return table;
 }();
 
-// Each pixel at a fraction of its own, two of them at once: down their four columns, then across.
+// The same, two pixels at once.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+  if constexpr (kSmallCode) return read_each(image, window, x, y);
   constexpr std::int32_t kFraction = kOnePixel - 1;
   alignas(16) std::array<std::int32_t, 2 * kPixels> halves;  // of each pixel: two columns, and two
   for (std::size_t k = 0; k < kPixels; k += 2) {
@@ -226,7 +247,7 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
     load_halves(across[0]->data(), across[1]->data(), weights);
     WideLanes two;
     dot_pairs(sum, weights, two);
-    std::memcpy(&halves[2 * k], &two, sizeof two);
+    store(two, &halves[2 * k]);
   }
   Window values;
   for (std::size_t k = 0; k < kPixels; ++k)

@@ -220,8 +220,8 @@ double corner_strength(GrayView image, int x, int y) {
     load_bytes(row + image.stride, below);
     const Lanes across = (right - left) & kCounts;
     const Lanes down = (below - above) & kCounts;
-    std::memcpy(&gx[static_cast<std::size_t>(r) * kRow], &across, sizeof across);
-    std::memcpy(&gy[static_cast<std::size_t>(r) * kRow], &down, sizeof down);
+    store(across, &gx[static_cast<std::size_t>(r) * kRow]);
+    store(down, &gy[static_cast<std::size_t>(r) * kRow]);
   }
   std::int32_t xx = 0;
   std::int32_t xy = 0;

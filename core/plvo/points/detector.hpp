@@ -54,17 +54,16 @@ constexpr std::size_t detection_band(int width, int cell_px) {
 }
 
 // What detect_keypoints takes of the scratch, for the smallest cells and all levels.
-template <typename Memory>
-constexpr void reserve_detection(Memory& memory, int width, int height) {
+constexpr void reserve_detection(Arena& memory, int width, int height) {
   const ScratchScope scope(memory);
-  memory.template take<std::uint8_t>("keypoint scores", detection_band(width, kMaxCell));
+  memory.take<std::uint8_t>("keypoint scores", detection_band(width, kMaxCell));
   std::size_t cells = 0;
   for (int level = 0; level < Pyramid::kMaxLevels; ++level) {
     cells += detection_cells(width, height, kMinCell);
     width = (width + 1) / 2;
     height = (height + 1) / 2;
   }
-  memory.template take<DetectionCandidate>("keypoint candidates", cells * kKeypointsPerCell);
+  memory.take<DetectionCandidate>("keypoint candidates", cells * kKeypointsPerCell);
 }
 
 struct DetectionSummary {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "plvo/base/build.hpp"
+
 namespace plvo {
 namespace {
 
@@ -55,6 +57,28 @@ inline Byte contrast(Byte centre, Byte brightest, Byte darkest) {
   return most(above, below);
 }
 
+// The same as a loop over the runs: a fifth of the code, and most blocks of pixels are never scored.
+inline void score_pixels_in_loops(const Byte* row, std::ptrdiff_t stride, int width, Byte* scores) {
+  constexpr int kCircle = 16, kRun = 9;
+  static constexpr std::int8_t kAcross[kCircle] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
+  for (int x = 0; x < width; ++x) {
+    Byte circle[kCircle];
+    for (int i = 0; i < kCircle; ++i)  // down a quarter of a turn behind across
+      circle[i] = row[x + kAcross[i] + kAcross[(i + 12) % kCircle] * stride];
+    Byte brightest = 0, darkest = 255;
+    for (int start = 0; start < kCircle; ++start) {
+      Byte low = 255, high = 0;
+      for (int i = 0; i < kRun; ++i) {
+        low = least(low, circle[(start + i) % kCircle]);
+        high = most(high, circle[(start + i) % kCircle]);
+      }
+      brightest = most(brightest, low);
+      darkest = least(darkest, high);
+    }
+    scores[x] = contrast(row[x], brightest, darkest);
+  }
+}
+
 inline __attribute__((always_inline)) void score_pixels(const Byte* row, std::ptrdiff_t stride, int width,
                                                         Byte* __restrict scores) {
   const Byte* up3 = row - 3 * stride;
@@ -101,7 +125,9 @@ void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
     Byte highest = 0;
     for (int i = 0; i < size; ++i) highest = most(highest, scores[x + i]);
     if (highest <= floor) continue;
-    if (size == kBlock)
+    if (kSmallCode)
+      score_pixels_in_loops(row + x, stride, size, scores + x);
+    else if (size == kBlock)
       score_pixels(row + x, stride, kBlock, scores + x);
     else
       score_pixels(row + x, stride, size, scores + x);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/camera/observation.hpp"
 
@@ -48,14 +49,13 @@ struct PointFeatures {
     keypoints = FixedVector<Keypoint>({keypoints.begin(), room < points.size() ? room : points.size()});
   }
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int capacity) {
+  constexpr void carve(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
-    keypoints = FixedVector<Keypoint>(memory.template take<Keypoint>("point features", n));
-    descriptors = memory.template take<Descriptor>("point features", n);
-    patches = memory.template take<Patch>("point features", n);
-    masks = memory.template take<WindowMask>("point features", n);
-    points = memory.template take<Point3d>("point features", n);
+    keypoints = FixedVector<Keypoint>(memory.take<Keypoint>("point features", n));
+    descriptors = memory.take<Descriptor>("point features", n);
+    patches = memory.take<Patch>("point features", n);
+    masks = memory.take<WindowMask>("point features", n);
+    points = memory.take<Point3d>("point features", n);
   }
 };
 

@@ -38,14 +38,13 @@ constexpr std::size_t point_match_buckets(int width, int height) {
 }
 
 // Scratch of match_points for so many keypoints a frame and this image size.
-template <typename Memory>
-constexpr void reserve_point_match(Memory& memory, int keypoints, int width, int height) {
+constexpr void reserve_point_match(Arena& memory, int keypoints, int width, int height) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(keypoints);
-  memory.template take<std::uint16_t>("point match", n);
-  memory.template take<std::uint16_t>("point match", point_match_buckets(width, height) + 1);
-  memory.template take<BestMatch>("point match", n);
-  memory.template take<BestMatch>("point match", n);
+  memory.take<std::uint16_t>("point match", n);
+  memory.take<std::uint16_t>("point match", point_match_buckets(width, height) + 1);
+  memory.take<BestMatch>("point match", n);
+  memory.take<BestMatch>("point match", n);
 }
 
 // predictions: one for each keypoint of the reference. Only keypoints of the same pyramid level are compared.

@@ -2,7 +2,6 @@
 #include "plvo/points/sparse_alignment.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
@@ -21,8 +20,6 @@ constexpr double kMostGain = 3;
 constexpr int kReadBits = 4;  // positions are read on a grid of 1/16 px
 
 using Numbers = std::array<std::int16_t, kAlignmentPixels>;
-
-void store(const Lanes& lanes, std::int16_t* to) { std::memcpy(to, &lanes, sizeof lanes); }
 
 std::int32_t sum_of(const Numbers& a) {
   std::int32_t sum = 0;

@@ -55,18 +55,16 @@ struct AlignmentStep {
 
 class SparseAlignment {
  public:
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int width, int height) {
+  constexpr void carve(Arena& memory, int width, int height) {
     for (int level = 0; level < kLevel; ++level) {
       width = (width + 1) / 2;
       height = (height + 1) / 2;
     }
-    storage_ = memory.template take<std::uint8_t>(
-        "image to align with", static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    storage_ = memory.take<std::uint8_t>("image to align with",
+                                         static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   }
-  template <typename Memory>
-  static constexpr std::span<AlignmentWindow> take_windows(Memory& memory) {
-    return memory.template take<AlignmentWindow>("alignment windows", kMostAlignmentWindows);
+  static constexpr std::span<AlignmentWindow> take_windows(Arena& memory) {
+    return memory.take<AlignmentWindow>("alignment windows", kMostAlignmentWindows);
   }
 
   // The image that windows are cut from, until the next call: of the frame with this stamp.

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/math/types.hpp"
 
@@ -20,11 +21,10 @@ struct SurfaceSample {
 struct SurfaceFeatures {
   FixedVector<SurfaceSample> samples;
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int capacity) {
+  constexpr void carve(Arena& memory, int capacity) {
     if (capacity > 0)
       samples = FixedVector<SurfaceSample>(
-          memory.template take<SurfaceSample>("surface features", static_cast<std::size_t>(capacity)));
+          memory.take<SurfaceSample>("surface features", static_cast<std::size_t>(capacity)));
   }
 };
 

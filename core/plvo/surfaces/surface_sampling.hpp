@@ -19,12 +19,11 @@ void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int widt
 
 inline constexpr int kSurfaceCell = 24;  // px
 
-template <typename Memory>
-constexpr void reserve_surface_sampling(Memory& memory, int width, int height, int samples) {
+constexpr void reserve_surface_sampling(Arena& memory, int width, int height, int samples) {
   if (samples == 0) return;
   const ScratchScope scope(memory);
   const auto cells = static_cast<std::size_t>((width / kSurfaceCell + 1) * (height / kSurfaceCell + 1));
-  memory.template take<SurfaceSample>("surface candidates", cells);
+  memory.take<SurfaceSample>("surface candidates", cells);
 }
 
 }  // namespace plvo

@@ -90,7 +90,7 @@ double truncated_sum(const ConstraintSet& set, std::size_t asked, const Se3& T, 
 class PairJudge {
  public:
   explicit PairJudge(std::size_t most_matches) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     size_motion(sizer, 1, most_matches, most_matches);
     memory_.resize(sizer.peak() + kArenaAlignment);
     scratch_ = Arena(memory_);
@@ -181,7 +181,7 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const TrackedRecording& recording = recordings[r];
     cameras.push_back(with_timing(recording.camera, timing));
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     UndistortionMap().carve(sizer, recording.camera.width, recording.camera.height);
     blocks.emplace_back(sizer.peak() + kArenaAlignment);
     Arena arena(blocks.back());

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/image/image_view.hpp"
 
 namespace plvo::lsd {
@@ -54,9 +55,8 @@ struct LevelLineField {
   }
 };
 
-// Takes the field's arrays for an image of that size from an Arena or an ArenaSizer.
-template <typename Memory>
-constexpr LevelLineField carve_field(Memory& memory, int image_width, int image_height) {
+// Takes the field's arrays for an image of that size.
+constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_height) {
   LevelLineField field;
   field.width = image_width > 1 ? image_width - 1 : 0;
   field.height = image_height > 1 ? image_height - 1 : 0;
@@ -64,10 +64,10 @@ constexpr LevelLineField carve_field(Memory& memory, int image_width, int image_
   const std::size_t padded =
       static_cast<std::size_t>(field.stride) * static_cast<std::size_t>(field.height + 2);
   const std::size_t pixels = static_cast<std::size_t>(field.width) * static_cast<std::size_t>(field.height);
-  field.state = memory.template take<std::uint8_t>("lines/lsd", padded);
-  field.direction = memory.template take<Direction>("lines/lsd", padded);
-  field.magnitude = memory.template take<std::uint16_t>("lines/lsd", padded);
-  field.seeds = memory.template take<Pixel>("lines/lsd", pixels);
+  field.state = memory.take<std::uint8_t>("lines/lsd", padded);
+  field.direction = memory.take<Direction>("lines/lsd", padded);
+  field.magnitude = memory.take<std::uint16_t>("lines/lsd", padded);
+  field.seeds = memory.take<Pixel>("lines/lsd", pixels);
   return field;
 }
 

@@ -69,8 +69,7 @@ Range range_along(std::span<const Pixel> pixels, std::int32_t dx, std::int32_t d
     std::memcpy(&four, &pixels[i], sizeof four);
     WideLanes value;
     dot_pairs(four, direction, value);
-    low = value < low ? value : low;
-    high = value > high ? value : high;
+    take_range(value, low, high);
   }
   for (; i < pixels.size(); ++i) range.take(along(pixels[i]));
   for (int lane = 0; lane < 4; ++lane) {

@@ -65,22 +65,25 @@ SegmentDetector::Candidate SegmentDetector::describe(const lsd::Rectangle& recta
 }
 
 std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t capacity) const {
-  // Found in a fixed order, so the place in it settles every tie.
+  // Found in a fixed order, so the place in it settles every tie. While none has a rank, the most meaningful
+  // comes first.
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].order = static_cast<std::int32_t>(i);
-  const auto more_meaningful = [](const Candidate& p, const Candidate& q) {
-    return p.meaningfulness != q.meaningfulness ? p.meaningfulness > q.meaningfulness : p.order < q.order;
+  const auto sort = [](std::span<Candidate> some) {
+    heap_sort(some.data(), some.data() + some.size(), [](const Candidate& p, const Candidate& q) {
+      if (p.rank != q.rank) return p.rank < q.rank;
+      return p.meaningfulness != q.meaningfulness ? p.meaningfulness > q.meaningfulness : p.order < q.order;
+    });
   };
-  heap_sort(candidates.data(), candidates.data() + candidates.size(), more_meaningful);
+  sort(candidates);
   if (candidates.size() <= capacity) return candidates.size();
   std::array<std::int32_t, kCellColumns * kCellRows> in_cell{};
   for (Candidate& candidate : candidates) {
     candidate.rank = in_cell[cell_of(0.5 * (candidate.a + candidate.b), search_.width, search_.height)]++;
   }
-  const std::span<Candidate> rest = candidates.subspan(capacity / 2);
-  heap_sort(rest.data(), rest.data() + rest.size(), [&](const Candidate& p, const Candidate& q) {
-    return p.rank != q.rank ? p.rank < q.rank : more_meaningful(p, q);
-  });
-  heap_sort(candidates.data(), candidates.data() + capacity, more_meaningful);
+  sort(candidates.subspan(capacity / 2));
+  const std::span<Candidate> kept = candidates.first(capacity);
+  for (Candidate& candidate : kept) candidate.rank = 0;
+  sort(kept);
   return capacity;
 }
 

@@ -90,17 +90,16 @@ class SegmentDetector {
     return search.height > 1 ? (search.height - 1 + search.bands - 1) / search.bands : 0;
   }
 
-  template <typename Memory>
-  static constexpr Scratch carve(Memory& memory, const SegmentSearch& search) {
+  static constexpr Scratch carve(Arena& memory, const SegmentSearch& search) {
     Scratch scratch;
     const int band_height = band_rows(search) + 1;
     scratch.field = lsd::carve_field(memory, search.width, band_height);
-    scratch.region = memory.template take<lsd::Pixel>("lines/lsd", scratch_pixels(search.width, band_height));
+    scratch.region = memory.take<lsd::Pixel>("lines/lsd", scratch_pixels(search.width, band_height));
     // No two meaningful regions share a pixel: that bounds their number.
     const std::size_t bound =
         scratch_pixels(search.width, search.height) / min_region(search.width, search.height) + 1;
-    scratch.candidates = memory.template take<Candidate>(
-        "lines/lsd", bound < search.most_candidates ? bound : search.most_candidates);
+    scratch.candidates =
+        memory.take<Candidate>("lines/lsd", bound < search.most_candidates ? bound : search.most_candidates);
     return scratch;
   }
   static constexpr std::size_t scratch_pixels(int width, int height) {
@@ -122,7 +121,7 @@ class SegmentDetector {
 
 // Behind the class: Clang evaluates at compile time only what it has seen the whole of.
 constexpr std::size_t SegmentDetector::scratch_bytes(const SegmentSearch& search) {
-  ArenaSizer sizer;
+  Arena sizer = Arena::counting();
   carve(sizer, search);
   return sizer.peak();
 }

@@ -41,7 +41,7 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
 }
 
 void FeatureExtraction::make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const {
-  config_.side_by_side.halves(
+  config_->side_by_side.halves(
       camera_.height, [&](int begin, int end) { to_gray(rows(colour, begin, end), rows(gray, begin, end)); });
 }
 
@@ -52,7 +52,7 @@ void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) 
     const std::span<std::uint8_t> raw = scratch.take<std::uint8_t>("raw grey image", pixels);
     const ImageView<std::uint8_t> raw_view{raw.data(), camera_.width, camera_.height, camera_.width};
     make_gray(colour, raw_view);
-    config_.side_by_side.halves(
+    config_->side_by_side.halves(
         camera_.height, [&](int begin, int end) { map_.undistort(raw_view, pyramid_.base(), begin, end); });
   } else {
     make_gray(colour, pyramid_.base());
@@ -65,7 +65,7 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) c
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
   const std::span<std::uint16_t> row = take_smoothing_row(scratch, camera_.width);
-  for (int level = 0; level < config_.points.detector.levels; ++level) {
+  for (int level = 0; level < config_->points.detector.levels; ++level) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
     smooth_binomial7(image, smoothed, row);
@@ -83,26 +83,26 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
                                 FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
-    const StageTimer timer(config_, result, Stage::kImage);
+    const StageTimer timer(*config_, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
-  const bool points = kPointsBuilt && config_.features != Features::kLines;
-  const bool lines = kLinesBuilt && config_.features != Features::kPoints;
-  const bool at_once = points && lines && config_.side_by_side;
+  const bool points = kPointsBuilt && config_->features != Features::kLines;
+  const bool lines = kLinesBuilt && config_->features != Features::kPoints;
+  const bool at_once = points && lines && config_->side_by_side;
   if (at_once) {
-    const StageTimer timer(config_, result, Stage::kPoints);
+    const StageTimer timer(*config_, result, Stage::kPoints);
     const ScratchScope scope(scratch);
     Arena own(
         scratch.take<std::byte>("points beside segments", point_scratch(camera_.width, camera_.height)));
-    config_.side_by_side.both([&] { find_segments(scratch, features.lines, result); },
-                              [&] { find_points(depth, own, features.points, result); });
+    config_->side_by_side.both([&] { find_segments(scratch, features.lines, result); },
+                               [&] { find_points(depth, own, features.points, result); });
   } else if (points) {
-    const StageTimer timer(config_, result, Stage::kPoints);
+    const StageTimer timer(*config_, result, Stage::kPoints);
     find_points(depth, scratch, features.points, result);
   }
   if (lines && !at_once) {
-    const StageTimer timer(config_, result, Stage::kLines);
+    const StageTimer timer(*config_, result, Stage::kLines);
     find_segments(scratch, features.lines, result);
   }
 }
@@ -110,7 +110,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
 void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                     TrackResult& result) const {
   const DetectionSummary summary =
-      detect_keypoints(pyramid_, depth, config_.points.detector, scratch, points.keypoints);
+      detect_keypoints(pyramid_, depth, config_->points.detector, scratch, points.keypoints);
   describe_points(scratch, points);
   result.points.with_depth =
       static_cast<int>(points.keypoints.size());  // the detector passes over what has none
@@ -121,7 +121,7 @@ void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, P
 void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
                              FrameFeatures& features) const {
   lift_points(depth, noise, features.points);
-  if (config_.surfaces)
+  if (config_->surfaces)
     sample_surfaces(depth, camera_.pinhole, camera_.width, camera_.height, noise.surfaces, scratch,
                     features.surfaces);
 }
@@ -132,10 +132,10 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
   // A registered patch is a landmark by definition, wherever its centre lies: only its depth is uncertain.
   // The little across the ray keeps its covariance invertible.
   constexpr double kPatchCentre_px = 0.02;
-  const PointConfig& config = config_.points;
+  const PointConfig& config = config_->points;
   const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
   const double depth_scale = sqrt(noise.depth);
-  config_.side_by_side.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
+  config_->side_by_side.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Keypoint& keypoint = points.keypoints[i];
       const auto u = static_cast<double>(keypoint.u);
@@ -153,8 +153,8 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
 
 bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                                   Line3d& line) const {
-  const Line3dReport report = observe_line(segment, depth, camera_.pinhole, config_.depth_noise,
-                                           config_.lines.fit, config_.seed, line);
+  const Line3dReport report = observe_line(segment, depth, camera_.pinhole, config_->depth_noise,
+                                           config_->lines.fit, config_->seed, line);
   if (report.outcome != Line3dOutcome::kOk) return false;
   line.Sigma *= noise.lines;
   return true;
@@ -164,7 +164,7 @@ void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& ex
                                    const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
                                    TrackResult& result) const {
   if constexpr (!kLinesBuilt) return;
-  const StageTimer timer(config_, result, Stage::kLines);
+  const StageTimer timer(*config_, result, Stage::kLines);
   if (!lines.lifted) {
     lift_segments(depth.with(exposure), noise, scratch, lines);
     lines.lifted = true;
@@ -176,7 +176,7 @@ void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& ex
 
 void FeatureExtraction::lift_segments_again(const DepthSampler& depth, const NoiseScales& noise,
                                             LineFeatures& lines) const {
-  config_.side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
+  config_->side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
   });
@@ -195,7 +195,7 @@ void FeatureExtraction::lift_segments(const DepthSampler& depth, const NoiseScal
   const ScratchScope scope(scratch);
   const std::size_t n = lines.segments.size();
   const std::span<std::uint8_t> lifted = scratch.take<std::uint8_t>("segments with 3D", n);
-  config_.side_by_side.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
+  config_->side_by_side.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Segment& segment = lines.segments[i];
       lifted[i] = lift_line(depth, noise, segment, lines.lines[i]) ? 1 : 0;

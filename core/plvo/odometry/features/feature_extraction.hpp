@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "plvo/base/arena.hpp"
@@ -23,44 +24,41 @@ namespace plvo {
 
 class FeatureExtraction {
  public:
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Arena& memory, const Limits& limits) {
     map_.carve(memory, limits.width, limits.height);
     pyramid_.carve(memory, limits.width, limits.height);
     segment_search_ = segment_search(limits);
-    segment_detector_ = memory.template take<SegmentDetector>("segment detector", 1);
+    segment_detector_ = memory.take<SegmentDetector>("segment detector", 1);
   }
   // Scratch: the stages come one after the other, so the largest counts; on two cores the points have their
   // own.
-  template <typename Memory>
-  static constexpr void reserve(Memory& memory, const Limits& limits) {
+  static constexpr void reserve(Arena& memory, const Limits& limits) {
     {
       const ScratchScope scope(memory);
-      memory.template take<std::uint8_t>("raw grey image", pixels_of(limits.width, limits.height));
+      memory.take<std::uint8_t>("raw grey image", pixels_of(limits.width, limits.height));
     }
     reserve_points(memory, limits.width, limits.height);
     {
       const ScratchScope scope(memory);
       if (limits.cores > 1)
-        memory.template take<std::byte>("points beside segments", point_scratch(limits.width, limits.height));
-      memory.template take<std::byte>("segment detection",
-                                      SegmentDetector::scratch_bytes(segment_search(limits)));
+        memory.take<std::byte>("points beside segments", point_scratch(limits.width, limits.height));
+      memory.take<std::byte>("segment detection", SegmentDetector::scratch_bytes(segment_search(limits)));
     }
     reserve_surface_sampling(memory, limits.width, limits.height, limits.surfaces);
     {
       const ScratchScope scope(memory);
-      memory.template take<std::uint8_t>("segments with 3D", static_cast<std::size_t>(limits.segments));
+      memory.take<std::uint8_t>("segments with 3D", static_cast<std::size_t>(limits.segments));
     }
   }
 
   void init(const CameraModel& camera, const Config& config);
 
   const CameraModel& camera() const { return camera_; }
-  const Config& config() const { return config_; }
+  const Config& config() const { return *config_; }  // after init
 
   // A sampler of the frame's own depth: as long as the frame's views are valid.
   DepthSampler depth_sampler(const RgbdFrame& frame) const {
-    return {frame.depth, map_, config_.depth_noise};
+    return {frame.depth, map_, config_->depth_noise};
   }
 
   // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Points and
@@ -90,18 +88,17 @@ class FeatureExtraction {
   static constexpr std::size_t pixels_of(int width, int height) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
-  template <typename Memory>
-  static constexpr void reserve_points(Memory& memory, int width, int height) {
+  static constexpr void reserve_points(Arena& memory, int width, int height) {
     {
       const ScratchScope scope(memory);
-      memory.template take<std::uint8_t>("smoothed image", pixels_of(width, height));
+      memory.take<std::uint8_t>("smoothed image", pixels_of(width, height));
       take_smoothing_row(memory, width);
     }
     reserve_detection(memory, width, height);
   }
   // Of an arena that holds what reserve_points counts, wherever it starts.
   static constexpr std::size_t point_scratch(int width, int height) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     reserve_points(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
@@ -121,7 +118,7 @@ class FeatureExtraction {
   void describe_points(Arena& scratch, PointFeatures& points) const;
 
   CameraModel camera_;
-  Config config_;
+  std::optional<Config> config_;  // until init none: the code that makes one is the user's
   UndistortionMap map_;
   Pyramid pyramid_;
   SegmentSearch segment_search_;

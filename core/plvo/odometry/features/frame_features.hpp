@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "plvo/base/arena.hpp"
 #include "plvo/lines/line_features.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
@@ -26,8 +27,7 @@ struct FrameFeatures {
     surfaces.samples.clear();
   }
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Arena& memory, const Limits& limits) {
     points.carve(memory, limits.keypoints);
     lines.carve(memory, limits.segments);
     surfaces.carve(memory, limits.surfaces);

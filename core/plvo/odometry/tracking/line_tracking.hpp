@@ -20,11 +20,10 @@ void match_predicted_lines(const Pinhole& pinhole, const Exposure& exposure, con
                            FixedVector<Match>& matches);
 
 // Its scratch.
-template <typename Memory>
-constexpr void reserve_line_tracking(Memory& memory, int segments) {
+constexpr void reserve_line_tracking(Arena& memory, int segments) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(segments);
-  memory.template take<Segment>("predicted segments", n);
+  memory.take<Segment>("predicted segments", n);
   take_line_match_scratch(memory, n, n);
 }
 

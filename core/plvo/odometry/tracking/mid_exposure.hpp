@@ -49,17 +49,15 @@ MidExposure points_at_mid_exposure(const CameraModel& camera, const PairPrior& p
 MidExposure at_mid_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference,
                             const FrameFeatures& reference, const FrameFeatures& current, Arena& scratch);
 
-template <typename Memory>
-constexpr void take_points_at_mid_exposure(Memory& memory, const Limits& limits) {
-  memory.template take<Point3d>("at mid-exposure", static_cast<std::size_t>(limits.keypoints));
+constexpr void take_points_at_mid_exposure(Arena& memory, const Limits& limits) {
+  memory.take<Point3d>("at mid-exposure", static_cast<std::size_t>(limits.keypoints));
 }
-template <typename Memory>
-constexpr void take_mid_exposure(Memory& memory, const Limits& limits) {
+constexpr void take_mid_exposure(Arena& memory, const Limits& limits) {
   take_points_at_mid_exposure(memory, limits);
-  memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
-  memory.template take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
+  memory.take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
+  memory.take<Line3d>("at mid-exposure", static_cast<std::size_t>(limits.segments));
   if (limits.surfaces > 0)
-    memory.template take<SurfaceSample>("at mid-exposure", static_cast<std::size_t>(limits.surfaces));
+    memory.take<SurfaceSample>("at mid-exposure", static_cast<std::size_t>(limits.surfaces));
 }
 
 }  // namespace plvo

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/fixed_vector.hpp"
+#include "plvo/base/heap_sort.hpp"
 
 namespace plvo {
 namespace {
@@ -33,7 +35,10 @@ constexpr double kMostScale = 25;
 double median_over(FixedVector<double>& values, double expected) {
   if (values.size() < kLeastMatches) return 1;
   double* const middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
+  if constexpr (kSmallCode)
+    heap_sort(values.begin(), values.end(), [](double a, double b) { return a < b; });
+  else
+    std::nth_element(values.begin(), middle, values.end());
   return *middle / expected;
 }
 

@@ -34,15 +34,13 @@ void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate
 // One step of `scales` towards what a frame showed, shown times the scales themselves.
 void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales);
 
-template <typename Memory>
-constexpr void reserve_noise_learning(Memory& memory, const Limits& limits) {
+constexpr void reserve_noise_learning(Arena& memory, const Limits& limits) {
   const ScratchScope scope(memory);
   const auto points = static_cast<std::size_t>(limits.keypoints);
-  memory.template take<double>("residuals", points);
-  memory.template take<double>("residuals", points);
-  memory.template take<double>("residuals", static_cast<std::size_t>(limits.segments));
-  if (limits.surfaces > 0)
-    memory.template take<double>("residuals", static_cast<std::size_t>(limits.surfaces));
+  memory.take<double>("residuals", points);
+  memory.take<double>("residuals", points);
+  memory.take<double>("residuals", static_cast<std::size_t>(limits.segments));
+  if (limits.surfaces > 0) memory.take<double>("residuals", static_cast<std::size_t>(limits.surfaces));
 }
 
 }  // namespace plvo

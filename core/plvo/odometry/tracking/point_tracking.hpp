@@ -29,12 +29,11 @@ struct PointTracks {
   std::span<Vector2> pixels;  // level-0 px
   std::span<Point3d> points;  // camera frame of the current frame, at mid-exposure
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, int capacity) {
+  constexpr void carve(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
-    matches = FixedVector<Match>(memory.template take<Match>("point tracks", n));
-    pixels = memory.template take<Vector2>("point tracks", n);
-    points = memory.template take<Point3d>("point tracks", n);
+    matches = FixedVector<Match>(memory.take<Match>("point tracks", n));
+    pixels = memory.take<Vector2>("point tracks", n);
+    points = memory.take<Point3d>("point tracks", n);
   }
 };
 
@@ -63,12 +62,11 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
                      PointTracks& tracks);
 
 // Scratch of track_by_descriptor.
-template <typename Memory>
-constexpr void reserve_tracking(Memory& memory, int keypoints, int width, int height) {
+constexpr void reserve_tracking(Arena& memory, int keypoints, int width, int height) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(keypoints);
-  memory.template take<Prediction>("predictions", n);
-  memory.template take<Match>("putative matches", n);
+  memory.take<Prediction>("predictions", n);
+  memory.take<Match>("putative matches", n);
   reserve_point_match(memory, keypoints, width, height);
 }
 

@@ -167,8 +167,10 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   }
 }
 
-bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
-                              Se3& T_current_reference, TrackResult& result) const {
+// Apart: what it puts on the stack is gone when the motion is solved for.
+[[gnu::noinline]] bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current,
+                                                Arena& scratch, Se3& T_current_reference,
+                                                TrackResult& result) const {
   const Config& config = current.extraction.config();
   const CameraModel& camera = current.extraction.camera();
   if (!kPointsBuilt || !alignment_.holds(reference.features->stamp_ns)) return false;

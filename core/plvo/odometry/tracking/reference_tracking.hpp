@@ -45,17 +45,15 @@ struct ReferenceTracks {
   FixedVector<SurfaceMatch> surfaces;
   int inliers = 0;  // points and lines
 
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Arena& memory, const Limits& limits) {
     points.carve(memory, limits.keypoints);
-    point_inliers =
-        memory.template take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
+    point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
-    lines = FixedVector<Match>(memory.template take<Match>("line tracks", segments));
-    line_inliers = memory.template take<std::uint8_t>("line tracks", segments);
+    lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
+    line_inliers = memory.take<std::uint8_t>("line tracks", segments);
     if (limits.surfaces > 0)
       surfaces = FixedVector<SurfaceMatch>(
-          memory.template take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
+          memory.take<SurfaceMatch>("surface tracks", static_cast<std::size_t>(limits.surfaces)));
   }
 };
 
@@ -76,15 +74,13 @@ struct TrackedMotion {
 
 class ReferenceTracking {
  public:
-  template <typename Memory>
-  constexpr void carve(Memory& memory, const Limits& limits) {
+  constexpr void carve(Arena& memory, const Limits& limits) {
     for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
       tracks_[r].carve(memory, limits);
     alignment_.carve(memory, limits.width, limits.height);
   }
   // Scratch: the larger of the stages, which come one after the other.
-  template <typename Memory>
-  static constexpr void reserve(Memory& memory, const Limits& limits) {
+  static constexpr void reserve(Arena& memory, const Limits& limits) {
     const ScratchScope scope(memory);
     {
       const ScratchScope aligning(memory);

@@ -29,7 +29,7 @@ class Ground {
 
  private:
   static std::size_t bytes(const DetectorRooms& rooms) {
-    ArenaSizer sizer;
+    Arena sizer = Arena::counting();
     Pyramid pyramid;
     pyramid.carve(sizer, rooms.width, rooms.height);
     {

@@ -122,7 +122,7 @@ class Ours {
 
  private:
   static std::size_t pyramid_bytes(int width, int height) {
-    plvo::ArenaSizer sizer;
+    plvo::Arena sizer = plvo::Arena::counting();
     plvo::Pyramid pyramid;
     pyramid.carve(sizer, width, height);
     return sizer.peak();

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers in registers against the loops that stand for them in small code.
+#include "plvo/base/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo {
+namespace {
+
+using Eight = std::array<std::int16_t, 8>;
+
+// Over the whole range: sums and products wrap.
+Eight any_numbers(Random& random) {
+  Eight numbers{};
+  for (std::int16_t& number : numbers) number = static_cast<std::int16_t>(random.below(1 << 16));
+  return numbers;
+}
+
+template <typename Numbers>
+Eight stored(const Numbers& lanes) {
+  Eight numbers{};
+  store(lanes, numbers.data());
+  return numbers;
+}
+
+// What is made of the same numbers, in registers and in loops.
+template <typename Make>
+void expect_alike(const Eight& a, const Eight& b, const Make& make) {
+  Lanes fast_a, fast_b;
+  load(a.data(), fast_a);
+  load(b.data(), fast_b);
+  lane_loops::Lanes slow_a, slow_b;
+  load(a.data(), slow_a);
+  load(b.data(), slow_b);
+  EXPECT_EQ(stored(make(fast_a, fast_b)), stored(make(slow_a, slow_b)));
+}
+
+TEST(Lanes, LoopsMakeTheSameNumbers) {
+  Random random(1);
+  for (int round = 0; round < 200; ++round) {
+    const Eight a = any_numbers(random);
+    Eight b = any_numbers(random);
+    b[3] = a[3];
+    const std::int16_t one = a[5];
+    const int bits = static_cast<int>(random.below(15));
+    expect_alike(a, b, [](const auto& x, const auto& y) { return x + y; });
+    expect_alike(a, b, [](const auto& x, const auto& y) { return x - y; });
+    expect_alike(a, b, [](const auto& x, const auto& y) { return x * y; });
+    expect_alike(a, b, [](const auto& x, const auto& y) { return x & y; });
+    expect_alike(a, b, [&](const auto& x, const auto&) { return x + one; });
+    expect_alike(a, b, [&](const auto& x, const auto&) { return x - one; });
+    expect_alike(a, b, [&](const auto& x, const auto&) { return x * one; });
+    expect_alike(a, b, [&](const auto& x, const auto&) { return x & one; });
+    expect_alike(a, b, [&](const auto& x, const auto&) { return x >> bits; });
+    expect_alike(a, b, [](const auto& x, const auto& y) { return (x - y) != 0; });
+  }
+}
+
+TEST(Lanes, AreReadAndWrittenAsLoopsDo) {
+  Random random(2);
+  for (int round = 0; round < 200; ++round) {
+    std::array<std::uint8_t, 16> bytes{};
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.below(256));
+    const Eight a = any_numbers(random);
+    const Eight b = any_numbers(random);
+    Lanes fast;
+    lane_loops::Lanes slow;
+    load_bytes(&bytes[3], fast);
+    load_bytes(&bytes[3], slow);
+    EXPECT_EQ(stored(fast), stored(slow));
+    load_bytes(&bytes[1], &bytes[9], fast);
+    load_bytes(&bytes[1], &bytes[9], slow);
+    EXPECT_EQ(stored(fast), stored(slow));
+    load_halves(&a[1], &b[4], fast);
+    load_halves(&a[1], &b[4], slow);
+    EXPECT_EQ(stored(fast), stored(slow));
+    std::array<std::int32_t, 8> fast_wide{}, slow_wide{};
+    store_wide(fast, fast_wide.data());
+    store_wide(slow, slow_wide.data());
+    EXPECT_EQ(fast_wide, slow_wide);
+  }
+}
+
+TEST(Lanes, PairsAreMultipliedAndRangesTakenAsLoopsDo) {
+  Random random(3);
+  WideLanes low = {}, high = {};
+  lane_loops::WideLanes slow_low = {}, slow_high = {};
+  for (int round = 0; round < 200; ++round) {
+    // −2^15 twice in both would pass 32 bits, which dot_pairs excludes.
+    Eight a = any_numbers(random);
+    for (std::int16_t& number : a) number = static_cast<std::int16_t>(number / 2);
+    const Eight b = any_numbers(random);
+    Lanes fast_a, fast_b;
+    load(a.data(), fast_a);
+    load(b.data(), fast_b);
+    lane_loops::Lanes slow_a, slow_b;
+    load(a.data(), slow_a);
+    load(b.data(), slow_b);
+    WideLanes sums;
+    dot_pairs(fast_a, fast_b, sums);
+    lane_loops::WideLanes slow_sums;
+    dot_pairs(slow_a, slow_b, slow_sums);
+    take_range(sums, low, high);
+    take_range(slow_sums, slow_low, slow_high);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_EQ(sums[i], slow_sums[i]);
+      EXPECT_EQ(low[i], slow_low[i]);
+      EXPECT_EQ(high[i], slow_high[i]);
+    }
+  }
+  for (int i = 0; i < 4; ++i) EXPECT_LT(low[i], high[i]);
+}
+
+}  // namespace
+}  // namespace plvo
