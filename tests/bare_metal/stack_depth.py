@@ -12,7 +12,7 @@ import budget
 from call_graph import CallGraph
 
 # Of the two forms of track the one without a prior, which calls the other.
-ROOTS = {"init": r"^_ZN4plvo8Odometry4initE", "track": r"^_ZN4plvo8Odometry5trackERKNS_9RgbdFrameE$"}
+ROOTS = {"init": r"^_ZN4plvo8Odometry4initE\w*(\.|$)", "track": r"^_ZN4plvo8Odometry5trackERKNS_9RgbdFrameE(\.|$)"}
 
 
 def show(graph, depths):
