@@ -31,10 +31,12 @@ suite() {
 # What the other presets have to show, and no more: their whole suites take `test.sh all`.
 briefly() {
   # An emulated board's run takes minutes in a single thread: it goes on beside what is built next.
-  local preset emulated=()
+  local preset programs emulated=()
   for preset in cortex-m7 aarch64 armhf; do
-    build "$preset" --target golden_test
-    suite "$preset" --tests-regex '^golden_test$' >"build/$preset/golden.log" 2>&1 &
+    programs=(golden_test)
+    if [ "$preset" = cortex-m7 ]; then programs+=(footprint stack_program); fi
+    build "$preset" --target "${programs[@]}"
+    suite "$preset" --tests-regex '^(golden_test|budget_(text|stack))$' >"build/$preset/golden.log" 2>&1 &
     emulated+=("$!:$preset")
   done
   build clang --target golden_test fuzzers
