@@ -48,16 +48,16 @@ TEST(Lanes, LoopsMakeTheSameNumbers) {
     b[3] = a[3];
     const std::int16_t one = a[5];
     const int bits = static_cast<int>(random.below(15));
-    expect_alike(a, b, [](const auto& x, const auto& y) { return x + y; });
-    expect_alike(a, b, [](const auto& x, const auto& y) { return x - y; });
-    expect_alike(a, b, [](const auto& x, const auto& y) { return x * y; });
-    expect_alike(a, b, [](const auto& x, const auto& y) { return x & y; });
-    expect_alike(a, b, [&](const auto& x, const auto&) { return x + one; });
-    expect_alike(a, b, [&](const auto& x, const auto&) { return x - one; });
-    expect_alike(a, b, [&](const auto& x, const auto&) { return x * one; });
-    expect_alike(a, b, [&](const auto& x, const auto&) { return x & one; });
-    expect_alike(a, b, [&](const auto& x, const auto&) { return x >> bits; });
-    expect_alike(a, b, [](const auto& x, const auto& y) { return (x - y) != 0; });
+    expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return x + y; });
+    expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return x - y; });
+    expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return x * y; });
+    expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return x & y; });
+    expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x + one; });
+    expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x - one; });
+    expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x * one; });
+    expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x & one; });
+    expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x >> bits; });
+    expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return (x - y) != 0; });
   }
 }
 

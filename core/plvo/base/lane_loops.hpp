@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers side by side of base/lanes.hpp and all that is done with them, as loops over plain arrays: for
-// small code, and to compare with. Each lane by itself, wrapped to its size.
+// small code, and to compare with. Each lane by itself, wrapped to its size. What is computed of several is
+// one loop: an expression is worked out, lane after lane, when it is put into lanes.
 #pragma once
 
 #include <algorithm>
@@ -8,52 +9,93 @@
 
 namespace plvo::lane_loops {
 
-template <typename Number, int kCount>
-struct LaneLoop {
-  Number lane[kCount];
-
-  constexpr Number& operator[](int i) { return lane[i]; }
-  constexpr const Number& operator[](int i) const { return lane[i]; }
-  constexpr void operator+=(const LaneLoop& b) { *this = *this + b; }
-
-  template <typename Operation>
-  constexpr LaneLoop each(const Operation& operation) const {
-    LaneLoop result{};
-    for (int i = 0; i < kCount; ++i) result[i] = static_cast<Number>(operation(lane[i], i));
-    return result;
-  }
-  friend constexpr LaneLoop operator+(const LaneLoop& a, const LaneLoop& b) {
-    return a.each([&](Number x, int i) { return x + b[i]; });
-  }
-  friend constexpr LaneLoop operator-(const LaneLoop& a, const LaneLoop& b) {
-    return a.each([&](Number x, int i) { return x - b[i]; });
-  }
-  friend constexpr LaneLoop operator*(const LaneLoop& a, const LaneLoop& b) {
-    return a.each([&](Number x, int i) { return x * b[i]; });
-  }
-  friend constexpr LaneLoop operator&(const LaneLoop& a, const LaneLoop& b) {
-    return a.each([&](Number x, int i) { return x & b[i]; });
-  }
-  friend constexpr LaneLoop operator+(const LaneLoop& a, Number b) {
-    return a.each([=](Number x, int) { return x + b; });
-  }
-  friend constexpr LaneLoop operator-(const LaneLoop& a, Number b) {
-    return a.each([=](Number x, int) { return x - b; });
-  }
-  friend constexpr LaneLoop operator*(const LaneLoop& a, Number b) {
-    return a.each([=](Number x, int) { return x * b; });
-  }
-  friend constexpr LaneLoop operator&(const LaneLoop& a, Number b) {
-    return a.each([=](Number x, int) { return x & b; });
-  }
-  friend constexpr LaneLoop operator>>(const LaneLoop& a, int bits) {
-    return a.each([=](Number x, int) { return x >> bits; });
-  }
-  // Every bit of a lane where it holds, or none.
-  friend constexpr LaneLoop operator!=(const LaneLoop& a, Number b) {
-    return a.each([=](Number x, int) { return x != b ? -1 : 0; });
+template <typename Number_, int kCount_, typename At>
+struct LaneExpression {
+  using Number = Number_;
+  static constexpr int kCount = kCount_;
+  At at;
+  __attribute__((always_inline)) constexpr Number operator[](int i) const {
+    return static_cast<Number>(at(i));
   }
 };
+
+template <typename Number_, int kCount_>
+struct LaneLoop {
+  using Number = Number_;
+  static constexpr int kCount = kCount_;
+  Number lane[kCount];
+
+  LaneLoop() = default;
+  template <typename... Numbers>
+  requires(sizeof...(Numbers) == kCount) constexpr LaneLoop(Numbers... numbers)
+      : lane{static_cast<Number>(numbers)...} {}
+  template <typename At>
+  __attribute__((always_inline)) constexpr LaneLoop(const LaneExpression<Number, kCount, At>& expression) {
+    for (int i = 0; i < kCount; ++i) lane[i] = expression[i];
+  }
+  constexpr Number& operator[](int i) { return lane[i]; }
+  constexpr const Number& operator[](int i) const { return lane[i]; }
+  template <typename Lanes>
+  __attribute__((always_inline)) constexpr void operator+=(const Lanes& b) {
+    for (int i = 0; i < kCount; ++i) lane[i] = static_cast<Number>(lane[i] + b[i]);
+  }
+};
+
+template <typename T>
+concept Laned = requires(const T& x) {
+  T::kCount;
+  typename T::Number;
+  x[0];
+};
+
+// Its operands must live until it is put into lanes: within one expression they do.
+template <Laned A, typename At>
+__attribute__((always_inline)) constexpr LaneExpression<typename A::Number, A::kCount, At> each(At at) {
+  return {at};
+}
+
+template <Laned A, Laned B>
+__attribute__((always_inline)) constexpr auto operator+(const A& a, const B& b) {
+  return each<A>([&](int i) { return a[i] + b[i]; });
+}
+template <Laned A, Laned B>
+__attribute__((always_inline)) constexpr auto operator-(const A& a, const B& b) {
+  return each<A>([&](int i) { return a[i] - b[i]; });
+}
+template <Laned A, Laned B>
+__attribute__((always_inline)) constexpr auto operator*(const A& a, const B& b) {
+  return each<A>([&](int i) { return a[i] * b[i]; });
+}
+template <Laned A, Laned B>
+__attribute__((always_inline)) constexpr auto operator&(const A& a, const B& b) {
+  return each<A>([&](int i) { return a[i] & b[i]; });
+}
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator+(const A& a, typename A::Number b) {
+  return each<A>([&a, b](int i) { return a[i] + b; });
+}
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator-(const A& a, typename A::Number b) {
+  return each<A>([&a, b](int i) { return a[i] - b; });
+}
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator*(const A& a, typename A::Number b) {
+  return each<A>([&a, b](int i) { return a[i] * b; });
+}
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator&(const A& a, typename A::Number b) {
+  return each<A>([&a, b](int i) { return a[i] & b; });
+}
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator>>(const A& a, int bits) {
+  return each<A>([&a, bits](int i) { return a[i] >> bits; });
+}
+// Every bit of a lane where it holds, or none.
+template <Laned A>
+__attribute__((always_inline)) constexpr auto operator!=(const A& a, typename A::Number b) {
+  return each<A>([&a, b](int i) { return a[i] != b ? -1 : 0; });
+}
+
 using Lanes = LaneLoop<std::int16_t, 8>;
 using WideLanes = LaneLoop<std::int32_t, 4>;
 
