@@ -127,7 +127,8 @@ class Odometry {
   // frames have depends on nothing else.
   void frame_took(std::int64_t ns) { budget_.note(ns); }
 
-  // Who took what of the block, and the high-water mark of the scratch behind it.
+  // Who took what of the block (small code does not note it), and the high-water mark of the scratch behind
+  // it.
   std::span<const Arena::Record> memory_records() const;
   std::size_t memory_used() const;
   std::size_t memory_peak() const;

@@ -190,7 +190,8 @@ WarpedWindow warp_window(const PatchWarp& warp) {
 }
 
 // Each pixel at a fraction of its own: down its four columns, then across.
-Window read_each(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+[[maybe_unused]] Window read_each(GrayView image, const WarpedWindow& window, std::int32_t x,
+                                  std::int32_t y) {
   Window values;
   for (std::size_t k = 0; k < kPixels; ++k) {
     const std::int32_t at_x = x + window.x[k];
