@@ -19,10 +19,10 @@ INDIRECT = [
     (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
 ]
 
-# A function of one file alone has the object's name before its own.
 # (caller, callee, mark): what it calls from there is not what it calls from elsewhere, so it counts as a function of its own.
 APART = [(re.compile(r"fit_line3d"), re.compile(r"LevenbergMarquardt.*3run"), "@lines")]
 
+# A function that one file alone knows has its object's name before its own.
 NODE = re.compile(r'node: \{ title: "(?:[^"]*:)?([^":]+)" label: "(.*?)"( shape : ellipse)? \}')
 EDGE = re.compile(r'edge: \{ sourcename: "(?:[^"]*:)?([^":]+)" targetname: "(?:[^"]*:)?([^":]+)"')
 FRAME = re.compile(r"(\d+) bytes \(([^)]*)\)")

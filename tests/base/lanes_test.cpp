@@ -22,6 +22,13 @@ Eight any_numbers(Random& random) {
 }
 
 template <typename Numbers>
+Numbers loaded(const Eight& numbers) {
+  Numbers lanes;
+  load(numbers.data(), lanes);
+  return lanes;
+}
+
+template <typename Numbers>
 Eight stored(const Numbers& lanes) {
   Eight numbers{};
   store(lanes, numbers.data());
@@ -31,13 +38,8 @@ Eight stored(const Numbers& lanes) {
 // What is made of the same numbers, in registers and in loops.
 template <typename Make>
 void expect_alike(const Eight& a, const Eight& b, const Make& make) {
-  Lanes fast_a, fast_b;
-  load(a.data(), fast_a);
-  load(b.data(), fast_b);
-  lane_loops::Lanes slow_a, slow_b;
-  load(a.data(), slow_a);
-  load(b.data(), slow_b);
-  EXPECT_EQ(stored(make(fast_a, fast_b)), stored(make(slow_a, slow_b)));
+  using Slow = lane_loops::Lanes;
+  EXPECT_EQ(stored(make(loaded<Lanes>(a), loaded<Lanes>(b))), stored(make(loaded<Slow>(a), loaded<Slow>(b))));
 }
 
 TEST(Lanes, LoopsMakeTheSameNumbers) {
@@ -95,16 +97,10 @@ TEST(Lanes, PairsAreMultipliedAndRangesTakenAsLoopsDo) {
     Eight a = any_numbers(random);
     for (std::int16_t& number : a) number = static_cast<std::int16_t>(number / 2);
     const Eight b = any_numbers(random);
-    Lanes fast_a, fast_b;
-    load(a.data(), fast_a);
-    load(b.data(), fast_b);
-    lane_loops::Lanes slow_a, slow_b;
-    load(a.data(), slow_a);
-    load(b.data(), slow_b);
     WideLanes sums;
-    dot_pairs(fast_a, fast_b, sums);
+    dot_pairs(loaded<Lanes>(a), loaded<Lanes>(b), sums);
     lane_loops::WideLanes slow_sums;
-    dot_pairs(slow_a, slow_b, slow_sums);
+    dot_pairs(loaded<lane_loops::Lanes>(a), loaded<lane_loops::Lanes>(b), slow_sums);
     take_range(sums, low, high);
     take_range(slow_sums, slow_low, slow_high);
     for (int i = 0; i < 4; ++i) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # From a fresh Debian 12 to every test passed: installs what is missing; shows that Clang, sanitizers and emulated ARM
-# boards compute the same bits as GCC; runs each fuzzer briefly, the core's and the readers' suites under the address and
+# boards compute the same bits as GCC, and what code and stack the boards take; runs each fuzzer briefly, the core's and the readers' suites under the address and
 # undefined behaviour sanitizers, and what has threads under the thread sanitizer; builds the release preset and passes its
 # suite, which holds every test. `test.sh PRESET…` passes the suites of those presets instead, the last one last; `test.sh
 # all` those of each of them. Stops at the first failure.
