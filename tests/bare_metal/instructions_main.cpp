@@ -46,6 +46,6 @@ int main() {
   const std::int64_t qvga = instructions_a_frame(Limits::qvga(), {}, clock);
   const std::int64_t tiny = instructions_a_frame(Limits::tiny(), Config::tiny(), clock);
   bare_metal::write_text(
-      TextLine().text("qvga ").integer(qvga).text(" tiny ").integer(tiny).text("\n").view());
+      TextLine().text("320×240 ").integer(qvga).text("\n320×240, tiny ").integer(tiny).text("\n").view());
   return qvga > 0 && tiny > 0 ? 0 : 1;
 }

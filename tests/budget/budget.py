@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares figures with the tables of docs/memory.md: a row that differs by more than 3 % fails, and so does a figure above
+"""Compares figures with the tables of a page of docs/: a row that differs by more than 3 % fails, and so does a figure above
 its ceiling. With PLVO_UPDATE_DOCS=1 in the environment the row is written anew instead."""
 import os
 import pathlib
@@ -16,27 +16,27 @@ def committed(page, row):
     return int(match.group(1).replace(",", "")) if match else None
 
 
-def judge(page, row, value, ceiling=None):
+def judge(page, row, value, ceiling=None, unit="bytes"):
     """What is wrong, or None."""
     known = committed(page, row)
     if known is None:
         return f"no row '{row}' in the page"
     if abs(value - known) > TOLERANCE * known:
-        return f"{row}: {value:,} bytes, the page says {known:,}; PLVO_UPDATE_DOCS=1 writes it anew, if that is meant"
+        return f"{row}: {value:,} {unit}, the page says {known:,}; PLVO_UPDATE_DOCS=1 writes it anew, if that is meant"
     if ceiling is not None and value > ceiling:
-        return f"{row}: {value:,} bytes, more than the ceiling of {ceiling:,}"
+        return f"{row}: {value:,} {unit}, more than the ceiling of {ceiling:,}"
     return None
 
 
-def check(path, figures):
-    """figures: (row, bytes, ceiling or None). The number of those that are wrong."""
+def check(path, figures, unit="bytes"):
+    """figures: (row, value, ceiling or None). The number of those that are wrong."""
     path, wrong = pathlib.Path(path), 0
     for row, value, ceiling in figures:
         if os.environ.get("PLVO_UPDATE_DOCS"):
             text = path.read_text(encoding="utf-8")
             path.write_text(re.sub(rf"^(\| {re.escape(row)} \|) [\d,]+ \|", rf"\1 {value:,} |", text, flags=re.M), encoding="utf-8")
-        error = judge(path.read_text(encoding="utf-8"), row, value, ceiling)
-        print(error or f"{row}: {value:,} bytes")
+        error = judge(path.read_text(encoding="utf-8"), row, value, ceiling, unit)
+        print(error or f"{row}: {value:,} {unit}")
         wrong += error is not None
     return wrong
 

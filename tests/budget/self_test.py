@@ -6,6 +6,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "bare_metal"))
 import budget
+import instructions
 import mixed_levels
 from call_graph import CallGraph
 
@@ -28,6 +29,15 @@ class Budget(unittest.TestCase):
     def test_ceiling_and_unknown_row(self):
         self.assertIn("ceiling", budget.judge(PAGE, "text", 1001, 1000))
         self.assertIn("no row", budget.judge(PAGE, "stack", 1000))
+
+
+class Instructions(unittest.TestCase):
+    def test_medians_of_the_frames_between_marks(self):
+        marks = [100, 110, 200, 230, 300, 320, 1000, 1001, 2000, 2003, 3000, 3002]
+        self.assertEqual(instructions.of_marks(["vga", "qvga"], marks), [("vga", 20), ("qvga", 2)])
+
+    def test_what_a_program_counted_itself(self):
+        self.assertEqual(instructions.of_words(["qvga 7", "qvga, tiny 5"]), [("qvga", 7), ("qvga, tiny", 5)])
 
 
 class MixedLevels(unittest.TestCase):

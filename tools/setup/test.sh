@@ -10,7 +10,7 @@ cd "$(dirname "$0")/../.."
 . tools/setup/packages.sh
 
 presets=("$@")
-if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf cortex-m7 release); fi
+if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf armhf-neon cortex-m7 release); fi
 
 # shellcheck disable=SC2086  # lists of words
 install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_TEST $PLVO_PACKAGES_CROSS
