@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/base/arena.hpp"
 
-#include <algorithm>
 #include <string_view>
 
 namespace plvo {
@@ -16,7 +15,7 @@ Arena::Arena(std::span<std::byte> memory) {
 
 std::byte* Arena::take_bytes(const char* who, std::size_t aligned_bytes) {
   if (counts_) {
-    add(std::min(aligned_bytes, capacity_ - used_));
+    add(aligned_bytes);
     return nullptr;
   }
   if (base_ == nullptr || aligned_bytes > capacity_ - used_) {

@@ -62,7 +62,7 @@ class Arena {
     static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);
     const std::size_t bytes = array_bytes(count, sizeof(T));
     if (std::is_constant_evaluated()) {  // without memory
-      add(std::min(bytes, capacity_ - used_));
+      add(bytes);
       return {};
     }
     return construct<T>(take_bytes(kSmallCode ? nullptr : who, bytes), count);
@@ -89,8 +89,9 @@ class Arena {
     for (std::size_t i = 0; i < count; ++i) new (first + i) T;
     return {first, count};
   }
+  // What only counts stays at its capacity.
   constexpr void add(std::size_t aligned_bytes) {
-    used_ += aligned_bytes;
+    used_ += std::min(aligned_bytes, capacity_ - used_);
     if (used_ > peak_) peak_ = used_;
   }
   // aligned_bytes is a multiple of kArenaAlignment.
