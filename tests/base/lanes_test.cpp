@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -81,10 +82,12 @@ TEST(Lanes, AreReadAndWrittenAsLoopsDo) {
     load_halves(&a[1], &b[4], fast);
     load_halves(&a[1], &b[4], slow);
     EXPECT_EQ(stored(fast), stored(slow));
-    std::array<std::int32_t, 8> fast_wide{}, slow_wide{};
-    store_wide(fast, fast_wide.data());
-    store_wide(slow, slow_wide.data());
-    EXPECT_EQ(fast_wide, slow_wide);
+    load_bytes(&bytes[6], fast);
+    std::array<std::uint8_t, 8> written{};
+    store_bytes(fast, written.data());
+    EXPECT_TRUE(std::equal(written.begin(), written.end(), &bytes[6]));
+    store_bytes(loaded<lane_loops::Lanes>(stored(fast)), written.data());
+    EXPECT_TRUE(std::equal(written.begin(), written.end(), &bytes[6]));
   }
 }
 

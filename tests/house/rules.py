@@ -16,8 +16,6 @@ STANDARD_HEADERS = {
     "iterator", "limits", "new", "numeric", "optional", "span", "string_view", "tuple", "type_traits", "utility",
 }
 EIGEN_HEADERS = {"Eigen/Core", "Eigen/LU", "Eigen/Cholesky", "Eigen/Geometry", "Eigen/SVD", "Eigen/Eigenvalues", "Eigen/QR"}
-# The one file that may call the C library's mathematics (sqrt alone, which IEEE 754 rounds exactly).
-CMATH_FILES = {"core/plvo/math/trigonometry.cpp"}
 
 FORBIDDEN = {
     r"\b(?:malloc|calloc|realloc|aligned_alloc|posix_memalign)\s*\(": "takes memory from the heap",
@@ -54,7 +52,7 @@ def check_core(root):
         name = path.relative_to(root).as_posix()
         text = path.read_text(encoding="utf-8")
         for number, kind, header in sources.includes(text):
-            allowed = STANDARD_HEADERS | EIGEN_HEADERS | ({"cmath"} if name in CMATH_FILES else set())
+            allowed = STANDARD_HEADERS | EIGEN_HEADERS
             if kind == "angle" and header not in allowed:
                 yield f"{name}:{number}: <{header}> is not for core and hal"
         for number, line in enumerate(sources.code_only(text).splitlines(), 1):

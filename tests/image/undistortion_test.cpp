@@ -100,6 +100,23 @@ TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
   }
 }
 
+// Two processors share an image by its rows, wherever they divide it.
+TEST(Undistortion, PartsOfTheRowsMakeTheWhole) {
+  GrayImage raw(kBentWidth, kBentHeight, 6);
+  raw.paint([](int x, int y) { return 128 + 100 * std::sin(0.7 * x + 0.4 * y); });
+  const Map owned(camera_with(kBarrel));
+  GrayImage whole(kBentWidth, kBentHeight, 1);
+  owned.map.undistort(raw.view(), whole.view());
+  for (const int divide : {1, 8, 13, 60, kBentHeight - 1}) {
+    GrayImage parts(kBentWidth, kBentHeight, 1);
+    owned.map.undistort(raw.view(), parts.view(), 0, divide);
+    owned.map.undistort(raw.view(), parts.view(), divide, kBentHeight);
+    for (int y = 0; y < kBentHeight; ++y)
+      for (int x = 0; x < kBentWidth; ++x)
+        ASSERT_EQ(parts.view().at(x, y), whole.view().at(x, y)) << x << " " << y << " divided at " << divide;
+  }
+}
+
 // TUM's fr1, whose lens is the strongest of the Kinects there, at both sizes.
 TEST(Undistortion, AKinectsLensIsMetToAFiftiethOfAPixel) {
   for (const int halvings : {0, 1}) {

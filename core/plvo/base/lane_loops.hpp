@@ -123,8 +123,8 @@ inline void store(const WideLanes& lanes, std::int32_t* to) {
   for (int i = 0; i < 4; ++i) to[i] = lanes[i];
 }
 
-inline void store_wide(const Lanes& lanes, std::int32_t* out) {
-  for (int i = 0; i < 8; ++i) out[i] = lanes[i];
+inline void store_bytes(const Lanes& lanes, std::uint8_t* to) {
+  for (int i = 0; i < 8; ++i) to[i] = static_cast<std::uint8_t>(lanes[i]);
 }
 
 inline void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {

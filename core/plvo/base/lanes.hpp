@@ -84,11 +84,17 @@ inline __attribute__((always_inline)) void store(const WideLanes& lanes, std::in
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-// Eight numbers of 32 bits.
-inline __attribute__((always_inline)) void store_wide(const Lanes& lanes, std::int32_t* out) {
-  using Eight = std::int32_t __attribute__((vector_size(32)));
-  const Eight eight = __builtin_convertvector(lanes, Eight);
-  std::memcpy(out, &eight, sizeof eight);
+// Into eight bytes, which must hold the numbers.
+inline __attribute__((always_inline)) void store_bytes(const Lanes& lanes, std::uint8_t* to) {
+#ifdef __SSE2__
+  using Bytes = char __attribute__((vector_size(16)));
+  const Bytes packed = __builtin_ia32_packuswb128(lanes, lanes);
+  std::memcpy(to, &packed, 8);
+#else
+  using Bytes = std::uint8_t __attribute__((vector_size(8)));
+  const Bytes eight = __builtin_convertvector(lanes, Bytes);
+  std::memcpy(to, &eight, sizeof eight);
+#endif
 }
 
 // Lane by lane, low becomes the lesser and high the greater of itself and value.

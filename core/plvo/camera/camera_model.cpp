@@ -45,20 +45,12 @@ Status CameraModel::validate() const {
   return {};
 }
 
-Vector2 project(const Pinhole& pinhole, const Vector3& p) {
-  return {pinhole.fx * p.x() / p.z() + pinhole.cx, pinhole.fy * p.y() / p.z() + pinhole.cy};
-}
-
 Matrix<2, 3> project_derivative(const Pinhole& pinhole, const Vector3& p) {
   const double fx = pinhole.fx / p.z();
   const double fy = pinhole.fy / p.z();
   Matrix<2, 3> J;
   J << fx, 0, -fx * p.x() / p.z(), 0, fy, -fy * p.y() / p.z();
   return J;
-}
-
-Vector3 back_project(const Pinhole& pinhole, double u, double v, double d) {
-  return {(u - pinhole.cx) * d / pinhole.fx, (v - pinhole.cy) * d / pinhole.fy, d};
 }
 
 Vector2 distort_pixel(const CameraModel& camera, const Vector2& ideal_px) {

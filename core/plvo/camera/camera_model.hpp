@@ -50,13 +50,17 @@ struct CameraModel {
 inline constexpr double kNearestSeen_m = 0.1;
 
 // Projects p (camera frame, metres) to pixels with the pinhole alone. p.z() must be positive.
-Vector2 project(const Pinhole& pinhole, const Vector3& p);
+inline Vector2 project(const Pinhole& pinhole, const Vector3& p) {
+  return {pinhole.fx * p.x() / p.z() + pinhole.cx, pinhole.fy * p.y() / p.z() + pinhole.cy};
+}
 
 // Its derivative by p, px/m.
 Matrix<2, 3> project_derivative(const Pinhole& pinhole, const Vector3& p);
 
 // Equation (1): the point at pixel (u, v) with depth d (metres along z).
-Vector3 back_project(const Pinhole& pinhole, double u, double v, double d);
+inline Vector3 back_project(const Pinhole& pinhole, double u, double v, double d) {
+  return {(u - pinhole.cx) * d / pinhole.fx, (v - pinhole.cy) * d / pinhole.fy, d};
+}
 
 // The pixel at which the lens images what an ideal pinhole would image at (u, v).
 Vector2 distort_pixel(const CameraModel& camera, const Vector2& ideal_px);

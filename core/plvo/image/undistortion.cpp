@@ -2,8 +2,8 @@
 #include "plvo/image/undistortion.hpp"
 
 #include <algorithm>
-#include <array>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/rounding.hpp"
 
@@ -24,19 +24,55 @@ constexpr std::int16_t to_lane(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
 }
 
-// The first bit of a cell's position, 2^-16 px, says that the cell is plain.
+// The first bit of a cell's position, 2^-16 px, says that the cell is plain: whole, and inside the raw image
+// wherever it is read.
 constexpr std::int64_t kPlain = 1;
 
-}  // namespace
+constexpr std::int16_t kWeightOne = 1 << kWeightBits;
+constexpr std::int16_t kWeightMask = kWeightOne - 1;
 
-// Where the pixels of a part of a row are read: the upper left of four, the weights, then the pixels.
-struct UndistortionMap::Row {
-  static constexpr int kSize = 64;
-  alignas(16) std::array<std::int16_t, kSize> fx, fy;
-  alignas(32) std::array<std::int32_t, kSize> offset;  // from the cell's base
-  alignas(16) std::array<std::uint16_t, kSize> above,
-      below;  // two neighbours each, the left one in the low byte
-};
+// At (x, y), in 2^-7 px from the pixel `from`.
+std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t x, std::int32_t y) {
+  const std::uint8_t* const above = from + (y >> kWeightBits) * stride + (x >> kWeightBits);
+  const std::uint8_t* const below = above + stride;
+  const std::int32_t fx = x & kWeightMask;
+  const std::int32_t upper = (above[0] << kWeightBits) + (above[1] - above[0]) * fx;
+  const std::int32_t lower = (below[0] << kWeightBits) + (below[1] - below[0]) * fx;
+  // Half of the change first, so that it fits the lanes of blend_eight.
+  const std::int32_t half = ((lower - upper) * (y & kWeightMask)) >> (kWeightBits + 1);
+  return static_cast<std::uint8_t>((upper + 2 * half + kWeightOne / 2) >> kWeightBits);
+}
+
+// Two neighbours, the left one in the low byte.
+std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p[0] | p[1] << 8); }
+
+// As blend, eight at once.
+void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x, const Lanes& y,
+                 std::uint8_t* out) {
+  if constexpr (kSmallCode) {
+    for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i], y[i]);
+    return;
+  }
+  const Lanes offset = (y >> kWeightBits) * static_cast<std::int16_t>(stride) + (x >> kWeightBits);
+  Lanes above, below;
+  for (int i = 0; i < 8; ++i) {
+    const std::uint8_t* const p = from + offset[i];
+    above[i] = pair_at(p);
+    below[i] = pair_at(p + stride);
+  }
+  const Lanes fx = x & kWeightMask;
+  const Lanes fy = y & kWeightMask;
+  const Lanes upper_left = above & 255;
+  const Lanes lower_left = below & 255;
+  const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
+  const Lanes lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
+  // The product of the change and fy, by the change's high and low bytes: it has more than 16 bits.
+  const Lanes change = lower - upper;
+  const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
+  store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
+}
+
+}  // namespace
 
 void UndistortionMap::init(const CameraModel& camera) {
   width_ = camera.width;
@@ -67,7 +103,7 @@ void UndistortionMap::init(const CameraModel& camera) {
               pair_of((d - c - b + a) / (kCell * kCell)),
               pair_of((at(kHalf, 0) + at(kHalf, kCell) - corners) / kSag),
               pair_of((at(0, kHalf) + at(kCell, kHalf) - corners) / kSag)};
-      cell.at = (cell.at & ~kPlain) | (is_plain(cell) ? kPlain : 0);
+      cell.at = (cell.at & ~kPlain) | (kCell * (column + 1) <= width_ && is_plain(cell) ? kPlain : 0);
     }
   }
 }
@@ -89,90 +125,59 @@ bool UndistortionMap::is_plain(const Cell& c) const {
   return true;
 }
 
-// One row of a plain cell, all eight pixels at once.
-std::ptrdiff_t UndistortionMap::locate_plain(const Cell& c, int j, std::ptrdiff_t stride, Row& row,
-                                             int first) {
+// Rows of a plain cell: in each all eight pixels at once.
+void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
+                                      std::ptrdiff_t out_stride) {
+  const Cell c = cell;  // what is written cannot change it
   constexpr Lanes kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr Lanes kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
-  const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
-  const std::int64_t right = c.right + j * c.twist;
-  const std::int32_t x = x_of(start);
-  const std::int32_t y = y_of(start);
-  constexpr std::int32_t kFraction = (1 << kFractionBits) - 1;
   constexpr int kToWeight = kLaneBits - kWeightBits;
   constexpr std::int16_t kRound = 1 << (kToWeight - 1);
-  const auto x0 = static_cast<std::int16_t>(((x & kFraction) >> kLaneShift) + kRound);
-  const auto y0 = static_cast<std::int16_t>(((y & kFraction) >> kLaneShift) + kRound);
-  const Lanes lane_x = kSteps * to_lane(x_of(right)) + kBows * to_lane(x_of(c.bend_right)) + x0;
-  const Lanes lane_y = kSteps * to_lane(y_of(right)) + kBows * to_lane(y_of(c.bend_right)) + y0;
-  constexpr std::int16_t kWeightMask = (1 << kWeightBits) - 1;
-  const Lanes fx = (lane_x >> kToWeight) & kWeightMask;
-  const Lanes fy = (lane_y >> kToWeight) & kWeightMask;
-  const Lanes offset = (lane_y >> kLaneBits) * static_cast<std::int16_t>(stride) + (lane_x >> kLaneBits);
-  const auto at = static_cast<std::size_t>(first);
-  store(fx, &row.fx[at]);
-  store(fy, &row.fy[at]);
-  store_wide(offset, &row.offset[at]);
-  return (y >> kFractionBits) * stride + (x >> kFractionBits);
-}
-
-// One by one, where the camera's border may be near.
-std::ptrdiff_t UndistortionMap::locate_clamped(int x, int y, std::ptrdiff_t stride, Row& row,
-                                               int first) const {
-  const Cell& c = cell(x, y);
-  const int j = y % kCell;
-  const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
-  const std::int64_t right = c.right + j * c.twist;
-  for (int i = 0; i < kCell; ++i) {
-    const std::int64_t at = start + i * right + bow(i) * c.bend_right;
-    const std::int32_t at_x = std::clamp<std::int32_t>(x_of(at), 0, last_x_);
-    const std::int32_t at_y = std::clamp<std::int32_t>(y_of(at), 0, last_y_);
+  const Lanes bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
+  const Lanes bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;
+  for (int j = first; j < last; ++j, out += out_stride) {
+    const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
+    const std::int64_t right = c.right + j * c.twist;
+    const std::int32_t x = x_of(start);
+    const std::int32_t y = y_of(start);
     constexpr std::int32_t kFraction = (1 << kFractionBits) - 1;
-    constexpr int kToWeight = kFractionBits - kWeightBits;
-    const auto k = static_cast<std::size_t>(first + i);
-    row.fx[k] = static_cast<std::int16_t>((at_x & kFraction) >> kToWeight);
-    row.fy[k] = static_cast<std::int16_t>((at_y & kFraction) >> kToWeight);
-    row.offset[k] = static_cast<std::int32_t>((at_y >> kFractionBits) * stride + (at_x >> kFractionBits));
+    const auto x0 = static_cast<std::int16_t>((x & kFraction) >> kLaneShift);
+    const auto y0 = static_cast<std::int16_t>((y & kFraction) >> kLaneShift);
+    const Lanes at_x = (kSteps * to_lane(x_of(right)) + bent_x + x0) >> kToWeight;
+    const Lanes at_y = (kSteps * to_lane(y_of(right)) + bent_y + y0) >> kToWeight;
+    const std::uint8_t* const from = raw.data + (y >> kFractionBits) * raw.stride + (x >> kFractionBits);
+    blend_eight(from, raw.stride, at_x, at_y, out);
   }
-  return 0;
 }
 
-void UndistortionMap::gather(const std::uint8_t* base, std::ptrdiff_t stride, Row& row, int first) {
-  for (int i = first; i < first + kCell; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const std::uint8_t* above = base + row.offset[k];
-    const std::uint8_t* below = above + stride;
-    row.above[k] = static_cast<std::uint16_t>(above[0] | above[1] << 8);
-    row.below[k] = static_cast<std::uint16_t>(below[0] | below[1] << 8);
+// Rows of a cell whose pixels are clamped to what the camera saw.
+void UndistortionMap::undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count,
+                                        std::uint8_t* out, std::ptrdiff_t out_stride) const {
+  const Cell c = cell;
+  for (int j = first; j < last; ++j, out += out_stride) {
+    const std::int64_t right = c.right + j * c.twist;
+    std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
+    for (int i = 0; i < count; ++i, start += right) {
+      const std::int64_t at = start + bow(i) * c.bend_right;
+      constexpr int kToWeight = kFractionBits - kWeightBits;
+      out[i] = blend(raw.data, raw.stride, std::clamp<std::int32_t>(x_of(at), 0, last_x_) >> kToWeight,
+                     std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
+    }
   }
 }
 
 void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const {
-  Row row;
-  for (int y = begin; y < end; ++y) {
-    for (int block = 0; block < width_; block += Row::kSize) {
-      const int size = std::min(Row::kSize, width_ - block);
-      for (int i = 0; i < size; i += kCell) {
-        const Cell& c = cell(block + i, y);
-        const std::uint8_t* base =
-            raw.data + ((c.at & kPlain) != 0 ? locate_plain(c, y % kCell, raw.stride, row, i)
-                                             : locate_clamped(block + i, y, raw.stride, row, i));
-        gather(base, raw.stride, row, i);
-      }
-      std::uint8_t* out = ideal.row(y) + block;
-      for (int i = 0; i < size; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const std::int16_t fx = row.fx[k];
-        const auto left = static_cast<std::int16_t>((1 << kWeightBits) - fx);
-        const auto above = static_cast<std::int16_t>((row.above[k] & 255) * left + (row.above[k] >> 8) * fx);
-        const auto below = static_cast<std::int16_t>((row.below[k] & 255) * left + (row.below[k] >> 8) * fx);
-        // The high half of a product of 16 bits: twice it is (below − above) · fy / 2^7, to one bit.
-        const auto change = static_cast<std::int16_t>(below - above);
-        const auto share = static_cast<std::int16_t>(row.fy[k] << (15 - kWeightBits));
-        const auto half = static_cast<std::int16_t>((change * share) >> 16);
-        out[i] = static_cast<std::uint8_t>(
-            static_cast<std::int16_t>(above + 2 * half + (1 << (kWeightBits - 1))) >> kWeightBits);
-      }
+  // Cell by cell: what its rows have in common is worked out once.
+  for (int top = begin - begin % kCell; top < end; top += kCell) {
+    const int first = std::max(begin - top, 0);
+    const int last = std::min(end - top, kCell);
+    for (int x = 0; x < width_; x += kCell) {
+      const Cell& c = cell(x, top);
+      std::uint8_t* const out = ideal.row(top + first) + x;
+      if ((c.at & kPlain) != 0)
+        undistort_plain(c, first, last, raw, out, ideal.stride);
+      else
+        undistort_clamped(c, first, last, raw, std::min(kCell, width_ - x), out, ideal.stride);
     }
   }
 }

@@ -60,8 +60,8 @@ class UndistortionMap {
     Window(const UndistortionMap& map, int x, int y) : map_(map), x_(x), y_(y) {
       if (!map.active_) return;
       const Cell& c = map.cell(x, y);
-      const int i = x % kCell;
-      const int j = y % kCell;
+      const int i = within_cell(x);
+      const int j = within_cell(y);
       at_ = map.position(x, y);
       right_ = c.right + j * c.twist + (kCell / 2 - i) * c.bend_right;
       down_ = c.down + i * c.twist + (kCell / 2 - j) * c.bend_down;
@@ -87,20 +87,24 @@ class UndistortionMap {
   struct Cell {
     std::int64_t at, right, down, twist, bend_right, bend_down;
   };
-  static constexpr std::int64_t bow(int i) { return i * (kCell - i) / 2; }  // integer: kCell is even
+  static constexpr std::int64_t bow(int i) {  // 0 ≤ i ≤ kCell
+    return static_cast<std::uint32_t>(i * (kCell - i)) / 2;
+  }
   static constexpr std::int32_t x_of(std::int64_t pair) { return static_cast<std::int32_t>(pair >> 32); }
   static constexpr std::int32_t y_of(std::int64_t pair) { return static_cast<std::int32_t>(pair); }
 
   static constexpr std::size_t cells_along(int pixels) {
     return static_cast<std::size_t>((pixels + kCell - 1) / kCell);
   }
+  // Of a pixel in the image, as is all that follows.
   const Cell& cell(int x, int y) const {
-    return cells_[static_cast<std::size_t>(y / kCell) * columns_ + static_cast<std::size_t>(x / kCell)];
+    return cells_[static_cast<std::size_t>(y) / kCell * columns_ + static_cast<std::size_t>(x) / kCell];
   }
+  static constexpr int within_cell(int x) { return static_cast<int>(static_cast<unsigned>(x) % kCell); }
   std::int64_t position(int x, int y) const {
     const Cell& c = cell(x, y);
-    const int i = x % kCell;
-    const int j = y % kCell;
+    const int i = within_cell(x);
+    const int j = within_cell(y);
     return c.at + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
   }
   bool nearest(std::int64_t at, int& raw_x, int& raw_y) const {
@@ -115,11 +119,11 @@ class UndistortionMap {
   // Does the whole of the cell lie inside the raw image, and does it fit the 16-bit lanes?
   bool is_plain(const Cell& c) const;
 
-  struct Row;
-  // Weights and offsets of eight pixels into the row, from its entry `first` on; what the offsets count from.
-  static std::ptrdiff_t locate_plain(const Cell& c, int j, std::ptrdiff_t stride, Row& row, int first);
-  std::ptrdiff_t locate_clamped(int x, int y, std::ptrdiff_t stride, Row& row, int first) const;
-  static void gather(const std::uint8_t* base, std::ptrdiff_t stride, Row& row, int first);
+  // The cell's rows from first to before last.
+  static void undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
+                              std::ptrdiff_t out_stride);
+  void undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count, std::uint8_t* out,
+                         std::ptrdiff_t out_stride) const;
 
   std::span<Cell> cells_;
   std::size_t columns_ = 0;

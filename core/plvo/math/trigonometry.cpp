@@ -5,7 +5,6 @@
 #include "plvo/math/trigonometry.hpp"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -107,8 +106,6 @@ double sin_ahead(double radians, int quadrants) {
 }
 
 }  // namespace
-
-double sqrt(double x) { return std::sqrt(x); }
 
 double sin(double radians) { return sin_ahead(radians, 0); }
 double cos(double radians) { return sin_ahead(radians, 1); }
