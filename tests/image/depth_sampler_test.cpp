@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -188,6 +190,74 @@ TEST(DepthSampler, ReadsThroughTheLens) {
       ASSERT_NEAR(sampler.at(x, y), 0.5 + 0.01 * raw_x + 0.02 * raw_y, kUnit);
     }
   EXPECT_GT(unseen, 0);
+}
+
+// Row by row as pixel by pixel, inside and across the borders of both images.
+TEST(DepthSampler, AWindowsRowsAreItsPixels) {
+  CameraModel lens{kWidth, kHeight, {40, 40, 24, 18}, {0.1, 0.02, 0.001, 0, 0}};
+  CameraModel none = lens;
+  none.distortion = {};
+  for (const CameraModel& camera : {lens, none}) {
+    std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
+    Arena arena(memory);
+    Scene scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; });
+    scene.map.carve(arena, kWidth, kHeight);
+    scene.map.init(camera);
+    const DepthSampler sampler = scene.sampler();
+    int missing = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        for (const int step : {1, 2, 3}) {
+          constexpr int kSteps = 3;
+          const UndistortionMap::Window map(scene.map, x, y);
+          const DepthSampler::Window window(sampler, x, y, kSteps * step);
+          std::array<std::uint16_t, 2 * kSteps + 1> row;
+          for (int j = -kSteps; j <= kSteps; ++j) {
+            window.read_row(-kSteps * step, j * step, step, row);
+            for (int i = -kSteps; i <= kSteps; ++i) {
+              const int dx = i * step;
+              const int dy = j * step;
+              int raw_x = 0, raw_y = 0;
+              const bool seen = sampler.inside(x + dx, y + dy) && map.raw_pixel(dx, dy, raw_x, raw_y);
+              const auto at = static_cast<std::size_t>(raw_y * kWidth + raw_x);
+              ASSERT_EQ(row[static_cast<std::size_t>(i + kSteps)], seen ? scene.units[at] : 0)
+                  << x << " " << y << ": " << dx << " " << dy;
+              missing += seen ? 0 : 1;
+            }
+          }
+        }
+    EXPECT_GT(missing, 0);
+  }
+}
+
+// A camera that turns while depth is exposed later than colour: along a line, each place found with its
+// neighbour's help is the one that is found without.
+TEST(DepthSampler, ANeighbourLeadsToTheSamePlace) {
+  CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, {}};
+  camera.depth_timing.known = true;
+  Vector6 velocity;
+  velocity << 0.3, -0.2, 0.1, 0.5, 1.5, -1;
+  const Scene scene(Plane{0.7, 0.004, -0.003});
+  const DepthSampler sampler = scene.sampler().with(Exposure(camera, velocity, 0.05));
+  ASSERT_TRUE(sampler.exposure().depth_apart());
+  DepthSampler::Neighbour neighbour;
+  int found = 0;
+  double farthest = 0;
+  for (double t = 0; t < 30; t += 0.7) {
+    const Vector2 pixel(8 + t, 6 + 0.6 * t);
+    Vector2 alone = pixel;
+    Vector2 led = pixel;
+    const bool is_seen = sampler.locate(alone);
+    ASSERT_EQ(sampler.locate(led, neighbour), is_seen);
+    ASSERT_EQ(neighbour.known, is_seen);
+    if (!is_seen) continue;
+    ++found;
+    EXPECT_LT((led - alone).norm(), 0.05) << t;
+    EXPECT_EQ(neighbour.displacement, led - pixel);
+    farthest = std::max(farthest, (led - pixel).norm());
+  }
+  EXPECT_GT(found, 30);
+  EXPECT_GT(farthest, 2);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ template <typename Function>
 struct DepthFunction {
   Function function;
   double at(int x, int y) const { return function(x, y); }
-  bool locate(Vector2&) const { return true; }
+  struct Neighbour {};
+  bool locate(Vector2&, Neighbour&) const { return true; }
   double at_colour_time(double, const Vector2&, double depth_m) const { return depth_m; }
 };
 template <typename Function>

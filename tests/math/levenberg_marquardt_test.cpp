@@ -147,15 +147,20 @@ TEST(LevenbergMarquardt, StepTolerance) {
   EXPECT_EQ(summary.accepted, 1);
 }
 
-TEST(LevenbergMarquardt, CostTolerance) {
-  Rosenbrock problem;
-  LevenbergMarquardt<2> solver;
+TEST(LevenbergMarquardt, DecreaseTolerance) {
+  Bowl problem;  // of H = I: a step of k lowers the cost by ½ k²
+  problem.x = {0.1, 0, 0};
+  LevenbergMarquardt<3> solver;
   LmOptions options;
-  options.cost_tolerance = 1;  // any decrease is small enough
-  const LmSummary summary = solver.solve(problem, options);
-  EXPECT_EQ(summary.status, LmStatus::kCostTolerance);
+  options.decrease_tolerance = 0.5 * 0.1 * 0.1;
+  LmSummary summary = solver.solve(problem, options);
+  EXPECT_EQ(summary.status, LmStatus::kDecreaseTolerance);
+  EXPECT_EQ(summary.iterations, 0) << "a step that promises no more is not tried";
+  EXPECT_EQ(problem.x.x(), 0.1);
+  options.decrease_tolerance = 0.5 * 0.09 * 0.09;
+  summary = solver.solve(problem, options);
   EXPECT_EQ(summary.accepted, 1);
-  EXPECT_LE(summary.initial_cost - summary.final_cost, options.cost_tolerance * summary.initial_cost);
+  EXPECT_LT(problem.x.norm(), 1e-4);
 }
 
 TEST(LevenbergMarquardt, IterationBound) {

@@ -200,7 +200,7 @@ TEST(LineResidual, MahalanobisDistanceIsThatOfTheBestLandmark) {
     bench.points.clear();
     bench.load(pair);
     test::flag_all(bench.lines[0]);
-    bench.lines[0].begin(pair.truth, {}, RobustKernel());
+    bench.lines[0].begin(pair.truth, {}, RobustKernel(), 1);
     JointInformation sum;
     const double cost = bench.lines[0].linearize(pair.truth, {}, RobustKernel(RobustLoss::kNone, 4), sum);
     const double s = bench.lines[0].mahalanobis_squared(0, pair.truth, 1e9);
@@ -223,7 +223,7 @@ TEST_P(Gradient, IsThatOfTheEliminatedCost) {
   Vector6 offset;
   offset << 0.006, -0.003, 0.009, 0.0015, 0.0024, -0.0015;  // far enough for the losses to bend
   const Se3 T = boxplus(pair.truth, offset);
-  set.begin(T, {}, RobustKernel());
+  set.begin(T, {}, RobustKernel(), 1);
   const auto evaluate = [&](const Se3& at, Vector6& g) {
     JointInformation sum;
     const double cost = set.linearize(at, {}, kernel, sum);

@@ -138,7 +138,7 @@ TEST(PriorConstraint, HoldsWhatVisionLeavesOpen) {
   error << 0.2 * open + 0.004 * across, 2e-4, -1e-4, 3e-4;
   const Se3 T_sensed = boxplus(pair.truth, error);
   OnePrior prior(T_sensed, C);
-  constexpr LmOptions kAsTracking{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
+  constexpr LmOptions kAsTracking{.max_iterations = 20, .step_tolerance = 1e-6, .decrease_tolerance = 1e-9};
   MotionConfig config;
   config.max_sigma_m = config.max_sigma_rad = 1e6;
   bench.load(pair);

@@ -95,7 +95,7 @@ TEST(SharedErrors, TheGradientByThemIsThatOfTheCost) {
     const RobustKernel kernel(RobustLoss::kNone, set.dof());
     SharedErrors at = shared_errors();
     at.value = 0.5 * draw(gaussian, at);
-    set.begin(pair.truth, at, RobustKernel());
+    set.begin(pair.truth, at, RobustKernel(), 1);
     const auto evaluate = [&](const SharedErrors& shared) {
       JointInformation sum;
       const double cost = set.linearize(pair.truth, shared, kernel, sum);

@@ -82,7 +82,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   for (int k = 0; k < SharedErrors::kCount; ++k) at.value[k] = 0.2 * at.sigma(k) * gaussian();
   Set set(walls);
   const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
-  set.constraints.begin(T, at, kKernel);
+  set.constraints.begin(T, at, kKernel, 1);
   JointInformation sum;
   (void)set.constraints.linearize(T, at, kKernel, sum);
   EXPECT_EQ(sum.H, sum.H.transpose());
@@ -103,6 +103,26 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   }
 }
 
+TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
+  Gaussian gaussian(21);
+  const Walls walls(gaussian, room(), 40, 0.004, 0.03);
+  Walls fewer = walls;
+  fewer.matches.clear();
+  for (std::size_t i = 0; i < walls.matches.size(); i += 4) fewer.matches.push_back(walls.matches[i]);
+  const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
+  Set some(walls), all(fewer);
+  some.flags.assign(some.flags.size(), 1);
+  some.constraints.begin(T, {}, kKernel, 4);
+  all.constraints.begin(T, {}, kKernel, 1);
+  for (std::size_t i = 0; i < some.flags.size(); ++i)
+    EXPECT_EQ(some.flags[i], i % 4 == 0 ? all.flags[i / 4] : 0) << i;
+  JointInformation sum, expected;
+  EXPECT_EQ(some.constraints.linearize(T, {}, kKernel, sum),
+            all.constraints.linearize(T, {}, kKernel, expected));
+  EXPECT_EQ(sum.H, expected.H);
+  EXPECT_EQ(sum.g, expected.g);
+}
+
 // The slow, obvious statement: all parameters in one dense system, match by match, those of the set last.
 TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   Gaussian gaussian(12);
@@ -110,7 +130,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
   SharedErrors shared = shared_errors();
   Set set(walls);
-  set.constraints.begin(walls.truth, shared, kKernel);
+  set.constraints.begin(walls.truth, shared, kKernel, 1);
   // Some steps of a solve later.
   const Se3 T = boxplus(walls.truth, 3e-3 * gaussian.vector<6>());
   for (int k = 0; k < SharedErrors::kCount; ++k) shared.value[k] = 0.2 * shared.sigma(k) * gaussian();
@@ -191,7 +211,7 @@ TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
     const Vector3 axis = walls.truth.R.col(2);
     const auto information = [&](const Vector3& direction) {
       Set set(walls);
-      set.constraints.begin(walls.truth, {}, kKernel);
+      set.constraints.begin(walls.truth, {}, kKernel, 1);
       JointInformation sum;
       (void)set.constraints.linearize(walls.truth, {}, RobustKernel(), sum);
       const Matrix3 H = sum.H.block<3, 3>(0, 0);
@@ -213,7 +233,7 @@ TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
   Walls walls(gaussian, room(), 50, 0.004, 0.01);
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;
   Set set(walls);
-  set.constraints.begin(walls.truth, {}, kKernel);
+  set.constraints.begin(walls.truth, {}, kKernel, 1);
   for (std::size_t i = 0; i < walls.matches.size(); ++i) {
     EXPECT_EQ(set.flags[i], i == 3 ? 0 : 1) << i;
     EXPECT_FALSE(set.constraints.usable(i));

@@ -69,7 +69,7 @@ struct Pair {
   SurfaceConstraints constraints() { return {storage, {flags, {&form, 1}}}; }
   JointInformation information() {
     SurfaceConstraints set = constraints();
-    set.begin(truth, {}, RobustKernel());
+    set.begin(truth, {}, RobustKernel(), 1);
     JointInformation sum;
     (void)set.linearize(truth, {}, RobustKernel(), sum);
     return sum;

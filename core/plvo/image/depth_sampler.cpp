@@ -78,16 +78,18 @@ double nearest_surface(std::span<const DepthReading> readings, const DepthNoise&
 
 }  // namespace
 
-bool DepthSampler::locate(Vector2& pixel) const {
+bool DepthSampler::locate(Vector2& pixel, Neighbour& neighbour) const {
   if (!exposure_.depth_apart()) return true;
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
-  // rotation's, the same for every depth.
+  // rotation's, the same for every depth, and a neighbour's is nearly the pixel's own.
   constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
   const Pinhole& pinhole = exposure_.pinhole();
-  double depth_m = kUnknownDepth_m;
-  Vector2 located = pixel;
-  for (int i = 0; i < kGuesses; ++i) {
+  double depth_m = neighbour.known ? neighbour.depth_m : kUnknownDepth_m;
+  Vector2 located = pixel + neighbour.displacement;
+  const int guesses = neighbour.known ? 1 : kGuesses;
+  neighbour = {};
+  for (int i = 0; i < guesses; ++i) {
     const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
     if (read > 0) depth_m = read;
     const Vector3 p =
@@ -97,6 +99,7 @@ bool DepthSampler::locate(Vector2& pixel) const {
     if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
       return false;
   }
+  neighbour = {located - pixel, depth_m, true};
   pixel = located;
   return true;
 }
@@ -118,14 +121,16 @@ DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
   const int y0 = static_cast<int>(v + 0.5);
   if (!inside(x0, y0)) return {};  // at most half a pixel beside the image
   radius = std::min(radius, kMaxRadius);
-  const Window readings(*this, x0, y0);
+  const Window readings(*this, x0, y0, radius);
+  const auto side = static_cast<std::size_t>(2 * radius + 1);
+  std::array<std::uint16_t, 2 * kMaxRadius + 1> row;
   for (int dy = -radius; dy <= radius; ++dy) {
+    readings.read_row(-radius, dy, 1, std::span(row).first(side));
     for (int dx = -radius; dx <= radius; ++dx) {
-      const double z = readings.at(dx, dy);
+      const double z = row[static_cast<std::size_t>(dx + radius)] * depth_.metres_per_unit;
       if (z > 0) window[count++] = {x0 + dx - u, y0 + dy - v, z};
     }
   }
-  const auto side = static_cast<std::size_t>(2 * radius + 1);
   // Where half the window has no depth, the rest is a rim of bad depth.
   if (2 * count < side * side) return {};
   const double nearest = nearest_surface({window.data(), count}, noise_);

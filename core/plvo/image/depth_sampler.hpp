@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/camera/exposure.hpp"
@@ -31,9 +32,19 @@ class DepthSampler {
   // The same images, with another idea of how the camera moved while they were exposed.
   DepthSampler with(const Exposure& exposure) const { return {depth_, map_, noise_, exposure}; }
 
+  // What locate() found for a pixel, as its guess for the next one. To begin with, nothing.
+  struct Neighbour {
+    Vector2 displacement = Vector2::Zero();
+    double depth_m = 0;
+    bool known = false;
+  };
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
   // place itself unless depth is exposed apart.
-  bool locate(Vector2& pixel) const;
+  bool locate(Vector2& pixel, Neighbour& neighbour) const;
+  bool locate(Vector2& pixel) const {
+    Neighbour nobody;
+    return locate(pixel, nobody);
+  }
   // A depth read at `located`, as it was when colour's row v was exposed.
   double at_colour_time(double v, const Vector2& located, double depth_m) const {
     if (!exposure_.depth_apart()) return depth_m;
@@ -49,24 +60,39 @@ class DepthSampler {
     if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
-  // For many readings around (x, y), which lies in the image: at(dx, dy) is the depth at (x + dx, y + dy).
+  // For many readings around (x, y), which lies in the image, at most `reach` from it either way.
   class Window {
    public:
-    Window(const DepthSampler& sampler, int x, int y)
-        : sampler_(sampler), map_(sampler.map_, x, y), x_(x), y_(y) {}
-    double at(int dx, int dy) const { return units_at(dx, dy) * sampler_.depth_.metres_per_unit; }
-    // The same in the depth image's own units.
-    std::uint16_t units_at(int dx, int dy) const {
-      int raw_x = 0;
-      int raw_y = 0;
-      if (!sampler_.inside(x_ + dx, y_ + dy) || !map_.raw_pixel(dx, dy, raw_x, raw_y)) return 0;
-      return sampler_.depth_.data[raw_y * sampler_.depth_.stride + raw_x];
+    Window(const DepthSampler& sampler, int x, int y, int reach)
+        : sampler_(sampler),
+          map_(sampler.map_, x, y),
+          x_(x),
+          y_(y),
+          whole_(sampler.inside(x - reach, y - reach) && sampler.inside(x + reach, y + reach) &&
+                 map_.sees(reach)) {}
+    // The depths at (x + dx + i step, y + dy), in the depth image's own units, 0: none.
+    void read_row(int dx, int dy, int step, std::span<std::uint16_t> units) const {
+      const DepthView& depth = sampler_.depth_;
+      if (whole_) {
+        map_.for_row(dx, dy, step, units.size(), [&](std::size_t i, int raw_x, int raw_y) {
+          units[i] = depth.data[raw_y * depth.stride + raw_x];
+        });
+        return;
+      }
+      for (std::uint16_t& reading : units) {
+        int raw_x = 0;
+        int raw_y = 0;
+        const bool seen = sampler_.inside(x_ + dx, y_ + dy) && map_.raw_pixel(dx, dy, raw_x, raw_y);
+        reading = seen ? depth.data[raw_y * depth.stride + raw_x] : std::uint16_t{0};
+        dx += step;
+      }
     }
 
    private:
     const DepthSampler& sampler_;
     UndistortionMap::Window map_;
     int x_, y_;
+    bool whole_;  // all within reach lies in both images
   };
   bool inside(int x, int y) const {
     return static_cast<unsigned>(x) < static_cast<unsigned>(depth_.width) &&

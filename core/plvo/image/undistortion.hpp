@@ -57,8 +57,13 @@ class UndistortionMap {
   // imaged. At 3 px from the centre it is off by less than 1/20 px for a Kinect's lens.
   class Window {
    public:
-    Window(const UndistortionMap& map, int x, int y) : map_(map), x_(x), y_(y) {
-      if (!map.active_) return;
+    Window(const UndistortionMap& map, int x, int y) : map_(map) {
+      if (!map.active_) {
+        right_ = std::int64_t{1} << (32 + kFractionBits);
+        down_ = 1 << kFractionBits;
+        at_ = x * right_ + y * down_;
+        return;
+      }
       const Cell& c = map.cell(x, y);
       const int i = within_cell(x);
       const int j = within_cell(y);
@@ -68,13 +73,28 @@ class UndistortionMap {
     }
     // As raw_pixel(x + dx, y + dy, …).
     bool raw_pixel(int dx, int dy, int& raw_x, int& raw_y) const {
-      if (!map_.active_) return map_.raw_pixel(x_ + dx, y_ + dy, raw_x, raw_y);
-      return map_.nearest(at_ + dx * right_ + dy * down_, raw_x, raw_y);
+      const bool seen = map_.nearest(at_ + dx * right_ + dy * down_, raw_x, raw_y);
+      return seen || !map_.active_;
+    }
+    // The camera saw all of the square of ±reach: a plane is highest and lowest at its corners.
+    bool sees(int reach) const {
+      int raw_x = 0;
+      int raw_y = 0;
+      return raw_pixel(-reach, -reach, raw_x, raw_y) && raw_pixel(reach, -reach, raw_x, raw_y) &&
+             raw_pixel(-reach, reach, raw_x, raw_y) && raw_pixel(reach, reach, raw_x, raw_y);
+    }
+    // Of that square: visit(i, raw_x, raw_y) for the pixels (dx + i step, dy), i < count.
+    template <typename Visit>
+    void for_row(int dx, int dy, int step, std::size_t count, Visit visit) const {
+      constexpr std::int64_t kHalf = 1 << (kFractionBits - 1);
+      std::int64_t at = at_ + dx * right_ + dy * down_ + (kHalf << 32) + kHalf;
+      const std::int64_t along = step * right_;
+      for (std::size_t i = 0; i < count; ++i, at += along)
+        visit(i, x_of(at) >> kFractionBits, y_of(at) >> kFractionBits);
     }
 
    private:
     const UndistortionMap& map_;
-    int x_, y_;
     std::int64_t at_ = 0, right_ = 0, down_ = 0;
   };
 

@@ -169,9 +169,8 @@ struct EndDepths {
 bool refine(const Samples& samples, PlaneLine& line, double& cost) {
   EndDepths problem{samples, line, line};
   LevenbergMarquardt<kParameters> solver;
-  // The steps shrink quadratically: after one that gained 0.001 of the cost, the next would move the line by
-  // less than a hundredth of its own SD.
-  const LmOptions options{.max_iterations = 10, .step_tolerance = 1e-6, .cost_tolerance = 1e-3};
+  // What is left is less than a hundredth of the line's own SD.
+  const LmOptions options{.max_iterations = 10, .step_tolerance = 1e-6, .decrease_tolerance = 5e-5};
   const LmSummary summary = solver.solve(problem, options);
   line = problem.line;
   cost = 2 * summary.final_cost;

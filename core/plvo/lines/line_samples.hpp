@@ -83,7 +83,7 @@ int sample_count(const Segment& segment, const SampleOptions& options);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
-// depth: a DepthSampler, or in tests something with its functions locate(), at() and at_colour_time().
+// depth: a DepthSampler, or in tests something with its Neighbour, locate(), at() and at_colour_time().
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {
@@ -103,11 +103,12 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
     return static_cast<float>(
         depth.at(nearest_pixel(p.x() - offset * along.y()), nearest_pixel(p.y() + offset * along.x())));
   };
+  typename Depth::Neighbour neighbour;
   for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
     const double t = i * step - 0.5 * length;
     const Vector2 seen = middle + t * along;
     Vector2 p = seen;
-    if (!depth.locate(p)) continue;
+    if (!depth.locate(p, neighbour)) continue;
     const float here = read(p, 0);
     const float left = side_reach_px > 0 ? read(p, -side_reach_px) : here;
     const float right = side_reach_px > 0 ? read(p, side_reach_px) : here;

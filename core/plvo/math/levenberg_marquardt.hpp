@@ -29,20 +29,21 @@ namespace plvo {
 enum class LmStatus : std::uint8_t {
   kGradientTolerance,  // converged: max |g_i| ≤ gradient_tolerance
   kStepTolerance,      // converged: max |step_i| ≤ step_tolerance
-  kCostTolerance,      // converged: 0 ≤ cost − new cost ≤ cost_tolerance · cost
+  kDecreaseTolerance,  // converged: the next step promises to lower the cost by ≤ decrease_tolerance
   kMaxIterations,      // iterations = max_iterations; the state is the best one seen
   kNotFinite,          // the cost, H or g at the start is NaN or infinite; the state is untouched
   kSingular,  // H + μ D has no Cholesky factor for any μ ≤ max_damping; the state is the best one seen
   kStalled,   // no step lowers the cost for any μ ≤ max_damping; the state is the best one seen
 };
 
-constexpr bool converged(LmStatus status) { return status <= LmStatus::kCostTolerance; }
+constexpr bool converged(LmStatus status) { return status <= LmStatus::kDecreaseTolerance; }
 
 struct LmOptions {
   int max_iterations = 20;            // steps tried: iterations ≤ max_iterations
   double gradient_tolerance = 1e-12;  // see LmStatus; in the problem's own units
   double step_tolerance = 1e-9;       // see LmStatus; in the problem's own units
-  double cost_tolerance = 1e-12;      // see LmStatus; relative
+  // See LmStatus. Where Σ is a true covariance, a step of k standard deviations lowers the cost by ½ k².
+  double decrease_tolerance = 1e-12;
   double initial_damping = 1e-5;  // first μ, relative to D = diag(H); 0 < initial_damping ≤ max_damping
   double max_damping = 1e10;      // μ ≤ max_damping
 };
@@ -112,24 +113,23 @@ class LevenbergMarquardt {
       const bool solved = solve_damped(mu);
       if (solved && step_.cwiseAbs().maxCoeff() <= options.step_tolerance)
         return finish(summary, LmStatus::kStepTolerance);
+      const double predicted = solved ? 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_) : 0;
+      if (solved && predicted <= options.decrease_tolerance)
+        return finish(summary, LmStatus::kDecreaseTolerance);
       if (summary.iterations >= options.max_iterations) return finish(summary, LmStatus::kMaxIterations);
       ++summary.iterations;
 
       bool taken = false;
       if (solved) {
-        const double predicted = 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_);
         const double new_cost = problem.linearize(step_, H_new_, g_new_);
         const double gain = (cost - new_cost) / predicted;
         taken = is_finite(new_cost) && new_cost <= cost && H_new_.allFinite() && g_new_.allFinite();
         if (taken) {
           problem.accept();
           ++summary.accepted;
-          const double decrease = cost - new_cost;
-          const bool small = decrease <= options.cost_tolerance * cost;
           cost = summary.final_cost = new_cost;
           H_ = H_new_;
           g_ = g_new_;
-          if (small) return finish(summary, LmStatus::kCostTolerance);
           // Nielsen: one smooth rule instead of "halve or double"; a gain ratio of 1 divides μ by 3.
           const double t = 2 * gain - 1;
           const double shrink = 1 - t * t * t;

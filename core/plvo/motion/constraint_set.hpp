@@ -60,11 +60,13 @@ class ConstraintSet {
   virtual double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const = 0;
 
   // Refinement. begin() prepares for motions about T: what a set holds constant over one solve (weights,
-  // places of landmarks) it takes there; an inlier that cannot be weighed there is none any more.
+  // places of landmarks) it takes there; an inlier that cannot be weighed there is none any more. every: what
+  // RANSAC does not judge, and so the set judges itself, need only look at each so many-th match.
   // linearize() moves the other parts of the landmarks to their optimum for T and the shared errors' value,
   // adds their Schur complement on (ξ, β) to `sum` (over the inliers; what belongs to β only if there are
   // any) and returns ½ Σ ρ there. Time is linear in size().
-  virtual void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) = 0;
+  virtual void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                     std::size_t every) = 0;
   virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                            JointInformation& sum) const = 0;
 

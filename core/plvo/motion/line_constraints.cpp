@@ -267,7 +267,7 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   return cholesky.solve_lower(offsets.e).squaredNorm();
 }
 
-void LineConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel&) {
+void LineConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel&, std::size_t) {
   if constexpr (!kLinesBuilt) return;
   for (std::size_t i = 0; i < matches_.size(); ++i)
     if (inliers_[i] != 0 && !hold(i, T, shared)) inliers_[i] = 0;

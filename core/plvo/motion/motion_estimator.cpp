@@ -11,6 +11,8 @@ namespace {
 // the motion that RANSAC found would otherwise fail the test for the motion's error, and never get to correct
 // it.
 constexpr double kFirstRoundScale = 4;
+// It only has to lead to the next one.
+constexpr LmOptions kFirstRound{.max_iterations = 2, .decrease_tolerance = 1e-2};
 // Rounds of "judge the inliers again, refine" after it: the consensus settles at once or does not matter.
 constexpr int kMaxRounds = 3;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
@@ -85,23 +87,22 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  bool found = false;
   if (start.estimated) {
     T = *start.prediction;
     ransac.refine(T);
     (void)ransac.judge(T, kFirstRoundScale);
-    found = consensus();
   }
-  if (!found && !ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+  if (!start.estimated || !consensus()) {
+    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+    (void)ransac.judge(T, kFirstRoundScale);
+  }
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
-  for (int round = 0; round <= kMaxRounds; ++round) {
-    const bool changed = ransac.judge(T, round == 0 ? kFirstRoundScale : 1);
+  for (int round = 0;; ++round) {
     if (!consensus()) return StatusCode::kNoConsensus;
-    if (round > 0 && !changed) break;
     problem.start(sets, references, shared, kernels, T);
-    estimate.lm = solving.solve(lm);
+    estimate.lm = solving.solve(round == 0 ? kFirstRound : lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -111,6 +112,9 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
       estimate.information[kind] = problem.information(kind);
     estimate.references = problem.references();
+    if (round == kMaxRounds) break;
+    const bool changed = ransac.judge(T, 1);
+    if (round > 0 && !changed) break;
   }
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||

@@ -71,7 +71,7 @@ Matrix6 root(const Matrix6& S) {
 }  // namespace
 
 void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                          const SharedErrors& shared, const Kernels& kernels, const Se3& T,
+                          const SharedErrors& shared, const Kernels& kernels, const Se3& T, std::size_t every,
                           bool exact_poses) {
   sets_ = sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds);
   references_ = references;
@@ -89,7 +89,7 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   of_references_ = {};
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind]);
+    sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind], every);
     share_[kind] = share_of(*sets_[kind]);
   }
   for (std::size_t r = 1; r < kMaxReferences; ++r) root_[r] = root(references_[r].covariance);

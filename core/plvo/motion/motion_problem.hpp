@@ -46,9 +46,11 @@ class MotionProblem {
     start(sets, references, shared, kernels, T);
   }
   // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T and at the shared
-  // errors' value. exact_poses: the references' covariances are taken for zero.
+  // errors' value. every: see ConstraintSet::begin(). exact_poses: the references' covariances are taken for
+  // zero.
   void start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-             const SharedErrors& shared, const Kernels& kernels, const Se3& T, bool exact_poses = false);
+             const SharedErrors& shared, const Kernels& kernels, const Se3& T, std::size_t every = 1,
+             bool exact_poses = false);
 
   // The shared errors are eliminated like landmarks: moved to their optimum for the candidate, H and g their
   // Schur complement.

@@ -21,7 +21,7 @@ class PriorConstraint final : public ConstraintSet {
   bool usable(std::size_t) const override { return usable_; }
   Primitive primitive(std::size_t) const override { return {}; }
   double mahalanobis_squared(std::size_t, const Se3&, double) const override { return 0; }
-  void begin(const Se3&, const SharedErrors&, const RobustKernel&) override {}
+  void begin(const Se3&, const SharedErrors&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 

@@ -170,7 +170,7 @@ void Ransac::refine(Se3& T) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
     // A hypothesis needs no honest weights: the references' poses are taken for exact.
-    solver_.problem.start(sets_, references_, {}, kernels_, T, true);
+    solver_.problem.start(sets_, references_, {}, kernels_, T, stride, true);
     LmOptions options;
     options.max_iterations = kRefinementSteps;
     options.step_tolerance = 1e-4;

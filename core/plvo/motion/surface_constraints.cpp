@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/pair.hpp"
 
 namespace plvo {
 namespace {
@@ -29,21 +30,27 @@ struct Sums {
   double g[kAll] = {};
 };
 
-// One match's part of the form's lower triangle. p: homogeneous, what the motion's columns of A are made of:
-// entry (i, j) of T moves e by p_j along axis i. others: the other columns, the last of which is e at the
-// start.
-void add(const double (&p)[4], const Matrix3& M, const Matrix<3, kOthers>& others, SurfaceForm& form) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j)
-      for (int k = 0; k <= i; ++k) {
-        const double scaled = M(i, k) * p[j];
-        for (int l = 0; l < 4; ++l) form.Q[4 * i + j][4 * k + l] += scaled * p[l];
-      }
-  for (int a = 0; a < kOthers; ++a) {
-    const Vector3 Mv = M.lazyProduct(others.col(a));
+// One match's part of the form's lower triangle, and of the lower triangles of the motion's 4×4 blocks, which
+// are symmetric each; two columns at once, so that an entry beyond a diagonal may be off. p: homogeneous,
+// what the motion's columns of A are made of: entry (i, j) of T moves e by p_j along axis i. others: the
+// other columns, the last of which is e at the start.
+void add(const Pair (&p)[2], const Matrix3& M, const Pair (&others)[3][kOthers / 2], SurfaceForm& form) {
+  for (int j = 0; j < 4; ++j) {
+    const double p_j = p[j / 2][j % 2];
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) form.Q[kMotion + a][4 * i + j] += Mv[i] * p[j];
-    for (int b = 0; b <= a; ++b) form.Q[kMotion + a][kMotion + b] += Mv.dot(others.col(b));
+      for (int k = 0; k <= i; ++k)
+        for (int l = 0; l <= j / 2; ++l) add_to(&form.Q[4 * i + j][4 * k + 2 * l], M(i, k) * p_j * p[l]);
+  }
+  for (int a = 0; a < kOthers; ++a) {
+    const double v[3] = {others[0][a / 2][a % 2], others[1][a / 2][a % 2], others[2][a / 2][a % 2]};
+    double* row = form.Q[kMotion + a];
+    double Mv[3];
+    for (int i = 0; i < 3; ++i) {
+      Mv[i] = M(i, 0) * v[0] + M(i, 1) * v[1] + M(i, 2) * v[2];
+      for (int l = 0; l < 2; ++l) add_to(row + 4 * i + 2 * l, Mv[i] * p[l]);
+    }
+    for (int b = 0; b <= a / 2; ++b)
+      add_to(row + kMotion + 2 * b, Mv[0] * others[0][b] + Mv[1] * others[1][b] + Mv[2] * others[2][b]);
   }
 }
 
@@ -53,6 +60,10 @@ void clear(SurfaceForm& form) {
 }
 
 void mirror(SurfaceForm& form) {
+  for (int i = 0; i < kMotion; i += 4)
+    for (int k = 0; k < i; k += 4)
+      for (int j = 0; j < 4; ++j)
+        for (int l = 0; l < j; ++l) form.Q[i + l][k + j] = form.Q[i + j][k + l];
   for (int a = 0; a < kSize; ++a)
     for (int b = 0; b < a; ++b) form.Q[b][a] = form.Q[a][b];
 }
@@ -116,18 +127,23 @@ double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T, doub
   return normalised(match, T * match.p_reference - match.p_current);
 }
 
-void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) {
+void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+                               std::size_t every) {
   T_begin_ = T;
   if (matches_.empty()) return;
+  std::fill(inliers_.begin(), inliers_.end(), std::uint8_t{0});
   clear(*form_);
-  Matrix<3, kOthers> others = Matrix<3, kOthers>::Zero();
-  for (std::size_t i = 0; i < matches_.size(); ++i) {
+  Pair others[3][kOthers / 2] = {};
+  static_assert(kOthers % 2 == 0);
+  for (std::size_t i = 0; i < matches_.size(); i += every) {
     const SurfaceMatch& match = matches_[i];
     const Vector3 offset = T * match.p_reference - match.p_current;
     Vector3 e = offset;
     if (shared.any()) {
-      others.block<3, kShared>(0, 0) = shared.fields(match.p_current, match.delay_s);
-      e += others.block<3, kShared>(0, 0).lazyProduct(shared.value);
+      const Matrix<3, kShared> fields = shared.fields(match.p_current, match.delay_s);
+      e += fields.lazyProduct(shared.value);
+      for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < kShared; ++k) others[r][k / 2][k % 2] = fields(r, k);
     }
     const double s = normalised(match, e);
     inliers_[i] = s <= kGateSigmas * kGateSigmas ? 1 : 0;
@@ -138,10 +154,12 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
     const Vector3& n = match.normal;
     Matrix3 M = (weight * (1 + match.normal_variance)) * (n * n.transpose());
     for (int k = 0; k < 3; ++k) M(k, k) -= weight * match.normal_variance;
-    others.block<3, kCommon>(0, kShared) = match.common;
-    others.col(kOthers - 1) = offset;
+    for (int r = 0; r < 3; ++r) {
+      for (int k = 0; k < kCommon; ++k) others[r][(kShared + k) / 2][(kShared + k) % 2] = match.common(r, k);
+      others[r][kOthers / 2 - 1][1] = offset[r];
+    }
     const Vector3& p = match.p_reference;
-    add({p.x(), p.y(), p.z(), 1}, M, others, *form_);
+    add({Pair{p.x(), p.y()}, Pair{p.z(), 1}}, M, others, *form_);
   }
   mirror(*form_);
 }

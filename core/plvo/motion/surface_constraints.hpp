@@ -60,7 +60,8 @@ class SurfaceConstraints final : public ConstraintSet {
   // r² / σ². What the matches share is not in it: where that shows, they weigh less (gate, robust loss, the
   // learning of σ²), which on real sensors is better than to believe that it is known (docs/sensors.md).
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel) override;
+  void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+             std::size_t every) override;
   double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "plvo/base/heap_sort.hpp"
@@ -51,25 +52,26 @@ class Band {
                        scores_.data() + (y - y0_) * stride_);
   }
 
-  // Pixels of the cell that pass at this threshold.
+  // Pixels of the cell that pass at this threshold, 0 … 127.
   int count_above(const Cell& cell, int threshold) const {
-    int count = 0;
-    for (int y = cell.y0; y < cell.y1; ++y) {
-      const std::uint8_t* line = at(cell.x0, y);
-      for (int i = 0; i < cell.x1 - cell.x0; ++i) count += line[i] > threshold ? 1 : 0;
+    std::uint64_t count = 0;
+    for (int x = cell.x0; x < cell.x1; x += 8) {
+      std::uint64_t counts = 0;  // of eight columns, a byte each: a cell has at most kMaxCell rows
+      for (int y = cell.y0; y < cell.y1; ++y) counts += above(cell, x, y, threshold) >> 7;
+      constexpr std::uint64_t kEven = 0x00ff00ff00ff00ff;
+      count += ((counts & kEven) + (counts >> 8 & kEven)) * 0x0001000100010001 >> 48;
     }
-    return count;
+    return static_cast<int>(count);
   }
 
-  std::uint8_t score(int x, int y) const { return *at(x, y); }
-
-  // Does any of the eight pixels from x on pass at this threshold, at most 127? Most do not.
-  bool any_of_eight(int x, int y, int threshold) const {
-    constexpr std::uint64_t kOnes = 0x0101010101010101;
+  // Of the eight pixels from x on, those of the cell that pass: the highest bit of a byte each.
+  std::uint64_t above(const Cell& cell, int x, int y, int threshold) const {
     std::uint64_t scores = 0;
-    std::memcpy(&scores, at(x, y), sizeof scores);
-    // A byte above the threshold sets its own highest bit, or has it; what it carries on changes no answer.
-    return (((scores + kOnes * static_cast<std::uint64_t>(127 - threshold)) | scores) & (kOnes << 7)) != 0;
+    std::memcpy(&scores, at(x, y), sizeof scores);  // beyond the cell there is still memory of the band's
+    const std::uint64_t sums =
+        (scores & ~kHighest) + (kHighest >> 7) * static_cast<std::uint64_t>(127 - threshold);
+    const std::uint64_t hits = (sums | scores) & kHighest;
+    return x + 8 <= cell.x1 ? hits : hits & ((std::uint64_t{1} << (8 * (cell.x1 - x))) - 1);
   }
 
   // Of equal neighbours the first is the maximum: the suppression has a total order.
@@ -83,6 +85,8 @@ class Band {
   }
 
  private:
+  static constexpr std::uint64_t kHighest = 0x8080808080808080;
+
   const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
   std::span<std::uint8_t> scores_;
@@ -132,16 +136,17 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
     threshold = std::max(search.config.noise_floor, threshold / 2);
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
-    for (int x = cell.x0; x < cell.x1; ++x) {
-      while (x + 8 <= cell.x1 && !band.any_of_eight(x, y, threshold)) x += 8;
-      if (x == cell.x1) break;
-      if (band.score(x, y) <= threshold || !band.is_maximum(x, y)) continue;
-      const auto strength = static_cast<float>(corner_strength(image, x, y));
-      if (strength < static_cast<float>(search.config.min_strength)) continue;
-      ++search.found;
-      if (search.depth.at(x << level, y << level) <= 0) continue;
-      best.insert({strength, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
-                   static_cast<std::uint8_t>(level), 0});
+    for (int block = cell.x0; block < cell.x1; block += 8) {
+      for (std::uint64_t hits = band.above(cell, block, y, threshold); hits != 0; hits &= hits - 1) {
+        const int x = block + std::countr_zero(hits) / 8;
+        if (!band.is_maximum(x, y)) continue;
+        const auto strength = static_cast<float>(corner_strength(image, x, y));
+        if (strength < static_cast<float>(search.config.min_strength)) continue;
+        ++search.found;
+        if (search.depth.at(x << level, y << level) <= 0) continue;
+        best.insert({strength, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                     static_cast<std::uint8_t>(level), 0});
+      }
     }
   }
   for (std::size_t i = 0; i < best.size(); ++i) search.candidates.push_back(best.at(i));

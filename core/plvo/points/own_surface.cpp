@@ -25,20 +25,21 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
   const int centre_x = static_cast<int>(centre.x() + 0.5);
   const int centre_y = static_cast<int>(centre.y() + 0.5);
   if (!depth.inside(centre_x, centre_y)) return mask;
-  const DepthSampler::Window readings(depth, centre_x, centre_y);
+  constexpr int kReach = kWindowReach + kRim;
+  const DepthSampler::Window readings(depth, centre_x, centre_y, kReach * step);
   // The depths that belong to it, in units of the image: at least one unit, for 0 means none.
   const double nearest = (1 - kSameSurface) * depth_m / depth.metres_per_unit();
   const double farthest = (1 + kSameSurface) * depth_m / depth.metres_per_unit();
   const auto first = static_cast<std::uint32_t>(nearest) + 1;
   const std::uint32_t count = static_cast<std::uint32_t>(farthest) - first + 1;
   std::array<Row, kSurfaceRows> own{};
+  std::array<std::uint16_t, kSurfaceColumns> units;
   for (int r = 0; r < kSurfaceRows; ++r) {
-    for (int c = 0; c < kSurfaceColumns; ++c) {
-      const std::uint32_t units =
-          readings.units_at((c - kRim - kWindowReach) * step, (r - kRim - kWindowReach) * step);
-      if (units - first < count)  // below `first` it wraps around
-        own[static_cast<std::size_t>(r)] |= static_cast<Row>(1 << c);
-    }
+    readings.read_row(-kReach * step, (r - kReach) * step, step, units);
+    std::uint32_t bits = 0;
+    for (std::size_t c = units.size(); c-- > 0;)
+      bits = bits << 1 | static_cast<std::uint32_t>(units[c] - first < count);  // below `first` it wraps
+    own[static_cast<std::size_t>(r)] = static_cast<Row>(bits);
   }
   // Erosion by kRim in either direction: along the rows by shifts, then over neighbouring rows.
   for (Row& row : own) {

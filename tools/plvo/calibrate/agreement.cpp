@@ -114,7 +114,7 @@ class PairJudge {
                           LineConstraints::Workspace::take(scratch_, line_matches.size()));
     const std::array<ConstraintSet*, 2> sets{&points, &lines};
     const Se3 T_predicted = current_frame.T_world_camera.inverse() * reference_frame.T_world_camera;
-    constexpr LmOptions kSolve{.max_iterations = 20, .step_tolerance = 1e-6, .cost_tolerance = 1e-9};
+    constexpr LmOptions kSolve{.max_iterations = 20, .step_tolerance = 1e-6, .decrease_tolerance = 1e-9};
     const MotionEstimate motion =
         estimate_motion(sets, MotionReferences{}, MotionConfig{}, kSolve, 1, &T_predicted, scratch_);
     if (motion.status != StatusCode::kOk)

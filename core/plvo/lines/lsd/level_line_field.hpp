@@ -49,10 +49,7 @@ struct LevelLineField {
   std::span<Pixel> seeds;              // capacity: width · height
   std::size_t seed_count = 0;
 
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride) +
-           static_cast<std::size_t>(x + 1);
-  }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>((y + 1) * stride + x + 1); }
 };
 
 // Takes the field's arrays for an image of that size.

@@ -8,9 +8,9 @@
 namespace plvo::lsd {
 namespace {
 
-std::int64_t squared_distance(Pixel a, Pixel b) {
-  const std::int64_t dx = a.x - b.x;
-  const std::int64_t dy = a.y - b.y;
+std::int32_t squared_distance(Pixel a, Pixel b) {
+  const std::int32_t dx = a.x - b.x;
+  const std::int32_t dy = a.y - b.y;
   return dx * dx + dy * dy;
 }
 
@@ -24,7 +24,7 @@ Tolerance spread_near_seed(const LevelLineField& field, const Region& region, co
   std::int64_t sum = 0;
   std::int64_t squares = 0;
   for (const Pixel& pixel : region.pixels) {
-    if (squared_distance(seed, pixel) * 65536 > reach) continue;
+    if (std::int64_t{squared_distance(seed, pixel)} * 65536 > reach) continue;
     const Direction e = field.direction[field.index(pixel.x, pixel.y)];
     const std::int64_t sine = (d.x * e.y - d.y * e.x) / 16384;  // · 2^14
     ++n;
@@ -121,14 +121,13 @@ bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::s
   region = grow(field, seed, tolerance, storage);
   if (region.pixels.size() < min_size) return false;
   rectangle = fit_rectangle(field, region);
-  double squared_radius = 0;
-  for (const Pixel& pixel : region.pixels) {
-    squared_radius = std::max(squared_radius, static_cast<double>(squared_distance(seed, pixel)));
-  }
+  std::int32_t farthest = 0;
+  for (const Pixel& pixel : region.pixels) farthest = std::max(farthest, squared_distance(seed, pixel));
+  double squared_radius = farthest;
   for (int i = 0; i < 24 && !is_dense(rectangle, region.pixels.size()); ++i) {
     squared_radius *= 0.75 * 0.75;
-    filter(field, region,
-           [&](Pixel pixel) { return static_cast<double>(squared_distance(seed, pixel)) <= squared_radius; });
+    const auto most = static_cast<std::int32_t>(squared_radius);
+    filter(field, region, [&](Pixel pixel) { return squared_distance(seed, pixel) <= most; });
     if (region.pixels.size() < min_size) return false;
     rectangle = fit_rectangle(field, region);
   }
