@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -78,6 +79,35 @@ double nearest_surface(std::span<const DepthReading> readings, const DepthNoise&
 
 }  // namespace
 
+DepthSampler::Window::Window(const DepthSampler& sampler, int x, int y, int reach, int every_px)
+    : sampler_(sampler),
+      map_(sampler.map_, x, y),
+      x_(x),
+      y_(y),
+      left_(-reach * every_px),
+      every_px_(every_px),
+      whole_(!kSmallCode && sampler.inside(x + left_, y + left_) && sampler.inside(x - left_, y - left_) &&
+             map_.sees(-left_)) {}
+
+void DepthSampler::Window::read_row(int row, std::span<std::uint16_t> units) const {
+  const DepthView& depth = sampler_.depth_;
+  const int dy = row * every_px_;
+  int dx = left_;
+  if (!kSmallCode && whole_) {
+    map_.for_row(dx, dy, every_px_, units.size(), [&](std::size_t i, int raw_x, int raw_y) {
+      units[i] = depth.data[raw_y * depth.stride + raw_x];
+    });
+    return;
+  }
+  for (std::uint16_t& reading : units) {
+    int raw_x = 0;
+    int raw_y = 0;
+    const bool seen = sampler_.inside(x_ + dx, y_ + dy) && map_.raw_pixel(dx, dy, raw_x, raw_y);
+    reading = seen ? depth.data[raw_y * depth.stride + raw_x] : std::uint16_t{0};
+    dx += every_px_;
+  }
+}
+
 bool DepthSampler::locate(Vector2& pixel, Neighbour& neighbour) const {
   if (!exposure_.depth_apart()) return true;
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
@@ -85,11 +115,10 @@ bool DepthSampler::locate(Vector2& pixel, Neighbour& neighbour) const {
   constexpr int kGuesses = 2;
   constexpr double kUnknownDepth_m = 2;
   const Pinhole& pinhole = exposure_.pinhole();
-  double depth_m = neighbour.known ? neighbour.depth_m : kUnknownDepth_m;
-  Vector2 located = pixel + neighbour.displacement;
-  const int guesses = neighbour.known ? 1 : kGuesses;
-  neighbour = {};
-  for (int i = 0; i < guesses; ++i) {
+  const bool led = neighbour.depth_m > 0;
+  double depth_m = led ? neighbour.depth_m : kUnknownDepth_m;
+  Vector2 located(pixel.x() + neighbour.right_px, pixel.y() + neighbour.down_px);
+  for (int i = led ? kGuesses - 1 : 0; i < kGuesses; ++i) {
     const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
     if (read > 0) depth_m = read;
     const Vector3 p =
@@ -99,7 +128,7 @@ bool DepthSampler::locate(Vector2& pixel, Neighbour& neighbour) const {
     if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
       return false;
   }
-  neighbour = {located - pixel, depth_m, true};
+  neighbour = {located.x() - pixel.x(), located.y() - pixel.y(), depth_m};
   pixel = located;
   return true;
 }
@@ -121,11 +150,11 @@ DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
   const int y0 = static_cast<int>(v + 0.5);
   if (!inside(x0, y0)) return {};  // at most half a pixel beside the image
   radius = std::min(radius, kMaxRadius);
-  const Window readings(*this, x0, y0, radius);
+  const Window readings(*this, x0, y0, radius, 1);
   const auto side = static_cast<std::size_t>(2 * radius + 1);
   std::array<std::uint16_t, 2 * kMaxRadius + 1> row;
   for (int dy = -radius; dy <= radius; ++dy) {
-    readings.read_row(-radius, dy, 1, std::span(row).first(side));
+    readings.read_row(dy, std::span(row).first(side));
     for (int dx = -radius; dx <= radius; ++dx) {
       const double z = row[static_cast<std::size_t>(dx + radius)] * depth_.metres_per_unit;
       if (z > 0) window[count++] = {x0 + dx - u, y0 + dy - v, z};

@@ -34,9 +34,8 @@ class DepthSampler {
 
   // What locate() found for a pixel, as its guess for the next one. To begin with, nothing.
   struct Neighbour {
-    Vector2 displacement = Vector2::Zero();
-    double depth_m = 0;
-    bool known = false;
+    double right_px = 0, down_px = 0;  // from the pixel to where depth shows it
+    double depth_m = 0;                // 0: nothing yet
   };
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
   // place itself unless depth is exposed apart.
@@ -60,39 +59,19 @@ class DepthSampler {
     if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
-  // For many readings around (x, y), which lies in the image, at most `reach` from it either way.
+  // A square of readings around (x, y), which lies in the image: every so many px, `reach` of them either
+  // way.
   class Window {
    public:
-    Window(const DepthSampler& sampler, int x, int y, int reach)
-        : sampler_(sampler),
-          map_(sampler.map_, x, y),
-          x_(x),
-          y_(y),
-          whole_(sampler.inside(x - reach, y - reach) && sampler.inside(x + reach, y + reach) &&
-                 map_.sees(reach)) {}
-    // The depths at (x + dx + i step, y + dy), in the depth image's own units, 0: none.
-    void read_row(int dx, int dy, int step, std::span<std::uint16_t> units) const {
-      const DepthView& depth = sampler_.depth_;
-      if (whole_) {
-        map_.for_row(dx, dy, step, units.size(), [&](std::size_t i, int raw_x, int raw_y) {
-          units[i] = depth.data[raw_y * depth.stride + raw_x];
-        });
-        return;
-      }
-      for (std::uint16_t& reading : units) {
-        int raw_x = 0;
-        int raw_y = 0;
-        const bool seen = sampler_.inside(x_ + dx, y_ + dy) && map_.raw_pixel(dx, dy, raw_x, raw_y);
-        reading = seen ? depth.data[raw_y * depth.stride + raw_x] : std::uint16_t{0};
-        dx += step;
-      }
-    }
+    Window(const DepthSampler& sampler, int x, int y, int reach, int every_px);
+    // Row −reach … reach from its left end on: depths in the depth image's own units, 0: none.
+    void read_row(int row, std::span<std::uint16_t> units) const;
 
    private:
     const DepthSampler& sampler_;
     UndistortionMap::Window map_;
-    int x_, y_;
-    bool whole_;  // all within reach lies in both images
+    int x_, y_, left_, every_px_;
+    bool whole_;  // the square lies in both images; small code does not ask
   };
   bool inside(int x, int y) const {
     return static_cast<unsigned>(x) < static_cast<unsigned>(depth_.width) &&

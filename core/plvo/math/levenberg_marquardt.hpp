@@ -42,8 +42,8 @@ struct LmOptions {
   int max_iterations = 20;            // steps tried: iterations ≤ max_iterations
   double gradient_tolerance = 1e-12;  // see LmStatus; in the problem's own units
   double step_tolerance = 1e-9;       // see LmStatus; in the problem's own units
-  // See LmStatus. Where Σ is a true covariance, a step of k standard deviations lowers the cost by ½ k².
-  double decrease_tolerance = 1e-12;
+  // See LmStatus; 0: none. Where Σ is a true covariance, a step of k standard deviations gains ½ k².
+  double decrease_tolerance = 0;
   double initial_damping = 1e-5;  // first μ, relative to D = diag(H); 0 < initial_damping ≤ max_damping
   double max_damping = 1e10;      // μ ≤ max_damping
 };

@@ -12,7 +12,7 @@ namespace {
 // it.
 constexpr double kFirstRoundScale = 4;
 // It only has to lead to the next one.
-constexpr LmOptions kFirstRound{.max_iterations = 2, .decrease_tolerance = 1e-2};
+constexpr int kFirstRoundSteps = 2;
 // Rounds of "judge the inliers again, refine" after it: the consensus settles at once or does not matter.
 constexpr int kMaxRounds = 3;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
@@ -99,10 +99,12 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
+  LmOptions first = lm;
+  first.max_iterations = kFirstRoundSteps;
   for (int round = 0;; ++round) {
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, references, shared, kernels, T);
-    estimate.lm = solving.solve(round == 0 ? kFirstRound : lm);
+    estimate.lm = solving.solve(round == 0 ? first : lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();

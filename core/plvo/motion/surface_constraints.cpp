@@ -2,7 +2,9 @@
 #include "plvo/motion/surface_constraints.hpp"
 
 #include <algorithm>
+#include <cstring>
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/pair.hpp"
 
@@ -30,27 +32,59 @@ struct Sums {
   double g[kAll] = {};
 };
 
-// One match's part of the form's lower triangle, and of the lower triangles of the motion's 4×4 blocks, which
-// are symmetric each; two columns at once, so that an entry beyond a diagonal may be off. p: homogeneous,
-// what the motion's columns of A are made of: entry (i, j) of T moves e by p_j along axis i. others: the
-// other columns, the last of which is e at the start.
-void add(const Pair (&p)[2], const Matrix3& M, const Pair (&others)[3][kOthers / 2], SurfaceForm& form) {
-  for (int j = 0; j < 4; ++j) {
-    const double p_j = p[j / 2][j % 2];
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k <= i; ++k)
-        for (int l = 0; l <= j / 2; ++l) add_to(&form.Q[4 * i + j][4 * k + 2 * l], M(i, k) * p_j * p[l]);
+Pair load(const double* two) {
+  Pair pair;
+  std::memcpy(&pair, two, sizeof pair);
+  return pair;
+}
+
+void add_to(double* two, const Pair& pair) {
+  const Pair sum = load(two) + pair;
+  std::memcpy(two, &sum, sizeof sum);
+}
+
+// One match's A. p: homogeneous, what the motion's columns are made of: entry (i, j) of T moves e by p_j
+// along axis i. others: the other columns, the last of which is e at the start.
+struct ErrorColumns {
+  double p[4];
+  Eigen::Matrix<double, 3, kOthers, Eigen::RowMajor> others;
+
+  double operator()(int row, int column) const {
+    if (column >= kMotion) return others(row, column - kMotion);
+    return column / 4 == row ? p[column % 4] : 0;
   }
+};
+
+// One match's part of the form's lower triangle, column by column. Where code shall be small.
+[[maybe_unused]] void add_each(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
+  for (int a = 0; a < kSize; ++a) {
+    double Mv[3];
+    for (int i = 0; i < 3; ++i) Mv[i] = M(i, 0) * A(0, a) + M(i, 1) * A(1, a) + M(i, 2) * A(2, a);
+    for (int b = 0; b <= a; ++b) form.Q[a][b] += Mv[0] * A(0, b) + Mv[1] * A(1, b) + Mv[2] * A(2, b);
+  }
+}
+
+// The same without the motion's zeros, two columns at once; an entry beyond the diagonal may be off.
+void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
+  if constexpr (kSmallCode) return add_each(A, M, form);
+  static_assert(kOthers % 2 == 0);
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k)
+      for (int j = 0; j < 4; ++j) {
+        const double scaled = M(i, k) * A.p[j];
+        for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * load(A.p + l));
+      }
+  const auto& others = A.others;
   for (int a = 0; a < kOthers; ++a) {
-    const double v[3] = {others[0][a / 2][a % 2], others[1][a / 2][a % 2], others[2][a / 2][a % 2]};
     double* row = form.Q[kMotion + a];
     double Mv[3];
     for (int i = 0; i < 3; ++i) {
-      Mv[i] = M(i, 0) * v[0] + M(i, 1) * v[1] + M(i, 2) * v[2];
-      for (int l = 0; l < 2; ++l) add_to(row + 4 * i + 2 * l, Mv[i] * p[l]);
+      Mv[i] = M(i, 0) * others(0, a) + M(i, 1) * others(1, a) + M(i, 2) * others(2, a);
+      for (int l = 0; l < 4; l += 2) add_to(row + 4 * i + l, Mv[i] * load(A.p + l));
     }
-    for (int b = 0; b <= a / 2; ++b)
-      add_to(row + kMotion + 2 * b, Mv[0] * others[0][b] + Mv[1] * others[1][b] + Mv[2] * others[2][b]);
+    for (int b = 0; b <= a; b += 2)
+      add_to(row + kMotion + b,
+             Mv[0] * load(&others(0, b)) + Mv[1] * load(&others(1, b)) + Mv[2] * load(&others(2, b)));
   }
 }
 
@@ -60,10 +94,6 @@ void clear(SurfaceForm& form) {
 }
 
 void mirror(SurfaceForm& form) {
-  for (int i = 0; i < kMotion; i += 4)
-    for (int k = 0; k < i; k += 4)
-      for (int j = 0; j < 4; ++j)
-        for (int l = 0; l < j; ++l) form.Q[i + l][k + j] = form.Q[i + j][k + l];
   for (int a = 0; a < kSize; ++a)
     for (int b = 0; b < a; ++b) form.Q[b][a] = form.Q[a][b];
 }
@@ -133,17 +163,15 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
   if (matches_.empty()) return;
   std::fill(inliers_.begin(), inliers_.end(), std::uint8_t{0});
   clear(*form_);
-  Pair others[3][kOthers / 2] = {};
-  static_assert(kOthers % 2 == 0);
+  ErrorColumns A;
+  A.others.setZero();
   for (std::size_t i = 0; i < matches_.size(); i += every) {
     const SurfaceMatch& match = matches_[i];
     const Vector3 offset = T * match.p_reference - match.p_current;
     Vector3 e = offset;
     if (shared.any()) {
-      const Matrix<3, kShared> fields = shared.fields(match.p_current, match.delay_s);
-      e += fields.lazyProduct(shared.value);
-      for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < kShared; ++k) others[r][k / 2][k % 2] = fields(r, k);
+      A.others.block<3, kShared>(0, 0) = shared.fields(match.p_current, match.delay_s);
+      e += A.others.block<3, kShared>(0, 0).lazyProduct(shared.value);
     }
     const double s = normalised(match, e);
     inliers_[i] = s <= kGateSigmas * kGateSigmas ? 1 : 0;
@@ -154,12 +182,11 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
     const Vector3& n = match.normal;
     Matrix3 M = (weight * (1 + match.normal_variance)) * (n * n.transpose());
     for (int k = 0; k < 3; ++k) M(k, k) -= weight * match.normal_variance;
-    for (int r = 0; r < 3; ++r) {
-      for (int k = 0; k < kCommon; ++k) others[r][(kShared + k) / 2][(kShared + k) % 2] = match.common(r, k);
-      others[r][kOthers / 2 - 1][1] = offset[r];
-    }
-    const Vector3& p = match.p_reference;
-    add({Pair{p.x(), p.y()}, Pair{p.z(), 1}}, M, others, *form_);
+    A.others.block<3, kCommon>(0, kShared) = match.common;
+    A.others.col(kOthers - 1) = offset;
+    for (int k = 0; k < 3; ++k) A.p[k] = match.p_reference[k];
+    A.p[3] = 1;
+    add(A, M, *form_);
   }
   mirror(*form_);
 }

@@ -52,26 +52,29 @@ class Band {
                        scores_.data() + (y - y0_) * stride_);
   }
 
+  // Scores side by side in a word of the processor, a byte each.
+  using Word = std::size_t;
+  static constexpr int kAtOnce = sizeof(Word);
+
   // Pixels of the cell that pass at this threshold, 0 … 127.
   int count_above(const Cell& cell, int threshold) const {
-    std::uint64_t count = 0;
-    for (int x = cell.x0; x < cell.x1; x += 8) {
-      std::uint64_t counts = 0;  // of eight columns, a byte each: a cell has at most kMaxCell rows
+    constexpr Word kPairs = ~Word{0} / 0xffff;  // … 00010001: the lowest bit of every two bytes
+    Word count = 0;
+    for (int x = cell.x0; x < cell.x1; x += kAtOnce) {
+      Word counts = 0;  // of a column in each byte: a cell has at most kMaxCell rows
       for (int y = cell.y0; y < cell.y1; ++y) counts += above(cell, x, y, threshold) >> 7;
-      constexpr std::uint64_t kEven = 0x00ff00ff00ff00ff;
-      count += ((counts & kEven) + (counts >> 8 & kEven)) * 0x0001000100010001 >> 48;
+      count += ((counts & 255 * kPairs) + (counts >> 8 & 255 * kPairs)) * kPairs >> (8 * kAtOnce - 16);
     }
     return static_cast<int>(count);
   }
 
-  // Of the eight pixels from x on, those of the cell that pass: the highest bit of a byte each.
-  std::uint64_t above(const Cell& cell, int x, int y, int threshold) const {
-    std::uint64_t scores = 0;
+  // Of the kAtOnce pixels from x on, those of the cell that pass: the highest bit of a byte each.
+  Word above(const Cell& cell, int x, int y, int threshold) const {
+    Word scores = 0;
     std::memcpy(&scores, at(x, y), sizeof scores);  // beyond the cell there is still memory of the band's
-    const std::uint64_t sums =
-        (scores & ~kHighest) + (kHighest >> 7) * static_cast<std::uint64_t>(127 - threshold);
-    const std::uint64_t hits = (sums | scores) & kHighest;
-    return x + 8 <= cell.x1 ? hits : hits & ((std::uint64_t{1} << (8 * (cell.x1 - x))) - 1);
+    const Word sums = (scores & ~kHighest) + (kHighest >> 7) * static_cast<Word>(127 - threshold);
+    const Word hits = (sums | scores) & kHighest;
+    return x + kAtOnce <= cell.x1 ? hits : hits & ((Word{1} << (8 * (cell.x1 - x))) - 1);
   }
 
   // Of equal neighbours the first is the maximum: the suppression has a total order.
@@ -85,7 +88,7 @@ class Band {
   }
 
  private:
-  static constexpr std::uint64_t kHighest = 0x8080808080808080;
+  static constexpr Word kHighest = ~Word{0} / 255 * 128;  // of every byte
 
   const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
@@ -136,8 +139,8 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
     threshold = std::max(search.config.noise_floor, threshold / 2);
   BestOfCell best;
   for (int y = cell.y0; y < cell.y1; ++y) {
-    for (int block = cell.x0; block < cell.x1; block += 8) {
-      for (std::uint64_t hits = band.above(cell, block, y, threshold); hits != 0; hits &= hits - 1) {
+    for (int block = cell.x0; block < cell.x1; block += Band::kAtOnce) {
+      for (Band::Word hits = band.above(cell, block, y, threshold); hits != 0; hits &= hits - 1) {
         const int x = block + std::countr_zero(hits) / 8;
         if (!band.is_maximum(x, y)) continue;
         const auto strength = static_cast<float>(corner_strength(image, x, y));

@@ -20,13 +20,12 @@ using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
 
 WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double depth_m, int level) {
   WindowMask mask{};
-  const int step = 1 << level;
   // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
   const int centre_x = static_cast<int>(centre.x() + 0.5);
   const int centre_y = static_cast<int>(centre.y() + 0.5);
   if (!depth.inside(centre_x, centre_y)) return mask;
   constexpr int kReach = kWindowReach + kRim;
-  const DepthSampler::Window readings(depth, centre_x, centre_y, kReach * step);
+  const DepthSampler::Window readings(depth, centre_x, centre_y, kReach, 1 << level);
   // The depths that belong to it, in units of the image: at least one unit, for 0 means none.
   const double nearest = (1 - kSameSurface) * depth_m / depth.metres_per_unit();
   const double farthest = (1 + kSameSurface) * depth_m / depth.metres_per_unit();
@@ -35,7 +34,7 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
   std::array<Row, kSurfaceRows> own{};
   std::array<std::uint16_t, kSurfaceColumns> units;
   for (int r = 0; r < kSurfaceRows; ++r) {
-    readings.read_row(-kReach * step, (r - kReach) * step, step, units);
+    readings.read_row(r - kReach, units);
     std::uint32_t bits = 0;
     for (std::size_t c = units.size(); c-- > 0;)
       bits = bits << 1 | static_cast<std::uint32_t>(units[c] - first < count);  // below `first` it wraps

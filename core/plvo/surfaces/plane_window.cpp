@@ -64,11 +64,11 @@ bool fit(const std::array<Reading, kReadings>& readings, int n, InversePlane& pl
 }
 
 int read(const DepthSampler& depth, int x0, int y0, std::array<Reading, kReadings>& readings) {
-  const DepthSampler::Window window(depth, x0, y0, kReach * kStride);
+  const DepthSampler::Window window(depth, x0, y0, kReach, kStride);
   std::array<std::uint16_t, 2 * kReach + 1> row;
   int n = 0;
   for (int j = -kReach; j <= kReach; ++j) {
-    window.read_row(-kReach * kStride, j * kStride, kStride, row);
+    window.read_row(j, row);
     for (int i = -kReach; i <= kReach; ++i) {
       const double z = row[static_cast<std::size_t>(i + kReach)] * depth.metres_per_unit();
       if (z > 0) readings[static_cast<std::size_t>(n++)] = {1.0 * i * kStride, 1.0 * j * kStride, 1 / z};

@@ -8,8 +8,8 @@ namespace plvo::lsd {
 namespace {
 
 // The eight neighbours, row by row.
-constexpr int kRight[] = {-1, 0, 1, -1, 1, -1, 0, 1};
-constexpr int kDown[] = {-1, -1, -1, 0, 0, 1, 1, 1};
+constexpr std::int8_t kRight[] = {-1, 0, 1, -1, 1, -1, 0, 1};
+constexpr std::int8_t kDown[] = {-1, -1, -1, 0, 0, 1, 1, 1};
 
 // A pixel's two numbers as one, so that a step to a neighbour is one addition: x, and y from bit 16 on.
 // Neither is negative in the field, so nothing is carried.
