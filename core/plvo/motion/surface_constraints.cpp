@@ -71,7 +71,7 @@ void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k <= i; ++k)
       for (int j = 0; j < 4; ++j) {
-        const double scaled = M(i, k) * A.p[j];
+        const double scaled = M(k, i) * A.p[j];  // M is symmetric but for rounding: as add_each reads it
         for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * load(A.p + l));
       }
   const auto& others = A.others;
