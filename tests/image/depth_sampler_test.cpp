@@ -170,13 +170,26 @@ TEST(DepthSampler, TheRadiusIsBounded) {
   EXPECT_FALSE(scene.sampler().sample(27, 18, 100).on_edge);
 }
 
+// A slope whose depth names the raw pixel, through a lens.
+struct SlopeBehind {
+  explicit SlopeBehind(const Distortion& lens)
+      : scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; }),
+        memory(kWidth * kHeight * 4 + 2 * kArenaAlignment),
+        arena(memory) {
+    scene.map.carve(arena, kWidth, kHeight);
+    scene.map.init({kWidth, kHeight, {40, 40, 24, 18}, lens});
+  }
+  Scene scene;
+
+ private:
+  std::vector<std::byte> memory;
+  Arena arena;
+};
+const Distortion kLens{0.1, 0.02, 0.001, 0, 0};
+
 TEST(DepthSampler, ReadsThroughTheLens) {
-  CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, {0.1, 0.02, 0.001, 0, 0}};
-  std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
-  Arena arena(memory);
-  Scene scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; });
-  scene.map.carve(arena, kWidth, kHeight);
-  scene.map.init(camera);
+  const SlopeBehind slope(kLens);
+  const Scene& scene = slope.scene;
   const DepthSampler sampler = scene.sampler();
   int unseen = 0;
   for (int y = 0; y < kHeight; ++y)
@@ -194,15 +207,9 @@ TEST(DepthSampler, ReadsThroughTheLens) {
 
 // Row by row as pixel by pixel, inside and across the borders of both images.
 TEST(DepthSampler, AWindowsRowsAreItsPixels) {
-  CameraModel lens{kWidth, kHeight, {40, 40, 24, 18}, {0.1, 0.02, 0.001, 0, 0}};
-  CameraModel none = lens;
-  none.distortion = {};
-  for (const CameraModel& camera : {lens, none}) {
-    std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
-    Arena arena(memory);
-    Scene scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; });
-    scene.map.carve(arena, kWidth, kHeight);
-    scene.map.init(camera);
+  for (const Distortion& lens : {kLens, Distortion{}}) {
+    const SlopeBehind slope(lens);
+    const Scene& scene = slope.scene;
     const DepthSampler sampler = scene.sampler();
     int missing = 0;
     for (int y = 0; y < kHeight; ++y)

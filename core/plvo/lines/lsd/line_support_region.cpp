@@ -11,8 +11,8 @@ namespace {
 constexpr std::int8_t kRight[] = {-1, 0, 1, -1, 1, -1, 0, 1};
 constexpr std::int8_t kDown[] = {-1, -1, -1, 0, 0, 1, 1, 1};
 
-// A pixel's two numbers as one, so that a step to a neighbour is one addition: x, and y from bit 16 on.
-// Neither is negative in the field, so nothing is carried.
+// A pixel's two numbers, or a step's, as one: x, and y from bit 16 on. Then a step to a neighbour is one
+// addition; no pixel's number is negative in the field, so nothing is left carried.
 std::uint32_t packed(const Pixel& pixel) {
   return static_cast<std::uint32_t>(pixel.x) + (static_cast<std::uint32_t>(pixel.y) << 16);
 }
@@ -47,8 +47,7 @@ Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pi
   };
   Step steps[8];
   for (std::size_t i = 0; i < 8; ++i)
-    steps[i] = {kDown[i] * stride + kRight[i],
-                static_cast<std::uint32_t>(kRight[i]) + (static_cast<std::uint32_t>(kDown[i]) << 16)};
+    steps[i] = {kDown[i] * stride + kRight[i], packed({kRight[i], kDown[i]})};
   const std::size_t first = field.index(seed.x, seed.y);
   std::size_t count = 1;
   std::int64_t sum_x = directions[first].x;
