@@ -13,8 +13,10 @@ namespace {
 constexpr double kFirstRoundScale = 4;
 // It only has to lead to the next one.
 constexpr int kFirstRoundSteps = 2;
-// Rounds of "judge the inliers again, refine" after it: the consensus settles at once or does not matter.
+// Rounds of "judge the inliers again, refine" after it, at most, and the share of the inliers that may change
+// when it has settled: those few lie at the thresholds, and one more or less of them moves nothing.
 constexpr int kMaxRounds = 3;
+constexpr double kSettledShare = 0.01;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -115,8 +117,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
       estimate.information[kind] = problem.information(kind);
     estimate.references = problem.references();
     if (round == kMaxRounds) break;
-    const bool changed = ransac.judge(T, 1);
-    if (round > 0 && !changed) break;
+    const int changed = ransac.judge(T, 1);
+    if (round > 0 && changed <= kSettledShare * ransac.inliers()) break;
   }
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||

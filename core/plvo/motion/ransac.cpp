@@ -180,8 +180,8 @@ void Ransac::refine(Se3& T) {
   inliers_ = kept_inliers;
 }
 
-bool Ransac::judge(const Se3& T, double scale, std::size_t stride) {
-  bool changed = false;
+int Ransac::judge(const Se3& T, double scale, std::size_t stride) {
+  int changed = 0;
   inliers_ = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
@@ -194,7 +194,7 @@ bool Ransac::judge(const Se3& T, double scale, std::size_t stride) {
             ? 1
             : 0;
     std::uint8_t& old = set.inliers()[candidate.index];
-    changed = changed || flag != old;
+    changed += flag != old ? 1 : 0;
     old = flag;
     inliers_ += flag;
   }
