@@ -76,9 +76,13 @@ TEST(Lanes, AreReadAndWrittenAsLoopsDo) {
     load_bytes(&bytes[3], fast);
     load_bytes(&bytes[3], slow);
     EXPECT_EQ(stored(fast), stored(slow));
-    load_bytes(&bytes[1], &bytes[9], fast);
-    load_bytes(&bytes[1], &bytes[9], slow);
+    const std::uint8_t* const places[4] = {&bytes[1], &bytes[12], &bytes[0], &bytes[5]};
+    Lanes fast_others;
+    lane_loops::Lanes slow_others;
+    load_bytes(places, fast, fast_others);
+    load_bytes(places, slow, slow_others);
     EXPECT_EQ(stored(fast), stored(slow));
+    EXPECT_EQ(stored(fast_others), stored(slow_others));
     load_halves(&a[1], &b[4], fast);
     load_halves(&a[1], &b[4], slow);
     EXPECT_EQ(stored(fast), stored(slow));
@@ -88,6 +92,34 @@ TEST(Lanes, AreReadAndWrittenAsLoopsDo) {
     EXPECT_TRUE(std::equal(written.begin(), written.end(), &bytes[6]));
     store_bytes(loaded<lane_loops::Lanes>(stored(fast)), written.data());
     EXPECT_TRUE(std::equal(written.begin(), written.end(), &bytes[6]));
+  }
+}
+
+TEST(Lanes, AreSortedAndAddedAsLoopsDo) {
+  Random random(4);
+  for (int round = 0; round < 200; ++round) {
+    const Eight a = any_numbers(random);
+    const Eight b = any_numbers(random);
+    Lanes fast, fast_others;
+    lane_loops::Lanes slow, slow_others;
+    add_halves(loaded<Lanes>(a), loaded<Lanes>(b), fast);
+    add_halves(loaded<lane_loops::Lanes>(a), loaded<lane_loops::Lanes>(b), slow);
+    EXPECT_EQ(stored(fast), stored(slow));
+    interleave(loaded<Lanes>(a), loaded<Lanes>(b), fast, fast_others);
+    interleave(loaded<lane_loops::Lanes>(a), loaded<lane_loops::Lanes>(b), slow, slow_others);
+    EXPECT_EQ(stored(fast), stored(slow));
+    EXPECT_EQ(stored(fast_others), stored(slow_others));
+    // Numbers that fit 16 bits, as sums of two that do.
+    const WideLanes p = {a[0], a[1] / 2, a[2] / 2, a[3]}, q = {b[0], b[1], b[2], b[3]};
+    const lane_loops::WideLanes slow_p(a[0], a[1] / 2, a[2] / 2, a[3]), slow_q(b[0], b[1], b[2], b[3]);
+    WideLanes sums;
+    lane_loops::WideLanes slow_sums;
+    add_pairs(p, q, sums);
+    add_pairs(slow_p, slow_q, slow_sums);
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(sums[i], slow_sums[i]);
+    narrow(p, q, fast);
+    narrow(slow_p, slow_q, slow);
+    EXPECT_EQ(stored(fast), stored(slow));
   }
 }
 

@@ -103,8 +103,9 @@ inline void load_bytes(const std::uint8_t* bytes, Lanes& lanes) {
   for (int i = 0; i < 8; ++i) lanes[i] = bytes[i];
 }
 
-inline void load_bytes(const std::uint8_t* first, const std::uint8_t* second, Lanes& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = i < 4 ? first[i] : second[i - 4];
+inline void load_bytes(const std::uint8_t* const places[4], Lanes& first_two, Lanes& others) {
+  for (int i = 0; i < 8; ++i) first_two[i] = places[i / 4][i % 4];
+  for (int i = 0; i < 8; ++i) others[i] = places[2 + i / 4][i % 4];
 }
 
 inline void load_halves(const std::int16_t* first, const std::int16_t* second, Lanes& lanes) {
@@ -125,6 +126,31 @@ inline void store(const WideLanes& lanes, std::int32_t* to) {
 
 inline void store_bytes(const Lanes& lanes, std::uint8_t* to) {
   for (int i = 0; i < 8; ++i) to[i] = static_cast<std::uint8_t>(lanes[i]);
+}
+
+inline void add_halves(const Lanes& a, const Lanes& b, Lanes& sums) {
+  for (int i = 0; i < 4; ++i) {
+    sums[i] = static_cast<std::int16_t>(a[i] + a[i + 4]);
+    sums[i + 4] = static_cast<std::int16_t>(b[i] + b[i + 4]);
+  }
+}
+
+inline void add_pairs(const WideLanes& a, const WideLanes& b, WideLanes& sums) {
+  for (int i = 0; i < 2; ++i) {
+    sums[i] = a[2 * i] + a[2 * i + 1];
+    sums[i + 2] = b[2 * i] + b[2 * i + 1];
+  }
+}
+
+inline void narrow(const WideLanes& first, const WideLanes& last, Lanes& lanes) {
+  for (int i = 0; i < 8; ++i) lanes[i] = static_cast<std::int16_t>(i < 4 ? first[i] : last[i - 4]);
+}
+
+inline void interleave(const Lanes& a, const Lanes& b, Lanes& first, Lanes& last) {
+  for (int i = 0; i < 8; ++i) {
+    first[i] = (i % 2 == 0 ? a : b)[i / 2];
+    last[i] = (i % 2 == 0 ? a : b)[4 + i / 2];
+  }
 }
 
 inline void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {

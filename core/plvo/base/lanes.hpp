@@ -26,8 +26,9 @@ using WideLanes = std::int32_t __attribute__((vector_size(16)));
 
 // Of eight bytes.
 inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Lanes& lanes) {
-#ifdef __SSE2__
-  // Zeros between the bytes: one instruction, of the plain conversion GCC 12 makes five.
+  // Zeros between the bytes: one instruction, of the plain conversion GCC 12 makes five, or takes it byte by
+  // byte.
+  static_assert(std::endian::native == std::endian::little);
   using Words = std::uint64_t __attribute__((vector_size(16)));
   using Bytes = std::uint8_t __attribute__((vector_size(16)));
   const Words words = {bytes, 0};
@@ -36,12 +37,6 @@ inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Lane
   const Bytes wide =
       __builtin_shufflevector(eight, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   std::memcpy(&lanes, &wide, sizeof lanes);
-#else
-  using Bytes = std::uint8_t __attribute__((vector_size(8)));
-  Bytes eight;
-  std::memcpy(&eight, &bytes, sizeof eight);
-  lanes = __builtin_convertvector(eight, Lanes);
-#endif
 }
 
 // Of eight bytes in memory.
@@ -51,14 +46,22 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes,
   widen_bytes(eight, lanes);
 }
 
-// Of four bytes at either place.
-inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* first, const std::uint8_t* second,
-                                                      Lanes& lanes) {
-  std::uint32_t four[2];
-  std::memcpy(&four[0], first, sizeof four[0]);
-  std::memcpy(&four[1], second, sizeof four[1]);
-  static_assert(std::endian::native == std::endian::little);
-  widen_bytes(four[0] | static_cast<std::uint64_t>(four[1]) << 32, lanes);
+// Of four bytes at each of four places: of the first two, and of the others.
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const places[4], Lanes& first_two,
+                                                      Lanes& others) {
+  using Words = std::uint32_t __attribute__((vector_size(16)));
+  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  std::uint32_t four[4];
+  for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
+  const Words words = {four[0], four[1], four[2], four[3]};
+  Bytes bytes;
+  std::memcpy(&bytes, &words, sizeof bytes);
+  const Bytes low =
+      __builtin_shufflevector(bytes, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const Bytes high =
+      __builtin_shufflevector(bytes, Bytes{}, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+  std::memcpy(&first_two, &low, sizeof first_two);
+  std::memcpy(&others, &high, sizeof others);
 }
 
 // Four numbers from either place.
@@ -104,12 +107,50 @@ inline __attribute__((always_inline)) void take_range(const WideLanes& value, Wi
   high = value > high ? value : high;
 }
 
+// Four sums of a and four of b: of the numbers that are four apart.
+inline __attribute__((always_inline)) void add_halves(const Lanes& a, const Lanes& b, Lanes& sums) {
+  sums = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+// Two sums of a and two of b: of neighbours.
+inline __attribute__((always_inline)) void add_pairs(const WideLanes& a, const WideLanes& b,
+                                                     WideLanes& sums) {
+  sums = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+}
+
+// Both into one, which must hold the numbers.
+inline __attribute__((always_inline)) void narrow(const WideLanes& first, const WideLanes& last,
+                                                  Lanes& lanes) {
+#ifdef __SSE2__
+  lanes = __builtin_ia32_packssdw128(first, last);
+#else
+  Lanes low, high;
+  std::memcpy(&low, &first, sizeof low);
+  std::memcpy(&high, &last, sizeof high);
+  static_assert(std::endian::native == std::endian::little);
+  lanes = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+#endif
+}
+
+// a and b in turns: a[0], b[0], a[1] … b[3], and the others.
+inline __attribute__((always_inline)) void interleave(const Lanes& a, const Lanes& b, Lanes& first,
+                                                      Lanes& last) {
+  first = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
+  last = __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+}
+
 // sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1], which must not pass 32 bits.
 inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {
 #ifdef __SSE2__
   sums = __builtin_ia32_pmaddwd128(a, b);
 #else
-  for (int i = 0; i < 4; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
+  // Two in a lane of 32 bits: the first is the lower half.
+  static_assert(std::endian::native == std::endian::little);
+  WideLanes both_a, both_b;
+  std::memcpy(&both_a, &a, sizeof both_a);
+  std::memcpy(&both_b, &b, sizeof both_b);
+  sums = ((both_a << 16) >> 16) * ((both_b << 16) >> 16) + (both_a >> 16) * (both_b >> 16);
 #endif
 }
 

@@ -68,14 +68,42 @@ std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
       (p[0] * w[0] + p[stride] * w[1] + p[2 * stride] * w[2] + p[3 * stride] * w[3] + 64) >> 7);
 }
 
+// Of eight columns at once, in 32 bits.
+struct DownWeights {
+  Lanes upper, lower;  // of neighbouring taps, in pairs
+  explicit DownWeights(const Weights& w)
+      : upper{w[0], w[1], w[0], w[1], w[0], w[1], w[0], w[1]}, lower{w[2], w[3], w[2], w[3],
+                                                                     w[2], w[3], w[2], w[3]} {}
+};
+inline __attribute__((always_inline)) void blend_down(const Lanes taps[kTaps], const DownWeights& weights,
+                                                      Lanes& out) {
+  Lanes upper[2], lower[2];
+  interleave(taps[0], taps[1], upper[0], upper[1]);
+  interleave(taps[2], taps[3], lower[0], lower[1]);
+  WideLanes sums[2];
+  for (int i = 0; i < 2; ++i) {
+    WideLanes above, below;
+    dot_pairs(upper[i], weights.upper, above);
+    dot_pairs(lower[i], weights.lower, below);
+    sums[i] = (above + below + 64) >> 7;
+  }
+  narrow(sums[0], sums[1], out);
+}
+
 // The window and one pixel around it, smoothed as a reading at whole pixels is.
 constexpr int kSmoothedSide = 2 * kWindowReach + 3;
 using Smoothed = std::array<std::int16_t, kSmoothedSide * kSmoothedSide>;
 
-Smoothed smooth(const Patch& patch) {
+// Of all of it.
+std::int32_t sum_of(const Smoothed& smoothed) {
+  std::int32_t total = 0;
+  for (const std::int16_t value : smoothed) total += value;
+  return total;
+}
+
+[[maybe_unused]] std::int32_t smooth_each(const Patch& patch, Smoothed& out) {
   constexpr const Weights& kWhole = kWeights[0];
   static_assert(kWhole[3] == 0, "the fourth tap would reach beyond the patch");
-  Smoothed out;
   std::array<std::int16_t, kSmoothedSide*(kPatchSide + 1)> rows{};
   for (int y = 0; y < kPatchSide; ++y)
     for (int x = 0; x < kSmoothedSide; ++x) {
@@ -85,16 +113,50 @@ Smoothed smooth(const Patch& patch) {
     }
   for (int i = 0; i < kSmoothedSide * kSmoothedSide; ++i)
     out[static_cast<std::size_t>(i)] = blend_down(rows.data() + i, kSmoothedSide, kWhole);
-  return out;
+  return sum_of(out);
+}
+
+// As smooth_each, which fills `out` and returns its sum: a row at once, as its first eight and its last.
+std::int32_t smooth(const Patch& patch, Smoothed& out) {
+  if constexpr (kSmallCode) return smooth_each(patch, out);
+  constexpr const Weights& kWhole = kWeights[0];
+  constexpr int kLast = kSmoothedSide - kColumns;
+  constexpr Lanes kOnce[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 1, 1, 1}};
+  static_assert(2 * kColumns - kSmoothedSide == 5, "what both have is counted once");
+  WideLanes totals = {};
+  for (std::size_t half = 0; half < 2; ++half) {
+    const std::uint8_t* p = patch.data() + half * kLast;
+    std::int16_t* to = out.data() + half * kLast;
+    const DownWeights down(kWhole);
+    Lanes taps[kTaps] = {};
+    for (int y = 0; y < kPatchSide; ++y, p += kPatchSide) {
+      Lanes left, here, right;
+      load_bytes(p, left);
+      load_bytes(p + 1, here);
+      load_bytes(p + 2, right);
+      static_assert(kWhole[0] == kWhole[2]);
+      taps[2] = ((left + right) * kWhole[0] + here * kWhole[1] + std::int16_t{4}) >> 3;
+      if (y > 1) {
+        Lanes smoothed;
+        blend_down(taps, down, smoothed);
+        store(smoothed, to);
+        to += kSmoothedSide;
+        WideLanes sums;
+        dot_pairs(smoothed, kOnce[half], sums);
+        totals += sums;
+      }
+      taps[0] = taps[1];
+      taps[1] = taps[2];
+    }
+  }
+  return totals[0] + totals[1] + totals[2] + totals[3];
 }
 
 Template make_template(const Patch& patch, const WindowMask& mask) {
   Template t;
-  const Smoothed smoothed = smooth(patch);
+  Smoothed smoothed;
   // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
-  std::int32_t total = 0;
-  for (const std::int16_t value : smoothed) total += value;
-  const std::int32_t mean = total / (kSmoothedSide * kSmoothedSide);
+  const std::int32_t mean = smooth(patch, smoothed) / (kSmoothedSide * kSmoothedSide);
   constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
   for (std::size_t y = 0; y < kRows; ++y) {
     const std::int16_t* row = smoothed.data() + (y + 1) * kSmoothedSide + 1;
@@ -158,7 +220,17 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
     blend_across(first + r * image.stride, across, &blended[static_cast<std::size_t>(r * kColumns)]);
   }
   Window values;
-  for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
+  if constexpr (kSmallCode) {
+    for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
+    return values;
+  }
+  const DownWeights weights(down);
+  for (std::size_t k = 0; k < kPixels; k += kColumns) {
+    Lanes taps[kTaps], out;
+    for (std::size_t tap = 0; tap < kTaps; ++tap) load(&blended[k + tap * kColumns], taps[tap]);
+    blend_down(taps, weights, out);
+    store(out, &values[k]);
+  }
   return values;
 }
 
@@ -173,7 +245,7 @@ std::int16_t rounded(double offset) {
   return static_cast<std::int16_t>(static_cast<int>(offset + 0.5 + kBeyond) - kBeyond);
 }
 
-WarpedWindow warp_window(const PatchWarp& warp) {
+[[maybe_unused]] WarpedWindow warp_each(const PatchWarp& warp) {
   WarpedWindow window;
   std::size_t i = 0;
   int farthest = 0;
@@ -185,6 +257,31 @@ WarpedWindow warp_window(const PatchWarp& warp) {
       for (const int offset : {static_cast<int>(window.x[i]), static_cast<int>(window.y[i])})
         farthest = std::max(farthest, offset < 0 ? -offset : offset);
     }
+  window.reach = farthest / kOnePixel + 1;
+  return window;
+}
+
+// The same: a multiple of a power of two is the same before or after a sum, and the farthest is a corner,
+// since no rounding turns an order around.
+WarpedWindow warp_window(const PatchWarp& warp) {
+  if constexpr (kSmallCode) return warp_each(warp);
+  WarpedWindow window;
+  std::array<double, kColumns> across_x, across_y;
+  for (int i = 0; i < kColumns; ++i) {
+    across_x[static_cast<std::size_t>(i)] = kOnePixel * warp.W(0, 0) * (i - kWindowReach);
+    across_y[static_cast<std::size_t>(i)] = kOnePixel * warp.W(1, 0) * (i - kWindowReach);
+  }
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const double down_x = kOnePixel * warp.W(0, 1) * (static_cast<int>(row) - kWindowReach);
+    const double down_y = kOnePixel * warp.W(1, 1) * (static_cast<int>(row) - kWindowReach);
+    for (std::size_t i = 0; i < kColumns; ++i) window.x[row * kColumns + i] = rounded(across_x[i] + down_x);
+    for (std::size_t i = 0; i < kColumns; ++i) window.y[row * kColumns + i] = rounded(across_y[i] + down_y);
+  }
+  int farthest = 0;
+  constexpr std::size_t kCorners[] = {0, kColumns - 1, kPixels - kColumns, kPixels - 1};
+  for (const std::size_t i : kCorners)
+    for (const int offset : {static_cast<int>(window.x[i]), static_cast<int>(window.y[i])})
+      farthest = std::max(farthest, offset < 0 ? -offset : offset);
   window.reach = farthest / kOnePixel + 1;
   return window;
 }
@@ -213,46 +310,82 @@ WarpedWindow warp_window(const PatchWarp& warp) {
 }
 
 // Every weight four times: for the four columns of a pixel.
-constexpr auto kColumnWeights = [] {
+alignas(16) constexpr auto kColumnWeights = [] {
   std::array<std::array<std::array<std::int16_t, kTaps>, kTaps>, 1 << kFractionBits> table{};
   for (std::size_t i = 0; i < table.size(); ++i)
     for (std::size_t tap = 0; tap < kTaps; ++tap) table[i][tap].fill(kWeights[i][tap]);
   return table;
 }();
 
-// The same, two pixels at once.
+// A pixel's column sums, of rows that are two apart; alike for a neighbour. Then of both all, across.
+inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[2], std::ptrdiff_t stride,
+                                                    const std::int16_t* across, const std::int16_t* down,
+                                                    WideLanes& halves) {
+  Lanes columns[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::uint8_t* const rows[kTaps] = {p[i], p[i] + stride, p[i] + 2 * stride, p[i] + 3 * stride};
+    const auto& weights = kColumnWeights[static_cast<std::size_t>(down[i])];
+    Lanes first, last, upper, lower;
+    load_bytes(rows, first, last);
+    load(weights[0].data(), upper);
+    load(weights[2].data(), lower);
+    columns[i] = first * upper + last * lower;
+  }
+  Lanes sum, weights;
+  add_halves(columns[0], columns[1], sum);
+  sum = (sum + std::int16_t{4}) >> 3;
+  load_halves(kWeights[static_cast<std::size_t>(across[0])].data(),
+              kWeights[static_cast<std::size_t>(across[1])].data(), weights);
+  dot_pairs(sum, weights, halves);
+}
+
+// As read_each, a row of the window at once.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
   if constexpr (kSmallCode) return read_each(image, window, x, y);
-  constexpr std::int32_t kFraction = kOnePixel - 1;
-  alignas(16) std::array<std::int32_t, 2 * kPixels> halves;  // of each pixel: two columns, and two
-  for (std::size_t k = 0; k < kPixels; k += 2) {
-    const std::uint8_t* p[2];
-    const std::array<std::int16_t, kTaps>* down[2];
-    const Weights* across[2];
-    for (std::size_t i = 0; i < 2; ++i) {
-      const std::int32_t at_x = x + window.x[k + i];
-      const std::int32_t at_y = y + window.y[k + i];
-      p[i] = image.data + ((at_y >> kFractionBits) - 1) * image.stride + (at_x >> kFractionBits) - 1;
-      down[i] = kColumnWeights[static_cast<std::size_t>(at_y & kFraction)].data();
-      across[i] = &kWeights[static_cast<std::size_t>(at_x & kFraction)];
-    }
-    Lanes sum = {};
-    for (std::ptrdiff_t r = 0; r < kTaps; ++r) {
-      Lanes pixels, weights;
-      load_bytes(p[0] + r * image.stride, p[1] + r * image.stride, pixels);
-      load_halves(down[0][r].data(), down[1][r].data(), weights);
-      sum += pixels * weights;
-    }
-    sum = (sum + std::int16_t{4}) >> 3;
-    Lanes weights;
-    load_halves(across[0]->data(), across[1]->data(), weights);
-    WideLanes two;
-    dot_pairs(sum, weights, two);
-    store(two, &halves[2 * k]);
-  }
+  constexpr std::int16_t kFraction = kOnePixel - 1;
+  const std::uint8_t* const from =
+      image.data + ((y >> kFractionBits) - 1) * image.stride + (x >> kFractionBits) - 1;
+  const auto fraction_x = static_cast<std::int16_t>(x & kFraction);
+  const auto fraction_y = static_cast<std::int16_t>(y & kFraction);
+  const auto stride = static_cast<std::int16_t>(image.stride);
+  const Lanes steps = {stride, 1, stride, 1, stride, 1, stride, 1};
   Window values;
-  for (std::size_t k = 0; k < kPixels; ++k)
-    values[k] = static_cast<std::int16_t>((halves[2 * k] + halves[2 * k + 1] + 64) >> 7);
+  for (std::size_t row = 0; row < kPixels; row += kColumns) {
+    Lanes at_x, at_y;
+    load(&window.x[row], at_x);
+    load(&window.y[row], at_y);
+    at_x = at_x + fraction_x;
+    at_y = at_y + fraction_y;
+    const Lanes whole_x = at_x >> kFractionBits;
+    const Lanes whole_y = at_y >> kFractionBits;
+    Lanes first, last;
+    interleave(whole_y, whole_x, first, last);
+    WideLanes four;
+    alignas(16) std::int32_t offset[kColumns];
+    dot_pairs(first, steps, four);
+    store(four, offset);
+    dot_pairs(last, steps, four);
+    store(four, offset + 4);
+    alignas(16) std::int16_t across[kColumns], down[kColumns];
+    const Lanes part_x = at_x & kFraction;
+    const Lanes part_y = at_y & kFraction;
+    store(part_x, across);
+    store(part_y, down);
+    WideLanes read[2];
+    for (int i = 0; i < kColumns; i += 4) {
+      const std::uint8_t* const p[4] = {from + offset[i], from + offset[i + 1], from + offset[i + 2],
+                                        from + offset[i + 3]};
+      WideLanes halves[2];
+      read_two(p, image.stride, across + i, down + i, halves[0]);
+      read_two(p + 2, image.stride, across + i + 2, down + i + 2, halves[1]);
+      WideLanes sums;
+      add_pairs(halves[0], halves[1], sums);
+      read[i / 4] = (sums + 64) >> 7;
+    }
+    Lanes eight;
+    narrow(read[0], read[1], eight);
+    store(eight, &values[row]);
+  }
   return values;
 }
 
@@ -267,9 +400,8 @@ Moments correlate(const Template& t, const Window& values) {
     with_gx += values[k] * t.gx[k];
     with_gy += values[k] * t.gy[k];
     with_value += values[k] * t.value[k];
-    const std::int32_t own = values[k] * t.one[k];
-    sum += own;
-    squared += own * own;
+    sum += values[k] * t.one[k];
+    squared += values[k] * static_cast<std::int16_t>(values[k] * t.one[k]);
   }
   Moments moments;
   moments.with_template << kUnit * kUnit * with_gx, kUnit * kUnit * with_gy, kUnit * kUnit * with_value,
