@@ -1,38 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/image/gray.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cstring>
+
+#include "plvo/base/build.hpp"
+#include "plvo/base/lanes.hpp"
 
 namespace plvo {
 namespace {
 
-// Weights of three bytes in a row, at every byte and not only where a pixel begins: two thirds are thrown
-// away, but nothing has to be sorted by channel, and compilers do eight at once. No sum passes 16 bits.
+template <int First, int Third>
+std::uint8_t luma(const std::uint8_t* p) {
+  return static_cast<std::uint8_t>((First * p[0] + 150 * p[1] + Third * p[2] + 128) >> 8);
+}
+
+// Of eight pixels; p reaches one byte beyond them. A pixel is the first three of four bytes in a row.
+template <int First, int Third>
+void luma_of_eight(const std::uint8_t* p, std::uint8_t* out) {
+  constexpr Lanes kWeights = {First, 150, Third, 0, First, 150, Third, 0};
+  WideLanes sums[2];
+  for (int i = 0; i < 2; ++i, p += 12) {
+    const std::uint8_t* const pixels[4] = {p, p + 3, p + 6, p + 9};
+    Lanes first_two, others;
+    load_bytes(pixels, first_two, others);
+    WideLanes halves[2];
+    dot_pairs(first_two, kWeights, halves[0]);
+    dot_pairs(others, kWeights, halves[1]);
+    add_pairs(halves[0], halves[1], sums[i]);
+    sums[i] = (sums[i] + 128) >> 8;
+  }
+  Lanes eight;
+  narrow(sums[0], sums[1], eight);
+  store_bytes(eight, out);
+}
+
 template <int First, int Third>
 void luma_row(const std::uint8_t* pixels, int width, std::uint8_t* out) {
-  constexpr int kBlock = 64;
-  std::array<std::uint8_t, 3 * kBlock> luma;
-  for (int block = 0; block < width; block += kBlock) {
-    const int count = std::min(kBlock, width - block);
-    const std::uint8_t* p = pixels + 3 * block;
-    const int bytes = std::min(3 * kBlock, 3 * (width - block) - 2);
-    for (int k = 0; k < bytes; ++k) {
-      const auto first = static_cast<std::uint16_t>(First * p[k]);
-      const auto second = static_cast<std::uint16_t>(150 * p[k + 1]);
-      const auto third = static_cast<std::uint16_t>(Third * p[k + 2]);
-      const auto sum = static_cast<std::uint16_t>(first + second + third + 128);
-      luma[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(sum >> 8);
-    }
-    int x = 0;
-    for (; x + 8 <= count; x += 8) {
-      std::uint64_t eight = 0;
-      for (int i = 7; i >= 0; --i) eight = eight << 8 | luma[static_cast<std::size_t>(3 * (x + i))];
-      std::memcpy(out + block + x, &eight, sizeof eight);
-    }
-    for (; x < count; ++x) out[block + x] = luma[static_cast<std::size_t>(3 * x)];
-  }
+  int x = 0;
+  if constexpr (!kSmallCode)
+    for (; x + 8 < width; x += 8) luma_of_eight<First, Third>(pixels + 3 * x, out + x);
+  for (; x < width; ++x) out[x] = luma<First, Third>(pixels + 3 * x);
 }
 
 }  // namespace
