@@ -46,22 +46,9 @@ std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t
 // Two neighbours, the left one in the low byte.
 std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p[0] | p[1] << 8); }
 
-// As blend, eight at once.
-void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x, const Lanes& y,
+// As blend, eight at once: of the pairs above and below, and at fractions of a pixel.
+void blend_pairs(const Lanes& above, const Lanes& below, const Lanes& fx, const Lanes& fy,
                  std::uint8_t* out) {
-  if constexpr (kSmallCode) {
-    for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i], y[i]);
-    return;
-  }
-  const Lanes offset = (y >> kWeightBits) * static_cast<std::int16_t>(stride) + (x >> kWeightBits);
-  Lanes above, below;
-  for (int i = 0; i < 8; ++i) {
-    const std::uint8_t* const p = from + offset[i];
-    above[i] = pair_at(p);
-    below[i] = pair_at(p + stride);
-  }
-  const Lanes fx = x & kWeightMask;
-  const Lanes fy = y & kWeightMask;
   const Lanes upper_left = above & 255;
   const Lanes lower_left = below & 255;
   const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
@@ -70,6 +57,25 @@ void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x
   const Lanes change = lower - upper;
   const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
+}
+
+// At eight places, in 2^-7 px from the pixel `from`.
+void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x, const Lanes& y,
+                 std::uint8_t* out) {
+  if constexpr (kSmallCode) {
+    for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i], y[i]);
+    return;
+  }
+  const Lanes offsets = (y >> kWeightBits) * static_cast<std::int16_t>(stride) + (x >> kWeightBits);
+  alignas(16) std::int16_t offset[8];
+  store(offsets, offset);
+  const std::uint8_t* const from_below = from + stride;
+  Lanes above, below;
+  for (int i = 0; i < 8; ++i) {
+    above[i] = pair_at(from + offset[i]);
+    below[i] = pair_at(from_below + offset[i]);
+  }
+  blend_pairs(above, below, x & kWeightMask, y & kWeightMask, out);
 }
 
 }  // namespace
@@ -154,15 +160,32 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
 void UndistortionMap::undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count,
                                         std::uint8_t* out, std::ptrdiff_t out_stride) const {
   const Cell c = cell;
+  constexpr int kToWeight = kFractionBits - kWeightBits;
   for (int j = first; j < last; ++j, out += out_stride) {
     const std::int64_t right = c.right + j * c.twist;
     std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
-    for (int i = 0; i < count; ++i, start += right) {
-      const std::int64_t at = start + bow(i) * c.bend_right;
-      constexpr int kToWeight = kFractionBits - kWeightBits;
-      out[i] = blend(raw.data, raw.stride, std::clamp<std::int32_t>(x_of(at), 0, last_x_) >> kToWeight,
-                     std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
+    // visit(i, x, y) of every pixel, in 2^-7 px.
+    const auto for_pixels = [&](int pixels, const auto& visit) {
+      for (int i = 0; i < pixels; ++i, start += right) {
+        const std::int64_t at = start + bow(i) * c.bend_right;
+        visit(i, std::clamp<std::int32_t>(x_of(at), 0, last_x_) >> kToWeight,
+              std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
+      }
+    };
+    if (kSmallCode || count < kCell) {
+      for_pixels(count,
+                 [&](int i, std::int32_t x, std::int32_t y) { out[i] = blend(raw.data, raw.stride, x, y); });
+      continue;
     }
+    Lanes above, below, fx, fy;
+    for_pixels(kCell, [&](int i, std::int32_t x, std::int32_t y) {
+      const std::uint8_t* const p = raw.data + (y >> kWeightBits) * raw.stride + (x >> kWeightBits);
+      above[i] = pair_at(p);
+      below[i] = pair_at(p + raw.stride);
+      fx[i] = static_cast<std::int16_t>(x & kWeightMask);
+      fy[i] = static_cast<std::int16_t>(y & kWeightMask);
+    });
+    blend_pairs(above, below, fx, fy, out);
   }
 }
 
