@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/points/descriptor.hpp"
 
+#include <cstring>
+
 #include "plvo/base/random.hpp"
 
 namespace plvo {
@@ -77,9 +79,9 @@ int hamming_distance(const Descriptor& a, const Descriptor& b) {
 
 Patch cut_patch(GrayView image, int x, int y) {
   Patch patch;
-  std::size_t i = 0;
-  for (int dy = -kPatchRadius; dy <= kPatchRadius; ++dy)
-    for (int dx = -kPatchRadius; dx <= kPatchRadius; ++dx) patch[i++] = image.at(x + dx, y + dy);
+  const std::uint8_t* row = image.row(y - kPatchRadius) + x - kPatchRadius;
+  for (std::size_t i = 0; i < patch.size(); i += kPatchSide, row += image.stride)
+    std::memcpy(&patch[i], row, kPatchSide);
   return patch;
 }
 
