@@ -59,6 +59,13 @@ class DepthSampler {
     if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
+  // Where at() reads, for who fetches it ahead; nullptr where it reads nothing.
+  const std::uint16_t* place_of(int x, int y) const {
+    int raw_x = 0;
+    int raw_y = 0;
+    if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return nullptr;
+    return depth_.data + raw_y * depth_.stride + raw_x;
+  }
   // A square of readings around (x, y), which lies in the image: every so many px, `reach` of them either
   // way.
   class Window {
