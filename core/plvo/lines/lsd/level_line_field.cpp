@@ -92,8 +92,16 @@ class RowGradients {
       strong_[static_cast<std::size_t>(i)] =
           static_cast<int>(gx) * gx + static_cast<int>(gy) * gy > kMinMagnitudeSquared ? 1 : 0;
     }
+    // Which are strong cannot be foreseen, so nothing branches on it: each is written down, and stays if it
+    // is.
+    std::size_t strong_count = 0;
+    for (int i = 0; i < count; ++i) {
+      strong_entries_[strong_count] = static_cast<std::uint8_t>(i);
+      strong_count += static_cast<std::size_t>(strong_[static_cast<std::size_t>(i)]);
+    }
+    strong_count_ = strong_count;
   }
-  bool strong(int i) const { return strong_[static_cast<std::size_t>(i)] != 0; }
+  std::span<const std::uint8_t> strong() const { return std::span(strong_entries_).first(strong_count_); }
   PolarGradient polar(int i) const {
     return polar_gradient(gx_[static_cast<std::size_t>(i)], gy_[static_cast<std::size_t>(i)]);
   }
@@ -102,6 +110,8 @@ class RowGradients {
   std::array<std::int16_t, kBlock> gx_{};
   std::array<std::int16_t, kBlock> gy_{};
   std::array<std::int32_t, kBlock> strong_{};
+  std::array<std::uint8_t, kBlock> strong_entries_{};
+  std::size_t strong_count_ = 0;
 };
 
 }  // namespace
@@ -136,12 +146,13 @@ void compute_field(GrayView image, LevelLineField& field, std::span<Pixel> unord
       const int size = std::min(RowGradients::kBlock, field.width - block);
       gradients.compute(above + block, below + block, size);
       const std::size_t first = field.index(block, y);
-      for (int i = 0; i < size; ++i) {
-        if (!gradients.strong(i)) continue;
+      for (const int i : gradients.strong()) {
         const PolarGradient polar = gradients.polar(i);
         const std::size_t at = first + static_cast<std::size_t>(i);
         states[at] = 0;
-        directions[at] = polar.direction;
+        // Number by number: put together in memory, the pair would be read back before it is there.
+        directions[at].x = polar.direction.x;
+        directions[at].y = polar.direction.y;
         magnitudes[at] = polar.magnitude;
         ++starts[bin_of(polar.magnitude) + 1];
         found[count++] = {static_cast<std::int16_t>(block + i), static_cast<std::int16_t>(y)};
