@@ -154,6 +154,32 @@ inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes
 #endif
 }
 
+// Four numbers from either, which must fit.
+inline __attribute__((always_inline)) void narrow(const WideLanes& first, const WideLanes& second,
+                                                  Lanes& lanes) {
+#ifdef __SSE2__
+  lanes = __builtin_ia32_packssdw128(first, second);
+#else
+  for (int i = 0; i < 4; ++i) {
+    lanes[i] = static_cast<std::int16_t>(first[i]);
+    lanes[i + 4] = static_cast<std::int16_t>(second[i]);
+  }
+#endif
+}
+
+// Bit i: lane i is below 0.
+inline __attribute__((always_inline)) unsigned negative_lanes(const WideLanes& lanes) {
+#ifdef __SSE2__
+  using Floats = float __attribute__((vector_size(16)));
+  Floats same;
+  std::memcpy(&same, &lanes, sizeof same);
+  return static_cast<unsigned>(__builtin_ia32_movmskps(same));
+#else
+  const WideLanes bits = (lanes >> 31) & WideLanes{1, 2, 4, 8};
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+}
+
 #endif
 
 }  // namespace plvo
