@@ -2,7 +2,9 @@
 #include "plvo/lines/msld.hpp"
 
 #include <algorithm>
+#include <cstring>
 
+#include "plvo/base/lanes.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -24,35 +26,39 @@ constexpr double gaussian(double x) {
   return sum;
 }
 
-// A band takes its own rows and, falling linearly to the next band's centre, its neighbours' nearer rows:
-// kMsldReach rows to either side of its centre. The Gaussian over the whole region has half its half width
-// for SD, so that an error in the segment's place changes little at the rim.
-constexpr int kMsldReach = kMsldRowsPerBand - 1;
-static_assert(kMsldRowsPerBand % 2 == 1, "a band's centre is a row");
-using BandWeights = std::array<float, 2 * kMsldReach + 1>;
+// A band takes its own three rows and, falling linearly to the next band's centre, its neighbours' nearest:
+// in thirds, one of the last row before it, two of its first, three of its centre, two of its last and one of
+// the first row behind it. The Gaussian over the whole region has half its half width for SD, so that an
+// error in the segment's place changes little at the rim. A row's weight here is the Gaussian, of a centre
+// three times that, · 2^13.
+//
+// All sums are of whole numbers, so they are the same in any order.
+static_assert(kMsldRowsPerBand == 3);
+constexpr int kWeightBits = 13;
+using RowWeights = std::array<std::int16_t, kMsldRows>;
 
-constexpr std::array<BandWeights, kMsldBands> make_msld_weights() {
-  std::array<BandWeights, kMsldBands> weights{};
-  for (int band = 0; band < kMsldBands; ++band)
-    for (int o = -kMsldReach; o <= kMsldReach; ++o) {
-      const double row = (band - kMsldBands / 2) * kMsldRowsPerBand + o;
-      const double share = 1.0 - (o < 0 ? -o : o) / static_cast<double>(kMsldRowsPerBand);
-      weights[static_cast<std::size_t>(band)][static_cast<std::size_t>(o + kMsldReach)] =
-          static_cast<float>(share * gaussian(row / (0.5 * kMsldRows)));
-    }
+constexpr RowWeights make_row_weights() {
+  RowWeights weights{};
+  for (std::size_t r = 0; r < kMsldRows; ++r) {
+    const double row = static_cast<double>(r) - 0.5 * (kMsldRows - 1);
+    const double share = r % kMsldRowsPerBand == kMsldRowsPerBand / 2 ? 3 : 1;
+    weights[r] =
+        static_cast<std::int16_t>(share * gaussian(row / (0.5 * kMsldRows)) * (1 << kWeightBits) + 0.5);
+  }
   return weights;
 }
-constexpr std::array<BandWeights, kMsldBands> kMsldWeights = make_msld_weights();
+constexpr RowWeights kRowWeights = make_row_weights();
 
 // Positions in the image in 1/65536 px.
 constexpr int kPositionBits = 16;
+constexpr int kDirectionBits = 14;
 std::int32_t to_fixed(double x) { return round_to<std::int32_t>(x * (1 << kPositionBits)); }
 
 struct Region {
-  std::int32_t x, y;               // of the first column's first row
-  std::int32_t ux, uy;             // from a column to the next
-  std::int32_t nx, ny;             // from a row to the next, towards the brighter side
-  float direction_x, direction_y;  // unit vector along the segment
+  std::int32_t x, y;                      // of the first column's first row
+  std::int32_t ux, uy;                    // from a column to the next
+  std::int32_t nx, ny;                    // from a row to the next, towards the brighter side
+  std::int32_t direction_x, direction_y;  // unit vector along the segment · 2^14
   int columns;
 };
 
@@ -71,8 +77,8 @@ Region make_region(double scale, const Segment& segment) {
   region.uy = to_fixed(step * u.y());
   region.nx = to_fixed(kMsldRowPitch_px * n.x());
   region.ny = to_fixed(kMsldRowPitch_px * n.y());
-  region.direction_x = static_cast<float>(u.x());
-  region.direction_y = static_cast<float>(u.y());
+  region.direction_x = round_to<std::int32_t>(u.x() * (1 << kDirectionBits));
+  region.direction_y = round_to<std::int32_t>(u.y() * (1 << kDirectionBits));
   return region;
 }
 
@@ -88,60 +94,184 @@ bool inside(const Region& region, GrayView image) {
   return true;
 }
 
-struct ColumnSums {
-  std::array<float, kSums> first{};   // Σ V over the columns
-  std::array<float, kSums> second{};  // Σ V²
+// Of the image, in grey levels per two pixels, and what it is multiplied with.
+struct Gradient {
+  std::int16_t x, y;
 };
 
-// The gradients of one column, each as four non-negative parts: towards the brighter side, away from it,
-// along the segment, against it. A margin of zero rows on both sides stands for the rows beyond the region.
-using Column = std::array<std::array<float, 4>, kMsldRows + 2 * kMsldReach>;
+// What a row's gradients are multiplied with for their weighted parts across and along the segment, · 2^13.
+struct RowAxes {
+  Gradient across, along;
+};
 
-template <bool kInside>
-void read_column(GrayView image, const Region& region, std::int32_t x, std::int32_t y, Column& column) {
-  for (std::size_t r = kMsldReach; r < kMsldRows + kMsldReach; ++r) {
-    const int px = x >> kPositionBits, py = y >> kPositionBits;
-    x += region.nx;
-    y += region.ny;
-    if (!kInside && (px < 1 || py < 1 || px >= image.width - 1 || py >= image.height - 1)) {
-      column[r] = {};
-      continue;
-    }
-    const std::uint8_t* p = image.data + py * image.stride + px;
-    const auto gx = static_cast<float>(p[1] - p[-1]);
-    const auto gy = static_cast<float>(p[image.stride] - p[-image.stride]);
-    const float across = gy * region.direction_x - gx * region.direction_y;
-    const float along = gx * region.direction_x + gy * region.direction_y;
-    column[r] = {std::max(across, 0.0F), std::max(-across, 0.0F), std::max(along, 0.0F),
-                 std::max(-along, 0.0F)};
+std::array<RowAxes, kMsldRows> make_axes(const Region& region) {
+  std::array<RowAxes, kMsldRows> axes;
+  for (std::size_t r = 0; r < kMsldRows; ++r) {
+    const auto weighted = [&](std::int32_t q14) {
+      return static_cast<std::int16_t>((kRowWeights[r] * q14 + (1 << (kDirectionBits - 1))) >>
+                                       kDirectionBits);
+    };
+    const std::int16_t x = weighted(region.direction_x), y = weighted(region.direction_y);
+    axes[r] = {{static_cast<std::int16_t>(-y), x}, {x, y}};
   }
+  return axes;
 }
 
-// The four parts are independent lanes, each summed in one order: a compiler may do them side by side.
-void add_column(const Column& column, ColumnSums& sums) {
-  for (std::size_t band = 0; band < kMsldBands; ++band) {
-    std::array<float, 4> V{};
-    for (std::size_t o = 0; o < 2 * kMsldReach + 1; ++o)
-      for (std::size_t k = 0; k < 4; ++k)
-        V[k] += kMsldWeights[band][o] * column[band * kMsldRowsPerBand + kMsldRowsPerBand / 2 + o][k];
-    for (std::size_t k = 0; k < 4; ++k) {
-      sums.first[4 * band + k] += V[k];
-      sums.second[4 * band + k] += V[k] * V[k];
-    }
-  }
-}
+// Parts are kept in quarters of that: a band's sum is at most 9 · 255 · √2 · 4 and has 14 bits.
+constexpr int kPartShift = kWeightBits - 2;
+constexpr int kPartHalf = 1 << (kPartShift - 1);
 
 template <bool kInside>
-void sum_region(GrayView image, const Region& region, ColumnSums& sums) {
-  Column column{};
-  std::int32_t x = region.x, y = region.y;
+Gradient gradient(GrayView image, std::int32_t x, std::int32_t y) {
+  const int px = x >> kPositionBits, py = y >> kPositionBits;
+  if (!kInside && (px < 1 || py < 1 || px >= image.width - 1 || py >= image.height - 1)) return {0, 0};
+  const std::uint8_t* p = image.data + py * image.stride + px;
+  return {static_cast<std::int16_t>(p[1] - p[-1]),
+          static_cast<std::int16_t>(p[image.stride] - p[-image.stride])};
+}
+
+// Of a band's four parts, over the columns: towards the brighter side, away from it, along the segment,
+// against it.
+struct BandSums {
+  std::array<std::uint32_t, 4> first{};   // Σ V
+  std::array<std::uint32_t, 4> second{};  // Σ V²
+};
+using RegionSums = std::array<BandSums, kMsldBands>;
+
+#ifdef PLVO_SMALL_CODE
+
+template <bool kInside>
+void sum_region(GrayView image, const Region& region, RegionSums& sums) {
+  const std::array<RowAxes, kMsldRows> axes = make_axes(region);
   for (int c = 0; c < region.columns; ++c) {
-    read_column<kInside>(image, region, x, y, column);
-    add_column(column, sums);
-    x += region.ux;
-    y += region.uy;
+    // A row of zeros on both sides stands for those beyond the region.
+    std::array<std::array<std::int32_t, 4>, kMsldRows + 2> column{};
+    std::int32_t x = region.x + c * region.ux, y = region.y + c * region.uy;
+    for (std::size_t r = 0; r < kMsldRows; ++r, x += region.nx, y += region.ny) {
+      const Gradient g = gradient<kInside>(image, x, y);
+      const auto part = [g](Gradient axis) {
+        return (g.x * axis.x + g.y * axis.y + kPartHalf) >> kPartShift;
+      };
+      const std::int32_t across = part(axes[r].across), along = part(axes[r].along);
+      column[r + 1] = {std::max<std::int32_t>(across, 0), std::max<std::int32_t>(-across, 0),
+                       std::max<std::int32_t>(along, 0), std::max<std::int32_t>(-along, 0)};
+    }
+    for (std::size_t band = 0; band < kMsldBands; ++band)
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t r = band * kMsldRowsPerBand;
+        const auto V = static_cast<std::uint32_t>(column[r][k] + 2 * column[r + 1][k] + column[r + 2][k] +
+                                                  2 * column[r + 3][k] + column[r + 4][k]);
+        sums[band].first[k] += V;
+        sums[band].second[k] += V * V;
+      }
   }
 }
+
+#else
+
+// Four columns side by side: their parts across, then those along.
+struct Parts {
+  Lanes positive{}, negative{};
+};
+
+void repeat(Gradient g, Lanes& lanes) {
+  std::int32_t both;
+  std::memcpy(&both, &g, sizeof both);
+  const WideLanes four = WideLanes{} + both;
+  std::memcpy(&lanes, &four, sizeof lanes);
+}
+
+// Reads four columns row by row; those from `columns` on have no gradient.
+template <bool kInside>
+class FourColumns {
+ public:
+  FourColumns(GrayView image, const Region& region, int first, int columns)
+      : image_(image), region_(region), columns_(columns) {
+    for (int c = 0; c < 4; ++c) {
+      const int column = first + (c < columns ? c : 0);
+      x_[c] = region.x + column * region.ux;
+      y_[c] = region.y + column * region.uy;
+    }
+  }
+
+  void next(const RowAxes& axes, Parts& parts) {
+    Gradient gradients[4];
+    for (int c = 0; c < 4; ++c) {
+      gradients[c] = gradient<kInside>(image_, x_[c], y_[c]);
+      x_[c] += region_.nx;
+      y_[c] += region_.ny;
+    }
+    for (int c = columns_; c < 4; ++c) gradients[c] = {0, 0};
+    Lanes four, axis, both;
+    load_halves(&gradients[0].x, &gradients[2].x, four);
+    WideLanes across, along;
+    repeat(axes.across, axis);
+    dot_pairs(four, axis, across);
+    repeat(axes.along, axis);
+    dot_pairs(four, axis, along);
+    narrow((across + kPartHalf) >> kPartShift, (along + kPartHalf) >> kPartShift, both);
+    parts.positive = both > 0 ? both : Lanes{};
+    parts.negative = parts.positive - both;
+  }
+
+ private:
+  GrayView image_;
+  const Region& region_;
+  int columns_;
+  std::int32_t x_[4], y_[4];
+};
+
+// Σ V and Σ V² of one sign: of two pairs of columns across, then of two along.
+struct PairSums {
+  WideLanes first{}, second{};
+
+  void add(const Lanes& V) {
+    WideLanes pairs;
+    dot_pairs(V, Lanes{} + 1, pairs);
+    first += pairs;
+    dot_pairs(V, V, pairs);
+    second += pairs;
+  }
+  void move(std::size_t sign, BandSums& sums) const {
+    for (int k = 0; k < 2; ++k) {
+      const std::size_t to = 2 * static_cast<std::size_t>(k) + sign;
+      sums.first[to] =
+          static_cast<std::uint32_t>(first[2 * k]) + static_cast<std::uint32_t>(first[2 * k + 1]);
+      sums.second[to] =
+          static_cast<std::uint32_t>(second[2 * k]) + static_cast<std::uint32_t>(second[2 * k + 1]);
+    }
+  }
+};
+
+template <bool kInside>
+void sum_region(GrayView image, const Region& region, RegionSums& sums) {
+  const std::array<RowAxes, kMsldRows> axes = make_axes(region);
+  std::array<std::array<PairSums, 2>, kMsldBands> pairs{};
+  for (int c = 0; c < region.columns; c += 4) {
+    FourColumns<kInside> columns(image, region, c, std::min(region.columns - c, 4));
+    Parts first, centre, last, V;
+    for (std::size_t band = 0; band < kMsldBands; ++band) {
+      const RowAxes* const rows = &axes[band * kMsldRowsPerBand];
+      columns.next(rows[0], first);
+      if (band > 0) {
+        pairs[band - 1][0].add(V.positive + first.positive);
+        pairs[band - 1][1].add(V.negative + first.negative);
+      }
+      V.positive = last.positive + first.positive + first.positive;
+      V.negative = last.negative + first.negative + first.negative;
+      columns.next(rows[1], centre);
+      columns.next(rows[2], last);
+      V.positive += centre.positive + last.positive + last.positive;
+      V.negative += centre.negative + last.negative + last.negative;
+    }
+    pairs[kMsldBands - 1][0].add(V.positive);
+    pairs[kMsldBands - 1][1].add(V.negative);
+  }
+  for (std::size_t band = 0; band < kMsldBands; ++band)
+    for (std::size_t sign = 0; sign < 2; ++sign) pairs[band][sign].move(sign, sums[band]);
+}
+
+#endif
 
 // Unit norm, clipped, unit norm again, in units of 1/255.
 void normalise(std::array<double, kSums>& half, std::uint8_t* out) {
@@ -164,7 +294,7 @@ LineDescriptor describe_segment(GrayView image, double scale, const Segment& seg
   LineDescriptor descriptor;
   if (!(segment.length_px() > 0)) return descriptor;
   const Region region = make_region(scale, segment);
-  ColumnSums sums;
+  RegionSums sums{};
   if (inside(region, image))
     sum_region<true>(image, region, sums);
   else
@@ -173,8 +303,9 @@ LineDescriptor describe_segment(GrayView image, double scale, const Segment& seg
   std::array<double, kSums> mean, deviation;
   const double inverse = 1.0 / region.columns;
   for (std::size_t k = 0; k < kSums; ++k) {
-    mean[k] = static_cast<double>(sums.first[k]) * inverse;
-    const double variance = static_cast<double>(sums.second[k]) * inverse - mean[k] * mean[k];
+    const BandSums& band = sums[k / 4];
+    mean[k] = band.first[k % 4] * inverse;
+    const double variance = band.second[k % 4] * inverse - mean[k] * mean[k];
     deviation[k] = variance > 0 ? sqrt(variance) : 0;
   }
   normalise(mean, descriptor.value.data());
