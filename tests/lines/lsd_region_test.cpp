@@ -101,14 +101,21 @@ TEST(LevelLineField, SeedsComeStrongestFirstAndEachOnce) {
   }
 }
 
-// Section 2.3 in angles, as the paper words it.
+// Section 2.3 in angles, as the paper words it, but that the region's direction is renewed only when the
+// region has grown by an eighth.
 std::vector<std::pair<int, int>> grow_by_angles(const LevelLineField& field, std::vector<bool>& used,
                                                 Pixel seed, bool& too_close_to_call) {
   std::vector<std::pair<int, int>> region{{seed.x, seed.y}};
   used[field.index(seed.x, seed.y)] = true;
   double sum_x = std::cos(angle_of(field.direction[field.index(seed.x, seed.y)]));
   double sum_y = std::sin(angle_of(field.direction[field.index(seed.x, seed.y)]));
+  double direction = 0;
+  std::size_t renew = 1;
   for (std::size_t next = 0; next < region.size(); ++next) {
+    if (region.size() >= renew) {
+      direction = std::atan2(sum_y, sum_x);
+      renew = region.size() + region.size() / 8 + 1;
+    }
     for (int j = -1; j <= 1; ++j) {
       for (int i = -1; i <= 1; ++i) {
         const int x = region[next].first + i;
@@ -116,8 +123,8 @@ std::vector<std::pair<int, int>> grow_by_angles(const LevelLineField& field, std
         const std::size_t at = field.index(x, y);
         if (used[at]) continue;
         const double angle = angle_of(field.direction[at]);
-        const double difference = angle_between(angle, std::atan2(sum_y, sum_x));
-        if (std::abs(difference - 22.5 * kDegree) < 1e-4) too_close_to_call = true;
+        const double difference = angle_between(angle, direction);
+        if (std::abs(difference - 22.5 * kDegree) < 3e-4) too_close_to_call = true;
         if (difference > 22.5 * kDegree) continue;
         used[at] = true;
         region.push_back({x, y});

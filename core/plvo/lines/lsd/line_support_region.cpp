@@ -2,6 +2,9 @@
 #include "plvo/lines/lsd/line_support_region.hpp"
 
 #include <bit>
+#include <cstring>
+
+#include "plvo/base/lanes.hpp"
 
 namespace plvo::lsd {
 
@@ -32,6 +35,81 @@ unsigned open_neighbours(const std::uint8_t* state, std::ptrdiff_t stride) {
   return used ^ 0xffU;
 }
 
+// The directions that a region takes, as the two sides of a wedge about its own: a direction is in it when
+// its products with both are below 0. In 16 bits, which is as much as a direction has.
+struct Wedge {
+  std::int16_t left_x, left_y, right_x, right_y;
+
+  bool holds(Direction d) const {
+    return d.x * left_x + d.y * left_y < 0 && d.x * right_x + d.y * right_y < 0;
+  }
+};
+
+Wedge make_wedge(std::int64_t sum_x, std::int64_t sum_y, Tolerance tolerance) {
+  const auto size = [](std::int64_t x) { return static_cast<std::uint64_t>(x < 0 ? -x : x); };
+  const int excess = static_cast<int>(std::bit_width(size(sum_x) | size(sum_y))) - kDirectionBits;
+  const int shift = excess > 0 ? excess : 0;
+  const auto x = static_cast<std::int32_t>(sum_x >> shift);
+  const auto y = static_cast<std::int32_t>(sum_y >> shift);
+  const std::int32_t along_x = x * tolerance.tangent_q15 >> 15;
+  const std::int32_t along_y = y * tolerance.tangent_q15 >> 15;
+  return {static_cast<std::int16_t>(y - along_x), static_cast<std::int16_t>(-x - along_y),
+          static_cast<std::int16_t>(-y - along_x), static_cast<std::int16_t>(x - along_y)};
+}
+
+// Which of a pixel's neighbours are in a wedge, bit by bit.
+#ifdef PLVO_SMALL_CODE
+class Sides {
+ public:
+  void set(const Wedge& wedge) { wedge_ = wedge; }
+  unsigned holding(const Direction* here, std::ptrdiff_t stride) const {
+    unsigned held = 0;
+    for (int i = 0; i < 8; ++i)
+      held |= static_cast<unsigned>(wedge_.holds(here[kDown[i] * stride + kRight[i]])) << i;
+    return held;
+  }
+
+ private:
+  Wedge wedge_{};
+};
+#else
+// Rows of four directions, of which one is looked past: the one behind the neighbours, and in the last row,
+// behind which there may be none, the one before them. The field's directions stay as they are, so wide loads
+// wait for nobody.
+class Sides {
+ public:
+  void set(const Wedge& wedge) {
+    repeat(wedge.left_x, wedge.left_y, left_);
+    repeat(wedge.right_x, wedge.right_y, right_);
+  }
+  unsigned holding(const Direction* here, std::ptrdiff_t stride) const {
+    const unsigned above = holding(here - stride - 1);
+    const unsigned beside = holding(here - 1);
+    const unsigned below = holding(here + stride - 2);
+    return (above & 7U) | (beside & 1U) << 3 | (beside & 4U) << 2 | (below & 14U) << 4;
+  }
+
+ private:
+  static void repeat(std::int16_t x, std::int16_t y, Lanes& lanes) {
+    const WideLanes four = WideLanes{} + static_cast<std::int32_t>(
+                                             static_cast<std::uint16_t>(x) |
+                                             static_cast<std::uint32_t>(static_cast<std::uint16_t>(y)) << 16);
+    std::memcpy(&lanes, &four, sizeof lanes);
+  }
+  unsigned holding(const Direction* four) const {
+    static_assert(sizeof(Direction) == 2 * sizeof(std::int16_t));
+    Lanes row;
+    std::memcpy(&row, four, sizeof row);
+    WideLanes left, right;
+    dot_pairs(row, left_, left);
+    dot_pairs(row, right_, right);
+    return negative_lanes(left & right);
+  }
+
+  Lanes left_{}, right_{};
+};
+#endif
+
 }  // namespace
 
 Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pixel> storage) {
@@ -40,39 +118,44 @@ Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pi
   const Direction* const directions = field.direction.data();
   Pixel* const pixels = storage.data();
   const std::ptrdiff_t stride = field.stride;
-  const std::int64_t tangent_q15 = tolerance.tangent_q15;
   struct Step {
     std::ptrdiff_t entries;
     std::uint32_t packed;
+    std::ptrdiff_t beyond;
   };
   Step steps[8];
   for (std::size_t i = 0; i < 8; ++i)
-    steps[i] = {kDown[i] * stride + kRight[i], packed({kRight[i], kDown[i]})};
+    steps[i] = {kDown[i] * stride + kRight[i], packed({kRight[i], kDown[i]}), kDown[i] * stride};
   const std::size_t first = field.index(seed.x, seed.y);
   std::size_t count = 1;
+  std::size_t renew = 1;
+  Sides sides;
   std::int64_t sum_x = directions[first].x;
   std::int64_t sum_y = directions[first].y;
   pixels[0] = seed;
   states[first] = static_cast<std::uint8_t>((states[first] + 1) | kUsed);
   for (std::size_t next = 0; next < count; ++next) {
+    // Not for every pixel: the tests of the next would wait for all that this one adds.
+    if (count >= renew) {
+      sides.set(make_wedge(sum_x, sum_y, tolerance));
+      renew = count + count / 8 + 1;
+    }
     const Pixel pixel = pixels[next];
     const std::uint32_t pixel_packed = packed(pixel);
     std::uint8_t* const here = states + field.index(pixel.x, pixel.y);
     const Direction* const direction_here = directions + (here - states);
-    // Whether a neighbour is aligned cannot be foreseen, so nothing branches on it: it is written down, and
-    // stays if it counts. There is room: it is in no region yet.
-    for (unsigned open = open_neighbours(here, stride); open != 0; open &= open - 1) {
-      const Step step = steps[std::countr_zero(open)];
-      std::uint8_t* const state = here + step.entries;
+    for (unsigned taken = open_neighbours(here, stride) & sides.holding(direction_here, stride); taken != 0;
+         taken &= taken - 1) {
+      const Step step = steps[std::countr_zero(taken)];
+      std::uint8_t& state = here[step.entries];
       const Direction d = direction_here[step.entries];
-      const std::int64_t dot = d.x * sum_x + d.y * sum_y;
-      const std::int64_t cross = d.x * sum_y - d.y * sum_x;
-      const int aligned = (cross < 0 ? -cross : cross) * 32768 <= tangent_q15 * dot ? 1 : 0;
-      pixels[count] = unpacked(pixel_packed + step.packed);
-      count += static_cast<std::size_t>(aligned);
-      *state = static_cast<std::uint8_t>(*state + aligned * (kUsed + 1));
-      sum_x += d.x & -aligned;
-      sum_y += d.y & -aligned;
+      pixels[count++] = unpacked(pixel_packed + step.packed);
+      state = static_cast<std::uint8_t>((state + 1) | kUsed);
+      sum_x += d.x;
+      sum_y += d.y;
+      // Its turn comes soon, and the row beyond it has not been looked at yet.
+      __builtin_prefetch(&state + step.beyond);
+      __builtin_prefetch(direction_here + step.entries + step.beyond);
     }
   }
   return {storage.first(count), sum_x, sum_y};

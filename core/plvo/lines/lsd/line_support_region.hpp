@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Region growing (LSD, section 2.3): pixels that touch and whose gradient points the same way up to a
-// tolerance. The region's direction is that of the sum of its unit vectors, so it follows as the region
-// grows. A pixel belongs to one region at a time and is added at most kMaxGrowths times in its life, so that
-// all growing together takes at most 8 · kMaxGrowths looks per pixel of the image.
+// tolerance. The region's direction is that of the sum of its unit vectors, renewed whenever the region has
+// grown by an eighth: a neighbour's test does not wait for what the one before it changed. A pixel belongs to
+// one region at a time and is added at most kMaxGrowths times in its life, so that all growing together takes
+// at most 8 · kMaxGrowths looks per pixel of the image.
 #pragma once
 
 #include <cstddef>
