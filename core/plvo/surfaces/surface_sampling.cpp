@@ -2,6 +2,7 @@
 #include "plvo/surfaces/surface_sampling.hpp"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include "plvo/base/random.hpp"
@@ -27,13 +28,15 @@ void shuffle(FixedVector<SurfaceSample>& samples) {
     std::swap(samples[i - 1], samples[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-// The first of every bin, then the second of every bin, …
-void take_in_turns(const FixedVector<SurfaceSample>& from, FixedVector<SurfaceSample>& to) {
-  for (std::size_t turn = 0; turn < from.size() && !to.full(); ++turn) {
-    std::array<std::size_t, kAllBins> seen{};
-    for (const SurfaceSample& sample : from)
-      if (seen[bin_of(sample.normal)]++ == turn && !to.full()) to.push_back(sample);
-  }
+// The first of every bin, then the second of every bin, … turns: how many of its bin come before each,
+// scratch.
+void take_in_turns(const FixedVector<SurfaceSample>& from, std::span<std::uint16_t> turns,
+                   FixedVector<SurfaceSample>& to) {
+  std::array<std::uint16_t, kAllBins> seen{};
+  for (std::size_t i = 0; i < from.size(); ++i) turns[i] = seen[bin_of(from[i].normal)]++;
+  for (std::size_t turn = 0; turn < from.size() && !to.full(); ++turn)
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (turns[i] == turn && !to.full()) to.push_back(from[i]);
 }
 
 }  // namespace
@@ -50,7 +53,8 @@ void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int widt
     for (int x = kSurfaceCell / 2; x < width; x += kSurfaceCell)
       if (observe_surface(depth, pinhole, x, y, noise_scale, sample)) candidates.push_back(sample);
   if (candidates.size() > features.samples.capacity()) shuffle(candidates);
-  take_in_turns(candidates, features.samples);
+  take_in_turns(candidates, scratch.take<std::uint16_t>("turns of surface candidates", cells),
+                features.samples);
 }
 
 }  // namespace plvo

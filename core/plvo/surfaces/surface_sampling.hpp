@@ -24,6 +24,7 @@ constexpr void reserve_surface_sampling(Arena& memory, int width, int height, in
   const ScratchScope scope(memory);
   const auto cells = static_cast<std::size_t>((width / kSurfaceCell + 1) * (height / kSurfaceCell + 1));
   memory.take<SurfaceSample>("surface candidates", cells);
+  memory.take<std::uint16_t>("turns of surface candidates", cells);
 }
 
 }  // namespace plvo
