@@ -164,10 +164,6 @@ inline void take_range(const WideLanes& value, WideLanes& low, WideLanes& high) 
   }
 }
 
-inline void narrow(const WideLanes& first, const WideLanes& second, Lanes& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = static_cast<std::int16_t>(i < 4 ? first[i] : second[i - 4]);
-}
-
 inline unsigned negative_lanes(const WideLanes& lanes) {
   unsigned bits = 0;
   for (int i = 0; i < 4; ++i) bits |= (lanes[i] < 0 ? 1U : 0U) << i;

@@ -154,19 +154,6 @@ inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes
 #endif
 }
 
-// Four numbers from either, which must fit.
-inline __attribute__((always_inline)) void narrow(const WideLanes& first, const WideLanes& second,
-                                                  Lanes& lanes) {
-#ifdef __SSE2__
-  lanes = __builtin_ia32_packssdw128(first, second);
-#else
-  for (int i = 0; i < 4; ++i) {
-    lanes[i] = static_cast<std::int16_t>(first[i]);
-    lanes[i + 4] = static_cast<std::int16_t>(second[i]);
-  }
-#endif
-}
-
 // Bit i: lane i is below 0.
 inline __attribute__((always_inline)) unsigned negative_lanes(const WideLanes& lanes) {
 #ifdef __SSE2__
