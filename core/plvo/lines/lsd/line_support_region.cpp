@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 
 namespace plvo::lsd {
@@ -21,18 +22,6 @@ std::uint32_t packed(const Pixel& pixel) {
 }
 Pixel unpacked(std::uint32_t pixel) {
   return {static_cast<std::int16_t>(pixel), static_cast<std::int16_t>(pixel >> 16)};
-}
-
-// Bit i: neighbour i is in no region yet. Byte by byte: a wide load would wait for the narrow stores of
-// pixels that were just taken.
-unsigned open_neighbours(const std::uint8_t* state, std::ptrdiff_t stride) {
-  static_assert(kUsed == 1U << 7);
-  const std::uint8_t* const above = state - stride;
-  const std::uint8_t* const below = state + stride;
-  const unsigned used = (above[-1] & kUsed) >> 7 | (above[0] & kUsed) >> 6 | (above[1] & kUsed) >> 5 |
-                        (state[-1] & kUsed) >> 4 | (state[1] & kUsed) >> 3 | (below[-1] & kUsed) >> 2 |
-                        (below[0] & kUsed) >> 1 | (below[1] & kUsed);
-  return used ^ 0xffU;
 }
 
 // The directions that a region takes, as the two sides of a wedge about its own: a direction is in it when
@@ -62,10 +51,13 @@ Wedge make_wedge(std::int64_t sum_x, std::int64_t sum_y, Tolerance tolerance) {
 class Sides {
  public:
   void set(const Wedge& wedge) { wedge_ = wedge; }
-  unsigned holding(const Direction* here, std::ptrdiff_t stride) const {
+  // Of those in no region yet, bit by bit.
+  unsigned open(const std::uint8_t* state, const Direction* here, std::ptrdiff_t stride) const {
     unsigned held = 0;
-    for (int i = 0; i < 8; ++i)
-      held |= static_cast<unsigned>(wedge_.holds(here[kDown[i] * stride + kRight[i]])) << i;
+    for (int i = 7; i >= 0; --i) {
+      const std::ptrdiff_t at = kDown[i] * stride + kRight[i];
+      held = held << 1 | static_cast<unsigned>((state[at] & kUsed) == 0 && wedge_.holds(here[at]));
+    }
     return held;
   }
 
@@ -73,6 +65,18 @@ class Sides {
   Wedge wedge_{};
 };
 #else
+// Bit i: neighbour i is in no region yet. Byte by byte: a wide load would wait for the narrow stores of
+// pixels that were just taken.
+unsigned open_neighbours(const std::uint8_t* state, std::ptrdiff_t stride) {
+  static_assert(kUsed == 1U << 7);
+  const std::uint8_t* const above = state - stride;
+  const std::uint8_t* const below = state + stride;
+  const unsigned used = (above[-1] & kUsed) >> 7 | (above[0] & kUsed) >> 6 | (above[1] & kUsed) >> 5 |
+                        (state[-1] & kUsed) >> 4 | (state[1] & kUsed) >> 3 | (below[-1] & kUsed) >> 2 |
+                        (below[0] & kUsed) >> 1 | (below[1] & kUsed);
+  return used ^ 0xffU;
+}
+
 // Rows of four directions, of which one is looked past: the one behind the neighbours, and in the last row,
 // behind which there may be none, the one before them. The field's directions stay as they are, so wide loads
 // wait for nobody.
@@ -82,14 +86,17 @@ class Sides {
     repeat(wedge.left_x, wedge.left_y, left_);
     repeat(wedge.right_x, wedge.right_y, right_);
   }
+  unsigned open(const std::uint8_t* state, const Direction* here, std::ptrdiff_t stride) const {
+    return open_neighbours(state, stride) & holding(here, stride);
+  }
+
+ private:
   unsigned holding(const Direction* here, std::ptrdiff_t stride) const {
     const unsigned above = holding(here - stride - 1);
     const unsigned beside = holding(here - 1);
     const unsigned below = holding(here + stride - 2);
     return (above & 7U) | (beside & 1U) << 3 | (beside & 4U) << 2 | (below & 14U) << 4;
   }
-
- private:
   static void repeat(std::int16_t x, std::int16_t y, Lanes& lanes) {
     const WideLanes four = WideLanes{} + static_cast<std::int32_t>(
                                              static_cast<std::uint16_t>(x) |
@@ -144,8 +151,7 @@ Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pi
     const std::uint32_t pixel_packed = packed(pixel);
     std::uint8_t* const here = states + field.index(pixel.x, pixel.y);
     const Direction* const direction_here = directions + (here - states);
-    for (unsigned taken = open_neighbours(here, stride) & sides.holding(direction_here, stride); taken != 0;
-         taken &= taken - 1) {
+    for (unsigned taken = sides.open(here, direction_here, stride); taken != 0; taken &= taken - 1) {
       const Step step = steps[std::countr_zero(taken)];
       std::uint8_t& state = here[step.entries];
       const Direction d = direction_here[step.entries];
@@ -153,9 +159,11 @@ Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pi
       state = static_cast<std::uint8_t>((state + 1) | kUsed);
       sum_x += d.x;
       sum_y += d.y;
-      // Its turn comes soon, and the row beyond it has not been looked at yet.
-      __builtin_prefetch(&state + step.beyond);
-      __builtin_prefetch(direction_here + step.entries + step.beyond);
+      if constexpr (!kSmallCode) {
+        // Its turn comes soon, and the row beyond it has not been looked at yet.
+        __builtin_prefetch(&state + step.beyond);
+        __builtin_prefetch(direction_here + step.entries + step.beyond);
+      }
     }
   }
   return {storage.first(count), sum_x, sum_y};
