@@ -159,6 +159,19 @@ TEST(Region, GrowsAsWithAngles) {
   EXPECT_GT(compared, 1000);
 }
 
+// A clean edge has no spread at all: what tighten() asks for then is the least tolerance.
+TEST(Region, OneDirectionHoldsTogetherAtTheLeastTolerance) {
+  constexpr int kSide = 40;
+  for (const bool upright : {true, false}) {
+    std::vector<std::uint8_t> image;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) image.push_back((upright ? x : y) < kSide / 2 ? 40 : 200);
+    Field f(kSide, kSide, image);
+    ASSERT_EQ(f.field.seed_count, kSide - 1U);
+    EXPECT_EQ(grow(f.field, f.field.seeds[0], kLeastTolerance, f.storage).pixels.size(), kSide - 1U);
+  }
+}
+
 TEST(Region, APixelIsAddedSoManyTimesAndNoMore) {
   Field f = busy_field(4);
   const Pixel seed = f.field.seeds[0];

@@ -20,6 +20,8 @@ struct Tolerance {
 };
 
 inline constexpr Tolerance kTau{13573};  // 22.5°: tan = √2 − 1
+// Directions are off by up to 0.03°: with less, pixels of one direction would not hold together.
+inline constexpr Tolerance kLeastTolerance{18};
 
 struct Region {
   std::span<Pixel> pixels;  // the seed first

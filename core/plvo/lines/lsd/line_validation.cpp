@@ -36,7 +36,8 @@ Tolerance spread_near_seed(const LevelLineField& field, const Region& region, co
   const double variance = static_cast<double>(squares) / count - mean * mean;
   const double sine = 2 * sqrt(std::max(variance, 0.0)) / 16384.0;
   if (sine >= 0.38) return kTau;  // sin 22.5° = 0.383
-  return {static_cast<std::int32_t>(sine / sqrt(1 - sine * sine) * 32768.0)};
+  return {std::max(kLeastTolerance.tangent_q15,
+                   static_cast<std::int32_t>(sine / sqrt(1 - sine * sine) * 32768.0))};
 }
 
 // Keeps the pixels for which keep(pixel) holds, in their order; releases the rest.
