@@ -26,4 +26,14 @@ inline constexpr bool kSmallCode = true;
 inline constexpr bool kSmallCode = false;
 #endif
 
+// Numbers side by side (base/lanes.hpp) are loops, and what is made of them is the plain version: in small
+// code, and for a processor without registers for them, for which compilers write out every lane of every
+// operation. The result is the same.
+#if defined(PLVO_SMALL_CODE) || !(defined(__SSE2__) || defined(__ARM_NEON))
+#define PLVO_LANE_LOOPS
+inline constexpr bool kLaneLoops = true;
+#else
+inline constexpr bool kLaneLoops = false;
+#endif
+
 }  // namespace plvo

@@ -2,19 +2,20 @@
 // Eight 16-bit integers side by side, and four of 32 bits, in the vector types of GCC and Clang: one register
 // where a processor has such, the same bits everywhere. Pass them by reference or inline: how they travel by
 // value differs between boards. What is read in parts is put together in registers: a wide load just behind
-// narrower stores waits for them. Small code has loops in their place (base/lane_loops.hpp): for a processor
-// without such registers compilers write out every lane of every operation.
+// narrower stores waits for them. Where a processor has no such registers, and in small code, loops are in
+// their place (base/lane_loops.hpp, base/build.hpp).
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lane_loops.hpp"
 
 namespace plvo {
 
-#ifdef PLVO_SMALL_CODE
+#ifdef PLVO_LANE_LOOPS
 
 using lane_loops::Lanes;
 using lane_loops::WideLanes;

@@ -37,7 +37,7 @@ void luma_of_eight(const std::uint8_t* p, std::uint8_t* out) {
 template <int First, int Third>
 void luma_row(const std::uint8_t* pixels, int width, std::uint8_t* out) {
   int x = 0;
-  if constexpr (!kSmallCode)
+  if constexpr (!kLaneLoops)
     for (; x + 8 < width; x += 8) luma_of_eight<First, Third>(pixels + 3 * x, out + x);
   for (; x < width; ++x) out[x] = luma<First, Third>(pixels + 3 * x);
 }

@@ -62,7 +62,7 @@ void blend_pairs(const Lanes& above, const Lanes& below, const Lanes& fx, const 
 // At eight places, in 2^-7 px from the pixel `from`.
 void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x, const Lanes& y,
                  std::uint8_t* out) {
-  if constexpr (kSmallCode) {
+  if constexpr (kLaneLoops) {
     for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i], y[i]);
     return;
   }
@@ -172,7 +172,7 @@ void UndistortionMap::undistort_clamped(const Cell& cell, int first, int last, G
               std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
       }
     };
-    if (kSmallCode || count < kCell) {
+    if (kLaneLoops || count < kCell) {
       for_pixels(count,
                  [&](int i, std::int32_t x, std::int32_t y) { out[i] = blend(raw.data, raw.stride, x, y); });
       continue;

@@ -138,7 +138,7 @@ struct BandSums {
 };
 using RegionSums = std::array<BandSums, kMsldBands>;
 
-#ifdef PLVO_SMALL_CODE
+#ifdef PLVO_LANE_LOOPS
 
 template <bool kInside>
 void sum_region(GrayView image, const Region& region, RegionSums& sums) {

@@ -118,7 +118,7 @@ std::int32_t sum_of(const Smoothed& smoothed) {
 
 // As smooth_each, which fills `out` and returns its sum: a row at once, as its first eight and its last.
 std::int32_t smooth(const Patch& patch, Smoothed& out) {
-  if constexpr (kSmallCode) return smooth_each(patch, out);
+  if constexpr (kLaneLoops) return smooth_each(patch, out);
   constexpr const Weights& kWhole = kWeights[0];
   constexpr int kLast = kSmoothedSide - kColumns;
   constexpr Lanes kOnce[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 1, 1, 1}};
@@ -220,7 +220,7 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
     blend_across(first + r * image.stride, across, &blended[static_cast<std::size_t>(r * kColumns)]);
   }
   Window values;
-  if constexpr (kSmallCode) {
+  if constexpr (kLaneLoops) {
     for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
     return values;
   }
@@ -264,7 +264,7 @@ std::int16_t rounded(double offset) {
 // The same: a multiple of a power of two is the same before or after a sum, and the farthest is a corner,
 // since no rounding turns an order around.
 WarpedWindow warp_window(const PatchWarp& warp) {
-  if constexpr (kSmallCode) return warp_each(warp);
+  if constexpr (kLaneLoops) return warp_each(warp);
   WarpedWindow window;
   std::array<double, kColumns> across_x, across_y;
   for (int i = 0; i < kColumns; ++i) {
@@ -341,7 +341,7 @@ inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[
 
 // As read_each, a row of the window at once.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
-  if constexpr (kSmallCode) return read_each(image, window, x, y);
+  if constexpr (kLaneLoops) return read_each(image, window, x, y);
   constexpr std::int16_t kFraction = kOnePixel - 1;
   const std::uint8_t* const from =
       image.data + ((y >> kFractionBits) - 1) * image.stride + (x >> kFractionBits) - 1;

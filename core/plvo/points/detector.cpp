@@ -37,7 +37,7 @@ struct Cell {
 
 // The same, sixteen columns at once. What lies beyond the cell is in the image, by the keypoints' margin.
 int contrast_threshold(GrayView image, const Cell& cell) {
-  if constexpr (kSmallCode) return contrast_threshold_each(image, cell);
+  if constexpr (kLaneLoops) return contrast_threshold_each(image, cell);
   using Bytes = std::uint8_t __attribute__((vector_size(16)));
   constexpr int kBytes = sizeof(Bytes);
   static_assert(kKeypointMargin >= kBytes);

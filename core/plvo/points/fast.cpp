@@ -146,7 +146,7 @@ void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
     Byte highest = 0;
     for (int i = 0; i < size; ++i) highest = most(highest, scores[x + i]);
     if (highest <= floor) continue;
-    if (kSmallCode)
+    if (kLaneLoops)
       score_passing(row + x, stride, size, floor, scores + x);
     else if (size == kBlock)
       score_pixels(row + x, stride, kBlock, scores + x);

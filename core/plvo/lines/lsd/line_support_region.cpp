@@ -47,7 +47,7 @@ Wedge make_wedge(std::int64_t sum_x, std::int64_t sum_y, Tolerance tolerance) {
 }
 
 // Which of a pixel's neighbours are in a wedge, bit by bit.
-#ifdef PLVO_SMALL_CODE
+#ifdef PLVO_LANE_LOOPS
 class Sides {
  public:
   void set(const Wedge& wedge) { wedge_ = wedge; }
