@@ -42,7 +42,7 @@ int contrast_threshold(GrayView image, const Cell& cell) {
   constexpr int kBytes = sizeof(Bytes);
   static_assert(kKeypointMargin >= kBytes);
   constexpr Bytes kNever = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};
-  constexpr Bytes kColumns = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  constexpr Bytes kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   Bytes low = ~Bytes{}, high = {};
   for (int x = cell.x0; x < cell.x1; x += kBytes) {
     Bytes least = ~Bytes{}, most = {};
@@ -53,7 +53,7 @@ int contrast_threshold(GrayView image, const Cell& cell) {
       most = levels > most ? levels : most;
     }
     const auto columns = static_cast<std::uint8_t>(std::min(cell.x1 - x, kBytes));
-    const Bytes out = (kColumns < columns ? Bytes{} : ~Bytes{}) | kNever;
+    const Bytes out = (kPlaces < columns ? Bytes{} : ~Bytes{}) | kNever;
     least |= out;
     most &= ~out;
     low = least < low ? least : low;
