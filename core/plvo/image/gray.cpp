@@ -17,15 +17,15 @@ std::uint8_t luma(const std::uint8_t* p) {
 // Of eight pixels; p reaches one byte beyond them. A pixel is the first three of four bytes in a row.
 template <int First, int Third>
 void luma_of_eight(const std::uint8_t* p, std::uint8_t* out) {
-  constexpr Lanes kWeights = {First, 150, Third, 0, First, 150, Third, 0};
+  constexpr Lanes kLumaWeights = {First, 150, Third, 0, First, 150, Third, 0};
   WideLanes sums[2];
   for (int i = 0; i < 2; ++i, p += 12) {
     const std::uint8_t* const pixels[4] = {p, p + 3, p + 6, p + 9};
     Lanes first_two, others;
     load_bytes(pixels, first_two, others);
     WideLanes halves[2];
-    dot_pairs(first_two, kWeights, halves[0]);
-    dot_pairs(others, kWeights, halves[1]);
+    dot_pairs(first_two, kLumaWeights, halves[0]);
+    dot_pairs(others, kLumaWeights, halves[1]);
     add_pairs(halves[0], halves[1], sums[i]);
     sums[i] = (sums[i] + 128) >> 8;
   }

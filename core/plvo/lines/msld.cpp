@@ -34,7 +34,7 @@ constexpr double gaussian(double x) {
 //
 // All sums are of whole numbers, so they are the same in any order.
 static_assert(kMsldRowsPerBand == 3);
-constexpr int kWeightBits = 13;
+constexpr int kRowWeightBits = 13;
 using RowWeights = std::array<std::int16_t, kMsldRows>;
 
 constexpr RowWeights make_row_weights() {
@@ -43,7 +43,7 @@ constexpr RowWeights make_row_weights() {
     const double row = static_cast<double>(r) - 0.5 * (kMsldRows - 1);
     const double share = r % kMsldRowsPerBand == kMsldRowsPerBand / 2 ? 3 : 1;
     weights[r] =
-        static_cast<std::int16_t>(share * gaussian(row / (0.5 * kMsldRows)) * (1 << kWeightBits) + 0.5);
+        static_cast<std::int16_t>(share * gaussian(row / (0.5 * kMsldRows)) * (1 << kRowWeightBits) + 0.5);
   }
   return weights;
 }
@@ -118,7 +118,7 @@ std::array<RowAxes, kMsldRows> make_axes(const Region& region) {
 }
 
 // Parts are kept in quarters of that: a band's sum is at most 9 · 255 · √2 · 4 and has 14 bits.
-constexpr int kPartShift = kWeightBits - 2;
+constexpr int kPartShift = kRowWeightBits - 2;
 constexpr int kPartHalf = 1 << (kPartShift - 1);
 
 template <bool kInside>
