@@ -111,15 +111,13 @@ class Device : public oni::driver::DeviceBase {
   void run() {
     auto due = std::chrono::steady_clock::now();
     while (!quit_) {
-      const std::int64_t pace_us = tick();
-      due += std::chrono::microseconds(pace_us);
+      due += std::chrono::microseconds(tick());
       const auto now = std::chrono::steady_clock::now();
       if (due < now) due = now;  // a machine too slow for the pace loses it instead of rushing after it
       while (!quit_ && std::chrono::steady_clock::now() < due) {
         std::this_thread::sleep_until(
             std::min(due, std::chrono::steady_clock::now() + std::chrono::milliseconds(10)));
       }
-      if (pace_us == 0) std::this_thread::yield();
     }
   }
   std::int64_t tick();
@@ -325,7 +323,7 @@ std::int64_t Device::tick() {
   // Like a real sensor's clock, ours only goes while somebody looks: ticks are counted from the first open
   // stream on.
   const bool both = colour_ != nullptr && depth_ != nullptr && colour_->running() && depth_->running();
-  if (!both || !now.plugged) return 1000;
+  if (!both || !now.plugged || now.allowed == 0) return 1000;
   const OniVideoMode mode = colour_->mode();
   const std::int64_t period_us = now.period_us > 0 ? now.period_us : 1000000 / mode.fps;
   VirtualTick tick;
@@ -343,10 +341,11 @@ std::int64_t Device::tick() {
   if (now.depth_runs) hand_over(now, tick, *depth_);
   const std::lock_guard settings_lock(settings_mutex);
   settings.ticks = now.ticks + 1;
+  if (settings.allowed > 0) --settings.allowed;
   // A command may have set the clock meanwhile: that holds, then.
   if (settings.clock_us == now.clock_us) settings.clock_us += period_us;
   if (settings.damage == damage) settings.damage = now.damage;
-  return now.pace_us >= 0 ? now.pace_us : period_us;
+  return period_us;
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 
 #include "plvo/openni2/openni2_camera.hpp"
 #include "plvo/replay/recorded_camera.hpp"
+#include "virtual_device.hpp"
 
 namespace plvo_test {
 namespace {
@@ -42,18 +43,21 @@ TEST(VirtualFrames, LiveAndReplayAreTheSameBytes) {
   const std::string control = folder / "control";
   ASSERT_EQ(::mkfifo(control.c_str(), 0600), 0);
   ::setenv("PLVO_VIRTUAL_FRAMES", (folder / "raw").c_str(), 1);
-  ::setenv("PLVO_VIRTUAL_START", "pace 60000;after_end unplug", 1);
+  ::setenv("PLVO_VIRTUAL_START", "allow 0;after_end unplug", 1);
   ::setenv("PLVO_VIRTUAL_CONTROL", control.c_str(), 1);
   plvo::OpenNi2Options options;
   options.width = 320;
   options.height = 240;
-  options.timeout_ms = 300;
+  options.timeout_ms = 5000;
   options.model = replay.model();
   plvo::OpenNi2Camera live;
   const plvo::Status opened = live.open(options);
   ASSERT_TRUE(opened.ok()) << opened.message();
+  VirtualDevice device;
+  ASSERT_TRUE(device.find());
   plvo::RgbdFrame a, b;
   for (int i = 0; i < kFrames; ++i) {
+    ASSERT_TRUE(device.command("allow 1"));
     ASSERT_TRUE(live.next(a).ok()) << i;
     ASSERT_TRUE(replay.next(b).ok()) << i;
     ASSERT_EQ(a.stamp_ns, b.stamp_ns);
@@ -69,6 +73,7 @@ TEST(VirtualFrames, LiveAndReplayAreTheSameBytes) {
     }
   }
   EXPECT_EQ(replay.next(b).code(), plvo::StatusCode::kEndOfStream);
+  ASSERT_TRUE(device.command("allow 1"));  // for the source to say that there is none
   EXPECT_EQ(live.next(a).code(), plvo::StatusCode::kUnplugged);
   // Commands by the pipe: it is plugged in again, but has no more frames.
   std::ofstream(control) << "plug" << std::endl;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "virtual_settings.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace plvo_test {
@@ -25,8 +26,8 @@ bool change_settings(const std::string& verb, const std::string& what) {
     s.depth_runs = false;
   else if (verb == "period")
     s.period_us = n;
-  else if (verb == "pace")
-    s.pace_us = n;
+  else if (verb == "allow")
+    s.allowed = std::max<std::int64_t>(s.allowed, 0) + n;
   else if (verb == "clock")
     s.clock_us = n;
   else if (verb == "wrap")

@@ -16,7 +16,6 @@ struct Settings {
   bool plugged = true;
   bool colour_runs = true, depth_runs = true;
   std::int64_t period_us = 0;  // 0: the video mode's
-  std::int64_t pace_us = -1;   // -1: the period
   std::int64_t clock_us = 1000000;
   bool wraps = false;
   std::int64_t shift_us = kPatternDepthOffset_us;
@@ -28,6 +27,7 @@ struct Settings {
   VirtualSource source = nullptr;
   void* cookie = nullptr;
   std::int64_t ticks = 0;
+  std::int64_t allowed = -1;  // ticks left until the next allow; -1: without end
 };
 extern std::mutex settings_mutex;
 extern std::mutex source_mutex;  // held while the source runs: set_source() waits for it
