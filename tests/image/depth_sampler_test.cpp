@@ -237,36 +237,5 @@ TEST(DepthSampler, AWindowsRowsAreItsPixels) {
   }
 }
 
-// A camera that turns while depth is exposed later than colour: along a line, each place found with its
-// neighbour's help is the one that is found without.
-TEST(DepthSampler, ANeighbourLeadsToTheSamePlace) {
-  CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, {}};
-  camera.depth_timing.known = true;
-  Vector6 velocity;
-  velocity << 0.3, -0.2, 0.1, 0.5, 1.5, -1;
-  const Scene scene(Plane{0.7, 0.004, -0.003});
-  const DepthSampler sampler = scene.sampler().with(Exposure(camera, velocity, 0.05));
-  ASSERT_TRUE(sampler.exposure().depth_apart());
-  DepthSampler::Neighbour neighbour;
-  int found = 0;
-  double farthest = 0;
-  for (double t = 0; t < 30; t += 0.7) {
-    const Vector2 pixel(8 + t, 6 + 0.6 * t);
-    Vector2 alone = pixel;
-    Vector2 led = pixel;
-    const bool is_seen = sampler.locate(alone);
-    ASSERT_EQ(sampler.locate(led, neighbour), is_seen);
-    if (!is_seen) continue;
-    EXPECT_NEAR(neighbour.depth_m, sampler.sample(pixel.x(), pixel.y(), 0).depth_m, 0.05);
-    ++found;
-    EXPECT_LT((led - alone).norm(), 0.05) << t;
-    EXPECT_EQ(neighbour.right_px, led.x() - pixel.x());
-    EXPECT_EQ(neighbour.down_px, led.y() - pixel.y());
-    farthest = std::max(farthest, (led - pixel).norm());
-  }
-  EXPECT_GT(found, 30);
-  EXPECT_GT(farthest, 2);
-}
-
 }  // namespace
 }  // namespace plvo

@@ -74,14 +74,6 @@ TEST(LineSamples, ASlopeAcrossTheSegmentIsLessSure) {
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
 }
 
-TEST(LineSamples, NearestPixel) {
-  EXPECT_EQ(nearest_pixel(2.4), 2);
-  EXPECT_EQ(nearest_pixel(2.6), 3);
-  EXPECT_EQ(nearest_pixel(-0.4), 0);
-  EXPECT_EQ(nearest_pixel(-0.6), -1);
-  EXPECT_EQ(nearest_pixel(-1.4), -1);
-}
-
 SurfaceReading read(std::array<float, 7> profile) { return nearer_surface(profile, DepthNoise{}); }
 
 TEST(NearerSurface, TheRule) {

@@ -37,10 +37,26 @@ inline double offset_from_line(const Vector3& p, const Vector3& a, const Vector3
 template <typename Function>
 struct DepthFunction {
   Function function;
-  double at(int x, int y) const { return function(x, y); }
-  struct Neighbour {};
-  bool locate(Vector2&, Neighbour&) const { return true; }
-  double at_colour_time(double, const Vector2&, double depth_m) const { return depth_m; }
+  class Stretch {
+   public:
+    Stretch(const DepthFunction& depth, const Vector2& first, const Vector2& step, int, const Vector2& across,
+            int)
+        : depth_(depth), first_(first), step_(step), across_(across) {}
+    bool go_to(int i) {
+      place_ = first_ + i * step_;
+      return true;
+    }
+    double at(int times) const {
+      const Vector2 p = place_ + times * across_;
+      return depth_.function(static_cast<int>(std::floor(p.x() + 0.5)),
+                             static_cast<int>(std::floor(p.y() + 0.5)));
+    }
+    double at_colour_time(double depth_m) const { return depth_m; }
+
+   private:
+    const DepthFunction& depth_;
+    Vector2 first_, step_, across_, place_;
+  };
 };
 template <typename Function>
 DepthFunction(Function) -> DepthFunction<Function>;

@@ -108,29 +108,32 @@ void DepthSampler::Window::read_row(int row, std::span<std::uint16_t> units) con
   }
 }
 
-bool DepthSampler::locate(Vector2& pixel, Neighbour& neighbour) const {
-  if (!exposure_.depth_apart()) return true;
+bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const {
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
-  // rotation's, the same for every depth, and a neighbour's is nearly the pixel's own.
-  constexpr int kGuesses = 2;
-  constexpr double kUnknownDepth_m = 2;
+  // rotation's, the same for every depth.
   const Pinhole& pinhole = exposure_.pinhole();
-  const bool led = neighbour.depth_m > 0;
-  double depth_m = led ? neighbour.depth_m : kUnknownDepth_m;
-  Vector2 located(pixel.x() + neighbour.right_px, pixel.y() + neighbour.down_px);
-  for (int i = led ? kGuesses - 1 : 0; i < kGuesses; ++i) {
+  const Vector3 ray = back_project(pinhole, pixel.x(), pixel.y(), 1);
+  for (int i = 0; i < guesses; ++i) {
     const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
     if (read > 0) depth_m = read;
-    const Vector3 p =
-        exposure_.at_depth_time(back_project(pinhole, pixel.x(), pixel.y(), depth_m), pixel.y(), located.y());
+    const Vector3 p = exposure_.at_depth_time(depth_m * ray, pixel.y(), located.y());
     if (!(p.z() > kNearestSeen_m)) return false;
-    located = project(pinhole, p);
-    if (!(located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height))
-      return false;
+    const double inverse = 1 / p.z();
+    located = {pinhole.fx * p.x() * inverse + pinhole.cx, pinhole.fy * p.y() * inverse + pinhole.cy};
+    constexpr double kFar = UndistortionMap::kMaxSide;
+    const Vector2 moved = located - pixel;
+    if (!(moved.x() > -kFar && moved.x() < kFar && moved.y() > -kFar && moved.y() < kFar)) return false;
   }
-  neighbour = {located.x() - pixel.x(), located.y() - pixel.y(), depth_m};
-  pixel = located;
   return true;
+}
+
+bool DepthSampler::locate(Vector2& pixel) const {
+  if (!exposure_.depth_apart()) return true;
+  double depth_m = kUnknownDepth_m;
+  Vector2 located = pixel;
+  if (!follow(pixel, kGuesses, located, depth_m)) return false;
+  pixel = located;
+  return located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height;
 }
 
 DepthSample DepthSampler::sample(double u, double v, int radius) const {

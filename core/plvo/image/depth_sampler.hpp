@@ -23,8 +23,12 @@ struct DepthSample {
   Vector2 located = Vector2::Zero();  // where the depth image shows it, px
 };
 
+class DepthStretch;
+
 class DepthSampler {
  public:
+  using Stretch = DepthStretch;  // depth_stretch.hpp
+
   DepthSampler(const DepthView& depth, const UndistortionMap& map, const DepthNoise& noise,
                const Exposure& exposure = {})
       : depth_(depth), map_(map), noise_(noise), exposure_(exposure) {}
@@ -32,18 +36,14 @@ class DepthSampler {
   // The same images, with another idea of how the camera moved while they were exposed.
   DepthSampler with(const Exposure& exposure) const { return {depth_, map_, noise_, exposure}; }
 
-  // What locate() found for a pixel, as its guess for the next one. To begin with, nothing.
-  struct Neighbour {
-    double right_px = 0, down_px = 0;  // from the pixel to where depth shows it
-    double depth_m = 0;                // 0: nothing yet
-  };
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
   // place itself unless depth is exposed apart.
-  bool locate(Vector2& pixel, Neighbour& neighbour) const;
-  bool locate(Vector2& pixel) const {
-    Neighbour nobody;
-    return locate(pixel, nobody);
-  }
+  bool locate(Vector2& pixel) const;
+  // The same by so many guesses, from where it may be, maybe beside the image, and how deep. False where
+  // that is nearer than any sensor sees, or far from the image.
+  bool follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const;
+  static constexpr int kGuesses = 2;
+  static constexpr double kUnknownDepth_m = 2;
   // A depth read at `located`, as it was when colour's row v was exposed.
   double at_colour_time(double v, const Vector2& located, double depth_m) const {
     if (!exposure_.depth_apart()) return depth_m;
@@ -93,6 +93,8 @@ class DepthSampler {
 
   const DepthNoise& noise() const { return noise_; }
   const Exposure& exposure() const { return exposure_; }
+  const DepthView& view() const { return depth_; }
+  const UndistortionMap& map() const { return map_; }
 
  private:
   DepthSample sample_window(double u, double v, int radius) const;

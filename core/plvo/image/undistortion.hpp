@@ -76,6 +76,16 @@ class UndistortionMap {
       const bool seen = map_.nearest(at_ + dx * right_ + dy * down_, raw_x, raw_y);
       return seen || !map_.active_;
     }
+    // So many px from the centre, on the way to the raw image: how far, and to where.
+    Vector2 step_px(const Vector2& step) const {
+      constexpr double kUnit = 1.0 / (1 << kFractionBits);
+      const double right = kUnit * step.x();
+      const double down = kUnit * step.y();
+      return {right * x_of(right_) + down * x_of(down_), right * y_of(right_) + down * y_of(down_)};
+    }
+    Vector2 position_px(const Vector2& step) const {
+      return Vector2(x_of(at_), y_of(at_)) / (1 << kFractionBits) + step_px(step);
+    }
     // The camera saw all of the square of ±reach: a plane is highest and lowest at its corners.
     bool sees(int reach) const {
       int raw_x = 0;

@@ -15,6 +15,7 @@
 #include <span>
 
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/image/depth_stretch.hpp"
 #include "plvo/lines/segment.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -62,10 +63,10 @@ SurfaceReading nearer_surface(std::span<const float> profile, const DepthNoise& 
 
 // Do the profile's ends and middle say that there is but one? Most samples end here. (Something thinner than
 // the reach, between them, is not seen.)
-inline bool one_surface(float left, float here, float right, double sigma_here_m) {
+inline bool one_surface(double left, double here, double right, double sigma_here_m) {
   const double jump = kJumpSigmas * sigma_here_m;
-  const double to_left = static_cast<double>(left) - static_cast<double>(here);
-  const double to_right = static_cast<double>(right) - static_cast<double>(here);
+  const double to_left = left - here;
+  const double to_right = right - here;
   return left > 0 && here > 0 && right > 0 && to_left * to_left <= jump * jump &&
          to_right * to_right <= jump * jump;
 }
@@ -73,17 +74,12 @@ inline bool one_surface(float left, float here, float right, double sigma_here_m
 // The SD of a mixed sample is multiplied by this: it was read up to a few pixels beside the segment.
 inline constexpr double kMixedInflation = 2;
 
-inline int nearest_pixel(double x) {
-  const int truncated = static_cast<int>(x + 0.5);
-  return truncated - (truncated > x + 0.5 ? 1 : 0);
-}
-
 // n_s; 0 for a segment shorter than 2 px.
 int sample_count(const Segment& segment, const SampleOptions& options);
 
 // On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
 // noise.registration_px, which is added to σ_d.
-// depth: a DepthSampler, or in tests something with its Neighbour, locate(), at() and at_colour_time().
+// depth: a DepthSampler, or in tests something with a Stretch of its own.
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {
@@ -94,39 +90,30 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
   if (out.asked == 0) return;
   const double length = segment.length_px();
   const Vector2 along = segment.direction();
-  const Vector2 middle = segment.middle();
   const double step = length / (out.asked - 1);
   std::array<float, 2 * kMaxSideReach + 1> profile{};
   const std::span<const float> readings(profile.data(), static_cast<std::size_t>(2 * side_reach_px + 1));
   const double per_px = side_reach_px > 0 ? 0.5 / side_reach_px : 0;
-  const auto read = [&](const Vector2& p, int offset) {
-    return static_cast<float>(
-        depth.at(nearest_pixel(p.x() - offset * along.y()), nearest_pixel(p.y() + offset * along.x())));
-  };
-  typename Depth::Neighbour neighbour;
+  typename Depth::Stretch stretch(depth, segment.a, step * along, out.asked, Vector2(-along.y(), along.x()),
+                                  side_reach_px);
   for (int i = 0; i < out.asked; ++i) {  // at most kMaxLineSamples
+    if (!stretch.go_to(i)) continue;
     const double t = i * step - 0.5 * length;
-    const Vector2 seen = middle + t * along;
-    Vector2 p = seen;
-    if (!depth.locate(p, neighbour)) continue;
-    const float here = read(p, 0);
-    const float left = side_reach_px > 0 ? read(p, -side_reach_px) : here;
-    const float right = side_reach_px > 0 ? read(p, side_reach_px) : here;
-    const double sigma_here = noise.sigma(static_cast<double>(here));
+    const double here = stretch.at(0);
+    const double left = side_reach_px > 0 ? stretch.at(-side_reach_px) : here;
+    const double right = side_reach_px > 0 ? stretch.at(side_reach_px) : here;
+    const double sigma_here = noise.sigma(here);
     LineSample& sample = out.sample[static_cast<std::size_t>(out.count)];
     if (one_surface(left, here, right, sigma_here)) {
-      const double slope = static_cast<double>(right - left) * per_px;
-      const double misread = slope * noise.registration_px;
-      sample = {t, depth.at_colour_time(seen.y(), p, static_cast<double>(here)),
-                sqrt(sigma_here * sigma_here + misread * misread)};
+      const double misread = (right - left) * per_px * noise.registration_px;
+      sample = {t, stretch.at_colour_time(here), sqrt(sigma_here * sigma_here + misread * misread)};
     } else {
       for (int o = -side_reach_px; o <= side_reach_px; ++o)
-        profile[static_cast<std::size_t>(o + side_reach_px)] = read(p, o);
+        profile[static_cast<std::size_t>(o + side_reach_px)] = static_cast<float>(stretch.at(o));
       const SurfaceReading reading = nearer_surface(readings, noise);
       if (!(reading.depth_m > 0)) continue;
       const double sigma = noise.sigma(reading.depth_m);
-      sample = {t, depth.at_colour_time(seen.y(), p, reading.depth_m),
-                reading.mixed ? kMixedInflation * sigma : sigma};
+      sample = {t, stretch.at_colour_time(reading.depth_m), reading.mixed ? kMixedInflation * sigma : sigma};
       out.mixed += reading.mixed ? 1 : 0;
     }
     ++out.count;
