@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/base/random.hpp"
 
 namespace plvo {
 namespace {
@@ -205,36 +207,60 @@ TEST(DepthSampler, ReadsThroughTheLens) {
   EXPECT_GT(unseen, 0);
 }
 
-// Row by row as pixel by pixel, inside and across the borders of both images.
-TEST(DepthSampler, AWindowsRowsAreItsPixels) {
-  for (const Distortion& lens : {kLens, Distortion{}}) {
-    const SlopeBehind slope(lens);
-    const Scene& scene = slope.scene;
-    const DepthSampler sampler = scene.sampler();
-    int missing = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x)
-        for (const int step : {1, 2, 3}) {
-          constexpr int kSteps = 3;
-          const UndistortionMap::Window map(scene.map, x, y);
-          const DepthSampler::Window window(sampler, x, y, kSteps, step);
-          std::array<std::uint16_t, 2 * kSteps + 1> row;
-          for (int j = -kSteps; j <= kSteps; ++j) {
-            window.read_row(j, row);
-            for (int i = -kSteps; i <= kSteps; ++i) {
-              const int dx = i * step;
-              const int dy = j * step;
-              int raw_x = 0, raw_y = 0;
-              const bool seen = sampler.inside(x + dx, y + dy) && map.raw_pixel(dx, dy, raw_x, raw_y);
-              const auto at = static_cast<std::size_t>(raw_y * kWidth + raw_x);
-              ASSERT_EQ(row[static_cast<std::size_t>(i + kSteps)], seen ? scene.units[at] : 0)
-                  << x << " " << y << ": " << dx << " " << dy;
-              missing += seen ? 0 : 1;
-            }
-          }
+// Whole windows of one surface are summed up by registers, all others reading by reading: beside an image's
+// border, as it is here cut off, the same window takes the other way.
+TEST(DepthSampler, AWindowIsTheSameByRegistersAndByReadings) {
+  Random random(11);
+  const auto scene_of = [&](double noise_m, int gap) {
+    return Scene([&, noise_m, gap](int x, int y) {
+      if (gap > 0 && random.below(static_cast<std::uint32_t>(gap)) == 0) return 0.0;
+      return (x + y / 2 < 40 ? 1.0 : 1.3) + 0.004 * x - 0.003 * y + noise_m * random.uniform();
+    });
+  };
+  int same = 0;
+  int on_edge = 0;
+  for (const auto& [noise_m, gap] : {std::pair(0.0, 0), std::pair(0.02, 0), std::pair(0.005, 20)}) {
+    const Scene scene = scene_of(noise_m, gap);
+    const DepthSampler whole = scene.sampler(0.5);
+    for (int y = 3; y < kHeight - 3; ++y)
+      for (int x = 3; x < kWidth - 8; ++x)
+        for (const int radius : {0, 1, 2, 3}) {
+          DepthNoise noise;
+          noise.registration_px = 0.5;
+          const DepthSampler cut({scene.units.data(), x + radius + 1, kHeight, kWidth, kUnit}, scene.map,
+                                 noise);
+          const double u = x + 0.9 * random.uniform() - 0.45;
+          const double v = y + 0.9 * random.uniform() - 0.45;
+          const DepthSample a = whole.sample(u, v, radius);
+          const DepthSample b = cut.sample(u, v, radius);
+          ASSERT_EQ(a.depth_m, b.depth_m) << x << " " << y << " " << radius;
+          ASSERT_EQ(a.sigma_m, b.sigma_m);
+          ASSERT_EQ(a.on_edge, b.on_edge);
+          on_edge += a.on_edge ? 1 : 0;
+          ++same;
         }
-    EXPECT_GT(missing, 0);
   }
+  EXPECT_GT(on_edge, 500);
+  EXPECT_GT(same, 10000);
+}
+
+// Through a lens the plane of the world is found where the pixel is seen, between the pixels of either image.
+TEST(DepthSampler, APlaneIsRecoveredThroughTheLens) {
+  const CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, kLens};
+  const Plane plane{0.8, 0.003, -0.002};
+  Scene scene([&](int x, int y) {
+    const Vector2 p = undistort_pixel(camera, Vector2(x, y));
+    return plane(p.x(), p.y());
+  });
+  std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
+  Arena arena(memory);
+  scene.map.carve(arena, kWidth, kHeight);
+  scene.map.init(camera);
+  for (double v = 5; v < kHeight - 5; v += 3.37)
+    for (double u = 5; u < kWidth - 5; u += 4.19) {
+      const double depth_m = scene.sampler().sample(u, v, kReach).depth_m;
+      ASSERT_NEAR(depth_m, plane(u, v), 5e-4) << u << " " << v;
+    }
 }
 
 }  // namespace

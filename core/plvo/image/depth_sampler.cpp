@@ -3,109 +3,192 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <span>
 
 #include "plvo/base/build.hpp"
+#include "plvo/base/lanes.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
 namespace {
-
-constexpr int kMaxWindow = (2 * DepthSampler::kMaxRadius + 1) * (2 * DepthSampler::kMaxRadius + 1);
-
-// Least-squares plane through inverse depths: q(x, y) = q0 + qx x + qy y. In inverse depth a plane of the
-// world is a plane over the image exactly, and the Kinect's own noise is even.
-class InverseDepthPlane {
- public:
-  void add(double x, double y, double q) {
-    n_ += 1;
-    x_ += x;
-    y_ += y;
-    xx_ += x * x;
-    xy_ += x * y;
-    yy_ += y * y;
-    q_ += q;
-    qx_ += q * x;
-    qy_ += q * y;
-  }
-  // False when the pixels lie (nearly) on one line. The values are those at x = y = 0.
-  bool solve(double& q0, double& slope_x, double& slope_y) const {
-    const double mean_x = x_ / n_;
-    const double mean_y = y_ / n_;
-    const double cxx = xx_ - x_ * mean_x;
-    const double cxy = xy_ - x_ * mean_y;
-    const double cyy = yy_ - y_ * mean_y;
-    const double determinant = cxx * cyy - cxy * cxy;
-    if (!(determinant > 0.1 * n_ * n_)) return false;
-    const double cqx = qx_ - q_ * mean_x;
-    const double cqy = qy_ - q_ * mean_y;
-    slope_x = (cqx * cyy - cqy * cxy) / determinant;
-    slope_y = (cqy * cxx - cqx * cxy) / determinant;
-    q0 = q_ / n_ - slope_x * mean_x - slope_y * mean_y;
-    return true;
-  }
-
- private:
-  double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0, q_ = 0, qx_ = 0, qy_ = 0;
-};
-
-struct DepthReading {
-  double x, y, z;  // offset from (u, v) in px; m
-};
 
 // A jump is what neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
 double jump_behind(double depth_m, const DepthNoise& noise) {
   return std::max(6 * noise.sigma(depth_m), 0.04 * depth_m);
 }
 
-// The nearest depth of a surface that at least three readings show: one or two may fly before everything
-// else. 0 when there is none.
-double nearest_surface(std::span<const DepthReading> readings, const DepthNoise& noise) {
-  const std::size_t least = readings.size() < 3 ? readings.size() : 3;
-  double nearest = 0;
-  for (std::size_t tries = 0; tries < 3; ++tries) {
-    double next = 0;
-    for (const DepthReading& reading : readings)
-      if (reading.z > nearest && (next == 0 || reading.z < next)) next = reading.z;
-    if (next == 0) return 0;
-    nearest = next;
-    const double end = nearest + jump_behind(nearest, noise);
+// The depths of a window, in the image's own units, that belong to one surface: from `least` to `most`. The
+// sums are integers, so that any order of them has the same bits. x and y: px from the window's centre.
+struct SurfaceSums {
+  std::int32_t least = 0, most = 0;
+  std::int32_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  // Of the depths less `least`.
+  std::int64_t d = 0, dx = 0, dy = 0, dd = 0;
+};
+
+// Where the surface ends behind its nearest depth.
+std::int32_t farthest(std::int32_t nearest, double metres_per_unit, const DepthNoise& noise) {
+  const double nearest_m = nearest * metres_per_unit;
+  const double end = (nearest_m + jump_behind(nearest_m, noise)) / metres_per_unit;
+  return end < 65535 ? static_cast<std::int32_t>(end) : 65535;
+}
+
+// What is read of a window, row by row; 0: none.
+struct WindowReadings {
+  std::array<std::uint16_t, (2 * DepthSampler::kMaxRadius + 1) * (2 * DepthSampler::kMaxRadius + 1)> units;
+  int radius = 0;
+  std::size_t side() const { return static_cast<std::size_t>(2 * radius + 1); }
+  std::span<const std::uint16_t> all() const { return {units.data(), side() * side()}; }
+};
+
+// The nearest depth of a surface that at least three readings show, and its end: one or two may fly before
+// everything else. False when there is none.
+bool nearest_surface(const WindowReadings& readings, std::size_t count, double metres_per_unit,
+                     const DepthNoise& noise, SurfaceSums& surface) {
+  const std::size_t least = count < 3 ? count : 3;
+  for (int tries = 0; tries < 3; ++tries) {
+    std::int32_t next = 65536;
+    for (const std::uint16_t reading : readings.all())
+      if (reading > surface.least && reading < next) next = reading;
+    if (next == 65536) return false;
+    surface.least = next;
+    surface.most = farthest(next, metres_per_unit, noise);
     std::size_t support = 0;
-    for (const DepthReading& reading : readings) support += reading.z >= nearest && reading.z <= end ? 1 : 0;
-    if (support >= least) return nearest;
+    for (const std::uint16_t reading : readings.all())
+      support += reading >= surface.least && reading <= surface.most ? 1 : 0;
+    if (support >= least) return true;
   }
-  return 0;
+  return false;
+}
+
+void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
+  std::size_t i = 0;
+  for (int y = -readings.radius; y <= readings.radius; ++y)
+    for (int x = -readings.radius; x <= readings.radius; ++x) {
+      const std::int32_t reading = readings.units[i++];
+      if (reading < sums.least || reading > sums.most) continue;
+      const std::int64_t d = reading - sums.least;
+      sums.n += 1;
+      sums.x += x;
+      sums.y += y;
+      sums.xx += x * x;
+      sums.xy += x * y;
+      sums.yy += y * y;
+      sums.d += d;
+      sums.dx += d * x;
+      sums.dy += d * y;
+      sums.dd += d * d;
+    }
+}
+
+#ifndef PLVO_SMALL_CODE
+
+// As nearest_surface and sum_up where the whole window belongs to one surface, which most do; else false.
+// corner: of eight columns and 2 · radius + 1 rows that are there.
+bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius, double metres_per_unit,
+                  const DepthNoise& noise, SurfaceSums& sums) {
+  constexpr std::size_t kMostRows = 2 * DepthSampler::kMaxRadius + 1;
+  constexpr Lanes kColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr std::int16_t kSign = std::numeric_limits<std::int16_t>::min();  // order of unsigned as of signed
+  const auto side = static_cast<std::int16_t>(2 * radius + 1);
+  const Lanes of_window = kColumns < side;
+  std::array<Lanes, kMostRows> rows;
+  Lanes low = (Lanes{} + std::numeric_limits<std::int16_t>::max());
+  Lanes high = (Lanes{} + kSign);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(side); ++j, corner += stride) {
+    Lanes row;
+    std::memcpy(&row, corner, sizeof row);
+    row ^= kSign;
+    rows[j] = row;
+    low = row < low ? row : low;
+    high = row > high ? row : high;
+  }
+  std::int32_t least = low[0];
+  std::int32_t most = high[0];
+  for (int i = 1; i < side; ++i) {
+    least = std::min<std::int32_t>(least, low[i]);
+    most = std::max<std::int32_t>(most, high[i]);
+  }
+  constexpr std::int32_t kLargestRange = 1 << 12;  // its square, 49 times, has less than 31 bits
+  sums.least = least - kSign;
+  if (sums.least == 0 || most - least > kLargestRange) return false;
+  sums.most = farthest(sums.least, metres_per_unit, noise);
+  if (most - kSign > sums.most) return false;
+
+  const Lanes across = (kColumns - static_cast<std::int16_t>(radius)) & of_window;
+  const Lanes one = of_window & 1;
+  WideLanes d{}, dx{}, dy{}, dd{}, part;
+  for (int j = 0; j < side; ++j) {
+    const Lanes row = (rows[static_cast<std::size_t>(j)] - static_cast<std::int16_t>(least)) & of_window;
+    dot_pairs(row, one, part);
+    d += part;
+    dy += part * (j - radius);
+    dot_pairs(row, across, part);
+    dx += part;
+    dot_pairs(row, row, part);
+    dd += part;
+  }
+  const auto total = [](const WideLanes& w) { return std::int64_t{w[0]} + w[1] + w[2] + w[3]; };
+  sums.n = side * side;
+  sums.x = sums.y = sums.xy = 0;
+  sums.xx = sums.yy = side * (side * side - 1) / 12 * side;
+  sums.d = total(d);
+  sums.dx = total(dx);
+  sums.dy = total(dy);
+  sums.dd = total(dd);
+  return true;
+}
+
+#endif
+
+// Depth in the image's units at (x, y) px from the window's centre, and how it changes there by the pixel:
+// of the least-squares plane in inverse depth, for there a plane of the world is one over the image, and the
+// Kinect's own noise is even. As deviations from the mean c: 1/z = (1 − e + e²) / c, with e = z/c − 1, what
+// is left out being a hundredth of the noise. Where the readings lie (nearly) on one line it is their mean.
+double plane_depth(const SurfaceSums& s, double x, double y, double& slope) {
+  const double inverse_n = 1.0 / s.n;
+  const double mean_d = static_cast<double>(s.d) * inverse_n;
+  const double mean = s.least + mean_d;
+  const double mean_x = s.x * inverse_n;
+  const double mean_y = s.y * inverse_n;
+  const double cxx = s.xx - s.x * mean_x;
+  const double cxy = s.xy - s.x * mean_y;
+  const double cyy = s.yy - s.y * mean_y;
+  const double determinant = cxx * cyy - cxy * cxy;
+  slope = 0;
+  if (!(determinant > 0.1 * s.n * s.n)) return mean;
+  const double cdx = static_cast<double>(s.dx) - mean_d * s.x;
+  const double cdy = static_cast<double>(s.dy) - mean_d * s.y;
+  const double scale = 1 / (determinant * mean);
+  const double slope_x = (cdx * cyy - cdy * cxy) * scale;  // of e
+  const double slope_y = (cdy * cxx - cdx * cxy) * scale;
+  const double squares = static_cast<double>(s.dd) * inverse_n - mean_d * mean_d;
+  const double inverse = 1 + squares / (mean * mean) - slope_x * (x - mean_x) - slope_y * (y - mean_y);
+  if (!(inverse > 0)) return mean;
+  // The plane may only interpolate: beyond the depths it was fitted to it is not believed.
+  const double depth = std::clamp<double>(mean / inverse, s.least, s.most);
+  slope = depth * depth / mean * sqrt(slope_x * slope_x + slope_y * slope_y);
+  return depth;
 }
 
 }  // namespace
 
-DepthSampler::Window::Window(const DepthSampler& sampler, int x, int y, int reach, int every_px)
-    : sampler_(sampler),
-      map_(sampler.map_, x, y),
-      x_(x),
-      y_(y),
-      left_(-reach * every_px),
-      every_px_(every_px),
-      whole_(!kSmallCode && sampler.inside(x + left_, y + left_) && sampler.inside(x - left_, y - left_) &&
-             map_.sees(-left_)) {}
+DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located)
+    : Place(sampler, located, static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5)) {}
 
-void DepthSampler::Window::read_row(int row, std::span<std::uint16_t> units) const {
-  const DepthView& depth = sampler_.depth_;
-  const int dy = row * every_px_;
-  int dx = left_;
-  if (!kSmallCode && whole_) {
-    map_.for_row(dx, dy, every_px_, units.size(), [&](std::size_t i, int raw_x, int raw_y) {
-      units[i] = depth.data[raw_y * depth.stride + raw_x];
-    });
-    return;
-  }
-  for (std::uint16_t& reading : units) {
-    int raw_x = 0;
-    int raw_y = 0;
-    const bool seen = sampler_.inside(x_ + dx, y_ + dy) && map_.raw_pixel(dx, dy, raw_x, raw_y);
-    reading = seen ? depth.data[raw_y * depth.stride + raw_x] : std::uint16_t{0};
-    dx += every_px_;
-  }
+DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located, int ideal_x, int ideal_y)
+    : map(sampler.map_, std::clamp(ideal_x, 0, sampler.depth_.width - 1),
+          std::clamp(ideal_y, 0, sampler.depth_.height - 1)) {
+  if (!sampler.inside(ideal_x, ideal_y)) return;
+  const Vector2 raw = map.position_px(located - Vector2(ideal_x, ideal_y));
+  inside = raw.x() > -0.5 && raw.y() > -0.5 && raw.x() < sampler.depth_.width - 0.5 &&
+           raw.y() < sampler.depth_.height - 0.5;
+  if (!inside) return;
+  x = static_cast<int>(raw.x() + 0.5);
+  y = static_cast<int>(raw.y() + 0.5);
+  beside = raw - Vector2(x, y);
 }
 
 bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const {
@@ -139,60 +222,49 @@ bool DepthSampler::locate(Vector2& pixel) const {
 DepthSample DepthSampler::sample(double u, double v, int radius) const {
   Vector2 located(u, v);
   if (!locate(located)) return {};
-  DepthSample result = sample_window(located.x(), located.y(), radius);
+  DepthSample result = sample_window(located, radius);
   if (result.depth_m > 0) result.depth_m = at_colour_time(v, located, result.depth_m);
   if (!(result.depth_m > 0)) return {};
   result.located = located;
   return result;
 }
 
-DepthSample DepthSampler::sample_window(double u, double v, int radius) const {
-  std::array<DepthReading, kMaxWindow> window;
-  std::size_t count = 0;
-  const int x0 = static_cast<int>(u + 0.5);
-  const int y0 = static_cast<int>(v + 0.5);
-  if (!inside(x0, y0)) return {};  // at most half a pixel beside the image
+DepthSample DepthSampler::sample_window(const Vector2& located, int radius) const {
+  const Place place(*this, located);
+  if (!place.inside) return {};
   radius = std::min(radius, kMaxRadius);
-  const Window readings(*this, x0, y0, radius, 1);
-  const auto side = static_cast<std::size_t>(2 * radius + 1);
-  std::array<std::uint16_t, 2 * kMaxRadius + 1> row;
-  for (int dy = -radius; dy <= radius; ++dy) {
-    readings.read_row(dy, std::span(row).first(side));
-    for (int dx = -radius; dx <= radius; ++dx) {
-      const double z = row[static_cast<std::size_t>(dx + radius)] * depth_.metres_per_unit;
-      if (z > 0) window[count++] = {x0 + dx - u, y0 + dy - v, z};
-    }
-  }
-  // Where half the window has no depth, the rest is a rim of bad depth.
-  if (2 * count < side * side) return {};
-  const double nearest = nearest_surface({window.data(), count}, noise_);
-  if (!(nearest > 0)) return {};
-
-  const double jump = jump_behind(nearest, noise_);
-  InverseDepthPlane plane;
-  double sum = 0;
-  std::size_t near_count = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (window[i].z < nearest || window[i].z > nearest + jump) continue;
-    plane.add(window[i].x, window[i].y, 1 / window[i].z);
-    sum += window[i].z;
-    ++near_count;
-  }
-
+  const int left = place.x - radius;
+  const int top = place.y - radius;
+  SurfaceSums sums;
   DepthSample result;
-  result.on_edge = near_count < count;
-  result.depth_m = sum / static_cast<double>(near_count);
-  double slope_m = 0;  // per px
-  double q0 = 0;
-  double slope_x = 0;
-  double slope_y = 0;
-  if (plane.solve(q0, slope_x, slope_y) && q0 > 0) {
-    // The plane may only interpolate: beyond the depths it was fitted to it is not believed.
-    result.depth_m = std::clamp(1 / q0, nearest, nearest + jump);
-    slope_m = result.depth_m * result.depth_m * sqrt(slope_x * slope_x + slope_y * slope_y);
+#ifndef PLVO_SMALL_CODE
+  const bool whole =
+      holds_raw(left, top) && holds_raw(left + 7, place.y + radius) &&
+      sum_up_whole(raw(left, top), depth_.stride, radius, depth_.metres_per_unit, noise_, sums);
+#else
+  constexpr bool whole = false;
+#endif
+  if (!whole) {
+    WindowReadings readings;
+    readings.radius = radius;
+    std::size_t count = 0;
+    std::size_t i = 0;
+    for (int y = top; y <= place.y + radius; ++y)
+      for (int x = left; x <= place.x + radius; ++x) {
+        readings.units[i] = raw_units(x, y);
+        count += readings.units[i++] > 0 ? 1 : 0;
+      }
+    // Where half the window has no depth, the rest is a rim of bad depth.
+    if (2 * count < i) return {};
+    sums = {};
+    if (!nearest_surface(readings, count, depth_.metres_per_unit, noise_, sums)) return {};
+    sum_up(readings, sums);
+    result.on_edge = static_cast<std::size_t>(sums.n) < count;
   }
+  double slope = 0;
+  result.depth_m = plane_depth(sums, place.beside.x(), place.beside.y(), slope) * depth_.metres_per_unit;
   const double sigma_d = noise_.sigma(result.depth_m);
-  const double sigma_registration = slope_m * noise_.registration_px;
+  const double sigma_registration = slope * depth_.metres_per_unit * noise_.registration_px;
   result.sigma_m = sqrt(sigma_d * sigma_d + sigma_registration * sigma_registration);
   // The nearer surface's own depth is less sure where the window is mixed.
   if (result.on_edge) result.sigma_m *= 2;

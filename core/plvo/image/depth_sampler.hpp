@@ -66,20 +66,23 @@ class DepthSampler {
     if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return nullptr;
     return depth_.data + raw_y * depth_.stride + raw_x;
   }
-  // A square of readings around (x, y), which lies in the image: every so many px, `reach` of them either
-  // way.
-  class Window {
-   public:
-    Window(const DepthSampler& sampler, int x, int y, int reach, int every_px);
-    // Row −reach … reach from its left end on: depths in the depth image's own units, 0: none.
-    void read_row(int row, std::span<std::uint16_t> units) const;
+  // Where the raw image, before the lens is undone, holds what the depth image shows somewhere: windows are
+  // read there, for what lies side by side there is what was measured.
+  struct Place {
+    Place(const DepthSampler& sampler, const Vector2& located);
+    bool inside = false;               // both images; else the rest says nothing
+    int x = 0, y = 0;                  // the nearest pixel of the raw image
+    Vector2 beside = Vector2::Zero();  // how far it is beside that, px
+    UndistortionMap::Window map;       // around the nearest pixel of the depth image
 
    private:
-    const DepthSampler& sampler_;
-    UndistortionMap::Window map_;
-    int x_, y_, left_, every_px_;
-    bool whole_;  // the square lies in both images; small code does not ask
+    Place(const DepthSampler& sampler, const Vector2& located, int ideal_x, int ideal_y);
   };
+  // Depth at a pixel of the raw image, in its own units; 0: none, or outside.
+  std::uint16_t raw_units(int x, int y) const { return holds_raw(x, y) ? *raw(x, y) : std::uint16_t{0}; }
+  // The raw image holds the pixel; from there on it goes on by view().stride from row to row.
+  bool holds_raw(int x, int y) const { return inside(x, y); }
+  const std::uint16_t* raw(int x, int y) const { return depth_.data + y * depth_.stride + x; }
   bool inside(int x, int y) const {
     return static_cast<unsigned>(x) < static_cast<unsigned>(depth_.width) &&
            static_cast<unsigned>(y) < static_cast<unsigned>(depth_.height);
@@ -97,7 +100,7 @@ class DepthSampler {
   const UndistortionMap& map() const { return map_; }
 
  private:
-  DepthSample sample_window(double u, double v, int radius) const;
+  DepthSample sample_window(const Vector2& located, int radius) const;
 
   DepthView depth_;
   const UndistortionMap& map_;

@@ -86,21 +86,13 @@ class UndistortionMap {
     Vector2 position_px(const Vector2& step) const {
       return Vector2(x_of(at_), y_of(at_)) / (1 << kFractionBits) + step_px(step);
     }
-    // The camera saw all of the square of ±reach: a plane is highest and lowest at its corners.
-    bool sees(int reach) const {
-      int raw_x = 0;
-      int raw_y = 0;
-      return raw_pixel(-reach, -reach, raw_x, raw_y) && raw_pixel(reach, -reach, raw_x, raw_y) &&
-             raw_pixel(-reach, reach, raw_x, raw_y) && raw_pixel(reach, reach, raw_x, raw_y);
-    }
-    // Of that square: visit(i, raw_x, raw_y) for the pixels (dx + i step, dy), i < count.
-    template <typename Visit>
-    void for_row(int dx, int dy, int step, std::size_t count, Visit visit) const {
-      constexpr std::int64_t kHalf = 1 << (kFractionBits - 1);
-      std::int64_t at = at_ + dx * right_ + dy * down_ + (kHalf << 32) + kHalf;
-      const std::int64_t along = step * right_;
-      for (std::size_t i = 0; i < count; ++i, at += along)
-        visit(i, x_of(at) >> kFractionBits, y_of(at) >> kFractionBits);
+    // So many px are so many of the raw image, each off by less than this share.
+    bool is_straight(double share) const {
+      const auto least = static_cast<std::int32_t>(share * (1 << kFractionBits));
+      constexpr std::int32_t kOne = 1 << kFractionBits;
+      const auto off = [](std::int32_t x) { return x < 0 ? -x : x; };
+      return off(x_of(right_) - kOne) + off(x_of(down_)) < least &&
+             off(y_of(down_) - kOne) + off(y_of(right_)) < least;
     }
 
    private:

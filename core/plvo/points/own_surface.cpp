@@ -2,6 +2,11 @@
 #include "plvo/points/own_surface.hpp"
 
 #include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "plvo/base/lanes.hpp"
 
 namespace plvo {
 namespace {
@@ -12,32 +17,80 @@ constexpr int kRim = 2;
 // A surface as steep as this changes so much of its depth over a window; what differs by more is another one.
 constexpr double kSameSurface = 0.06;
 
+constexpr int kReach = kWindowReach + kRim;
 constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
 constexpr int kSurfaceRows = kWindowRows + 2 * kRim;
 using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
+
+// The depths that belong to it, in units of the image: 0 means none.
+struct Range {
+  std::int32_t first, last;
+};
+
+Range range_around(double units) {
+  const auto whole = [](double x) { return x < 65535 ? static_cast<std::int32_t>(x) : 65535; };
+  return {whole((1 - kSameSurface) * units) + 1, whole((1 + kSameSurface) * units)};
+}
+
+#ifndef PLVO_SMALL_CODE
+
+// A bit for each of eight readings, `step` apart, that is in the range.
+std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range) {
+  Lanes units;
+  if (step == 1)
+    std::memcpy(&units, readings, sizeof units);
+  else
+    for (int i = 0; i < 8; ++i) units[i] = static_cast<std::int16_t>(readings[i * step]);
+  // Unsigned as signed: both less 2^15.
+  const auto first = static_cast<std::int16_t>(range.first - 32768);
+  const auto last = static_cast<std::int16_t>(range.last - 32768);
+  units ^= std::numeric_limits<std::int16_t>::min();
+  const Lanes own = (units >= first) & (units <= last) & 1;
+  std::uint8_t bytes[8];
+  store_bytes(own, bytes);
+  std::uint64_t together;
+  std::memcpy(&together, bytes, sizeof together);
+  static_assert(std::endian::native == std::endian::little);
+  return static_cast<std::uint32_t>((together * 0x0102040810204080) >> 56);  // byte i to bit 56 + i
+}
+
+#endif
 
 }  // namespace
 
 WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double depth_m, int level) {
   WindowMask mask{};
-  // Rounded once, where the pixel lies inside: beside the image the same rounding would go towards it.
-  const int centre_x = static_cast<int>(centre.x() + 0.5);
-  const int centre_y = static_cast<int>(centre.y() + 0.5);
-  if (!depth.inside(centre_x, centre_y)) return mask;
-  constexpr int kReach = kWindowReach + kRim;
-  const DepthSampler::Window readings(depth, centre_x, centre_y, kReach, 1 << level);
-  // The depths that belong to it, in units of the image: at least one unit, for 0 means none.
-  const double nearest = (1 - kSameSurface) * depth_m / depth.metres_per_unit();
-  const double farthest = (1 + kSameSurface) * depth_m / depth.metres_per_unit();
-  const auto first = static_cast<std::uint32_t>(nearest) + 1;
-  const std::uint32_t count = static_cast<std::uint32_t>(farthest) - first + 1;
+  const DepthSampler::Place place(depth, centre);
+  if (!place.inside) return mask;
+  const int step = 1 << level;
+  const int left = place.x - kReach * step;
+  const int top = place.y - kReach * step;
+  const Range range = range_around(depth_m / depth.metres_per_unit());
   std::array<Row, kSurfaceRows> own{};
-  std::array<std::uint16_t, kSurfaceColumns> units;
+  const bool straight = place.map.is_straight(1.0 / kReach);
+#ifndef PLVO_SMALL_CODE
+  const bool whole = straight && depth.holds_raw(left, top) &&
+                     depth.holds_raw(left + (kSurfaceColumns - 1) * step, top + (kSurfaceRows - 1) * step);
+#else
+  constexpr bool whole = false;
+#endif
   for (int r = 0; r < kSurfaceRows; ++r) {
-    readings.read_row(r - kReach, units);
     std::uint32_t bits = 0;
-    for (std::size_t c = units.size(); c-- > 0;)
-      bits = bits << 1 | static_cast<std::uint32_t>(units[c] - first < count);  // below `first` it wraps
+#ifndef PLVO_SMALL_CODE
+    if (whole) {
+      const std::uint16_t* const row = depth.raw(left, top + r * step);
+      bits = own_of_eight(row, step, range) | own_of_eight(row + (kSurfaceColumns - 8) * step, step, range)
+                                                  << (kSurfaceColumns - 8);
+    }
+#endif
+    for (int c = kSurfaceColumns; !whole && c-- > 0;) {
+      int x = left + c * step;
+      int y = top + r * step;
+      bool seen = true;
+      if (!straight) seen = place.map.raw_pixel((c - kReach) * step, (r - kReach) * step, x, y);
+      const std::int32_t units = seen ? depth.raw_units(x, y) : 0;
+      bits = bits << 1 | static_cast<std::uint32_t>(units >= range.first && units <= range.last);
+    }
     own[static_cast<std::size_t>(r)] = static_cast<Row>(bits);
   }
   // Erosion by kRim in either direction: along the rows by shifts, then over neighbouring rows.

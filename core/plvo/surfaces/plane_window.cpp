@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "plvo/base/build.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -11,6 +12,7 @@ namespace {
 constexpr int kReach = 3;
 constexpr int kStride = 3;  // px
 constexpr int kReadings = (2 * kReach + 1) * (2 * kReach + 1);
+constexpr int kSumOfSquares = kReach * (kReach + 1) * (2 * kReach + 1) / 3;  // of −kReach … kReach
 // Fewer of them than this show an edge or a hole.
 constexpr int kLeastReadings = 45;
 // SD of the readings from the plane, at most so many σ_d: real and rendered noise is half of one.
@@ -18,63 +20,87 @@ constexpr double kMaxRms = 1;
 // Of the ray times the normal, for a ray with z = 1.
 constexpr double kLeastSteepness = 0.15;
 
-struct Reading {
-  double x, y, q;  // px from the window's centre; 1/m
+// Readings of a window, in the image's own units, and the sums that their plane takes; x and y in strides
+// from the middle. Inverse depths are counted from that of the first reading.
+struct Sums {
+  int n, x, y, xx, xy, yy;
+  double from, q, qx, qy, qq;
 };
+
+// False when too many are missing.
+bool add_up(const DepthSampler& depth, const DepthSampler::Place& place, Sums& s) {
+  constexpr int kSide = 2 * kReach + 1;
+  constexpr int kFar = kReach * kStride;
+  std::array<std::array<std::uint16_t, kSide>, kSide> units;
+  const bool whole =
+      depth.holds_raw(place.x - kFar, place.y - kFar) && depth.holds_raw(place.x + kFar, place.y + kFar);
+  int missing = 0;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const int x = place.x + kStride * (i - kReach);
+      const int y = place.y + kStride * (j - kReach);
+      const std::uint16_t reading = !kSmallCode && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
+      units[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = reading;
+      missing += reading == 0 ? 1 : 0;
+    }
+  if (kReadings - missing < kLeastReadings) return false;
+  s = {kReadings, 0, 0, kSide * kSumOfSquares, 0, kSide * kSumOfSquares, 0, 0, 0, 0, 0};
+  for (int j = -kReach; j <= kReach; ++j) {
+    double q = 0, qx = 0, qq = 0;
+    for (int i = -kReach; i <= kReach; ++i) {
+      const int reading = units[static_cast<std::size_t>(j + kReach)][static_cast<std::size_t>(i + kReach)];
+      if (reading == 0) {
+        s.n -= 1;
+        s.x -= i;
+        s.y -= j;
+        s.xx -= i * i;
+        s.xy -= i * j;
+        s.yy -= j * j;
+        continue;
+      }
+      const double inverse = 1.0 / reading;
+      if (s.from == 0) s.from = inverse;
+      const double dq = inverse - s.from;
+      q += dq;
+      qx += dq * i;
+      qq += dq * dq;
+    }
+    s.q += q;
+    s.qx += qx;
+    s.qy += q * j;
+    s.qq += qq;
+  }
+  return true;
+}
 
 // q(x, y) = q0 + slope_x x + slope_y y, least squares.
 struct InversePlane {
   double q0, slope_x, slope_y;
-  double sum_xx;            // of x² about the mean, px²
+  double sum_xx;            // of x² about the mean
   double residual_squared;  // mean
 };
 
-bool fit(const std::array<Reading, kReadings>& readings, int n, InversePlane& plane) {
-  double x = 0, y = 0, q = 0;
-  for (int k = 0; k < n; ++k) {
-    x += readings[static_cast<std::size_t>(k)].x;
-    y += readings[static_cast<std::size_t>(k)].y;
-    q += readings[static_cast<std::size_t>(k)].q;
-  }
-  x /= n;
-  y /= n;
-  q /= n;
-  double xx = 0, xy = 0, yy = 0, qx = 0, qy = 0, qq = 0;
-  for (int k = 0; k < n; ++k) {
-    const Reading& reading = readings[static_cast<std::size_t>(k)];
-    const double dx = reading.x - x;
-    const double dy = reading.y - y;
-    const double dq = reading.q - q;
-    xx += dx * dx;
-    xy += dx * dy;
-    yy += dy * dy;
-    qx += dq * dx;
-    qy += dq * dy;
-    qq += dq * dq;
-  }
+bool fit(const Sums& s, InversePlane& plane) {
+  const double inverse_n = 1.0 / s.n;
+  const double x = s.x * inverse_n;
+  const double y = s.y * inverse_n;
+  const double q = s.q * inverse_n;
+  const double xx = s.xx - s.x * x;
+  const double xy = s.xy - s.x * y;
+  const double yy = s.yy - s.y * y;
+  const double qx = s.qx - s.q * x;
+  const double qy = s.qy - s.q * y;
+  const double qq = s.qq - s.q * q;
   const double determinant = xx * yy - xy * xy;
   if (!(determinant > 0)) return false;
-  plane.slope_x = (qx * yy - qy * xy) / determinant;
-  plane.slope_y = (qy * xx - qx * xy) / determinant;
-  plane.q0 = q - plane.slope_x * x - plane.slope_y * y;
+  const double scale = 1 / determinant;
+  plane.slope_x = (qx * yy - qy * xy) * scale;
+  plane.slope_y = (qy * xx - qx * xy) * scale;
+  plane.q0 = s.from + q - plane.slope_x * x - plane.slope_y * y;
   plane.sum_xx = xx;
   const double left = qq - plane.slope_x * qx - plane.slope_y * qy;
-  plane.residual_squared = left > 0 ? left / n : 0;
+  plane.residual_squared = left > 0 ? left * inverse_n : 0;
   return true;
-}
-
-int read(const DepthSampler& depth, int x0, int y0, std::array<Reading, kReadings>& readings) {
-  const DepthSampler::Window window(depth, x0, y0, kReach, kStride);
-  std::array<std::uint16_t, 2 * kReach + 1> row;
-  int n = 0;
-  for (int j = -kReach; j <= kReach; ++j) {
-    window.read_row(j, row);
-    for (int i = -kReach; i <= kReach; ++i) {
-      const double z = row[static_cast<std::size_t>(i + kReach)] * depth.metres_per_unit();
-      if (z > 0) readings[static_cast<std::size_t>(n++)] = {1.0 * i * kStride, 1.0 * j * kStride, 1 / z};
-    }
-  }
-  return n;
 }
 
 }  // namespace
@@ -83,22 +109,26 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
                      double noise_scale, SurfaceSample& sample, double* depth_row) {
   Vector2 located(u, v);
   if (!depth.locate(located)) return false;
-  const int x0 = static_cast<int>(located.x() + 0.5);
-  const int y0 = static_cast<int>(located.y() + 0.5);
-  if (!depth.inside(x0, y0)) return false;
-  std::array<Reading, kReadings> readings;
-  const int n = read(depth, x0, y0, readings);
+  const DepthSampler::Place place(depth, located);
+  Sums sums;
   InversePlane plane;
-  if (n < kLeastReadings || !fit(readings, n, plane)) return false;
+  if (!place.inside || !add_up(depth, place, sums) || !fit(sums, plane)) return false;
 
-  const double q = plane.q0 + plane.slope_x * (located.x() - x0) + plane.slope_y * (located.y() - y0);
+  // In 1/m, by the pixel of the raw image.
+  const double per_m = 1 / depth.metres_per_unit();
+  const Vector2 raw_slope(plane.slope_x * (per_m / kStride), plane.slope_y * (per_m / kStride));
+  const double q = plane.q0 * per_m + raw_slope.dot(place.beside);
   if (!(q > 0)) return false;
   const double z = 1 / q;
   const double sigma_d = depth.noise().sigma(z);
   const double sigma_q = sigma_d * q * q;
-  if (!(plane.residual_squared <= kMaxRms * kMaxRms * sigma_q * sigma_q)) return false;
-  const Vector3 m(plane.slope_x * pinhole.fx, plane.slope_y * pinhole.fy,
-                  plane.q0 + plane.slope_x * (pinhole.cx - x0) + plane.slope_y * (pinhole.cy - y0));
+  const double most = kMaxRms * depth.metres_per_unit() * sigma_q;
+  if (!(plane.residual_squared <= most * most)) return false;
+  // By the pixel of the image without a lens.
+  const double slope_x = raw_slope.dot(place.map.step_px({1, 0}));
+  const double slope_y = raw_slope.dot(place.map.step_px({0, 1}));
+  const Vector3 m(slope_x * pinhole.fx, slope_y * pinhole.fy,
+                  q + slope_x * (pinhole.cx - located.x()) + slope_y * (pinhole.cy - located.y()));
   const double length = sqrt(m.squaredNorm());
   const Vector3 p = back_project(pinhole, located.x(), located.y(), z);
   const double steepness = m.dot(p) / (length * z);
@@ -108,7 +138,7 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   const double sigma = steepness * sigma_d;
   sample.variance = noise_scale * sigma * sigma;
   const double sigma_slope = sigma_q * pinhole.fx / length;
-  sample.normal_variance = noise_scale * sigma_slope * sigma_slope / plane.sum_xx;
+  sample.normal_variance = noise_scale * sigma_slope * sigma_slope / (plane.sum_xx * (kStride * kStride));
   sample.p = p;
   const Exposure& exposure = depth.exposure();
   if (exposure.depth_apart()) sample.p = exposure.from_depth_time(p, v, located.y());
