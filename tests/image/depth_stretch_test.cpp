@@ -15,12 +15,12 @@
 namespace plvo {
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
-constexpr double kUnit = 1e-4;  // m
+constexpr int kRawWidth = 640;
+constexpr int kRawHeight = 480;
+constexpr double kRawUnit = 1e-4;  // m
 
-CameraModel camera_with(const Distortion& lens) {
-  CameraModel camera{kWidth, kHeight, {525, 528, 316, 248}, lens};
+CameraModel rolling_camera(const Distortion& lens) {
+  CameraModel camera{kRawWidth, kRawHeight, {525, 528, 316, 248}, lens};
   camera.depth_timing.known = true;
   camera.depth_timing.readout_s = 0.03;
   camera.readout_s = 0.026;
@@ -28,19 +28,19 @@ CameraModel camera_with(const Distortion& lens) {
 }
 
 // What a raw depth image shows where the lens puts the ideal pixel, through a function of the raw pixel.
-struct Scene {
+struct RawScene {
   template <typename Function>
-  Scene(const CameraModel& camera, Function depth_m)
-      : units(kWidth * kHeight), memory(kWidth * kHeight * 2), arena(memory) {
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x)
-        units[static_cast<std::size_t>(y * kWidth + x)] =
-            static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
-    map.carve(arena, kWidth, kHeight);
+  RawScene(const CameraModel& camera, Function depth_m)
+      : units(kRawWidth * kRawHeight), memory(kRawWidth * kRawHeight * 2), arena(memory) {
+    for (int y = 0; y < kRawHeight; ++y)
+      for (int x = 0; x < kRawWidth; ++x)
+        units[static_cast<std::size_t>(y * kRawWidth + x)] =
+            static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kRawUnit + 0.5));
+    map.carve(arena, kRawWidth, kRawHeight);
     map.init(camera);
   }
   DepthSampler sampler(const Exposure& exposure) const {
-    return {{units.data(), kWidth, kHeight, kWidth, kUnit}, map, DepthNoise{}, exposure};
+    return {{units.data(), kRawWidth, kRawHeight, kRawWidth, kRawUnit}, map, DepthNoise{}, exposure};
   }
   std::vector<std::uint16_t> units;
   UndistortionMap map;
@@ -51,7 +51,7 @@ struct Scene {
 };
 
 // A Kinect's, and one that bends the other way.
-const Distortion kLenses[] = {{}, {0.26, -0.95, -0.005, 0.003, 1.16}, {-0.1, 0.02, 0, 0, 0}};
+const Distortion kStretchLenses[] = {{}, {0.26, -0.95, -0.005, 0.003, 1.16}, {-0.1, 0.02, 0, 0, 0}};
 
 struct Line {
   Vector2 first, step, across;
@@ -60,8 +60,8 @@ struct Line {
 
 Line random_line(Random& random) {
   for (;;) {
-    const Vector2 a(kWidth * random.uniform(), kHeight * random.uniform());
-    const Vector2 b(kWidth * random.uniform(), kHeight * random.uniform());
+    const Vector2 a(kRawWidth * random.uniform(), kRawHeight * random.uniform());
+    const Vector2 b(kRawWidth * random.uniform(), kRawHeight * random.uniform());
     const double length = (b - a).norm();
     if (length < 5) continue;
     const Vector2 along = (b - a) / length;
@@ -82,12 +82,12 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
   Random random(5);
   int read = 0;
   int unseen = 0;
-  for (const Distortion& lens : kLenses) {
-    const CameraModel camera = camera_with(lens);
+  for (const Distortion& lens : kStretchLenses) {
+    const CameraModel camera = rolling_camera(lens);
     // Depth says where it was read: nearly, for x and y are told apart by two scenes.
     for (const bool across : {false, true}) {
       constexpr double kSlope = 0.003;  // m / px
-      const Scene scene(camera, [&](int x, int y) { return 1 + kSlope * (across ? y : x); });
+      const RawScene scene(camera, [&](int x, int y) { return 1 + kSlope * (across ? y : x); });
       for (int trial = 0; trial < 150; ++trial) {
         const Exposure exposure(camera, random_velocity(random), 0.02);
         const DepthSampler sampler = scene.sampler(exposure);
@@ -110,14 +110,14 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
             const double got = stretch.at(side);
             if (got == 0) {  // at the border either may be outside
               const Vector2 raw = scene.map.active() ? scene.map.position_px(x, y) : p;
-              EXPECT_TRUE(raw.x() < 2 || raw.y() < 2 || raw.x() > kWidth - 3 || raw.y() > kHeight - 3);
+              EXPECT_TRUE(raw.x() < 2 || raw.y() < 2 || raw.x() > kRawWidth - 3 || raw.y() > kRawHeight - 3);
               continue;
             }
             // The exact place, without the rounding to a pixel of the ideal image.
             const Vector2 exact = scene.map.active() ? distort_pixel(camera, p) : p;
             // Beside the border a guess may have found no depth: a pixel or two are left.
             const bool at_border =
-                std::min({exact.x(), exact.y(), kWidth - exact.x(), kHeight - exact.y()}) < 8;
+                std::min({exact.x(), exact.y(), kRawWidth - exact.x(), kRawHeight - exact.y()}) < 8;
             EXPECT_NEAR((got - 1) / kSlope, across ? exact.y() : exact.x(), at_border ? 3 : 0.5 + 0.33)
                 << trial << " " << i << " " << side;
             EXPECT_NEAR(stretch.at_colour_time(got), sampler.at_colour_time(seen.y(), located, got),
@@ -135,11 +135,11 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
 // A near surface before a far one: each is read where depth shows it, and nothing of the other but at their
 // border.
 TEST(DepthStretch, FollowsTheSurfaceThatIsSeen) {
-  const CameraModel camera = camera_with({});
+  const CameraModel camera = rolling_camera({});
   Vector6 velocity = Vector6::Zero();
   velocity[0] = 1;  // m/s: at 0.6 m 8.7 px within 20 ms, at 3 m 1.7
   const Exposure exposure(camera, velocity, 0.02);
-  const Scene scene(camera, [](int x, int) { return x / 40 % 2 == 0 ? 0.6 : 3.0; });
+  const RawScene scene(camera, [](int x, int) { return x / 40 % 2 == 0 ? 0.6 : 3.0; });
   const DepthSampler sampler = scene.sampler(exposure);
   for (const double row : {60.0, 120.4, 200.0}) {
     DepthStretch stretch(sampler, {20, row}, {3, 0}, 90, {0, 1}, 3);
@@ -155,14 +155,14 @@ TEST(DepthStretch, FollowsTheSurfaceThatIsSeen) {
 }
 
 TEST(DepthStretch, BesideTheImageThereIsNoDepth) {
-  const CameraModel camera = camera_with({});
-  const Scene scene(camera, [](int, int) { return 1.0; });
+  const CameraModel camera = rolling_camera({});
+  const RawScene scene(camera, [](int, int) { return 1.0; });
   const DepthSampler sampler = scene.sampler({});
-  DepthStretch stretch(sampler, {-10, 5}, {1, 0}, kWidth + 20, {0, 1}, 3);
-  for (int i = 0; i < kWidth + 20; ++i) {
+  DepthStretch stretch(sampler, {-10, 5}, {1, 0}, kRawWidth + 20, {0, 1}, 3);
+  for (int i = 0; i < kRawWidth + 20; ++i) {
     ASSERT_TRUE(stretch.go_to(i));
-    EXPECT_EQ(stretch.at(0), i >= 10 && i < kWidth + 10 ? 1.0 : 0.0) << i;
-    EXPECT_EQ(stretch.at(3), i >= 10 && i < kWidth + 10 ? 1.0 : 0.0) << i;
+    EXPECT_EQ(stretch.at(0), i >= 10 && i < kRawWidth + 10 ? 1.0 : 0.0) << i;
+    EXPECT_EQ(stretch.at(3), i >= 10 && i < kRawWidth + 10 ? 1.0 : 0.0) << i;
   }
   DepthStretch top(sampler, {10, 0}, {1, 0}, 50, {0, 1}, 3);
   ASSERT_TRUE(top.go_to(0));

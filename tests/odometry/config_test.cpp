@@ -110,6 +110,7 @@ std::vector<Entry> all_entries() {
           PLVO_ENTRY(references.max_lost_frames),
           PLVO_ENTRY(references.unseen_m_per_s),
           PLVO_ENTRY(references.unseen_rad_per_s),
+          PLVO_ENTRY(references.recent_frames),
           PLVO_ENTRY(references.look_back_frames),
           PLVO_ENTRY(budget.frame_ns),
           PLVO_ENTRY(budget.patience_frames),

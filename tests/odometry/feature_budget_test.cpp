@@ -112,7 +112,9 @@ class BudgetedOdometry : public ::testing::Test {
 };
 
 TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
-  init(budgeted());
+  Config config = budgeted();
+  config.references.recent_frames = 1;  // points are looked for in every frame
+  init(config);
   const std::vector<int> steps = {0, 1, 1, 1, 2, 2, 2, 3};
   FeatureBudget expected;
   expected.init(kConfig, kLimits);

@@ -71,6 +71,8 @@ class MidExposureOfAPair : public testing::Test {
     prior.seconds_since_last = kFrame_s;
     prior.reference_velocity = boxminus(motion.at(0) * motion.at(-kFrame_s).inverse(), Se3{}) / kFrame_s;
     prior.reference_velocity_known = true;
+    prior.last_velocity = prior.reference_velocity;
+    prior.last_velocity_known = true;
     return prior;
   }
 
@@ -115,7 +117,7 @@ TEST_F(MidExposureOfAPair, OfAChangeOfSpeedThreeQuartersAre) {
 TEST_F(MidExposureOfAPair, TheFirstPairOfAllKnowsOneVelocityOnly) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior first = prior(steady);
-  first.reference_velocity_known = false;
+  first.reference_velocity_known = first.last_velocity_known = false;
   EXPECT_LT(disagreement(steady, first, camera_), 1e-4);
 }
 
@@ -126,6 +128,7 @@ TEST_F(MidExposureOfAPair, AKeyframeKeepsItsOwnVelocity) {
   keyframe.reference_is_last = false;
   keyframe.seconds_since_last = kFrame_s / 2;
   keyframe.T_reference_last = motion_between(faster, kFrame_s / 2, 0);
+  keyframe.last_velocity = boxminus(motion_between(faster, 0, kFrame_s / 2), Se3{}) / (kFrame_s / 2);
   const double h = 1e-4;
   keyframe.reference_velocity = boxminus(motion_between(faster, -h, h), Se3{}) / (2 * h);
   EXPECT_LT(disagreement(faster, keyframe, camera_), 0.35 * disagreement(faster, keyframe, CameraModel{}));
@@ -135,7 +138,7 @@ TEST_F(MidExposureOfAPair, AfterALongGapNobodyGuesses) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior late = prior(steady);
   late.seconds_since_last = 1;
-  late.reference_velocity_known = false;
+  late.reference_velocity_known = late.last_velocity_known = false;
   EXPECT_EQ(disagreement(steady, late, camera_), disagreement(steady, late, CameraModel{}));
 }
 

@@ -64,16 +64,42 @@ bool same_places(const std::vector<SegmentView>& a, const std::vector<SegmentVie
   });
 }
 
-// The tracks and the segments of the reference in frame i are those of frame i − 1.
-void expect_shows_the_last_frame(const std::vector<Shown>& all, std::size_t i) {
-  const Shown& now = all[i];
-  ASSERT_GT(now.point_tracks.size(), 10u) << i;
-  EXPECT_EQ(count(now.point_tracks, all[i - 1].keypoints, true), static_cast<int>(now.point_tracks.size()))
-      << i;
-  EXPECT_TRUE(same_places(now.reference_segments, all[i - 1].segments)) << i;
+// The last frame before frame i that points were looked for in.
+std::size_t recent_to(const std::vector<Shown>& all, std::size_t i) {
+  while (i-- > 0)
+    if (!all[i].keypoints.empty()) break;
+  return i;
 }
 
-TEST(References, BothTheKeyframeAndTheLastFrameServeByDefault) {
+// The tracks and the segments of the reference in frame i are those of that frame.
+void expect_shows_the_recent_frame(const std::vector<Shown>& all, std::size_t i) {
+  const Shown& now = all[i];
+  const Shown& recent = all[recent_to(all, i)];
+  ASSERT_GT(now.point_tracks.size(), 10u) << i;
+  EXPECT_EQ(count(now.point_tracks, recent.keypoints, true), static_cast<int>(now.point_tracks.size())) << i;
+  EXPECT_TRUE(same_places(now.reference_segments, recent.segments)) << i;
+  EXPECT_EQ(now.result.points.with_depth, static_cast<int>(all[recent_to(all, i + 1)].keypoints.size())) << i;
+}
+
+TEST(References, PointsAreLookedForInFramesThatAreMatchedLater) {
+  Config config;
+  const std::vector<Shown> some = run(config);
+  config.references.recent_frames = 1;
+  const std::vector<Shown> all = run(config);
+  int searched = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_FALSE(all[i].keypoints.empty()) << i;
+    EXPECT_EQ(recent_to(all, i), i - 1);
+    searched += some[i].keypoints.empty() ? 0 : 1;
+    EXPECT_LE(i - recent_to(some, i), 3u);
+    const Vector6 apart = boxminus(some[i].result.T_world_camera, all[i].result.T_world_camera);
+    EXPECT_LT(apart.cwiseAbs().maxCoeff(), 0.01) << i;
+  }
+  EXPECT_LE(searched, kFrames * 2 / 3);
+  EXPECT_GE(searched, kFrames / 3);
+}
+
+TEST(References, BothTheKeyframeAndARecentFrameServeByDefault) {
   const std::vector<Shown> all = run(Config{});
   std::size_t keyframe = 0;
   int with_both = 0;
@@ -83,7 +109,7 @@ TEST(References, BothTheKeyframeAndTheLastFrameServeByDefault) {
     // The keyframe stays or becomes the frame before.
     if (result.reference_stamp_ns != all[keyframe].result.stamp_ns) keyframe = i - 1;
     EXPECT_EQ(result.reference_stamp_ns, all[keyframe].result.stamp_ns) << i;
-    expect_shows_the_last_frame(all, i);
+    expect_shows_the_recent_frame(all, i);
     // What is counted is of all references, what is shown of the last one.
     const int shown = static_cast<int>(all[i].point_tracks.size());
     if (keyframe == i - 1) {
@@ -120,7 +146,7 @@ TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
   for (std::size_t i = 2; i < window.size(); ++i) {
     const TrackResult& result = window[i].result;
     ASSERT_EQ(result.state, TrackState::kTracking);
-    expect_shows_the_last_frame(window, i);
+    expect_shows_the_recent_frame(window, i);
     const Se3 expected = [&] {
       std::size_t k = 0;
       while (window[k].result.stamp_ns != result.reference_stamp_ns) ++k;
@@ -205,7 +231,7 @@ TEST(References, ThePaperUsesTheLastFrameAndNoRegistration) {
   const std::vector<Shown> all = run(Config::paper());
   for (std::size_t i = 1; i < all.size(); ++i) {
     EXPECT_EQ(all[i].result.reference_stamp_ns, all[i - 1].result.stamp_ns) << i;
-    expect_shows_the_last_frame(all, i);
+    expect_shows_the_recent_frame(all, i);
     const int shown = static_cast<int>(all[i].point_tracks.size());
     EXPECT_EQ(all[i].result.points.matched, shown) << i;
     // Without registration a point is where the detector put it.

@@ -51,7 +51,7 @@ class Pairs {
     const NoiseScales noise = config_.noise.initial;
     const Limits limits = Limits::vga();
     current.clear({static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
-    rooms_.extraction.extract(frame, depth, arena_, current, result);
+    rooms_.extraction.extract(frame, depth, true, arena_, current, result);
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {

@@ -17,7 +17,7 @@ MotionProblem::Kernels MotionProblem::make_kernels(std::span<ConstraintSet* cons
 MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionReferences& references) {
   MotionsToCurrent motions;
   motions[0] = T_current_base;
-  for (std::size_t r = 1; r < kMaxReferences; ++r)
+  for (std::size_t r = 1; r < kMaxPoses; ++r)
     motions[r] = T_current_base * references[r].T_reference_base.inverse();
   return motions;
 }
@@ -92,7 +92,7 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
     sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind], every);
     share_[kind] = share_of(*sets_[kind]);
   }
-  for (std::size_t r = 1; r < kMaxReferences; ++r) root_[r] = root(references_[r].covariance);
+  for (std::size_t r = 1; r < kMaxPoses; ++r) root_[r] = root(references_[r].covariance);
 }
 
 double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
@@ -100,7 +100,7 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
   const MotionsToCurrent motions = motions_to_current(candidate_, references_);
   sum_.set_zero();
   double cost = 0;
-  for (std::size_t r = 0; r < kMaxReferences; ++r) {
+  for (std::size_t r = 0; r < kMaxPoses; ++r) {
     cost += add_reference(r, motions[r]);
     if (r == 0) candidate_of_references_.base = sum_.H.block<6, 6>(0, 0);
   }

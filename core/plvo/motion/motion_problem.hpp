@@ -14,6 +14,9 @@
 namespace plvo {
 
 inline constexpr std::size_t kMaxReferences = 3;
+// Theirs, and after them that of the last good frame, which a sensed motion starts from: it may be none of
+// them.
+inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
 // Sets: points and lines of each reference, and a motion that other sensors tell; then surfaces of each.
 inline constexpr std::size_t kMaxConstraintKinds = 3 * kMaxReferences + 1;
 // Of the first sets the information is kept: of all but surfaces.
@@ -27,10 +30,10 @@ struct MotionReference {
   Se3 T_reference_base;
   Matrix6 covariance = Matrix6::Zero();
 };
-using MotionReferences = std::array<MotionReference, kMaxReferences>;
+using MotionReferences = std::array<MotionReference, kMaxPoses>;
 
 // T_current_reference of every reference, of one T_current_base.
-using MotionsToCurrent = std::array<Se3, kMaxReferences>;
+using MotionsToCurrent = std::array<Se3, kMaxPoses>;
 MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionReferences& references);
 
 class MotionProblem {
@@ -77,7 +80,7 @@ class MotionProblem {
 
   std::span<ConstraintSet* const> sets_;
   MotionReferences references_;
-  std::array<Matrix6, kMaxReferences> root_;  // of the references' covariances
+  std::array<Matrix6, kMaxPoses> root_;  // of the references' covariances
   Kernels kernels_;
   // What a kind's inliers weigh together, as a share of what as many independent ones would.
   std::array<double, kMaxConstraintKinds> share_{};

@@ -167,6 +167,7 @@ void check(RangeCheck& ranges, const ReferenceConfig& references) {
   ranges.require("max_lost_frames", references.max_lost_frames, 1, 1000000);
   ranges.require("unseen_m_per_s", references.unseen_m_per_s, 0, 100);
   ranges.require("unseen_rad_per_s", references.unseen_rad_per_s, 0, 100);
+  ranges.require("recent_frames", references.recent_frames, 1, 1000000);
   ranges.require("look_back_frames", references.look_back_frames, 1, 1000000);
 }
 

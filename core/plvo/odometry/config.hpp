@@ -114,6 +114,10 @@ struct NoiseConfig {
 
 struct ReferenceConfig {
   ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
+  // Not every frame is the previous one to those after it: it is matched for so many frames, or as long as it
+  // is well seen, and only in a frame that will be matched, or where these are lost, are points looked for.
+  // 1: in every frame.
+  int recent_frames = 3;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;
   // kWindow: it makes way sooner, and goes on being matched beside the next one while the second share is.

@@ -95,14 +95,14 @@ Status Odometry::check(const RgbdFrame& input) const {
   FrameFeatures& features = frame(current_).features;
   features.clear(budget_.room());
   result.feature_step = budget_.step();
-  rooms_.extraction.extract(input, depth.with(predicted), arena_, features, result);
+  result.points = points_found_;
+  rooms_.extraction.extract(input, depth.with(predicted), wants_points(), arena_, features, result);
   TrackedMotion tracked;
   if (keyframe_ != kNobody) {
     estimate_motion(depth, tracked, result);
     fill_track_views(tracked.motion);
     if (tracked.motion.status == StatusCode::kOk) {
-      rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, features);
-      accept(tracked, prior, result);
+      accept(depth, tracked, prior, result);
       look_back(depth, tracked, result);
     } else {
       lose(tracked.motion, prior, result);
@@ -116,19 +116,31 @@ Status Odometry::check(const RgbdFrame& input) const {
       start_again(prior, result);
   }
   segment_count_ = fill_segment_views(features.lines, rooms_.segment_views);
+  points_found_ = result.points;
+  points_found_.matched = points_found_.inliers = 0;
   return result;
 }
 
 // Limits for one reference have memory for the features of two frames: the reference, and the current frame,
-// which takes it from the last one.
+// which takes it from the last one, unless that is a reference.
 void Odometry::take_feature_memory() {
   FrameFeatures& mine = frame(current_).features;
   for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
-    if (slot == keyframe_ || kept_.holds(slot)) continue;
+    if (is_reference(slot)) continue;
     FrameFeatures& theirs = frame(slot).features;
     std::swap(mine, theirs);
     std::swap(mine.stamp_ns, theirs.stamp_ns);  // each keeps its own
   }
+}
+
+// Every frame's points are looked for where descriptors alone find them again, else those of a frame that
+// will be matched later.
+bool Odometry::wants_points() const {
+  if (keyframe_ == kNobody || !config().points.registered || looks_back()) return true;
+  const ReferenceConfig& references = config().references;
+  if (references.policy == ReferencePolicy::kPreviousFrame) return true;
+  return references_of(references.policy) > 1 &&
+         (!uses_both_references() || recent_age_ + 1 >= references.recent_frames);
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {

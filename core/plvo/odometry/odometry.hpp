@@ -51,15 +51,15 @@ struct SegmentView {
   bool has_3d = false;
 };
 struct FeatureView {
-  GrayView image;  // undistorted, grey
-  std::span<const Keypoint> keypoints;
+  GrayView image;                       // undistorted, grey
+  std::span<const Keypoint> keypoints;  // none, where none were looked for (ReferenceConfig)
   std::span<const SegmentView> segments, reference_segments;
   std::span<const PointTrackView> point_tracks;
   std::span<const LineTrackView> line_tracks;
 };
 
-// The frame being tracked, those that it is matched with, and those that are kept.
-inline constexpr std::size_t kFrames = 1 + kMostOtherFrames;
+// The frame being tracked, the last good one, those that are matched, and those that are kept.
+inline constexpr std::size_t kFrames = 2 + kMostOtherFrames;
 
 // What init carves, in order; an arena without memory counts it.
 struct OdometryRooms {
@@ -159,17 +159,15 @@ class Odometry {
   // odometry.cpp: what is refused, and what a frame brings with it.
   Status check(const RgbdFrame& input) const;
   void take_feature_memory();
+  bool wants_points() const;
   double depth_after_colour_s(const RgbdFrame& input) const;
 
   // odometry_motion.cpp: where the camera is expected, and the search for the motion from there.
   Exposure predict_exposure(std::int64_t stamp_ns) const;
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
-  std::size_t choose_references(std::int64_t stamp_ns, References& references) const;
-  // Without registration find() is the whole estimate, of the base alone.
-  bool uses_both_references() const {
-    return last_ != keyframe_ && config().points.registered && references_of(config().references.policy) > 1;
-  }
+  std::size_t list_references(std::int64_t stamp_ns, References& references) const;
+  bool uses_both_references() const { return recent_ != keyframe_; }
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
 
   // odometry_outcome.cpp: what becomes of a frame, and which one the next are matched with.
@@ -178,13 +176,20 @@ class Odometry {
   void start_at(const HeldPose& pose, TrackResult& result);
   void read_gravity(const MotionPrior& prior, HeldPose& pose);
   void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
-  void accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result);
+  void accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
+              TrackResult& result);
   void note_velocity(std::int64_t motion_ns);
-  void choose_keyframe();
+  // The references that go on being good ones.
+  struct Kept {
+    bool keyframe = false, recent = false, older = false;
+  };
+  Kept still_good() const;
+  void choose_references(const Kept& kept);
   void keep_image();
   bool still_seen(int slot, std::size_t reference, double share) const;
   bool affordable(int slot) const;
   void replace_keyframe();
+  bool is_reference(int slot) const;
   int free_slot() const;
   void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
   const char* first_word_of_loss() const;
@@ -203,6 +208,9 @@ class Odometry {
                  const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
+  bool looks_back() const {
+    return !kept_.empty() && frames_since_look_back_ + 1 >= config().references.look_back_frames;
+  }
   void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
   void return_to(int slot, const MotionEstimate& motion);
 
@@ -224,8 +232,12 @@ class Odometry {
   // Slots of frames_. Until the first usable frame there is no keyframe.
   int keyframe_ = kNobody;
   int last_ = kNobody;
-  int older_ = kNobody;       // the keyframe before, while it is matched
-  FromKeyframe last_motion_;  // of last_: zero while it is the keyframe, or there is none
+  // Matched beside the keyframe: a frame since, until it makes way for a newer one; else the keyframe itself.
+  int recent_ = kNobody;
+  int recent_age_ = 0;   // frames since it was tracked
+  int older_ = kNobody;  // the keyframe before, while it is matched
+  // Zero while it is the keyframe, or there is none.
+  FromKeyframe last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();
   int current_ = 0;
   KeptKeyframes kept_;
@@ -239,7 +251,8 @@ class Odometry {
   bool has_stamp_ = false;
   bool start_is_set_ = false;  // start_, by set_pose()
   int lost_frames_ = 0;
-  int view_slot_ = 0;  // whose keypoints features() shows
+  FeatureCounts points_found_;  // of the latest frame where points were looked for
+  int view_slot_ = 0;           // whose keypoints features() shows
   std::size_t point_track_count_ = 0;
   std::size_t line_track_count_ = 0;
   std::size_t segment_count_ = 0;

@@ -40,26 +40,27 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   prior.reference_velocity = from.velocity;
   prior.reference_velocity_known = from.motion_ns > 0;
   prior.reference_is_last = reference == last_;
+  prior.last_velocity = last.velocity;
+  prior.last_velocity_known = last.motion_ns > 0;
   prior.depth_after_colour_s = depth_after_colour_s_;
   return prior;
 }
 
-// The keyframe, which is the base, the last good frame, and the keyframe before, as far as the policy wants
-// them. Apart: what it makes them of is not on the stack while the motion is looked for.
-[[gnu::noinline]] std::size_t Odometry::choose_references(std::int64_t stamp_ns,
-                                                          References& references) const {
-  const MotionReference last = from_keyframe(last_);
-  references[0] = {.features = &frame(keyframe_).features,
-                   .prior = prior_of(keyframe_, stamp_ns),
-                   .pose = {},
-                   .last = last};
-  std::size_t count = 1;
-  const auto add = [&](int slot, const MotionReference& pose) {
-    references[count++] = {
-        .features = &frame(slot).features, .prior = prior_of(slot, stamp_ns), .pose = pose, .last = {}};
+// The keyframe, which is the base, a recent frame, and the keyframe before, as far as the policy wants them.
+// Apart: what it makes them of is not on the stack while the motion is looked for.
+[[gnu::noinline]] std::size_t Odometry::list_references(std::int64_t stamp_ns, References& references) const {
+  std::size_t count = 0;
+  const auto add = [&](int slot) {
+    const Frame& from = frame(slot);
+    references[count++] = {.features = &from.features,
+                           .prior = prior_of(slot, stamp_ns),
+                           .pose = from_keyframe(slot),
+                           .last = {frame(last_).T_world_camera.inverse() * from.T_world_camera,
+                                    from_keyframe(last_).covariance}};
   };
-  if (uses_both_references()) add(last_, last);
-  if (older_ != kNobody) add(older_, from_keyframe(older_));
+  add(keyframe_);
+  if (uses_both_references()) add(recent_);
+  if (older_ != kNobody) add(older_);
   return count;
 }
 
@@ -68,8 +69,9 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 // all of them.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
+  const DepthSampler expected = depth.with(predict_exposure(result.stamp_ns));
   References references;
-  const std::size_t count = choose_references(result.stamp_ns, references);
+  const std::size_t count = list_references(result.stamp_ns, references);
   const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
@@ -79,6 +81,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     return tracked.motion.status == StatusCode::kOk;
   };
   const auto find = [&](const Reference& from, double radius_px) {
+    rooms_.extraction.find_points(expected, arena_, frame(current_).features.points, result);
     rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
     if (tracked.motion.status != StatusCode::kOk) return false;
     return !config().points.registered ||

@@ -10,6 +10,8 @@ namespace {
 
 // A frame with fewer 3D points and lines than this cannot start a trajectory.
 constexpr int kMinStartFeatures = 20;
+// A recent frame is matched while at least this share of its features are inliers.
+constexpr double kRecentInlierRatio = 0.5;
 
 int features_3d(const TrackResult& result) { return result.points.with_depth + result.lines.with_depth; }
 bool too_few_features(const TrackResult& result) { return features_3d(result) < kMinStartFeatures; }
@@ -99,12 +101,12 @@ void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
   report(pose, Vector6::Zero(), result);
   hold(current_, pose);
   frame(current_).motion_ns = 0;
-  last_motion_ = {};
+  last_motion_ = recent_motion_ = {};
   result.T_camera_reference = Se3();
   result.motion_covariance.setZero();
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
-  keyframe_ = last_ = current_;
+  keyframe_ = recent_ = last_ = current_;
   older_ = kNobody;
   keep_image();
   current_ = free_slot();
@@ -123,13 +125,21 @@ void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
   }
 }
 
-void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, TrackResult& result) {
+void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
+                      TrackResult& result) {
   const MotionEstimate& motion = tracked.motion;
+  const Kept kept = still_good();
+  if (!kept.recent || looks_back()) {
+    FrameFeatures& features = frame(current_).features;
+    rooms_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_, features.points,
+                                  result);
+    rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, features);
+  }
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
   // Of the last frame until here, of the current one from here on.
   last_motion_ = {motion.C_H,
-                  repeated_error(motion.references, last_motion_.repeated, config().noise.repeated_share)};
+                  repeated_error(motion.references, recent_motion_.repeated, config().noise.repeated_share)};
   const Matrix6 covariance = last_motion_.total();
   HeldPose from = held(keyframe_);
   HeldPose pose = advance(from, motion.T_current_reference, covariance);
@@ -147,7 +157,7 @@ void Odometry::accept(const TrackedMotion& tracked, const MotionPrior& prior, Tr
   lost_frames_ = 0;
   sensed_.restart();
   learn(config().noise, tracked.shown, noise_);
-  choose_keyframe();
+  choose_references(kept);
 }
 
 // Of the current frame, and so more of the last one.
@@ -161,21 +171,39 @@ void Odometry::note_velocity(std::int64_t motion_ns) {
   last.motion_ns = motion_ns;
 }
 
-// The tracked frame becomes the last good one, and the keyframe too, unless the keyframe goes on being a good
-// one.
-void Odometry::choose_keyframe() {
+// By what the last estimate found of them.
+Odometry::Kept Odometry::still_good() const {
   const ReferenceConfig& references = config().references;
   const bool window = references.policy == ReferencePolicy::kWindow;
-  const std::size_t older_index = uses_both_references() ? 2 : 1;
-  if (older_ != kNobody &&
-      !(affordable(older_) && still_seen(older_, older_index, references.older_inlier_ratio)))
-    older_ = kNobody;
+  const bool both = uses_both_references();
+  const auto good = [&](int slot, std::size_t index, double share) {
+    return affordable(slot) && still_seen(slot, index, share);
+  };
+  Kept kept;
+  kept.older = older_ != kNobody && good(older_, both ? 2 : 1, references.older_inlier_ratio);
+  kept.keyframe =
+      references.policy != ReferencePolicy::kPreviousFrame &&
+      good(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
+  if (both)
+    kept.recent = recent_age_ + 1 < references.recent_frames && good(recent_, 1, kRecentInlierRatio);
+  else  // Without registration find() is the whole estimate, of the base alone.
+    kept.recent = !config().points.registered || references_of(references.policy) == 1;
+  kept.recent = kept.recent && kept.keyframe;
+  return kept;
+}
+
+// The tracked frame becomes the last good one, and takes the place of a reference that is none any more.
+void Odometry::choose_references(const Kept& kept) {
+  if (!kept.older) older_ = kNobody;
   last_ = current_;
-  const bool keep =
-      references.policy != ReferencePolicy::kPreviousFrame && affordable(keyframe_) &&
-      still_seen(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
-  if (!keep) replace_keyframe();
-  if (!keep || uses_both_references()) keep_image();
+  if (!kept.keyframe) replace_keyframe();
+  ++recent_age_;
+  if (!kept.recent) {
+    recent_ = last_;
+    recent_age_ = 0;
+    recent_motion_ = last_motion_;
+    keep_image();
+  }
   current_ = free_slot();
 }
 
@@ -213,9 +241,13 @@ bool Odometry::affordable(int slot) const {
          features.lines.segments.size() <= room.segments;
 }
 
+bool Odometry::is_reference(int slot) const {
+  return slot == keyframe_ || slot == recent_ || slot == older_ || kept_.holds(slot);
+}
+
 int Odometry::free_slot() const {
   int slot = 0;
-  while (slot == keyframe_ || slot == last_ || slot == older_ || kept_.holds(slot)) ++slot;
+  while (slot == last_ || is_reference(slot)) ++slot;
   return slot;
 }
 
@@ -228,8 +260,8 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
   // starts anew at the last good pose.
   kept_.keep(keyframe_);
-  keyframe_ = older_ = kNobody;
-  last_motion_ = {};
+  keyframe_ = recent_ = older_ = kNobody;
+  last_motion_ = recent_motion_ = {};
   current_ = free_slot();
 }
 

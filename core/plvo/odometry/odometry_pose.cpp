@@ -27,8 +27,10 @@ void Odometry::reset() {
     each = Frame();
     each.features = features;
   }
-  keyframe_ = last_ = older_ = kNobody;
-  last_motion_ = {};
+  keyframe_ = recent_ = last_ = older_ = kNobody;
+  recent_age_ = 0;
+  last_motion_ = recent_motion_ = {};
+  points_found_ = {};
   kept_.clear();
   frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
@@ -86,13 +88,15 @@ void Odometry::report(const HeldPose& pose, const Vector6& velocity, TrackResult
 // A frame as a reference whose pose relative to the keyframe is known.
 MotionReference Odometry::from_keyframe(int slot) const {
   if (keyframe_ == kNobody || keyframe_ == slot) return {};
-  return {frame(slot).T_world_camera.inverse() * frame(keyframe_).T_world_camera,
-          slot == older_ ? older_covariance_ : last_motion_.covariance};
+  const Matrix6& covariance = slot == older_    ? older_covariance_
+                              : slot == recent_ ? recent_motion_.covariance
+                                                : last_motion_.covariance;
+  return {frame(slot).T_world_camera.inverse() * frame(keyframe_).T_world_camera, covariance};
 }
 
 // The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
 void Odometry::move_keyframe(const HeldPose& pose) {
-  for (const int slot : {last_, older_})
+  for (const int slot : {last_, older_, recent_ == last_ ? kNobody : recent_})
     if (slot != kNobody && slot != keyframe_)
       frame(slot).T_world_camera = pose.T_world_camera * from_keyframe(slot).T_reference_base.inverse();
   hold(keyframe_, pose);

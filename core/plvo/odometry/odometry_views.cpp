@@ -17,7 +17,7 @@ std::size_t Odometry::fill_segment_views(const LineFeatures& lines, std::span<Se
 void Odometry::fill_track_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
   const bool both = uses_both_references();
-  const FrameFeatures& reference = frame(both ? last_ : keyframe_).features;
+  const FrameFeatures& reference = frame(both ? recent_ : keyframe_).features;
   const ReferenceTracks& tracks = rooms_.tracking.tracks(both ? 1 : 0);
   point_track_count_ = tracks.points.matches.size();
   for (std::size_t i = 0; i < point_track_count_; ++i) {

@@ -67,10 +67,9 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
   if (!found) return false;
   result = trial;
   kept_.drop(slot);
-  keyframe_ = slot;
+  keyframe_ = recent_ = slot;
   result.reference_stamp_ns = frame(slot).features.stamp_ns;
-  rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
-  accept(tracked, prior, result);
+  accept(depth, tracked, prior, result);
   result.returned = true;
   return true;
 }
@@ -79,7 +78,11 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
 // tracked: of the frame's own motion, which is accepted and not needed any more: room for another one.
 void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
-  if (kept_.empty() || ++frames_since_look_back_ < config().references.look_back_frames) return;
+  if (kept_.empty()) return;
+  if (!looks_back()) {
+    ++frames_since_look_back_;
+    return;
+  }
   frames_since_look_back_ = 0;
   const int slot = kept_.next();
   Frame& last = frame(last_);  // the frame just tracked

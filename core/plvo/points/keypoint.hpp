@@ -43,9 +43,11 @@ struct PointFeatures {
   std::span<Patch> patches;
   std::span<WindowMask> masks;
   std::span<Point3d> points;  // camera frame
+  bool looked_for = false;
 
-  // No keypoints, and room for at most so many.
+  // Not looked for yet: no keypoints, and room for at most so many.
   void clear(std::size_t room) {
+    looked_for = false;
     keypoints = FixedVector<Keypoint>({keypoints.begin(), room < points.size() ? room : points.size()});
   }
 

@@ -79,26 +79,24 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) c
   }
 }
 
-void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch,
-                                FrameFeatures& features, TrackResult& result) {
+void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, bool points,
+                                Arena& scratch, FrameFeatures& features, TrackResult& result) {
   features.stamp_ns = frame.stamp_ns;
   {
     const StageTimer timer(*config_, result, Stage::kImage);
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
-  const bool points = kPointsBuilt && config_->features != Features::kLines;
   const bool lines = kLinesBuilt && config_->features != Features::kPoints;
-  const bool at_once = points && lines && config_->side_by_side;
+  const bool at_once = points && config_->features == Features::kBoth && config_->side_by_side;
   if (at_once) {
     const StageTimer timer(*config_, result, Stage::kPoints);
     const ScratchScope scope(scratch);
     Arena own(
         scratch.take<std::byte>("points beside segments", point_scratch(camera_.width, camera_.height)));
     config_->side_by_side.both([&] { find_segments(scratch, features.lines, result); },
-                               [&] { find_points(depth, own, features.points, result); });
+                               [&] { detect_points(depth, own, features.points, result); });
   } else if (points) {
-    const StageTimer timer(*config_, result, Stage::kPoints);
     find_points(depth, scratch, features.points, result);
   }
   if (lines && !at_once) {
@@ -109,6 +107,14 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
 
 void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                     TrackResult& result) const {
+  if (!kPointsBuilt || config_->features == Features::kLines || points.looked_for) return;
+  const StageTimer timer(*config_, result, Stage::kPoints);
+  detect_points(depth, scratch, points, result);
+}
+
+void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                                      TrackResult& result) const {
+  points.looked_for = true;
   const DetectionSummary summary =
       detect_keypoints(pyramid_, depth, config_->points.detector, scratch, points.keypoints);
   describe_points(scratch, points);

@@ -62,9 +62,12 @@ class FeatureExtraction {
   }
 
   // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Points and
-  // lines have no 3D yet.
-  void extract(const RgbdFrame& frame, const DepthSampler& depth, Arena& scratch, FrameFeatures& features,
-               TrackResult& result);
+  // lines have no 3D yet. Without `points` these are left for find_points.
+  void extract(const RgbdFrame& frame, const DepthSampler& depth, bool points, Arena& scratch,
+               FrameFeatures& features, TrackResult& result);
+  // P1 of the last frame, unless its points were looked for before.
+  void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                   TrackResult& result) const;
   // What a reference needs besides lines: lift_points, and samples of surfaces. When the motion during the
   // exposure is known as well as it will be.
   void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
@@ -104,8 +107,8 @@ class FeatureExtraction {
   }
   void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
-  void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                   TrackResult& result) const;
+  void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
+                     TrackResult& result) const;
   void find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result);
   // Moves the segments that have 3D to the front, with their lines and descriptors.
   void lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,

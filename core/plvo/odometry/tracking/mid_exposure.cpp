@@ -22,9 +22,9 @@ Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
 }
 
 Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
-  if (!prior.reference_velocity_known || !prior.reference_is_last) return recent;
+  if (!prior.last_velocity_known) return recent;
   constexpr double kExtrapolated = 0.5;
-  return recent + 0.5 * kExtrapolated * (recent - prior.reference_velocity);
+  return recent + 0.5 * kExtrapolated * (recent - prior.last_velocity);
 }
 
 Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,

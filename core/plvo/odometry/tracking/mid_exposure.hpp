@@ -24,6 +24,8 @@ struct PairPrior {
   Vector6 reference_velocity = Vector6::Zero();  // per second, as of exposure.hpp
   bool reference_velocity_known = false;
   bool reference_is_last = true;
+  Vector6 last_velocity = Vector6::Zero();  // of the last good frame
+  bool last_velocity_known = false;
   double depth_after_colour_s = 0;  // of the current frame, as of exposure.hpp
   // Of the current frame, where it is known without the motion from the reference.
   Vector6 velocity = Vector6::Zero();

@@ -114,13 +114,26 @@ TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, con
 }  // namespace
 
 std::size_t latest_of(std::span<const Reference> references) {
+  std::size_t latest = 0;
   for (std::size_t r = 1; r < references.size(); ++r)
-    if (references[r].prior.reference_is_last) return r;
-  return 0;
+    if (references[r].features->stamp_ns > references[latest].features->stamp_ns) latest = r;
+  return latest;
+}
+
+// Poses relative to the base; that of the last good frame besides, where it is no reference.
+ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Reference> references,
+                                                        MotionReferences& poses) {
+  Indices at{latest_of(references), kMaxReferences};
+  poses[kMaxReferences] = references[0].last;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    poses[r] = references[r].pose;
+    if (references[r].prior.reference_is_last) at.last_frame = r;
+  }
+  return at;
 }
 
 void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
-                              const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
+                              const CurrentFrame& current, const Indices& at, const MotionStart& start,
                               const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
                               TrackResult& result) {
   const Config& config = current.extraction.config();
@@ -138,7 +151,7 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   std::uint8_t sensed_flag = 0;
   PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&sensed_flag, 1});
   if (sensed.known()) {
-    prior.set_reference(last_index, 0);
+    prior.set_reference(at.last_frame, 0);
     sets[set_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
   }
@@ -157,12 +170,12 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   }
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
-    const std::size_t last = last_index < features.size() ? last_index : 0;
-    const Se3 T_current_last = motions_to_current(tracked.motion.T_current_reference, poses)[last];
+    const std::size_t latest = at.latest;
+    const Se3 T_current_latest = motions_to_current(tracked.motion.T_current_reference, poses)[latest];
     const Pinhole& pinhole = current.extraction.camera().pinhole;
-    tracked.shown =
-        residual_scales(pinhole, constraints.points[last], constraints.lines[last], T_current_last, scratch);
-    tracked.shown.surfaces = surface_scale(constraints.surfaces[last], T_current_last, scratch);
+    tracked.shown = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
+                                    T_current_latest, scratch);
+    tracked.shown.surfaces = surface_scale(constraints.surfaces[latest], T_current_latest, scratch);
     note_shared(start.shared, tracked.motion.shared, tracked.shown);
   }
 }
@@ -226,11 +239,10 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const bool whole = !config.points.registered;
   const SharedErrors shared =
       whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
-  const bool is_last = reference.prior.reference_is_last;
   MotionReferences poses;
-  if (!is_last) poses[1] = reference.last;
-  solve({&features, 1}, poses, current, is_last ? 0 : 1, {&T_predicted, shared},
-        whole ? kFineSolve : kRoughSolve, scratch, tracked, result);
+  const Indices at = set_poses({&reference, 1}, poses);
+  solve({&features, 1}, poses, current, at, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
+        tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure = current_exposure(camera, reference.prior, tracked.motion.T_current_reference);
 }
@@ -242,12 +254,9 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const CameraModel& camera = current.extraction.camera();
   const ScratchScope scope(scratch);
   MotionReferences poses;
-  for (std::size_t r = 0; r < references.size(); ++r) poses[r] = references[r].pose;
-  const bool base_is_last = references[0].prior.reference_is_last;
-  if (!base_is_last) poses[1] = references[0].last;
+  const Indices at = set_poses(references, poses);
   const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
-  const std::size_t last = latest_of(references);
-  const Exposure exposure = current_exposure(camera, references[last].prior, motions[last]);
+  const Exposure exposure = current_exposure(camera, references[at.latest].prior, motions[at.latest]);
   const DepthSampler depth = current.depth.with(exposure);
   current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,
                                 result);
@@ -267,12 +276,13 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
     track_surfaces(depth, camera.pinhole, config.noise, current.noise.surfaces,
                    features[r].reference_surfaces, motions[r], tracks_[r].surfaces);
   }
-  solve(std::span(features).first(references.size()), poses, current, base_is_last ? 0 : 1,
+  solve(std::span(features).first(references.size()), poses, current, at,
         {&T_current_base, shared_errors(config.noise, exposure, current.noise), true}, kFineSolve, scratch,
         tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
-    tracked.exposure = current_exposure(camera, references[last].prior,
-                                        motions_to_current(tracked.motion.T_current_reference, poses)[last]);
+    tracked.exposure =
+        current_exposure(camera, references[at.latest].prior,
+                         motions_to_current(tracked.motion.T_current_reference, poses)[at.latest]);
 }
 
 }  // namespace plvo

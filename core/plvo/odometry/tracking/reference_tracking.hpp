@@ -33,7 +33,7 @@ struct Reference {
   MotionReference last;  // pose of the last good frame relative to this one
 };
 
-// Of the last good frame among the references; the base, where it is none of them.
+// Of the references, the one that was taken last.
 std::size_t latest_of(std::span<const Reference> references);
 
 // What was found of one reference in the current frame.
@@ -116,10 +116,14 @@ class ReferenceTracking {
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  // last_index: of the last good frame among the poses.
+  // Of poses: the latest reference's, and the last good frame's.
+  struct Indices {
+    std::size_t latest, last_frame;
+  };
+  static Indices set_poses(std::span<const Reference> references, MotionReferences& poses);
   void solve(std::span<const MidExposure> features, const MotionReferences& poses,
-             const CurrentFrame& current, std::size_t last_index, const MotionStart& start,
-             const LmOptions& lm, Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+             const CurrentFrame& current, const Indices& at, const MotionStart& start, const LmOptions& lm,
+             Arena& scratch, TrackedMotion& tracked, TrackResult& result);
   std::array<ReferenceTracks, kMaxReferences> tracks_;
   SparseAlignment alignment_;
 };
