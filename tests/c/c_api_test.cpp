@@ -179,7 +179,7 @@ TEST(CApi, FeaturesAreThoseOfTheFrontDoor) {
   Doors doors;
   EXPECT_EQ(plvo_image(doors.c_odometry, nullptr), nullptr) << "no frame yet";
   EXPECT_EQ(plvo_keypoints(doors.c_odometry, nullptr, 0), 0U);
-  tracked_alike(doors, 3);
+  tracked_alike(doors, 2);
   const FeatureView view = doors.odometry.features();
 
   std::vector<plvo_pixel> keypoints(plvo_keypoints(doors.c_odometry, nullptr, 0));

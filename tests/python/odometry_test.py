@@ -92,7 +92,7 @@ def test_images_are_read_where_they_lie(walk):
 
 
 def test_features_are_views_of_what_is_drawn(walk):
-    camera, frames = frames_of(walk, 3)
+    camera, frames = frames_of(walk, 2)
     odometry = plvo.Odometry(camera)
     for frame in frames:
         result = odometry.track(*frame)

@@ -42,7 +42,7 @@ async function probe() {
   if (scrubber) {
     const canvas = document.getElementById("frame"), text = document.getElementById("frame-text");
     const before = [print(canvas), text.textContent, document.getElementById("depth").src];
-    scrubber.value = Math.floor(scrubber.max / 2) || 1;
+    scrubber.value = Math.ceil(scrubber.max / 2);  // a frame in which points were looked for
     scrubber.dispatchEvent(new Event("input"));
     await wait(300);
     found.scrubbed = [print(canvas) !== before[0], text.textContent !== before[1], document.getElementById("depth").src !== before[2]];

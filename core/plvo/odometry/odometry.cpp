@@ -75,7 +75,7 @@ Status Odometry::check(const RgbdFrame& input) const {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   const bool has_pose = last_ != kNobody;
-  report(has_pose ? held(last_) : start_, has_pose ? frame(last_).velocity : Vector6::Zero(), result);
+  report(held(has_pose ? last_ : current_), has_pose ? frame(last_).velocity : Vector6::Zero(), result);
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   Status status = check(input);
   if (status.ok()) status = prior.validate();

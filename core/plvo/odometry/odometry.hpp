@@ -239,17 +239,16 @@ class Odometry {
   // Zero while it is the keyframe, or there is none.
   FromKeyframe last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();
-  int current_ = 0;
+  int current_ = 0;  // until the first usable frame it holds the pose of that one
   KeptKeyframes kept_;
   int frames_since_look_back_ = 0;
-  HeldPose start_;       // of the first usable frame
   SensedMotion sensed_;  // since the last good frame
   GravityHold gravity_;
   NoiseScales noise_;                // learnt so far
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
   bool has_stamp_ = false;
-  bool start_is_set_ = false;  // start_, by set_pose()
+  bool start_is_set_ = false;  // by set_pose()
   int lost_frames_ = 0;
   FeatureCounts points_found_;  // of the latest frame where points were looked for
   int view_slot_ = 0;           // whose keypoints features() shows

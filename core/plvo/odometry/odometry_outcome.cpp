@@ -63,7 +63,7 @@ void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
         "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
     return;
   }
-  HeldPose pose = start_;
+  HeldPose pose = held(current_);
   if (levels)
     gravity_.level(*prior.gravity, pose);
   else

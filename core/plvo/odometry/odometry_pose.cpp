@@ -34,7 +34,6 @@ void Odometry::reset() {
   kept_.clear();
   frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
-  start_ = HeldPose();
   start_is_set_ = false;
   sensed_ = SensedMotion();
   gravity_.forget();
@@ -53,18 +52,21 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
     return {StatusCode::kInvalidArgument,
             "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
   gravity_.forget();
-  start_ = HeldPose();
-  start_.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
-  start_.covariance = covariance;
+  HeldPose pose;
+  pose.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
+  pose.covariance = covariance;
   start_is_set_ = true;
   kept_.clear();  // their poses are in the world that was
-  if (last_ == kNobody) return {};
+  if (last_ == kNobody) {
+    hold(current_, pose);
+    return {};
+  }
   // The keyframe moves with the last frame: the motion between them stays what it is.
   if (keyframe_ != kNobody)
     move_keyframe(keyframe_ == last_
-                      ? start_
-                      : advance(start_, from_keyframe(last_).T_reference_base.inverse(), Matrix6::Zero()));
-  hold(last_, start_);
+                      ? pose
+                      : advance(pose, from_keyframe(last_).T_reference_base.inverse(), Matrix6::Zero()));
+  hold(last_, pose);
   return {};
 }
 
