@@ -55,9 +55,10 @@ class Pairs {
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
-      const Reference reference{&rooms_.frames[1 - slot_], prior_, {}, {}};
+      const Reference reference{&rooms_.frames[1 - slot_], prior_, {}};
       const SensedMotion nothing;
-      const CurrentFrame now{current, rooms_.extraction, depth, noise, nothing};
+      const MotionReference nobody;
+      const CurrentFrame now{current, rooms_.extraction, depth, noise, nothing, nobody};
       rooms_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
       const Se3 T_found = motion.T_current_reference;
       if (motion.status == StatusCode::kOk)

@@ -143,6 +143,13 @@ bool Odometry::wants_points() const {
          (!uses_both_references() || recent_age_ + 1 >= references.recent_frames);
 }
 
+// Of the current frame, where they are wanted after all. Before the frame is the last one. Apart, for the
+// sampler would else be on the stack while the motion is solved for.
+[[gnu::noinline]] void Odometry::find_points(const DepthSampler& depth, TrackResult& result) {
+  rooms_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
+                                frame(current_).features.points, result);
+}
+
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
   if (!camera().depth_timing.known) return 0;
   // Stamps farther apart than this do not belong to one frame, whoever paired them.

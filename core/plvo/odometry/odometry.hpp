@@ -160,6 +160,7 @@ class Odometry {
   Status check(const RgbdFrame& input) const;
   void take_feature_memory();
   bool wants_points() const;
+  void find_points(const DepthSampler& depth, TrackResult& result);
   double depth_after_colour_s(const RgbdFrame& input) const;
 
   // odometry_motion.cpp: where the camera is expected, and the search for the motion from there.

@@ -51,12 +51,8 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 [[gnu::noinline]] std::size_t Odometry::list_references(std::int64_t stamp_ns, References& references) const {
   std::size_t count = 0;
   const auto add = [&](int slot) {
-    const Frame& from = frame(slot);
-    references[count++] = {.features = &from.features,
-                           .prior = prior_of(slot, stamp_ns),
-                           .pose = from_keyframe(slot),
-                           .last = {frame(last_).T_world_camera.inverse() * from.T_world_camera,
-                                    from_keyframe(last_).covariance}};
+    references[count++] = {
+        .features = &frame(slot).features, .prior = prior_of(slot, stamp_ns), .pose = from_keyframe(slot)};
   };
   add(keyframe_);
   if (uses_both_references()) add(recent_);
@@ -69,10 +65,10 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 // all of them.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
-  const DepthSampler expected = depth.with(predict_exposure(result.stamp_ns));
   References references;
   const std::size_t count = list_references(result.stamp_ns, references);
-  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_};
+  const MotionReference last = from_keyframe(last_);
+  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_, last};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
   const Reference& latest = all[latest_of(all)];
@@ -81,7 +77,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     return tracked.motion.status == StatusCode::kOk;
   };
   const auto find = [&](const Reference& from, double radius_px) {
-    rooms_.extraction.find_points(expected, arena_, frame(current_).features.points, result);
+    find_points(depth, result);
     rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
     if (tracked.motion.status != StatusCode::kOk) return false;
     return !config().points.registered ||

@@ -130,10 +130,8 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
   const MotionEstimate& motion = tracked.motion;
   const Kept kept = still_good();
   if (!kept.recent || looks_back()) {
-    FrameFeatures& features = frame(current_).features;
-    rooms_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_, features.points,
-                                  result);
-    rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, features);
+    find_points(depth, result);
+    rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
   }
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;

@@ -39,8 +39,9 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   prior.reference_is_last = false;
   prior.depth_after_colour_s = depth_after_colour_s_;
   const SensedMotion nothing;
-  const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing};
-  const Reference reference{&frame(slot).features, prior, {}, {}};
+  const MotionReference nobody;
+  const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing, nobody};
+  const Reference reference{&frame(slot).features, prior, {}};
   const double anywhere_px = std::max(camera().width, camera().height);
   rooms_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
   if (tracked.motion.status == StatusCode::kOk && config().points.registered) {

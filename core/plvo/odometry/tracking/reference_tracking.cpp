@@ -120,13 +120,15 @@ std::size_t latest_of(std::span<const Reference> references) {
   return latest;
 }
 
-// Poses relative to the base; that of the last good frame besides, where it is no reference.
+// Relative to the first of them; the last good frame's besides, where it is no reference.
 ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Reference> references,
+                                                        const MotionReference& last,
                                                         MotionReferences& poses) {
   Indices at{latest_of(references), kMaxReferences};
-  poses[kMaxReferences] = references[0].last;
+  const Se3 T_base_first = references[0].pose.T_reference_base.inverse();
+  poses[kMaxReferences] = {last.T_reference_base * T_base_first, last.covariance};
   for (std::size_t r = 0; r < references.size(); ++r) {
-    poses[r] = references[r].pose;
+    if (r > 0) poses[r] = references[r].pose;
     if (references[r].prior.reference_is_last) at.last_frame = r;
   }
   return at;
@@ -240,7 +242,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const SharedErrors shared =
       whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
   MotionReferences poses;
-  const Indices at = set_poses({&reference, 1}, poses);
+  const Indices at = set_poses({&reference, 1}, current.last, poses);
   solve({&features, 1}, poses, current, at, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
         tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
@@ -254,7 +256,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const CameraModel& camera = current.extraction.camera();
   const ScratchScope scope(scratch);
   MotionReferences poses;
-  const Indices at = set_poses(references, poses);
+  const Indices at = set_poses(references, current.last, poses);
   const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
   const Exposure exposure = current_exposure(camera, references[at.latest].prior, motions[at.latest]);
   const DepthSampler depth = current.depth.with(exposure);

@@ -30,7 +30,6 @@ struct Reference {
   const FrameFeatures* features = nullptr;
   PairPrior prior;
   MotionReference pose;
-  MotionReference last;  // pose of the last good frame relative to this one
 };
 
 // Of the references, the one that was taken last.
@@ -63,7 +62,8 @@ struct CurrentFrame {
   const FeatureExtraction& extraction;  // of its image; with the camera and the configuration of both
   const DepthSampler& depth;
   const NoiseScales& noise;
-  const SensedMotion& sensed;
+  const SensedMotion& sensed;   // since the last good frame,
+  const MotionReference& last;  // whose pose this is, relative to the base
 };
 
 struct TrackedMotion {
@@ -120,7 +120,8 @@ class ReferenceTracking {
   struct Indices {
     std::size_t latest, last_frame;
   };
-  static Indices set_poses(std::span<const Reference> references, MotionReferences& poses);
+  static Indices set_poses(std::span<const Reference> references, const MotionReference& last,
+                           MotionReferences& poses);
   void solve(std::span<const MidExposure> features, const MotionReferences& poses,
              const CurrentFrame& current, const Indices& at, const MotionStart& start, const LmOptions& lm,
              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
