@@ -83,7 +83,7 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
     }
 }
 
-#ifndef PLVO_SMALL_CODE
+#ifndef PLVO_LANE_LOOPS
 
 // As nearest_surface and sum_up where the whole window belongs to one surface, which most do; else false.
 // corner: of eight columns and 2 · radius + 1 rows that are there.
@@ -237,7 +237,7 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
   const int top = place.y - radius;
   SurfaceSums sums;
   DepthSample result;
-#ifndef PLVO_SMALL_CODE
+#ifndef PLVO_LANE_LOOPS
   const bool whole =
       holds_raw(left, top) && holds_raw(left + 7, place.y + radius) &&
       sum_up_whole(raw(left, top), depth_.stride, radius, depth_.metres_per_unit, noise_, sums);

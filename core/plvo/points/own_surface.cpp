@@ -32,7 +32,7 @@ Range range_around(double units) {
   return {whole((1 - kSameSurface) * units) + 1, whole((1 + kSameSurface) * units)};
 }
 
-#ifndef PLVO_SMALL_CODE
+#ifndef PLVO_LANE_LOOPS
 
 // A bit for each of eight readings, `step` apart, that is in the range.
 std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range) {
@@ -68,7 +68,7 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
   const Range range = range_around(depth_m / depth.metres_per_unit());
   std::array<Row, kSurfaceRows> own{};
   const bool straight = place.map.is_straight(1.0 / kReach);
-#ifndef PLVO_SMALL_CODE
+#ifndef PLVO_LANE_LOOPS
   const bool whole = straight && depth.holds_raw(left, top) &&
                      depth.holds_raw(left + (kSurfaceColumns - 1) * step, top + (kSurfaceRows - 1) * step);
 #else
@@ -76,7 +76,7 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
 #endif
   for (int r = 0; r < kSurfaceRows; ++r) {
     std::uint32_t bits = 0;
-#ifndef PLVO_SMALL_CODE
+#ifndef PLVO_LANE_LOOPS
     if (whole) {
       const std::uint16_t* const row = depth.raw(left, top + r * step);
       bits = own_of_eight(row, step, range) | own_of_eight(row + (kSurfaceColumns - 8) * step, step, range)
