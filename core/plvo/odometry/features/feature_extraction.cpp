@@ -88,7 +88,8 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
   const bool lines = kLinesBuilt && config_->features != Features::kPoints;
-  const bool at_once = points && config_->features == Features::kBoth && config_->side_by_side;
+  const bool at_once =
+      kPointsBuilt && lines && points && config_->features == Features::kBoth && config_->side_by_side;
   if (at_once) {
     const StageTimer timer(*config_, result, Stage::kPoints);
     const ScratchScope scope(scratch);
