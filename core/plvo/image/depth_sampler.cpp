@@ -90,10 +90,10 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
 bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius, double metres_per_unit,
                   const DepthNoise& noise, SurfaceSums& sums) {
   constexpr std::size_t kMostRows = 2 * DepthSampler::kMaxRadius + 1;
-  constexpr Lanes kColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr Lanes kEightColumns = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr std::int16_t kSign = std::numeric_limits<std::int16_t>::min();  // order of unsigned as of signed
   const auto side = static_cast<std::int16_t>(2 * radius + 1);
-  const Lanes of_window = kColumns < side;
+  const Lanes of_window = kEightColumns < side;
   std::array<Lanes, kMostRows> rows;
   Lanes low = (Lanes{} + std::numeric_limits<std::int16_t>::max());
   Lanes high = (Lanes{} + kSign);
@@ -117,7 +117,7 @@ bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius
   sums.most = farthest(sums.least, metres_per_unit, noise);
   if (most - kSign > sums.most) return false;
 
-  const Lanes across = (kColumns - static_cast<std::int16_t>(radius)) & of_window;
+  const Lanes across = (kEightColumns - static_cast<std::int16_t>(radius)) & of_window;
   const Lanes one = of_window & 1;
   WideLanes d{}, dx{}, dy{}, dd{}, part;
   for (int j = 0; j < side; ++j) {

@@ -8,9 +8,9 @@
 namespace plvo {
 namespace {
 
-constexpr double kOne = 65536;
+constexpr double kFractions = 65536;
 
-std::int32_t units(double px) { return static_cast<std::int32_t>(px * kOne); }
+std::int32_t units(double px) { return static_cast<std::int32_t>(px * kFractions); }
 
 double magnitude(double x) { return x < 0 ? -x : x; }
 

@@ -161,12 +161,13 @@ Landmark moved(const Landmark& landmark, const Observed& at) {
 }
 
 // Columns of the motion, of the shared errors, and of the residual: an even number.
-constexpr int kPairs = (JointInformation::kSize + 1) / 2;
+constexpr int kColumnPairs = (JointInformation::kSize + 1) / 2;
 static_assert(JointInformation::kSize % 2 == 1);
-using Columns = Matrix<4, 2 * kPairs>;
+using Columns = Matrix<4, 2 * kColumnPairs>;
 
 // Columns ← L⁻¹ columns, two at a time.
-void whiten(const Cholesky<4>& L, const Columns& columns, int pairs, Pair (&whitened)[4][kPairs]) {
+void whiten_columns(const Cholesky<4>& L, const Columns& columns, int pairs,
+                    Pair (&whitened)[4][kColumnPairs]) {
   for (int pair = 0; pair < pairs; ++pair) {
     Pair column[4];
     for (int k = 0; k < 4; ++k) column[k] = Pair{columns(k, 2 * pair), columns(k, 2 * pair + 1)};
@@ -176,7 +177,8 @@ void whiten(const Cholesky<4>& L, const Columns& columns, int pairs, Pair (&whit
 }
 
 // H += weight · Aᵀ A, A whitened columns; of its lower triangle at least.
-void add_products(const Pair (&A)[4][kPairs], int pairs, double weight, Pair (&H)[2 * kPairs][kPairs]) {
+void add_products(const Pair (&A)[4][kColumnPairs], int pairs, double weight,
+                  Pair (&H)[2 * kColumnPairs][kColumnPairs]) {
   for (int r = 0; r < 2 * pairs; ++r) {
     double row[4];
     for (int k = 0; k < 4; ++k) row[k] = weight * A[k][r / 2][r % 2];
@@ -303,7 +305,7 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
   const int size = shared.any() ? JointInformation::kSize : 6;
   const int pairs = size / 2 + 1;
   double cost = 0;
-  Pair H[2 * kPairs][kPairs] = {};  // two columns each; the lower triangle; the last row holds −g
+  Pair H[2 * kColumnPairs][kColumnPairs] = {};  // two columns each; the lower triangle; the last row holds −g
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
     const Held& held = held_[i];
@@ -330,8 +332,8 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
         columns(row, size) = u.dot(off) - held.offset[row];
       }
     }
-    Pair whitened[4][kPairs];
-    whiten(held.W, columns, pairs, whitened);
+    Pair whitened[4][kColumnPairs];
+    whiten_columns(held.W, columns, pairs, whitened);
     double squared = 0;
     for (const auto& row : whitened) squared += row[size / 2][size % 2] * row[size / 2][size % 2];
     double weight = 1;

@@ -32,14 +32,14 @@ struct Sums {
   double g[kAll] = {};
 };
 
-Pair load(const double* two) {
+Pair pair_at(const double* two) {
   Pair pair;
   std::memcpy(&pair, two, sizeof pair);
   return pair;
 }
 
 void add_to(double* two, const Pair& pair) {
-  const Pair sum = load(two) + pair;
+  const Pair sum = pair_at(two) + pair;
   std::memcpy(two, &sum, sizeof sum);
 }
 
@@ -72,7 +72,7 @@ void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
     for (int k = 0; k <= i; ++k)
       for (int j = 0; j < 4; ++j) {
         const double scaled = M(k, i) * A.p[j];  // M is symmetric but for rounding: as add_each reads it
-        for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * load(A.p + l));
+        for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * pair_at(A.p + l));
       }
   const auto& others = A.others;
   for (int a = 0; a < kOthers; ++a) {
@@ -80,11 +80,11 @@ void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
     double Mv[3];
     for (int i = 0; i < 3; ++i) {
       Mv[i] = M(i, 0) * others(0, a) + M(i, 1) * others(1, a) + M(i, 2) * others(2, a);
-      for (int l = 0; l < 4; l += 2) add_to(row + 4 * i + l, Mv[i] * load(A.p + l));
+      for (int l = 0; l < 4; l += 2) add_to(row + 4 * i + l, Mv[i] * pair_at(A.p + l));
     }
     for (int b = 0; b <= a; b += 2)
-      add_to(row + kMotion + b,
-             Mv[0] * load(&others(0, b)) + Mv[1] * load(&others(1, b)) + Mv[2] * load(&others(2, b)));
+      add_to(row + kMotion + b, Mv[0] * pair_at(&others(0, b)) + Mv[1] * pair_at(&others(1, b)) +
+                                    Mv[2] * pair_at(&others(2, b)));
   }
 }
 

@@ -54,8 +54,8 @@ enum class Features : std::uint8_t { kPoints, kLines, kBoth };
 enum class ReferencePolicy : std::uint8_t {
   kPreviousFrame,  // the paper: every frame against the one before
   kKeyframe,       // against the last keyframe, replaced when too few of its features are still seen
-  // Against both in one estimate: the keyframe keeps the drift small, and most features are found again in
-  // the last frame.
+  // Against the keyframe and a recent frame (ReferenceConfig::recent_frames) in one estimate: the keyframe
+  // keeps the drift small, and most features of a recent frame are found again.
   kKeyframeAndPrevious,
   // Against these and the keyframe before: less drift where the camera walks, none where it turns fast, and
   // more time and memory (docs/sensors.md).
@@ -114,9 +114,9 @@ struct NoiseConfig {
 
 struct ReferenceConfig {
   ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
-  // Not every frame is the previous one to those after it: it is matched for so many frames, or as long as it
-  // is well seen, and only in a frame that will be matched, or where these are lost, are points looked for.
-  // 1: in every frame.
+  // The recent frame is matched for at most so many frames, while half of its features are inliers; 1: it is
+  // the last one, always. Points are looked for only in frames that will be matched, and where those that
+  // are get lost.
   int recent_frames = 3;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;

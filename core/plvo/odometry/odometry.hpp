@@ -52,7 +52,7 @@ struct SegmentView {
 };
 struct FeatureView {
   GrayView image;                       // undistorted, grey
-  std::span<const Keypoint> keypoints;  // none, where none were looked for (ReferenceConfig)
+  std::span<const Keypoint> keypoints;  // empty where none were looked for (recent_frames)
   std::span<const SegmentView> segments, reference_segments;
   std::span<const PointTrackView> point_tracks;
   std::span<const LineTrackView> line_tracks;

@@ -22,8 +22,10 @@ enum class Stage : std::uint8_t { kImage, kPoints, kLines, kMatching, kMotion };
 inline constexpr int kStageCount = 5;
 const char* to_string(Stage stage);
 
+// Of this frame; the first three of points, where none were looked for (ReferenceConfig::recent_frames), of
+// the latest frame where they were.
 struct FeatureCounts {
-  int detected = 0;    // found in this frame, before the selection
+  int detected = 0;    // found, before the selection
   int dropped = 0;     // found, but beyond the capacity
   int with_depth = 0;  // lifted to 3D
   int matched = 0;     // to the reference, putative

@@ -17,7 +17,7 @@ constexpr int kRim = 2;
 // A surface as steep as this changes so much of its depth over a window; what differs by more is another one.
 constexpr double kSameSurface = 0.06;
 
-constexpr int kReach = kWindowReach + kRim;
+constexpr int kSurfaceReach = kWindowReach + kRim;
 constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
 constexpr int kSurfaceRows = kWindowRows + 2 * kRim;
 using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
@@ -63,11 +63,11 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
   const DepthSampler::Place place(depth, centre);
   if (!place.inside) return mask;
   const int step = 1 << level;
-  const int left = place.x - kReach * step;
-  const int top = place.y - kReach * step;
+  const int left = place.x - kSurfaceReach * step;
+  const int top = place.y - kSurfaceReach * step;
   const Range range = range_around(depth_m / depth.metres_per_unit());
   std::array<Row, kSurfaceRows> own{};
-  const bool straight = place.map.is_straight(1.0 / kReach);
+  const bool straight = place.map.is_straight(1.0 / kSurfaceReach);
 #ifndef PLVO_LANE_LOOPS
   const bool whole = straight && depth.holds_raw(left, top) &&
                      depth.holds_raw(left + (kSurfaceColumns - 1) * step, top + (kSurfaceRows - 1) * step);
@@ -87,7 +87,7 @@ WindowMask own_surface(const DepthSampler& depth, const Vector2& centre, double 
       int x = left + c * step;
       int y = top + r * step;
       bool seen = true;
-      if (!straight) seen = place.map.raw_pixel((c - kReach) * step, (r - kReach) * step, x, y);
+      if (!straight) seen = place.map.raw_pixel((c - kSurfaceReach) * step, (r - kSurfaceReach) * step, x, y);
       const std::int32_t units = seen ? depth.raw_units(x, y) : 0;
       bits = bits << 1 | static_cast<std::uint32_t>(units >= range.first && units <= range.last);
     }

@@ -9,10 +9,11 @@
 namespace plvo {
 namespace {
 
-constexpr int kReach = 3;
+constexpr int kPlaneReach = 3;
 constexpr int kStride = 3;  // px
-constexpr int kReadings = (2 * kReach + 1) * (2 * kReach + 1);
-constexpr int kSumOfSquares = kReach * (kReach + 1) * (2 * kReach + 1) / 3;  // of −kReach … kReach
+constexpr int kReadings = (2 * kPlaneReach + 1) * (2 * kPlaneReach + 1);
+constexpr int kSumOfSquares =
+    kPlaneReach * (kPlaneReach + 1) * (2 * kPlaneReach + 1) / 3;  // of −kPlaneReach … kPlaneReach
 // Fewer of them than this show an edge or a hole.
 constexpr int kLeastReadings = 45;
 // SD of the readings from the plane, at most so many σ_d: real and rendered noise is half of one.
@@ -22,33 +23,34 @@ constexpr double kLeastSteepness = 0.15;
 
 // Readings of a window, in the image's own units, and the sums that their plane takes; x and y in strides
 // from the middle. Inverse depths are counted from that of the first reading.
-struct Sums {
+struct PlaneSums {
   int n, x, y, xx, xy, yy;
   double from, q, qx, qy, qq;
 };
 
 // False when too many are missing.
-bool add_up(const DepthSampler& depth, const DepthSampler::Place& place, Sums& s) {
-  constexpr int kSide = 2 * kReach + 1;
-  constexpr int kFar = kReach * kStride;
+bool add_up(const DepthSampler& depth, const DepthSampler::Place& place, PlaneSums& s) {
+  constexpr int kSide = 2 * kPlaneReach + 1;
+  constexpr int kFar = kPlaneReach * kStride;
   std::array<std::array<std::uint16_t, kSide>, kSide> units;
   const bool whole =
       depth.holds_raw(place.x - kFar, place.y - kFar) && depth.holds_raw(place.x + kFar, place.y + kFar);
   int missing = 0;
   for (int j = 0; j < kSide; ++j)
     for (int i = 0; i < kSide; ++i) {
-      const int x = place.x + kStride * (i - kReach);
-      const int y = place.y + kStride * (j - kReach);
+      const int x = place.x + kStride * (i - kPlaneReach);
+      const int y = place.y + kStride * (j - kPlaneReach);
       const std::uint16_t reading = !kSmallCode && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
       units[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = reading;
       missing += reading == 0 ? 1 : 0;
     }
   if (kReadings - missing < kLeastReadings) return false;
   s = {kReadings, 0, 0, kSide * kSumOfSquares, 0, kSide * kSumOfSquares, 0, 0, 0, 0, 0};
-  for (int j = -kReach; j <= kReach; ++j) {
+  for (int j = -kPlaneReach; j <= kPlaneReach; ++j) {
     double q = 0, qx = 0, qq = 0;
-    for (int i = -kReach; i <= kReach; ++i) {
-      const int reading = units[static_cast<std::size_t>(j + kReach)][static_cast<std::size_t>(i + kReach)];
+    for (int i = -kPlaneReach; i <= kPlaneReach; ++i) {
+      const int reading =
+          units[static_cast<std::size_t>(j + kPlaneReach)][static_cast<std::size_t>(i + kPlaneReach)];
       if (reading == 0) {
         s.n -= 1;
         s.x -= i;
@@ -80,7 +82,7 @@ struct InversePlane {
   double residual_squared;  // mean
 };
 
-bool fit(const Sums& s, InversePlane& plane) {
+bool fit(const PlaneSums& s, InversePlane& plane) {
   const double inverse_n = 1.0 / s.n;
   const double x = s.x * inverse_n;
   const double y = s.y * inverse_n;
@@ -110,7 +112,7 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   Vector2 located(u, v);
   if (!depth.locate(located)) return false;
   const DepthSampler::Place place(depth, located);
-  Sums sums;
+  PlaneSums sums;
   InversePlane plane;
   if (!place.inside || !add_up(depth, place, sums) || !fit(sums, plane)) return false;
 

@@ -105,7 +105,7 @@ enum {
   PLVO_REFERENCE_OF_PRESET = 0,
   PLVO_REFERENCE_PREVIOUS, /* the frame before */
   PLVO_REFERENCE_KEYFRAME,
-  PLVO_REFERENCE_BOTH,
+  PLVO_REFERENCE_BOTH, /* the keyframe and a recent frame */
   PLVO_REFERENCE_WINDOW /* both and the keyframe before; needs plvo_limits.references = 3 */
 };
 
@@ -176,7 +176,7 @@ enum { PLVO_INITIALISING = 0, PLVO_TRACKING, PLVO_LOST, PLVO_PREDICTED };
 PLVO_API const char* plvo_state_name(int32_t state);
 
 typedef struct plvo_counts {
-  int32_t detected;   /* in this frame, before the selection */
+  int32_t detected;   /* before the selection; of points, in the latest frame where they were looked for */
   int32_t dropped;    /* beyond the capacity */
   int32_t with_depth; /* lifted to 3D */
   int32_t matched;    /* to the reference */
@@ -279,6 +279,7 @@ typedef struct plvo_line_track {
   int32_t inlier;
 } plvo_line_track;
 
+/* None in a frame where points were not looked for, for it will not be matched with. */
 PLVO_API size_t plvo_keypoints(const plvo_odometry* odometry, plvo_pixel* keypoints, size_t capacity);
 PLVO_API size_t plvo_segments(const plvo_odometry* odometry, plvo_segment* segments, size_t capacity);
 PLVO_API size_t plvo_reference_segments(const plvo_odometry* odometry, plvo_segment* segments,

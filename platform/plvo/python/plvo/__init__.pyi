@@ -151,7 +151,7 @@ class Features(NamedTuple):
     """What the last frame was made of, in pixels of the undistorted image."""
 
     image: NDArray[uint8]
-    keypoints: NDArray[float32]  # u v
+    keypoints: NDArray[float32]  # u v; none where points were not looked for
     segments: NDArray[float32]  # u v u v
     segment_has_3d: NDArray[bool_]
     reference_segments: NDArray[float32]

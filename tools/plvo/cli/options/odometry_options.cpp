@@ -19,14 +19,15 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
                Choices<Features>{
                    {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}},
                "What the motion is estimated from (default both)");
-  group.choice("--reference", options.reference,
-               Choices<ReferencePolicy>{{"previous", ReferencePolicy::kPreviousFrame},
-                                        {"keyframe", ReferencePolicy::kKeyframe},
-                                        {"both", ReferencePolicy::kKeyframeAndPrevious},
-                                        {"window", ReferencePolicy::kWindow}},
-               "What a frame is matched against: the frame before it, the last keyframe, both (default), or "
-               "window: both and the keyframe before, which drifts less where the camera walks and takes "
-               "more time and memory; docs/sensors.md");
+  group.choice(
+      "--reference", options.reference,
+      Choices<ReferencePolicy>{{"previous", ReferencePolicy::kPreviousFrame},
+                               {"keyframe", ReferencePolicy::kKeyframe},
+                               {"both", ReferencePolicy::kKeyframeAndPrevious},
+                               {"window", ReferencePolicy::kWindow}},
+      "What a frame is matched against: the frame before it, the last keyframe, both: the keyframe and "
+      "a recent frame (default), or window: both and the keyframe before, which drifts less where the "
+      "camera walks and takes more time and memory; docs/sensors.md");
   group.number("--frame-budget", options.budget_ms, positive(1e6), "MS",
                "Fewer features after a frame that took more processor time than this, and more again when "
                "there is time to spare; results then depend on the machine");
