@@ -28,8 +28,8 @@ class CliLive : public LiveCommand {
     return " --quiet --out " + path(name) + ".txt --covariance " + path(name) + ".cov --motions " +
            path(name) + ".mot";
   }
-  // live over the 12 frames, each shown when the pose of the one before is out: none is lost, however busy the
-  // machine. The poses go to standard output.
+  // live over the 12 frames, each shown when the pose of the one before is out: none is lost, however busy
+  // the machine. The poses go to standard output.
   int live_over_walk(const std::string& arguments) {
     start("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
               " --every-frame --frames 12 --stream - " + arguments,

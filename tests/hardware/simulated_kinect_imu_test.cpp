@@ -119,12 +119,12 @@ TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
     errors_s.push_back(std::remainder(error_s, 4294967296.0 / 60e6));
   }
   ASSERT_GT(errors_s.size(), 75U);
-  std::nth_element(errors_s.begin(), errors_s.begin() + static_cast<long>(errors_s.size() / 2),
-                   errors_s.end());
-  const double median_s = errors_s[errors_s.size() / 2];
-  std::printf("readings are stamped %+.1f ms early (median of %zu frames)\n", 1e3 * median_s,
-              errors_s.size());
-  EXPECT_LT(std::abs(median_s), 0.020);
+  // A busy machine reads late, and never early: the tenth that is least late tells how readings are stamped.
+  std::sort(errors_s.begin(), errors_s.end());
+  const double least_late_s = errors_s[errors_s.size() / 10];
+  std::printf("readings are stamped %+.1f ms early (tenth of %zu frames; median %+.1f ms)\n",
+              1e3 * least_late_s, errors_s.size(), 1e3 * errors_s[errors_s.size() / 2]);
+  EXPECT_LT(std::abs(least_late_s), 0.020);
 }
 
 TEST_F(KinectImu, WithoutAnAccelerometerItIsSaidOnce) {
