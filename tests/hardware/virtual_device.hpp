@@ -43,8 +43,7 @@ constexpr std::int64_t kPatternDepthOffset_us = 4000;  // depth is stamped this 
 //   run | stall              both streams
 //   stop colour|depth        one stream; run undoes it
 //   period N                 microseconds from tick to tick: stamps and pace; default from the video mode
-//   allow N                  N more ticks, then none until the next allow: whoever allows one when the last
-//   has
+//   allow N                  N more ticks, then none until the next allow: who allows one when the last has
 //                            been read loses none, however busy the machine
 //   clock N                  the next tick is stamped N microseconds, and the clock goes on from there
 //   wrap N                   stamps wrap as the Kinect's do, for the first time N microseconds from now

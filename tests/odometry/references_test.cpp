@@ -76,6 +76,7 @@ void expect_shows_the_recent_frame(const std::vector<Shown>& all, std::size_t i)
   const Shown& now = all[i];
   const Shown& recent = all[recent_to(all, i)];
   ASSERT_GT(now.point_tracks.size(), 10u) << i;
+  EXPECT_LE(i - recent_to(all, i), 3u) << i;
   EXPECT_EQ(count(now.point_tracks, recent.keypoints, true), static_cast<int>(now.point_tracks.size())) << i;
   EXPECT_TRUE(same_places(now.reference_segments, recent.segments)) << i;
   EXPECT_EQ(now.result.points.with_depth, static_cast<int>(all[recent_to(all, i + 1)].keypoints.size())) << i;
@@ -231,6 +232,7 @@ TEST(References, ThePaperUsesTheLastFrameAndNoRegistration) {
   const std::vector<Shown> all = run(Config::paper());
   for (std::size_t i = 1; i < all.size(); ++i) {
     EXPECT_EQ(all[i].result.reference_stamp_ns, all[i - 1].result.stamp_ns) << i;
+    EXPECT_EQ(recent_to(all, i), i - 1);
     expect_shows_the_recent_frame(all, i);
     const int shown = static_cast<int>(all[i].point_tracks.size());
     EXPECT_EQ(all[i].result.points.matched, shown) << i;

@@ -115,8 +115,8 @@ struct NoiseConfig {
 struct ReferenceConfig {
   ReferencePolicy policy = ReferencePolicy::kKeyframeAndPrevious;
   // The recent frame is matched for at most so many frames, while half of its features are inliers; 1: it is
-  // the last one, always. Points are looked for only in frames that will be matched, and where those that
-  // are get lost.
+  // the last one, always. Points are looked for only in frames that will be matched, and where registration
+  // fails.
   int recent_frames = 3;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;
