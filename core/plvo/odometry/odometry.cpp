@@ -139,8 +139,7 @@ bool Odometry::wants_points() const {
   if (keyframe_ == kNobody || !config().points.registered || looks_back()) return true;
   const ReferenceConfig& references = config().references;
   if (references.policy == ReferencePolicy::kPreviousFrame) return true;
-  return references_of(references.policy) > 1 &&
-         (!uses_both_references() || recent_age_ + 1 >= references.recent_frames);
+  return references_of(references.policy) > 1 && !recent_is_young();
 }
 
 // Of the current frame, where they are wanted after all. Before the frame is the last one. Apart, for the

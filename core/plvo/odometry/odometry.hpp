@@ -169,6 +169,10 @@ class Odometry {
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   std::size_t list_references(std::int64_t stamp_ns, References& references) const;
   bool uses_both_references() const { return recent_ != keyframe_; }
+  // There is a recent frame, and it may be matched once more.
+  bool recent_is_young() const {
+    return uses_both_references() && recent_age_ + 1 < config().references.recent_frames;
+  }
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
 
   // odometry_outcome.cpp: what becomes of a frame, and which one the next are matched with.

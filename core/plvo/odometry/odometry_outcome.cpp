@@ -129,7 +129,7 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
                       TrackResult& result) {
   const MotionEstimate& motion = tracked.motion;
   const Kept kept = still_good();
-  if (!kept.recent || looks_back()) {
+  if (!kept.recent) {
     find_points(depth, result);
     rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
   }
@@ -183,7 +183,7 @@ Odometry::Kept Odometry::still_good() const {
       references.policy != ReferencePolicy::kPreviousFrame &&
       good(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
   if (both)
-    kept.recent = recent_age_ + 1 < references.recent_frames && good(recent_, 1, kRecentInlierRatio);
+    kept.recent = recent_is_young() && good(recent_, 1, kRecentInlierRatio);
   else  // Without registration find() is the whole estimate, of the base alone.
     kept.recent = !config().points.registered || references_of(references.policy) == 1;
   kept.recent = kept.recent && kept.keyframe;

@@ -88,8 +88,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
   const bool lines = kLinesBuilt && config_->features != Features::kPoints;
-  const bool at_once =
-      kPointsBuilt && lines && points && config_->features == Features::kBoth && config_->side_by_side;
+  const bool at_once = has_points() && points && lines && config_->side_by_side;
   if (at_once) {
     const StageTimer timer(*config_, result, Stage::kPoints);
     const ScratchScope scope(scratch);
@@ -108,7 +107,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
 
 void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                                     TrackResult& result) const {
-  if (!kPointsBuilt || config_->features == Features::kLines || points.looked_for) return;
+  if (!has_points() || points.looked_for) return;
   const StageTimer timer(*config_, result, Stage::kPoints);
   detect_points(depth, scratch, points, result);
 }

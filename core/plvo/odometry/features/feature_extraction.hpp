@@ -8,6 +8,7 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/image/pyramid.hpp"
@@ -105,6 +106,7 @@ class FeatureExtraction {
     reserve_points(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
+  bool has_points() const { return kPointsBuilt && config_->features != Features::kLines; }
   void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
   void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
