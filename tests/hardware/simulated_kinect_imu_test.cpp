@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -19,8 +20,10 @@
 namespace {
 struct Tracked {
   std::int64_t stamp_ns;
+  std::int64_t host_ns;  // by steady_clock, when it was tracked
   plvo::MotionPrior prior;
 };
+std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 std::vector<Tracked> tracked;
 std::atomic<int> tracks{0};
 }  // namespace
@@ -32,7 +35,7 @@ plvo::TrackResult wrapped_track(
     const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 const plvo::MotionPrior& prior) {
-  tracked.push_back({frame.stamp_ns, prior});
+  tracked.push_back({frame.stamp_ns, now_ns(), prior});
   ++tracks;
   return real_track(odometry, frame, prior);
 }
@@ -95,10 +98,12 @@ TEST_F(KinectImu, TheWorldIsLevelOnRequest) {
 }
 
 // The accelerometer's first axis tells the time of the reading. What a frame gets is the mean of the readings
-// since the frame before: by the camera's clock, that is true to the 20 ms that are stated.
+// since the frame before: by the camera's clock, that is true to the 20 ms that are stated, where a frame
+// arrives that nothing held up. On a machine that is too slow for camera and command together every frame is
+// late, and readings are stamped early by as much as the quickest of them.
 TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
   constexpr double kCountsPerSecond = 50;
-  const auto now_ns = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
+  constexpr double kTurn_s = 4294967296.0 / 60e6;  // of the camera's clock
   const std::int64_t start_ns = now_ns();
   show_a_room();
   kinect_.plug(123456);
@@ -109,22 +114,26 @@ TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
   motor.plug();
   ASSERT_EQ(plvo({"live", "--imu", "--frames", "150", "--quiet"}), 0) << err_;
   std::vector<double> errors_s;
-  for (std::size_t i = 1; i < tracked.size(); ++i) {
-    if (!tracked[i].prior.gravity) continue;
+  std::int64_t held_up_ns = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    const auto shown_ns = [&](std::size_t frame) { return kinect_.host_ns(tracked[frame].stamp_ns); };
+    held_up_ns = std::min(held_up_ns, tracked[i].host_ns - shown_ns(i) - SimulatedKinect::kFrame_ns);
+    if (i == 0 || !tracked[i].prior.gravity) continue;
     const plvo::Vector3 force = -tracked[i].prior.gravity->down;
     const double told_s = (force.x() * 819 / 9.80665 + 400.5) / kCountsPerSecond;
-    const double middle_ns = 0.5 * (static_cast<double>(kinect_.host_ns(tracked[i].stamp_ns)) +
-                                    static_cast<double>(kinect_.host_ns(tracked[i - 1].stamp_ns)));
-    const double error_s = told_s - (middle_ns - static_cast<double>(start_ns)) * 1e-9;
-    errors_s.push_back(std::remainder(error_s, 4294967296.0 / 60e6));
+    const std::int64_t stamped_ns = (shown_ns(i) + shown_ns(i - 1)) / 2 + held_up_ns;
+    const double error_s = told_s - static_cast<double>(stamped_ns - start_ns) * 1e-9;
+    errors_s.push_back(std::remainder(error_s, kTurn_s));
   }
   ASSERT_GT(errors_s.size(), 75U);
-  // A busy machine reads late, and never early: the tenth that is least late tells how readings are stamped.
   std::sort(errors_s.begin(), errors_s.end());
-  const double least_late_s = errors_s[errors_s.size() / 10];
-  std::printf("readings are stamped %+.1f ms early (tenth of %zu frames; median %+.1f ms)\n",
-              1e3 * least_late_s, errors_s.size(), 1e3 * errors_s[errors_s.size() / 2]);
-  EXPECT_LT(std::abs(least_late_s), 0.020);
+  const double median_s = errors_s[errors_s.size() / 2];
+  std::printf(
+      "%zu readings are stamped %+.1f ms early (median; a tenth %+.1f ms); the quickest frame was held up "
+      "%.1f ms\n",
+      errors_s.size(), 1e3 * median_s, 1e3 * errors_s[errors_s.size() / 10],
+      1e3 * std::remainder(1e-9 * static_cast<double>(held_up_ns), kTurn_s));
+  EXPECT_LT(std::abs(median_s), 0.020);
 }
 
 TEST_F(KinectImu, WithoutAnAccelerometerItIsSaidOnce) {
