@@ -247,15 +247,12 @@ TEST(Rectangle, VisitsExactlyThePixelsInside) {
       }
     }
     std::vector<std::pair<int, int>> visited;
-    for_each_pixel(f.field, r, [&](int x, int y, std::int32_t t) {
-      visited.push_back({x, y});
-      EXPECT_EQ(t, r.across(x, y));
-    });
+    for_each_pixel(f.field, r, [&](int x, int y) { visited.push_back({x, y}); });
     ASSERT_EQ(visited, expected);
   }
 }
 
-TEST(Rectangle, AlignmentLevelsAreHalvedAngles) {
+TEST(Rectangle, AcrossIsWithinAnEighthOfAHalfTurn) {
   Random random(3);
   for (int trial = 0; trial < 20000; ++trial) {
     const double angle = 2 * kPi * random.uniform();
@@ -267,47 +264,35 @@ TEST(Rectangle, AlignmentLevelsAreHalvedAngles) {
     const Direction d{static_cast<std::int16_t>(std::lround(16384 * std::cos(gradient))),
                       static_cast<std::int16_t>(std::lround(16384 * std::sin(gradient)))};
     const double off = angle_between(gradient, angle + kPi / 2);
-    const int level = alignment_level(r, d);
-    if (level == kNotAligned) {
+    if (points_across(r, d))
+      EXPECT_LT(off, 22.5 * kDegree + 2e-4);
+    else
       EXPECT_GT(off, 22.5 * kDegree - 2e-4);
-    } else {
-      EXPECT_LT(off, 22.5 * kDegree / (1 << level) + 2e-4);
-      if (level + 1 < kPrecisionLevels) {
-        EXPECT_GT(off, 22.5 * kDegree / (2 << level) - 2e-4);
-      }
-    }
   }
 }
 
 TEST(Validation, CountsWhatTheRectangleHolds) {
   Field f = busy_field(8);
   const FalseAlarms alarms(f.width, f.height);
-  std::vector<std::int32_t> samples(static_cast<std::size_t>(f.width * f.height));
   int meaningful = 0;
   for (const Pixel& start : f.field.seeds.first(f.field.seed_count)) {
     if ((f.field.state[f.field.index(start.x, start.y)] & kUsed) != 0) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     Rectangle r = fit_rectangle(f.field, region);
     if (region.pixels.size() < 10 || !is_dense(r, region.pixels.size())) continue;
-    const double meaningfulness = validate(f.field, alarms, r, samples);
-    if (meaningfulness < 0) continue;
-    ++meaningful;
-    // Some precision must explain the answer on a fresh count of the rectangle that came back.
-    bool explained = false;
-    for (int level = 0; level < kPrecisionLevels; ++level) {
-      int n = 0, k = 0;
-      for (int y = 0; y < f.field.height; ++y) {
-        for (int x = 0; x < f.field.width; ++x) {
-          const std::int32_t l = r.along(x, y);
-          const std::int32_t t = r.across(x, y);
-          if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
-          ++n;
-          k += alignment_level(r, f.field.direction[f.field.index(x, y)]) >= level ? 1 : 0;
-        }
+    const double found = meaningfulness(f.field, alarms, r);
+    int n = 0, k = 0;
+    for (int y = 0; y < f.field.height; ++y) {
+      for (int x = 0; x < f.field.width; ++x) {
+        const std::int32_t l = r.along(x, y);
+        const std::int32_t t = r.across(x, y);
+        if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
+        ++n;
+        k += points_across(r, f.field.direction[f.field.index(x, y)]) ? 1 : 0;
       }
-      explained = explained || alarms.meaningfulness(n, k, level) == meaningfulness;
     }
-    EXPECT_TRUE(explained);
+    EXPECT_EQ(found, alarms.meaningfulness(n, k));
+    meaningful += found >= 0 ? 1 : 0;
   }
   EXPECT_GE(meaningful, 5);
 }

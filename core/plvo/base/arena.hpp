@@ -122,14 +122,4 @@ class ScratchScope {
   std::size_t mark_;
 };
 
-// The same memory for something else of the same size: what was in it is lost.
-template <typename To, typename From>
-std::span<To> reuse(std::span<From> storage) {
-  static_assert(sizeof(To) == sizeof(From) && alignof(To) <= alignof(From));
-  static_assert(std::is_trivially_destructible_v<From> && std::is_trivially_default_constructible_v<To>);
-  To* const first = reinterpret_cast<To*>(storage.data());
-  for (std::size_t i = 0; i < storage.size(); ++i) new (first + i) To;
-  return {first, storage.size()};
-}
-
 }  // namespace plvo

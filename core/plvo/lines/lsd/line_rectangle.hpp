@@ -5,8 +5,6 @@
 // machine.
 #pragma once
 
-#include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,10 +12,6 @@
 #include "plvo/lines/lsd/line_support_region.hpp"
 
 namespace plvo::lsd {
-
-// Precisions p = 2^-3 (that is 22.5° of 180°), 2^-4, …: level 0, 1, …
-inline constexpr int kPrecisionLevels = 11;
-inline constexpr int kNotAligned = -1;
 
 struct Rectangle {
   // Centre in the field's grid, 2^-8 pixels.
@@ -56,27 +50,13 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
 // Does the region fill at least 70 % of its rectangle?
 bool is_dense(const Rectangle& rectangle, std::size_t region_size);
 
-// tan(22.5° / 2^level) · 2^20.
-inline constexpr std::array<std::int32_t, kPrecisionLevels> kTangents_q20 = {
-    434334, 208575, 103276, 51513, 25741, 12869, 6434, 3217, 1608, 804, 402};
-
-// The finest precision at which a pixel's gradient points across the rectangle, or kNotAligned.
-inline int alignment_level(const Rectangle& rectangle, Direction direction) {
+// Does a pixel's gradient point across the rectangle, to its brighter side, within 22.5°?
+inline bool points_across(const Rectangle& rectangle, Direction direction) {
+  constexpr std::uint64_t kTangent_q20 = 434334;
   const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
-  if (dot <= 0) return kNotAligned;
   const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
   const auto turn = static_cast<std::uint64_t>(cross < 0 ? -cross : cross) << 20;
-  const auto most = [&](int level) {
-    return static_cast<std::uint64_t>(kTangents_q20[static_cast<std::size_t>(level)]) *
-           static_cast<std::uint64_t>(dot);
-  };
-  if (turn > most(0)) return kNotAligned;
-  // A level halves the tangent, nearly: powers of two say it to within two, never too low.
-  int level = std::countl_zero(turn | 1) - std::countl_zero(most(0));
-  level = level < kPrecisionLevels - 1 ? level : kPrecisionLevels - 1;
-  level -= turn > most(level) ? 1 : 0;
-  level -= turn > most(level) ? 1 : 0;
-  return level;
+  return dot > 0 && turn <= kTangent_q20 * static_cast<std::uint64_t>(dot);
 }
 
 // Calls visit(x, y) for every pixel of the field inside the rectangle, row by row.
@@ -125,7 +105,7 @@ void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& vis
       const auto l = static_cast<std::int32_t>(along >> kDirectionBits);
       const auto t = static_cast<std::int32_t>(across >> kDirectionBits);
       if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
-      visit(x, y, t);
+      visit(x, y);
     }
   }
 }

@@ -79,37 +79,6 @@ bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::size
   return is_dense(rectangle, region.pixels.size());
 }
 
-// A pixel of the rectangle as validate keeps it: its offset across in the high bits, its level + 1 in the low
-// four.
-constexpr int kLevelBits = 4;
-
-struct Variant {
-  std::int32_t across_min = 0;
-  std::int32_t across_max = 0;
-  int level = 0;
-};
-
-struct Best {
-  Variant variant;
-  double meaningfulness = 0;
-};
-
-// Counts the variant's pixels; keeps it if it beats the best.
-void consider(std::span<const std::int32_t> samples, const FalseAlarms& false_alarms, const Variant& variant,
-              Best& best) {
-  int n = 0;
-  int k = 0;
-  for (const std::int32_t sample : samples) {
-    const std::int32_t across = sample >> kLevelBits;
-    const bool inside = across >= variant.across_min && across <= variant.across_max;
-    const bool aligned = (sample & ((1 << kLevelBits) - 1)) > variant.level;
-    n += inside ? 1 : 0;
-    k += inside && aligned ? 1 : 0;
-  }
-  const double meaningfulness = false_alarms.meaningfulness(n, k, variant.level);
-  if (meaningfulness > best.meaningfulness) best = {variant, meaningfulness};
-}
-
 }  // namespace
 
 bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
@@ -135,44 +104,15 @@ bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::s
   return is_dense(rectangle, region.pixels.size());
 }
 
-double validate(const LevelLineField& field, const FalseAlarms& false_alarms, Rectangle& rectangle,
-                std::span<std::int32_t> samples) {
-  std::size_t count = 0;
-  int aligned = 0;
-  for_each_pixel(field, rectangle, [&](int x, int y, std::int32_t across) {
-    const int level = alignment_level(rectangle, field.direction[field.index(x, y)]);
-    aligned += level >= 0 ? 1 : 0;
-    samples[count++] = across * (1 << kLevelBits) + level + 1;
+double meaningfulness(const LevelLineField& field, const FalseAlarms& false_alarms,
+                      const Rectangle& rectangle) {
+  int n = 0;
+  int k = 0;
+  for_each_pixel(field, rectangle, [&](int x, int y) {
+    ++n;
+    k += points_across(rectangle, field.direction[field.index(x, y)]) ? 1 : 0;
   });
-  const std::span<const std::int32_t> inside = samples.first(count);
-  const Variant whole{rectangle.across_min, rectangle.across_max, 0};
-  Best best{whole, false_alarms.meaningfulness(static_cast<int>(count), aligned, 0)};
-  constexpr std::int32_t kHalfPixel = 128;
-  constexpr std::int32_t kQuarterPixel = 64;
-  constexpr int kTries = 5;
-  // Each step starts from the best so far; the first step that finds a meaningful variant is the last.
-  for (int step = 0; step < 5 && best.meaningfulness < 0; ++step) {
-    Variant variant = best.variant;
-    for (int i = 0; i < kTries; ++i) {
-      if (step == 0 || step == 4) {
-        if (++variant.level >= kPrecisionLevels) break;
-      } else {
-        if (variant.across_max - variant.across_min <= 2 * kHalfPixel) break;
-        if (step == 1) {
-          variant.across_min += kQuarterPixel;
-          variant.across_max -= kQuarterPixel;
-        } else if (step == 2) {
-          variant.across_max -= kHalfPixel;
-        } else {
-          variant.across_min += kHalfPixel;
-        }
-      }
-      consider(inside, false_alarms, variant, best);
-    }
-  }
-  rectangle.across_min = best.variant.across_min;
-  rectangle.across_max = best.variant.across_max;
-  return best.meaningfulness;
+  return false_alarms.meaningfulness(n, k);
 }
 
 }  // namespace plvo::lsd

@@ -43,8 +43,7 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
       if (!tightened) continue;
     }
     ++counts.dense;
-    const double meaningfulness =
-        lsd::validate(field, false_alarms_, rectangle, reuse<std::int32_t>(scratch.region));
+    const double meaningfulness = lsd::meaningfulness(field, false_alarms_, rectangle);
     if (meaningfulness < 0) continue;
     const auto found = static_cast<std::size_t>(counts.meaningful++);
     if (found < scratch.candidates.size())

@@ -74,15 +74,15 @@ class SegmentDetector {
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Pixel> region;  // and, once its rectangle is known, that one's samples in its place
+    std::span<lsd::Pixel> region;
     std::span<Candidate> candidates;
   };
 
-  // A smaller region is not meaningful even when all of it is aligned: 8^n < 11 (width · height)^(5/2), in
+  // A smaller region is not meaningful even when all of it is aligned: 8^n < (width · height)^(5/2), in
   // powers of two rounded down.
   static constexpr std::size_t min_region(int width, int height) {
     const std::size_t log2_area = std::bit_width(scratch_pixels(width, height));
-    return log2_area > 2 ? (5 * (log2_area - 1) / 2 + 3 + 2) / 3 : 2;
+    return log2_area > 2 ? (5 * (log2_area - 1) / 2 + 2) / 3 : 2;
   }
 
   // Rows of the field in a band; the last one may have fewer.

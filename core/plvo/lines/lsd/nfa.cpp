@@ -6,13 +6,14 @@
 namespace plvo::lsd {
 namespace {
 
-constexpr double kLn2 = 0.69314718055994530942;
+constexpr double kLn7 = 1.94591014905531330511;
+constexpr double kLn8 = 2.07944154167983592825;
 constexpr double kLog10OfE = 0.43429448190325182765;
 
 }  // namespace
 
 FalseAlarms::FalseAlarms(int width, int height) {
-  log10_tests_ = kLog10OfE * (2.5 * (log(width) + log(height)) + log(11.0));
+  log10_tests_ = kLog10OfE * 2.5 * (log(width) + log(height));
   for (std::size_t n = 1; n < kTable; ++n) {
     log_factorials_[n] = log_factorials_[n - 1] + log(static_cast<double>(n));
   }
@@ -28,18 +29,17 @@ double FalseAlarms::log_factorial(int n) const {
          inverse * (1.0 / 12 - inverse * inverse * (1.0 / 360 - inverse * inverse * (1.0 / 1260)));
 }
 
-double FalseAlarms::meaningfulness(int n, int k, int level) const {
-  const double p = 1.0 / (8 << level);
-  if (k <= n * p) return -log10_tests_;
-  const double log_first = log_factorial(n) - log_factorial(k) - log_factorial(n - k) -
-                           k * (3 + level) * kLn2 + (n - k) * log(1 - p);
+double FalseAlarms::meaningfulness(int n, int k) const {
+  if (8 * k <= n) return -log10_tests_;
+  const double log_first =
+      log_factorial(n) - log_factorial(k) - log_factorial(n - k) - k * kLn8 + (n - k) * (kLn7 - kLn8);
   // Each term of the tail is the one before times a ratio that falls, and is below 1 from k on: what is left
   // out is below a geometric series. At most n − k terms; in fact a small multiple of √n.
-  const double odds = p / (1 - p);
+  constexpr double kOdds = 1.0 / 7;  // p / (1 − p)
   double sum = 1;
   double term = 1;
   for (int j = k; j < n; ++j) {
-    const double ratio = (n - j) * odds / (j + 1);
+    const double ratio = (n - j) * kOdds / (j + 1);
     term *= ratio;
     sum += term;
     const double rest = term * ratio / (1 - ratio);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The a-contrario test (LSD, section 2.5). In an image of noise, where directions are independent and
 // uniform, a rectangle of n pixels holds k or more aligned ones with the probability of a binomial tail;
-// times the number of rectangles that could be tried, 11 (width · height)^(5/2), that is the number of false
+// times the number of rectangles that could be tried, (width · height)^(5/2), that is the number of false
 // alarms to expect. A segment is what makes it at most 1: no level of gradient decides, so the light may
-// change.
+// change. One precision is tried, p = 1/8, where the paper tries eleven.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ class FalseAlarms {
   // Of the image, in pixels.
   FalseAlarms(int width, int height);
 
-  // −log10 of the number of false alarms of k aligned pixels among n at p = 2^-(3 + level). The tail is
-  // summed to one part in a thousand and rounded up; where k ≤ n p it is taken as 1.
-  double meaningfulness(int n, int k, int level) const;
+  // −log10 of the number of false alarms of k aligned pixels among n. The tail is summed to one part in a
+  // thousand and rounded up; where k ≤ n p it is taken as 1.
+  double meaningfulness(int n, int k) const;
 
  private:
   static constexpr std::size_t kTable = 256;
