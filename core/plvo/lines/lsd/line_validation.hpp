@@ -4,7 +4,7 @@
 // costs at most a small multiple of the region's size.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
 
 #include "plvo/lines/lsd/line_rectangle.hpp"
