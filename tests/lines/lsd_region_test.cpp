@@ -9,6 +9,7 @@
 
 #include "line_picture.hpp"
 #include "plvo/lines/lsd/line_validation.hpp"
+#include "plvo/lines/lsd/wedge.hpp"
 
 namespace plvo::lsd {
 namespace {
@@ -247,27 +248,52 @@ TEST(Rectangle, VisitsExactlyThePixelsInside) {
       }
     }
     std::vector<std::pair<int, int>> visited;
-    for_each_pixel(f.field, r, [&](int x, int y) { visited.push_back({x, y}); });
+    for_each_row(f.field, r, [&](int y, int first, int last) {
+      for (int x = first; x <= last; ++x) visited.push_back({x, y});
+    });
     ASSERT_EQ(visited, expected);
   }
 }
 
-TEST(Rectangle, AcrossIsWithinAnEighthOfAHalfTurn) {
+TEST(Wedge, HoldsWhatIsWithinItsTolerance) {
   Random random(3);
   for (int trial = 0; trial < 20000; ++trial) {
     const double angle = 2 * kPi * random.uniform();
-    Rectangle r;
-    r.dx = static_cast<std::int32_t>(std::lround(16384 * std::cos(angle)));
-    r.dy = static_cast<std::int32_t>(std::lround(16384 * std::sin(angle)));
+    const double length = trial % 3 == 0 ? 16384 : 16384 * 1000 * random.uniform() + 8192;
+    const Wedge wedge =
+        make_wedge(std::llround(length * std::cos(angle)), std::llround(length * std::sin(angle)), kTau);
     const double spread = trial % 2 == 0 ? kPi : 0.4;
-    const double gradient = angle + kPi / 2 + spread * (2 * random.uniform() - 1);
-    const Direction d{static_cast<std::int16_t>(std::lround(16384 * std::cos(gradient))),
-                      static_cast<std::int16_t>(std::lround(16384 * std::sin(gradient)))};
-    const double off = angle_between(gradient, angle + kPi / 2);
-    if (points_across(r, d))
-      EXPECT_LT(off, 22.5 * kDegree + 2e-4);
+    const double other = angle + spread * (2 * random.uniform() - 1);
+    const Direction d{static_cast<std::int16_t>(std::lround(16384 * std::cos(other))),
+                      static_cast<std::int16_t>(std::lround(16384 * std::sin(other)))};
+    const double off = angle_between(other, angle);
+    if (wedge.holds(d))
+      EXPECT_LT(off, 22.5 * kDegree + 3e-4);
     else
-      EXPECT_GT(off, 22.5 * kDegree - 2e-4);
+      EXPECT_GT(off, 22.5 * kDegree - 3e-4);
+  }
+  EXPECT_FALSE(make_wedge(16384, 0, kTau).holds(Direction{0, 0}));
+}
+
+// Four at once, and what is left of a row.
+TEST(Wedge, CountsInARowWhatItHoldsOneByOne) {
+  Random random(4);
+  std::vector<Direction> row(40);
+  for (int trial = 0; trial < 2000; ++trial) {
+    for (Direction& d : row) {
+      const double angle = 2 * kPi * random.uniform();
+      d = {static_cast<std::int16_t>(std::lround(16384 * std::cos(angle))),
+           static_cast<std::int16_t>(std::lround(16384 * std::sin(angle)))};
+      if (random.uniform() < 0.2) d = {0, 0};
+    }
+    const double angle = 2 * kPi * random.uniform();
+    const Wedge wedge =
+        make_wedge(std::llround(16384 * std::cos(angle)), std::llround(16384 * std::sin(angle)), kTau);
+    const int first = static_cast<int>(18 * random.uniform());
+    const int last = first + static_cast<int>(18 * random.uniform());
+    int held = 0;
+    for (int x = first; x <= last; ++x) held += wedge.holds(row[static_cast<std::size_t>(x)]) ? 1 : 0;
+    ASSERT_EQ(count_held(wedge, row.data(), first, last), held);
   }
 }
 
@@ -281,6 +307,7 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
     Rectangle r = fit_rectangle(f.field, region);
     if (region.pixels.size() < 10 || !is_dense(r, region.pixels.size())) continue;
     const double found = meaningfulness(f.field, alarms, r);
+    const Wedge across = make_wedge(-r.dy, r.dx, kTau);
     int n = 0, k = 0;
     for (int y = 0; y < f.field.height; ++y) {
       for (int x = 0; x < f.field.width; ++x) {
@@ -288,7 +315,7 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
         const std::int32_t t = r.across(x, y);
         if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
         ++n;
-        k += points_across(r, f.field.direction[f.field.index(x, y)]) ? 1 : 0;
+        k += across.holds(f.field.direction[f.field.index(x, y)]) ? 1 : 0;
       }
     }
     EXPECT_EQ(found, alarms.meaningfulness(n, k));

@@ -38,28 +38,29 @@ bool find_peak(const Axes& axes, int u, double v, Peak& peak) {
   const int centre = static_cast<int>(v + 0.5);
   if (u < 1 || u > axes.size_u - 2 || centre < kReach + 1 || centre > axes.size_v - kReach - 2) return false;
   // Three neighbours along the edge are summed against noise: a blur along it moves nothing across it.
-  std::array<int, 2 * kReach + 3> sums{};
-  const std::uint8_t* at = axes.data + u * axes.step_u + (centre - kReach - 1) * axes.step_v;
-  for (int& sum : sums) {
-    sum = axes.brighter * (at[-axes.step_u] + at[0] + at[axes.step_u]);
-    at += axes.step_v;
-  }
-  std::array<int, 2 * kReach + 1> change{};
-  for (std::size_t i = 0; i < change.size(); ++i) change[i] = sums[i + 2] - sums[i];
+  const std::uint8_t* const at = axes.data + u * axes.step_u + centre * axes.step_v;
+  const auto sum = [&](int across) {
+    const std::uint8_t* const middle = at + across * axes.step_v;
+    return middle[-axes.step_u] + middle[0] + middle[axes.step_u];
+  };
+  const auto change = [&](int across) { return axes.brighter * (sum(across + 1) - sum(across - 1)); };
   // Uphill from the middle: a stronger edge behind a valley is somebody else's.
-  std::size_t best = kReach;
-  const bool up = change[best + 1] > change[best - 1];
-  while (best > 0 && best + 1 < change.size()) {
-    const std::size_t next = up ? best + 1 : best - 1;
-    if (change[next] <= change[best]) break;
-    best = next;
+  const int uphill = change(1) > change(-1) ? 1 : -1;
+  int place = 0;
+  int behind = change(-uphill), best = change(0), ahead = change(uphill);
+  while (ahead > best) {
+    place += uphill;
+    if (place == kReach || place == -kReach) return false;
+    behind = best;
+    best = ahead;
+    ahead = change(place + uphill);
   }
-  if (best == 0 || best + 1 == change.size() || change[best] <= 0) return false;
-  const int curvature = 2 * change[best] - change[best - 1] - change[best + 1];
+  if (best <= 0) return false;
+  const int curvature = 2 * best - behind - ahead;
   if (curvature <= 0) return false;
-  const double shift = 0.5 * (change[best + 1] - change[best - 1]) / curvature;
+  const double shift = 0.5 * (uphill * (ahead - behind)) / curvature;
   peak.along = u;
-  peak.offset = centre + (static_cast<double>(best) - kReach) + shift - v;
+  peak.offset = centre + static_cast<double>(place) + shift - v;
   // The variance of a peak's place goes with noise² / curvature²; a cap keeps one strong profile from being
   // all.
   const double strength = std::min(curvature, 300);

@@ -50,20 +50,12 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
 // Does the region fill at least 70 % of its rectangle?
 bool is_dense(const Rectangle& rectangle, std::size_t region_size);
 
-// Does a pixel's gradient point across the rectangle, to its brighter side, within 22.5°?
-inline bool points_across(const Rectangle& rectangle, Direction direction) {
-  constexpr std::uint64_t kTangent_q20 = 434334;
-  const std::int32_t dot = rectangle.dx * direction.y - rectangle.dy * direction.x;
-  const std::int32_t cross = rectangle.dx * direction.x + rectangle.dy * direction.y;
-  const auto turn = static_cast<std::uint64_t>(cross < 0 ? -cross : cross) << 20;
-  return dot > 0 && turn <= kTangent_q20 * static_cast<std::uint64_t>(dot);
-}
-
-// Calls visit(x, y) for every pixel of the field inside the rectangle, row by row.
+// Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle: from x = first
+// to x = last.
 template <typename Visit>
-void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
-  // The corners bound the rows; each row is bounded by the two strips, with a little to spare, then each
-  // pixel is tested exactly.
+void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
+  // The corners bound the rows; each row is bounded by the two strips, with a little to spare, then its
+  // ends are tested exactly.
   const double along_min = r.along_min / 256.0 - 0.01;
   const double along_max = r.along_max / 256.0 + 0.01;
   const double across_min = r.across_min / 256.0 - 0.01;
@@ -97,16 +89,16 @@ void for_each_pixel(const LevelLineField& field, const Rectangle& r, Visit&& vis
     if (inverse_dx != 0) cut((along_min - v * dy) * inverse_dx, (along_max - v * dy) * inverse_dx);
     if (inverse_dy != 0) cut((v * dx - across_min) * inverse_dy, (v * dx - across_max) * inverse_dy);
     if (left > right) continue;
-    const int first = static_cast<int>(left);
-    const int last = static_cast<int>(right);
-    std::int64_t along = r.along_q22(first, y);
-    std::int64_t across = r.across_q22(first, y);
-    for (int x = first; x <= last; ++x, along += 256 * r.dx, across -= 256 * r.dy) {
-      const auto l = static_cast<std::int32_t>(along >> kDirectionBits);
-      const auto t = static_cast<std::int32_t>(across >> kDirectionBits);
-      if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
-      visit(x, y);
-    }
+    int first = static_cast<int>(left);
+    int last = static_cast<int>(right);
+    const auto inside = [&](int x) {
+      const std::int32_t l = r.along(x, y);
+      const std::int32_t t = r.across(x, y);
+      return l >= r.along_min && l <= r.along_max && t >= r.across_min && t <= r.across_max;
+    };
+    while (first <= last && !inside(first)) ++first;
+    while (last > first && !inside(last)) --last;
+    if (first <= last) visit(y, first, last);
   }
 }
 

@@ -2,10 +2,9 @@
 #include "plvo/lines/lsd/line_support_region.hpp"
 
 #include <bit>
-#include <cstring>
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/lines/lsd/wedge.hpp"
 
 namespace plvo::lsd {
 
@@ -22,28 +21,6 @@ std::uint32_t packed(const Pixel& pixel) {
 }
 Pixel unpacked(std::uint32_t pixel) {
   return {static_cast<std::int16_t>(pixel), static_cast<std::int16_t>(pixel >> 16)};
-}
-
-// The directions that a region takes, as the two sides of a wedge about its own: a direction is in it when
-// its products with both are below 0. In 16 bits, which is as much as a direction has.
-struct Wedge {
-  std::int16_t left_x, left_y, right_x, right_y;
-
-  bool holds(Direction d) const {
-    return d.x * left_x + d.y * left_y < 0 && d.x * right_x + d.y * right_y < 0;
-  }
-};
-
-Wedge make_wedge(std::int64_t sum_x, std::int64_t sum_y, Tolerance tolerance) {
-  const auto size = [](std::int64_t x) { return static_cast<std::uint64_t>(x < 0 ? -x : x); };
-  const int excess = static_cast<int>(std::bit_width(size(sum_x) | size(sum_y))) - kDirectionBits;
-  const int shift = excess > 0 ? excess : 0;
-  const auto x = static_cast<std::int32_t>(sum_x >> shift);
-  const auto y = static_cast<std::int32_t>(sum_y >> shift);
-  const std::int32_t along_x = x * tolerance.tangent_q15 >> 15;
-  const std::int32_t along_y = y * tolerance.tangent_q15 >> 15;
-  return {static_cast<std::int16_t>(y - along_x), static_cast<std::int16_t>(-x - along_y),
-          static_cast<std::int16_t>(-y - along_x), static_cast<std::int16_t>(x - along_y)};
 }
 
 // Which of a pixel's neighbours are in a wedge, bit by bit.
@@ -82,38 +59,20 @@ unsigned open_neighbours(const std::uint8_t* state, std::ptrdiff_t stride) {
 // wait for nobody.
 class Sides {
  public:
-  void set(const Wedge& wedge) {
-    repeat(wedge.left_x, wedge.left_y, left_);
-    repeat(wedge.right_x, wedge.right_y, right_);
-  }
+  void set(const Wedge& wedge) { wedge_ = WedgeLanes(wedge); }
   unsigned open(const std::uint8_t* state, const Direction* here, std::ptrdiff_t stride) const {
     return open_neighbours(state, stride) & holding(here, stride);
   }
 
  private:
   unsigned holding(const Direction* here, std::ptrdiff_t stride) const {
-    const unsigned above = holding(here - stride - 1);
-    const unsigned beside = holding(here - 1);
-    const unsigned below = holding(here + stride - 2);
+    const unsigned above = wedge_.holding(here - stride - 1);
+    const unsigned beside = wedge_.holding(here - 1);
+    const unsigned below = wedge_.holding(here + stride - 2);
     return (above & 7U) | (beside & 1U) << 3 | (beside & 4U) << 2 | (below & 14U) << 4;
   }
-  static void repeat(std::int16_t x, std::int16_t y, Lanes& lanes) {
-    const WideLanes four = WideLanes{} + static_cast<std::int32_t>(
-                                             static_cast<std::uint16_t>(x) |
-                                             static_cast<std::uint32_t>(static_cast<std::uint16_t>(y)) << 16);
-    std::memcpy(&lanes, &four, sizeof lanes);
-  }
-  unsigned holding(const Direction* four) const {
-    static_assert(sizeof(Direction) == 2 * sizeof(std::int16_t));
-    Lanes row;
-    std::memcpy(&row, four, sizeof row);
-    WideLanes left, right;
-    dot_pairs(row, left_, left);
-    dot_pairs(row, right_, right);
-    return negative_lanes(left & right);
-  }
 
-  Lanes left_{}, right_{};
+  WedgeLanes wedge_;
 };
 #endif
 
