@@ -268,9 +268,9 @@ TEST(Wedge, HoldsWhatIsWithinItsTolerance) {
                       static_cast<std::int16_t>(std::lround(16384 * std::sin(other)))};
     const double off = angle_between(other, angle);
     if (wedge.holds(d))
-      EXPECT_LT(off, 22.5 * kDegree + 3e-4);
+      EXPECT_LT(off, 22.5 * kDegree + 0.016 * kDegree);
     else
-      EXPECT_GT(off, 22.5 * kDegree - 3e-4);
+      EXPECT_GT(off, 22.5 * kDegree - 0.016 * kDegree);
   }
   EXPECT_FALSE(make_wedge(16384, 0, kTau).holds(Direction{0, 0}));
 }

@@ -28,17 +28,13 @@ struct Rectangle {
   // Standard deviation of the gradient's mass across it, 2^-8 pixels.
   std::int32_t across_sd = 0;
 
-  std::int64_t along_q22(int x, int y) const {
-    return std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy;
-  }
-  std::int64_t across_q22(int x, int y) const {
-    return std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy;
-  }
   std::int32_t along(int x, int y) const {
-    return static_cast<std::int32_t>(along_q22(x, y) >> kDirectionBits);
+    const std::int64_t q22 = std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy;
+    return static_cast<std::int32_t>(q22 >> kDirectionBits);
   }
   std::int32_t across(int x, int y) const {
-    return static_cast<std::int32_t>(across_q22(x, y) >> kDirectionBits);
+    const std::int64_t q22 = std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy;
+    return static_cast<std::int32_t>(q22 >> kDirectionBits);
   }
   std::int32_t length_q8() const { return along_max - along_min; }
   std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted

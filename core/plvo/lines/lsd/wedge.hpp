@@ -14,8 +14,8 @@
 
 namespace plvo::lsd {
 
-// As the two sides of a wedge about (x, y): a direction is in it when its products with both are below 0. In
-// 16 bits, which is as much as a direction has; a pixel without a direction is in none.
+// The two sides of a wedge: a direction is in it when its products with both are below 0. In 16 bits, which
+// is as much as a direction has; a pixel without a direction is in none.
 struct Wedge {
   std::int16_t left_x, left_y, right_x, right_y;
 
@@ -24,17 +24,17 @@ struct Wedge {
   }
 };
 
-// (sum_x, sum_y): of any length.
-inline Wedge make_wedge(std::int64_t sum_x, std::int64_t sum_y, Tolerance tolerance) {
-  const auto size = [](std::int64_t x) { return static_cast<std::uint64_t>(x < 0 ? -x : x); };
-  const int excess = static_cast<int>(std::bit_width(size(sum_x) | size(sum_y))) - kDirectionBits;
+// About (x, y), which may have any length from 2^13 on. Its sides are off by at most 0.016°.
+inline Wedge make_wedge(std::int64_t x, std::int64_t y, Tolerance tolerance) {
+  const auto size = [](std::int64_t v) { return static_cast<std::uint64_t>(v < 0 ? -v : v); };
+  const int excess = static_cast<int>(std::bit_width(size(x) | size(y))) - kDirectionBits;
   const int shift = excess > 0 ? excess : 0;
-  const auto x = static_cast<std::int32_t>(sum_x >> shift);
-  const auto y = static_cast<std::int32_t>(sum_y >> shift);
-  const std::int32_t along_x = x * tolerance.tangent_q15 >> 15;
-  const std::int32_t along_y = y * tolerance.tangent_q15 >> 15;
-  return {static_cast<std::int16_t>(y - along_x), static_cast<std::int16_t>(-x - along_y),
-          static_cast<std::int16_t>(-y - along_x), static_cast<std::int16_t>(x - along_y)};
+  const auto short_x = static_cast<std::int32_t>(x >> shift);
+  const auto short_y = static_cast<std::int32_t>(y >> shift);
+  const std::int32_t along_x = short_x * tolerance.tangent_q15 >> 15;
+  const std::int32_t along_y = short_y * tolerance.tangent_q15 >> 15;
+  return {static_cast<std::int16_t>(short_y - along_x), static_cast<std::int16_t>(-short_x - along_y),
+          static_cast<std::int16_t>(-short_y - along_x), static_cast<std::int16_t>(short_x - along_y)};
 }
 
 #ifndef PLVO_LANE_LOOPS
