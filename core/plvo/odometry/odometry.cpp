@@ -149,6 +149,11 @@ bool Odometry::wants_points() const {
                                 frame(current_).features.points, result);
 }
 
+// Of the current frame. So are a keyframe's; what is matched beside it is found again by its image.
+[[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
+  rooms_.extraction.describe_points(arena_, frame(current_).features.points, result);
+}
+
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
   if (!camera().depth_timing.known) return 0;
   // Stamps farther apart than this do not belong to one frame, whoever paired them.

@@ -161,6 +161,7 @@ class Odometry {
   void take_feature_memory();
   bool wants_points() const;
   void find_points(const DepthSampler& depth, TrackResult& result);
+  void describe_points(TrackResult& result);
   double depth_after_colour_s(const RgbdFrame& input) const;
 
   // odometry_motion.cpp: where the camera is expected, and the search for the motion from there.

@@ -62,7 +62,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 
 // A first motion from the latest reference: by its image; failing that by its features, where they are
 // predicted; failing that from each, wherever it may be, unless other sensors say where. Then the motion from
-// all of them.
+// all of them. The keyframe's points are described, and those of the keyframe before, not a recent frame's.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
   References references;
@@ -78,6 +78,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   };
   const auto find = [&](const Reference& from, double radius_px) {
     find_points(depth, result);
+    describe_points(result);
     rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
     if (tracked.motion.status != StatusCode::kOk) return false;
     return !config().points.registered ||
@@ -88,8 +89,13 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
       rooms_.tracking.align(latest, current, arena_, T_current_latest, result) &&
       refine(T_current_latest * latest.pose.T_reference_base))
     return;
-  if (find(latest, config().points.match.radius_px)) return;
+  const auto findable = [](const Reference& from) {
+    const PointFeatures& points = from.features->points;
+    return points.described || points.keypoints.empty();
+  };
+  if (find(findable(latest) ? latest : all[0], config().points.match.radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
+    if (!findable(references[r])) continue;
     if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
     if (find(references[r], config().references.wide_search_px)) return;
   }

@@ -98,6 +98,7 @@ void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
 
 // The current frame becomes the keyframe and the last good one, with no motion behind it.
 void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
+  describe_points(result);
   report(pose, Vector6::Zero(), result);
   hold(current_, pose);
   frame(current_).motion_ns = 0;
@@ -131,6 +132,7 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
   const Kept kept = still_good();
   if (!kept.recent) {
     find_points(depth, result);
+    if (!kept.keyframe) describe_points(result);
     rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
   }
   result.state = TrackState::kTracking;

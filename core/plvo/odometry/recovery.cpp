@@ -42,6 +42,7 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   const MotionReference nobody;
   const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing, nobody};
   const Reference reference{&frame(slot).features, prior, {}};
+  rooms_.extraction.describe_points(arena_, features.points, result);
   const double anywhere_px = std::max(camera().width, camera().height);
   rooms_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
   if (tracked.motion.status == StatusCode::kOk && config().points.registered) {

@@ -44,10 +44,11 @@ struct PointFeatures {
   std::span<WindowMask> masks;
   std::span<Point3d> points;  // camera frame
   bool looked_for = false;
+  bool described = false;
 
   // Not looked for yet: no keypoints, and room for at most so many.
   void clear(std::size_t room) {
-    looked_for = false;
+    looked_for = described = false;
     keypoints = FixedVector<Keypoint>({keypoints.begin(), room < points.size() ? room : points.size()});
   }
 

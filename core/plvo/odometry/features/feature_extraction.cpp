@@ -60,7 +60,10 @@ void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) 
   pyramid_.build();
 }
 
-void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) const {
+void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points, TrackResult& result) const {
+  if (!has_points() || points.described) return;
+  const StageTimer timer(*config_, result, Stage::kPoints);
+  points.described = true;
   const ScratchScope scope(scratch);
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
@@ -72,9 +75,7 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points) c
     const Describer describe(smoothed);
     for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
       const Keypoint& keypoint = points.keypoints[i];
-      if (keypoint.level != level) continue;
-      points.descriptors[i] = describe(keypoint.x, keypoint.y);
-      points.patches[i] = cut_patch(image, keypoint.x, keypoint.y);
+      if (keypoint.level == level) points.descriptors[i] = describe(keypoint.x, keypoint.y);
     }
   }
 }
@@ -117,7 +118,10 @@ void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
   points.looked_for = true;
   const DetectionSummary summary =
       detect_keypoints(pyramid_, depth, config_->points.detector, scratch, points.keypoints);
-  describe_points(scratch, points);
+  for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
+    const Keypoint& keypoint = points.keypoints[i];
+    points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
+  }
   result.points.with_depth =
       static_cast<int>(points.keypoints.size());  // the detector passes over what has none
   result.points.detected = summary.candidates;

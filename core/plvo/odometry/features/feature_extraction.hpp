@@ -69,6 +69,8 @@ class FeatureExtraction {
   // P1 of the last frame, unless its points were looked for before.
   void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                    TrackResult& result) const;
+  // P4 of the last frame, whose points were found, unless they were described before.
+  void describe_points(Arena& scratch, PointFeatures& points, TrackResult& result) const;
   // What a reference needs besides lines: lift_points, and samples of surfaces. When the motion during the
   // exposure is known as well as it will be.
   void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
@@ -120,7 +122,6 @@ class FeatureExtraction {
                  Line3d& line) const;
   // P2, P3, and what belongs to each keypoint's own surface.
   void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
-  void describe_points(Arena& scratch, PointFeatures& points) const;
 
   CameraModel camera_;
   std::optional<Config> config_;  // until init none: the code that makes one is the user's
