@@ -75,7 +75,7 @@ endfunction()
 # plvo_core_variant(<name> <options…>): the core once more, compiled another way, for tests that compare or watch it.
 # Options come after those of the build type, so the last optimisation level counts.
 function(plvo_core_variant name)
-  get_target_property(sources plvo_core SOURCES)
+  get_target_property(sources plvo_core PLVO_SOURCES)
   get_target_property(source_dir plvo_core SOURCE_DIR)
   list(TRANSFORM sources PREPEND "${source_dir}/" REGEX "^[^/]")
   add_library(${name} STATIC ${sources})
