@@ -147,7 +147,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
     if (set.flags[i] == 0) continue;
     ++inliers;
     const SurfaceMatch& match = walls.matches[i];
-    const Dense F = shared.fields(match.p_current, match.delay_s);
+    const Dense F = shared.field(match.p_current, match.delay_s).matrix();
     Dense V(3, kAll);
     V << Dense::Identity(3, 3), -Dense(skew(T.R * match.p_reference)), F, Dense(match.common);
     const DenseVector n = match.normal;
@@ -158,8 +158,8 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
         weight *
         ((1 + match.normal_variance) * n * n.transpose() - match.normal_variance * Dense::Identity(3, 3)) /
         match.variance;
-    const DenseVector e = T * match.p_reference - match.p_current +
-                          shared.fields(match.p_current, match.delay_s) * shared.value;
+    const DenseVector e =
+        T * match.p_reference - match.p_current + shared.field(match.p_current, match.delay_s) * shared.value;
     H += V.transpose() * M * V;
     g += V.transpose() * M * e;
     plain += 0.5 * e.dot(M * e);

@@ -184,7 +184,9 @@ TEST_F(BudgetedOdometry, TheHookIsCalledAfterEachStage) {
       &stages};
   init(config);
   (void)odometry_.track(sequence_.render(0));
-  EXPECT_EQ(stages, (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines, Stage::kLines}));
+  EXPECT_EQ(stages,
+            (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines, Stage::kLines, Stage::kPoints}))
+      << "a keyframe's points are described last";
   stages.clear();
   (void)odometry_.track(sequence_.render(1));
   EXPECT_EQ(stages, (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines, Stage::kMatching,

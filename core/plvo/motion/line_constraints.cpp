@@ -278,8 +278,8 @@ void LineConstraints::begin(const Se3& T, const SharedErrors& shared, const Robu
 bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shared) {
   Line3d current = current_[matches_[i].current];
   if (shared.any()) {
-    current.a -= shared.shift(current.a);
-    current.b -= shared.shift(current.b);
+    current.a -= shared.field(current.a) * shared.value;
+    current.b -= shared.field(current.b) * shared.value;
   }
   // From the measured line one Gauss–Newton step to the best one: another would move it by the square of the
   // first over the segment's length.
@@ -319,10 +319,11 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
       const Vector3 S = T.R.lazyProduct(held.ends[end]);
       Vector3 off = measured - T.t - S;
       if (shared.any()) {
-        const Matrix<3, SharedErrors::kCount> F = shared.fields(measured);
-        off -= F.lazyProduct(shared.value);
+        const SharedField field = shared.field(measured);
+        off -= field * shared.value;
         for (int k = 0; k < 2; ++k)
-          columns.block<1, SharedErrors::kCount>(2 * end + k, 6) = held.across[k].transpose().lazyProduct(F);
+          columns.block<1, SharedErrors::kCount>(2 * end + k, 6) =
+              field.transpose_times(held.across[k]).transpose();
       }
       for (int k = 0; k < 2; ++k) {
         const Vector3& u = held.across[k];

@@ -6,6 +6,7 @@
 
 #include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/pair.hpp"
 
 namespace plvo {
 namespace {
@@ -93,28 +94,61 @@ double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double
 
 namespace {
 
-// What one match adds to the part of β: F its fields, W its information, J_ξ = [I, −[q]×].
-void add_shared(const Matrix<3, SharedErrors::kCount>& F, const Matrix3& W, const Vector3& We,
-                const Vector3& q, JointInformation& sum) {
-  constexpr int n = SharedErrors::kCount;
-  for (int k = 0; k < n; ++k) {
-    const Vector3 f = F.col(k);
-    const Vector3 Wf = W.lazyProduct(f);
-    const Vector3 turned = q.cross(Wf);
-    for (int r = 0; r < 3; ++r) {
-      sum.H(6 + k, r) += Wf[r];
-      sum.H(6 + k, 3 + r) += turned[r];
+// The part of β in the sums of one set, J_ξ = [I, −[q]×]. Of the depth's errors all columns of F are
+// multiples of p, so each of their products is one of `along` with a number.
+class SharedSums {
+ public:
+  // W, We: the match's information, and times its residual.
+  void add(const SharedField& F, const Matrix3& W, const Vector3& We, const Vector3& q) {
+    const Vector3 Wp = W.lazyProduct(F.p);
+    const Vector3 moved = q.cross(Wp);
+    const Vector3 turned = F.turning(Wp);
+    const double factors[kFactors] = {Wp[0],    Wp[1],     Wp[2],     moved[0],  moved[1],
+                                      moved[2], turned[0], turned[1], turned[2], -F.p.dot(We)};
+    const Pair along[kPairs] = {{F.along[0], F.along[1]}, {F.along[2], F.along[3]}};
+    for (int i = 0; i < kFactors; ++i)
+      for (int k = 0; k < kPairs; ++k) along_[i][k] += factors[i] * along[k];
+    const double squared = F.p.dot(Wp);
+    for (int i = 0; i < kDepth; ++i) {
+      const double scaled = squared * F.along[i];
+      for (int k = 0; k < kPairs; ++k) squares_[i][k] += scaled * along[k];
     }
-    for (int l = 0; l <= k; ++l) sum.H(6 + k, 6 + l) += Wf.dot(F.col(l));
-    sum.g[6 + k] -= f.dot(We);
+    if (F.delay_s == 0) return;
+    Matrix3 WF;
+    for (int r = 0; r < 3; ++r) WF.row(r) = F.turning(W.row(r).transpose()).transpose();
+    turning_v_ += WF;
+    for (int c = 0; c < kTurning; ++c) {
+      turning_w_.col(c) += q.cross(WF.col(c));
+      turning_turning_.col(c) += F.turning(WF.col(c));
+    }
+    g_turning_ -= F.turning(We);
   }
-}
 
-// The upper triangle of β's rows and columns from the lower one.
-void mirror_shared(JointInformation& sum) {
-  for (int r = 6; r < JointInformation::kSize; ++r)
-    for (int c = 0; c < r; ++c) sum.H(c, r) = sum.H(r, c);
-}
+  void add_to(JointInformation& sum) const {
+    constexpr int kAlong = 6 + kTurning;
+    sum.H.block<kTurning, 3>(6, 0) += turning_v_.transpose();
+    sum.H.block<kTurning, 3>(6, 3) += turning_w_.transpose();
+    sum.H.block<kTurning, kTurning>(6, 6) += turning_turning_;
+    sum.g.segment<kTurning>(6) += g_turning_;
+    for (int i = 0; i < kDepth; ++i) {
+      for (int k = 0; k < kFactors - 1; ++k) sum.H(kAlong + i, k) += along_[k][i / 2][i % 2];
+      for (int k = 0; k <= i; ++k) sum.H(kAlong + i, kAlong + k) += squares_[i][k / 2][k % 2];
+      sum.g[kAlong + i] += along_[kFactors - 1][i / 2][i % 2];
+    }
+    // The upper triangle of these rows and columns from the lower one.
+    for (int r = 6; r < JointInformation::kSize; ++r)
+      for (int c = 0; c < r; ++c) sum.H(c, r) = sum.H(r, c);
+  }
+
+ private:
+  static constexpr int kTurning = SharedField::kTurning, kDepth = SharedField::kDepth;
+  static constexpr int kFactors = 6 + kTurning + 1;  // the motion, turning, and the gradient
+  static constexpr int kPairs = kDepth / 2;
+  Pair along_[kFactors][kPairs] = {};
+  Pair squares_[kDepth][kPairs] = {};
+  Matrix3 turning_v_ = Matrix3::Zero(), turning_w_ = Matrix3::Zero(), turning_turning_ = Matrix3::Zero();
+  Vector3 g_turning_ = Vector3::Zero();
+};
 
 }  // namespace
 
@@ -127,13 +161,14 @@ double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, con
   Matrix3 H_ww = Matrix3::Zero();  // lower triangle
   Vector3 g_v = Vector3::Zero();
   Vector3 g_w = Vector3::Zero();
+  SharedSums of_shared;
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     if (inliers_[i] == 0) continue;
     const Point3d& reference = reference_[matches_[i].reference];
     const Point3d& current = current_[matches_[i].current];
     Vector3 p = current.p;
-    const Matrix<3, SharedErrors::kCount> F = shared.fields(current.p);
-    if (shared.any()) p -= F.lazyProduct(shared.value);
+    const SharedField F = shared.field(current.p);
+    if (shared.any()) p -= F * shared.value;
     const Vector3 e = p - T * reference.p;
     Symmetric3 W = inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma));
     Vector3 We = W * e;
@@ -154,7 +189,7 @@ double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, con
       B(r, 1) = rows(r, 2) * q.x() - rows(r, 0) * q.z();
       B(r, 2) = rows(r, 0) * q.y() - rows(r, 1) * q.x();
     }
-    if (shared.any()) add_shared(F, rows, We, q, sum);
+    if (shared.any()) of_shared.add(F, rows, We, q);
     H_vv += rows;
     H_vw -= B;
     for (int c = 0; c < 3; ++c) {
@@ -169,7 +204,7 @@ double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, con
   sum.H.block<3, 3>(3, 3) += 0.5 * (H_ww + H_ww.transpose());
   sum.g.head<3>() += g_v;
   sum.g.segment<3>(3) += g_w;
-  if (shared.any()) mirror_shared(sum);
+  if (shared.any()) of_shared.add_to(sum);
   return cost;
 }
 

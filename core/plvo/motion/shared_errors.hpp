@@ -19,10 +19,37 @@
 
 namespace plvo {
 
-class SharedErrors {
- public:
+// How the parameters move a measured point: F(p) = [−delay [p]×, p alongᵀ].
+struct SharedField {
   static constexpr int kTurning = 3, kDepth = 4;
   static constexpr int kCount = kTurning + kDepth;
+
+  Vector3 p;
+  double delay_s = 0;               // of the row that saw it, after the middle one; 0: no turning
+  Vector4 along = Vector4::Zero();  // m; zero: no error of the depth
+
+  // F β.
+  Vector3 operator*(const Vector<kCount>& beta) const {
+    return along.dot(beta.tail<kDepth>()) * p - turning(beta.head<kTurning>());
+  }
+  // Fᵀ u.
+  Vector<kCount> transpose_times(const Vector3& u) const {
+    Vector<kCount> result;
+    result.head<kTurning>() = turning(u);
+    result.tail<kDepth>() = u.dot(p) * along;
+    return result;
+  }
+  // Of Fᵀ u what turning has.
+  Vector3 turning(const Vector3& u) const {  // −delay u × p
+    return {delay_s * (u.z() * p.y() - u.y() * p.z()), delay_s * (u.x() * p.z() - u.z() * p.x()),
+            delay_s * (u.y() * p.x() - u.x() * p.y())};
+  }
+  Matrix<3, kCount> matrix() const;
+};
+
+class SharedErrors {
+ public:
+  static constexpr int kCount = SharedField::kCount;
   using Vector = plvo::Vector<kCount>;
 
   // There are none.
@@ -33,15 +60,12 @@ class SharedErrors {
 
   bool any() const { return turning_ > 0 || depth_ > 0; }
   // Prior SD of parameter k; 0: there is no such error.
-  double sigma(int k) const { return k < kTurning ? turning_ : depth_; }
+  double sigma(int k) const { return k < SharedField::kTurning ? turning_ : depth_; }
 
-  // F(p), and what it makes of β.
-  Matrix<3, kCount> fields(const Vector3& p) const {
-    return fields(p, turning_ > 0 ? exposure_.delay_s(p) : 0);
-  }
+  // How they move p.
+  SharedField field(const Vector3& p) const { return field(p, turning_ > 0 ? exposure_.delay_s(p) : 0); }
   // The same of a p that was exposed delay_s after the middle row.
-  Matrix<3, kCount> fields(const Vector3& p, double delay_s) const;
-  Vector3 shift(const Vector3& p) const { return fields(p).lazyProduct(value); }
+  SharedField field(const Vector3& p, double delay_s) const;
 
   Vector value = Vector::Zero();  // β
 

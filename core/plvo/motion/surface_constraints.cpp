@@ -170,8 +170,9 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
     const Vector3 offset = T * match.p_reference - match.p_current;
     Vector3 e = offset;
     if (shared.any()) {
-      A.others.block<3, kShared>(0, 0) = shared.fields(match.p_current, match.delay_s);
-      e += A.others.block<3, kShared>(0, 0).lazyProduct(shared.value);
+      const SharedField field = shared.field(match.p_current, match.delay_s);
+      A.others.block<3, kShared>(0, 0) = field.matrix();
+      e += field * shared.value;
     }
     const double s = normalised(match, e);
     inliers_[i] = s <= kGateSigmas * kGateSigmas ? 1 : 0;

@@ -38,7 +38,12 @@ class FeatureExtraction {
       const ScratchScope scope(memory);
       memory.take<std::uint8_t>("raw grey image", pixels_of(limits.width, limits.height));
     }
-    reserve_points(memory, limits.width, limits.height);
+    reserve_detection(memory, limits.width, limits.height);
+    {
+      const ScratchScope scope(memory);
+      memory.take<std::uint8_t>("smoothed image", pixels_of(limits.width, limits.height));
+      take_smoothing_row(memory, limits.width);
+    }
     {
       const ScratchScope scope(memory);
       if (limits.cores > 1)
@@ -94,18 +99,10 @@ class FeatureExtraction {
   static constexpr std::size_t pixels_of(int width, int height) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
-  static constexpr void reserve_points(Arena& memory, int width, int height) {
-    {
-      const ScratchScope scope(memory);
-      memory.take<std::uint8_t>("smoothed image", pixels_of(width, height));
-      take_smoothing_row(memory, width);
-    }
-    reserve_detection(memory, width, height);
-  }
-  // Of an arena that holds what reserve_points counts, wherever it starts.
+  // Of an arena that holds what reserve_detection counts, wherever it starts.
   static constexpr std::size_t point_scratch(int width, int height) {
     Arena sizer = Arena::counting();
-    reserve_points(sizer, width, height);
+    reserve_detection(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
   bool has_points() const { return kPointsBuilt && config_->features != Features::kLines; }

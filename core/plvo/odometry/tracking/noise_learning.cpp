@@ -114,8 +114,8 @@ double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_re
 }
 
 void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown) {
-  shown.turning = mean_square(shared, estimate, 0, SharedErrors::kTurning);
-  shown.shared_depth = mean_square(shared, estimate, SharedErrors::kTurning, SharedErrors::kDepth);
+  shown.turning = mean_square(shared, estimate, 0, SharedField::kTurning);
+  shown.shared_depth = mean_square(shared, estimate, SharedField::kTurning, SharedField::kDepth);
 }
 
 void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales) {
