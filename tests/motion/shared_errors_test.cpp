@@ -39,10 +39,10 @@ SharedErrors::Vector draw(Gaussian& gaussian, const SharedErrors& shared) {
 
 // The current frame's measurements as these errors falsify them.
 SimulatedPair falsified(SimulatedPair pair, const SharedErrors& shared) {
-  for (Point3d& point : pair.points_current) point.p += shared.field(point.p) * shared.value;
+  for (Point3d& point : pair.points_current) point.p += shared.shift(point.p);
   for (Line3d& line : pair.lines_current) {
-    line.a += shared.field(line.a) * shared.value;
-    line.b += shared.field(line.b) * shared.value;
+    line.a += shared.shift(line.a);
+    line.b += shared.shift(line.b);
   }
   return pair;
 }
@@ -63,8 +63,7 @@ TEST(SharedErrors, ATurnThatWasNotKnownMovesPointsAsTheShutterSays) {
     SharedErrors error = shared;
     error.value.head<3>() = omega;
     const Vector3 measured = carried(Vector3::Zero());
-    EXPECT_LT((measured - error.field(measured) * error.value - carried(omega)).norm(),
-              1e-4 * measured.norm());
+    EXPECT_LT((measured - error.shift(measured) - carried(omega)).norm(), 1e-4 * measured.norm());
   }
 }
 
@@ -74,7 +73,7 @@ TEST(SharedErrors, DepthsErrorGrowsWithItsSquareAlongTheRay) {
   const Vector3 ray(0.3, -0.2, 1);
   for (const double depth : {0.5, 1.0, 3.0}) {
     const Vector3 expected = 0.002 * depth * depth * ray;
-    EXPECT_LT((shared.field(depth * ray) * shared.value - expected).norm(), 1e-15);
+    EXPECT_LT((shared.shift(Vector3(depth * ray)) - expected).norm(), 1e-15);
   }
 }
 

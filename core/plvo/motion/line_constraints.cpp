@@ -278,8 +278,8 @@ void LineConstraints::begin(const Se3& T, const SharedErrors& shared, const Robu
 bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shared) {
   Line3d current = current_[matches_[i].current];
   if (shared.any()) {
-    current.a -= shared.field(current.a) * shared.value;
-    current.b -= shared.field(current.b) * shared.value;
+    current.a -= shared.shift(current.a);
+    current.b -= shared.shift(current.b);
   }
   // From the measured line one Gauss–Newton step to the best one: another would move it by the square of the
   // first over the segment's length.

@@ -62,10 +62,12 @@ class SharedErrors {
   // Prior SD of parameter k; 0: there is no such error.
   double sigma(int k) const { return k < SharedField::kTurning ? turning_ : depth_; }
 
-  // How they move p.
+  // F(p).
   SharedField field(const Vector3& p) const { return field(p, turning_ > 0 ? exposure_.delay_s(p) : 0); }
   // The same of a p that was exposed delay_s after the middle row.
   SharedField field(const Vector3& p, double delay_s) const;
+  // F(p) β.
+  Vector3 shift(const Vector3& p) const { return field(p) * value; }
 
   Vector value = Vector::Zero();  // β
 

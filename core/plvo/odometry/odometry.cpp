@@ -149,7 +149,8 @@ bool Odometry::wants_points() const {
                                 frame(current_).features.points, result);
 }
 
-// Of the current frame. So are a keyframe's; what is matched beside it is found again by its image.
+// Of the current frame, which becomes a keyframe or is searched by descriptors; a recent frame is found again
+// by its image. Apart, as find_points.
 [[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
   rooms_.extraction.describe_points(arena_, frame(current_).features.points, result);
 }
