@@ -18,14 +18,14 @@
 #include <thread>
 
 #include "command.hpp"
+#include "plvo_binary.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo_test {
 
+using plvo::test::kPlvo;
 using plvo::test::read_file;
 using plvo::test::run_command;
-
-inline const std::string kPlvo = PLVO_BINARY;
 
 // So that what hangs fails by name; nothing is judged by it.
 inline constexpr double kPatience_s = 120;

@@ -14,7 +14,7 @@
 namespace plvo {
 namespace {
 
-const std::string kLine = std::string(999, 'x') + '\n';
+const std::string kLine = std::string(999, 'x').append(1, '\n');
 
 class PoseReadersTest : public ::testing::Test {
  protected:

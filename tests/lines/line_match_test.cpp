@@ -11,8 +11,8 @@
 namespace plvo {
 namespace {
 
-using test::Picture;
 using test::PictureScene;
+using test::ScenePicture;
 
 struct View {
   std::vector<Segment> segments;
@@ -23,7 +23,7 @@ struct View {
 template <typename Light>
 View see(const PictureScene& scene, const Matrix3& H, const Light& light, std::uint64_t seed) {
   View view;
-  const Picture picture = scene.render(H, light, 2, seed);
+  const ScenePicture picture = scene.render(H, light, 2, seed);
   Random random(seed + 100);
   const std::vector<Segment> borders = scene.borders(H);
   for (std::size_t k = 0; k < borders.size(); ++k) {
@@ -40,7 +40,7 @@ View see(const PictureScene& scene, const Matrix3& H, const Light& light, std::u
   return view;
 }
 
-struct Score {
+struct MatchScore {
   int right = 0, wrong = 0, possible = 0;
 };
 
@@ -54,7 +54,7 @@ class LineMatch : public ::testing::Test {
                 arena, matches);
     return {matches.begin(), matches.end()};
   }
-  void add(const View& reference, const View& current, const LineMatchConfig& config, Score& score) {
+  void add(const View& reference, const View& current, const LineMatchConfig& config, MatchScore& score) {
     for (const Match& m : match(reference, current, config))
       ++(reference.border[m.reference] == current.border[m.current] ? score.right : score.wrong);
     for (const int k : reference.border)
@@ -74,7 +74,7 @@ Matrix3 motion(Random& random) {
 
 TEST_F(LineMatch, FindsTheSameBordersAfterAMotion) {
   Random random(3);
-  Score constant, varying;
+  MatchScore constant, varying;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const PictureScene scene(seed);
     const Matrix3 H = motion(random);
@@ -83,7 +83,7 @@ TEST_F(LineMatch, FindsTheSameBordersAfterAMotion) {
     const auto dim = [](double g, int x, int y) { return g * (0.75 - x / 900.0 - y / 900.0); };
     add(reference, see(scene, H, dim, seed + 50), {}, varying);
   }
-  for (const Score& s : {constant, varying}) {
+  for (const MatchScore& s : {constant, varying}) {
     EXPECT_GT(s.possible, 100);
     EXPECT_GT(s.right, 0.8 * s.possible);
     EXPECT_LT(s.wrong, 0.03 * s.right);

@@ -11,8 +11,8 @@
 namespace plvo {
 namespace {
 
-using test::Picture;
 using test::PictureScene;
+using test::ScenePicture;
 
 // Squared distance in units of one half's norm: 0 the same, 4 nothing in common.
 double distance(const LineDescriptor& a, const LineDescriptor& b) {
@@ -33,7 +33,7 @@ void for_each_border(const PictureScene& scene, const Matrix3& H, const Check& c
 TEST(Msld, AgreesWithTheWrittenOutReference) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const PictureScene scene(seed);
-    const Picture picture = scene.render(Matrix3::Identity(), test::as_it_is, 2, seed);
+    const ScenePicture picture = scene.render(Matrix3::Identity(), test::as_it_is, 2, seed);
     double worst = 0;
     for_each_border(scene, Matrix3::Identity(), [&](const Segment& s) {
       const LineDescriptor fast = describe_segment(picture.view(), 1, s);
@@ -49,7 +49,7 @@ TEST(Msld, AgreesWithTheWrittenOutReference) {
 
 TEST(Msld, HalvesHaveUnitNorm) {
   const PictureScene scene(4);
-  const Picture picture = scene.render(Matrix3::Identity(), test::as_it_is);
+  const ScenePicture picture = scene.render(Matrix3::Identity(), test::as_it_is);
   for_each_border(scene, Matrix3::Identity(), [&](const Segment& s) {
     const LineDescriptor d = describe_segment(picture.view(), 1, s);
     for (const std::size_t half : {std::size_t{0}, kMsldLength / 2}) {
@@ -62,9 +62,9 @@ TEST(Msld, HalvesHaveUnitNorm) {
 
 TEST(Msld, LightThatChangesLinearlyCancels) {
   const PictureScene scene(5);
-  const Picture plain = scene.render(Matrix3::Identity(), test::as_it_is);
+  const ScenePicture plain = scene.render(Matrix3::Identity(), test::as_it_is);
   const auto worst = [&](const auto& light) {
-    const Picture lit = scene.render(Matrix3::Identity(), light);
+    const ScenePicture lit = scene.render(Matrix3::Identity(), light);
     double w = 0;
     for_each_border(scene, Matrix3::Identity(), [&](const Segment& s) {
       w = std::fmax(w, distance(describe_segment(plain.view(), 1, s), describe_segment(lit.view(), 1, s)));
@@ -85,8 +85,8 @@ TEST(Msld, TurnsWithTheSegment) {
   int compared = 0;
   for (const std::uint64_t seed : {6u, 7u, 8u, 9u}) {
     const PictureScene scene(seed);
-    const Picture upright = scene.render(Matrix3::Identity(), test::as_it_is);
-    const Picture turned = scene.render(quarter, test::as_it_is);
+    const ScenePicture upright = scene.render(Matrix3::Identity(), test::as_it_is);
+    const ScenePicture turned = scene.render(quarter, test::as_it_is);
     const std::vector<Segment> a = scene.borders(Matrix3::Identity()), b = scene.borders(quarter);
     for (std::size_t k = 0; k < a.size(); ++k) {
       if (a[k].length_px() < 10 || b[k].length_px() < 10) continue;
@@ -106,7 +106,7 @@ TEST(Msld, TurnsWithTheSegment) {
 
 TEST(Msld, TheBordersOfTheImageAreSafe) {
   const PictureScene scene(7);
-  const Picture picture = scene.render(Matrix3::Identity(), test::as_it_is);
+  const ScenePicture picture = scene.render(Matrix3::Identity(), test::as_it_is);
   Random random(8);
   for (int i = 0; i < 300; ++i) {
     Segment s;

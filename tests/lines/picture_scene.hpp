@@ -15,7 +15,7 @@
 
 namespace plvo::test {
 
-struct Picture {
+struct ScenePicture {
   int width = 320, height = 240;
   std::vector<std::uint8_t> pixels;
   GrayView view() const { return {pixels.data(), width, height, width}; }
@@ -52,9 +52,9 @@ class PictureScene {
 
   // H_world_picture maps homogeneous pixels to the world. light: grey → grey at a pixel. 2×2 samples a pixel.
   template <typename Light>
-  Picture render(const Matrix3& H_world_picture, const Light& light, double noise = 0,
-                 std::uint64_t seed = 1) const {
-    Picture picture;
+  ScenePicture render(const Matrix3& H_world_picture, const Light& light, double noise = 0,
+                      std::uint64_t seed = 1) const {
+    ScenePicture picture;
     Random random(seed);
     for (int y = 0; y < picture.height; ++y)
       for (int x = 0; x < picture.width; ++x) {

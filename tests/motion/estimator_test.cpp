@@ -25,14 +25,14 @@ void expect_finite(const MotionEstimate& estimate) {
   EXPECT_TRUE(std::isfinite(estimate.ransac.score));
 }
 
-struct Case {
+struct Share {
   int points, lines;
   double outliers;
 };
-class Outliers : public ::testing::TestWithParam<Case> {};
+class Outliers : public ::testing::TestWithParam<Share> {};
 
 TEST_P(Outliers, AreFound) {
-  const Case& c = GetParam();
+  const Share& c = GetParam();
   Gaussian gaussian(7);
   Bench bench;
   MotionConfig config;
@@ -52,9 +52,9 @@ TEST_P(Outliers, AreFound) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Shares, Outliers,
-                         ::testing::Values(Case{100, 0, 0.3}, Case{100, 0, 0.5}, Case{100, 0, 0.7},
-                                           Case{0, 40, 0.3}, Case{0, 40, 0.5}, Case{0, 40, 0.7},
-                                           Case{60, 20, 0.3}, Case{60, 20, 0.5}, Case{60, 20, 0.7}));
+                         ::testing::Values(Share{100, 0, 0.3}, Share{100, 0, 0.5}, Share{100, 0, 0.7},
+                                           Share{0, 40, 0.3}, Share{0, 40, 0.5}, Share{0, 40, 0.7},
+                                           Share{60, 20, 0.3}, Share{60, 20, 0.5}, Share{60, 20, 0.7}));
 
 TEST(Estimator, NothingToWorkWith) {
   Bench bench;

@@ -57,8 +57,8 @@ struct Walls {
 
 std::vector<Vector3> room() { return {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}}; }
 
-struct Set {
-  explicit Set(const Walls& walls)
+struct SurfaceSet {
+  explicit SurfaceSet(const Walls& walls)
       : flags(walls.matches.size()), constraints(walls.matches, {flags, {&form, 1}}), sets{&constraints} {}
   std::vector<std::uint8_t> flags;
   SurfaceForm form;
@@ -68,7 +68,7 @@ struct Set {
 
 const RobustKernel kKernel(RobustLoss::kHuber, 1);
 
-SharedErrors shared_errors() {
+SharedErrors room_errors() {
   CameraModel camera;
   camera.readout_s = 0.03;
   return {Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004};
@@ -78,9 +78,9 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   Gaussian gaussian(11);
   Walls walls(gaussian, room(), 30, 0.004, 0.03);
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
-  SharedErrors at = shared_errors();
+  SharedErrors at = room_errors();
   for (int k = 0; k < SharedErrors::kCount; ++k) at.value[k] = 0.2 * at.sigma(k) * gaussian();
-  Set set(walls);
+  SurfaceSet set(walls);
   const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
   set.constraints.begin(T, at, kKernel, 1);
   JointInformation sum;
@@ -110,7 +110,7 @@ TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
   fewer.matches.clear();
   for (std::size_t i = 0; i < walls.matches.size(); i += 4) fewer.matches.push_back(walls.matches[i]);
   const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
-  Set some(walls), all(fewer);
+  SurfaceSet some(walls), all(fewer);
   some.flags.assign(some.flags.size(), 1);
   some.constraints.begin(T, {}, kKernel, 4);
   all.constraints.begin(T, {}, kKernel, 1);
@@ -128,8 +128,8 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   Gaussian gaussian(12);
   Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
-  SharedErrors shared = shared_errors();
-  Set set(walls);
+  SharedErrors shared = room_errors();
+  SurfaceSet set(walls);
   set.constraints.begin(walls.truth, shared, kKernel, 1);
   // Some steps of a solve later.
   const Se3 T = boxplus(walls.truth, 3e-3 * gaussian.vector<6>());
@@ -184,7 +184,7 @@ TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
     const Vector2 gamma(gaussian(), gaussian());
     Walls walls(gaussian, room(), 150, 0.004, 0.01, gamma);
     const auto nees_of = [&] {
-      Set set(walls);
+      SurfaceSet set(walls);
       const test::Solution solution = test::settle(set.sets, {}, RobustLoss::kNone, walls.truth);
       return test::nees(solution.T, walls.truth, solution.H) / kTrials;
     };
@@ -210,7 +210,7 @@ TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
     for (SurfaceMatch& match : walls.matches) match.common.setZero();
     const Vector3 axis = walls.truth.R.col(2);
     const auto information = [&](const Vector3& direction) {
-      Set set(walls);
+      SurfaceSet set(walls);
       set.constraints.begin(walls.truth, {}, kKernel, 1);
       JointInformation sum;
       (void)set.constraints.linearize(walls.truth, {}, RobustKernel(), sum);
@@ -232,7 +232,7 @@ TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
   Gaussian gaussian(15);
   Walls walls(gaussian, room(), 50, 0.004, 0.01);
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;
-  Set set(walls);
+  SurfaceSet set(walls);
   set.constraints.begin(walls.truth, {}, kKernel, 1);
   for (std::size_t i = 0; i < walls.matches.size(); ++i) {
     EXPECT_EQ(set.flags[i], i == 3 ? 0 : 1) << i;
@@ -261,7 +261,7 @@ TEST(SurfaceConstraints, JoinPointsAndLines) {
     for (int i = 0; i < 20; ++i) pair.add_point(gaussian, test::random_point(gaussian));
     test::Bench bench;
     bench.load(pair);
-    Set set(walls);
+    SurfaceSet set(walls);
     const auto estimate = [&](bool with) {
       std::vector<ConstraintSet*> sets = bench.sets;
       if (with) sets.push_back(&set.constraints);

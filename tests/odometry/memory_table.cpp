@@ -65,7 +65,7 @@ std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny) {
       "part of the page is written by a test (`tests/odometry/memory_test.cpp`), which fails when the "
       "figures "
       "are no longer true.\n"
-      "To write it anew: `PLVO_UPDATE_DOCS=1 build/release/tests/memory_test`.\n\n"
+      "To write it anew: `PLVO_UPDATE_DOCS=1 ctest --preset release -R '^memory_test$'`.\n\n"
       "Bytes on a 64-bit machine, by what `init` takes them for:\n\n"
       "| for | VGA | QVGA | tiny |\n|---|---:|---:|---:|\n";
   for (const MemoryUse::Row& r : vga_qvga_tiny[0].rows)

@@ -122,7 +122,7 @@ TEST(Memory, ThePageIsTrue) {
   const std::string page = memory_page({vga(), qvga(), tiny()}) + committed.str().substr(end);
   if (std::getenv("PLVO_UPDATE_DOCS") != nullptr) std::ofstream(PLVO_MEMORY_DOC) << page;
   EXPECT_EQ(committed.str(), page) << "write it anew: PLVO_UPDATE_DOCS=1 "
-                                   << "build/release/tests/memory_test";
+                                   << "ctest --preset release -R '^memory_test$'";
 }
 
 }  // namespace

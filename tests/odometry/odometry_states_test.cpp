@@ -16,7 +16,7 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kLimits{160, 120, 250, 64, 2, 1, 0};  // no keyframe is kept: recovery_test.cpp
+constexpr Limits kStateLimits{160, 120, 250, 64, 2, 1, 0};  // no keyframe is kept: recovery_test.cpp
 static_assert(required_bytes(Limits::vga()) <= 8 * 1024 * 1024);
 
 bool contains(const Status& status, const std::string& text) {
@@ -33,8 +33,6 @@ bool finite(const TrackResult& result) {
 bool same_pose(const TrackResult& a, const TrackResult& b) {
   return a.T_world_camera.R == b.T_world_camera.R && a.T_world_camera.t == b.T_world_camera.t;
 }
-
-std::uint64_t fingerprint(const TrackResult& result) { return fingerprint_of(result).value(); }
 
 // Frames are rendered once for the whole program; a copy owns its pixels, so that a test may spoil it.
 class Recorded {
@@ -56,16 +54,16 @@ class Recorded {
   RgbdFrame frame_;
 };
 
-constexpr int kFrames = 24;
+constexpr int kStateFrames = 24;
 const CameraModel& camera() {
-  static const CameraModel model = ProceduralSequence(kLimits.width, kLimits.height).camera();
+  static const CameraModel model = ProceduralSequence(kStateLimits.width, kStateLimits.height).camera();
   return model;
 }
 const Recorded& recorded(int i) {
   static const std::vector<Recorded> all = [] {
-    ProceduralSequence sequence(kLimits.width, kLimits.height);
+    ProceduralSequence sequence(kStateLimits.width, kStateLimits.height);
     std::vector<Recorded> frames;
-    for (int k = 0; k < kFrames; ++k) frames.emplace_back(sequence.render(k));
+    for (int k = 0; k < kStateFrames; ++k) frames.emplace_back(sequence.render(k));
     return frames;
   }();
   return all.at(static_cast<std::size_t>(i));
@@ -85,8 +83,8 @@ Recorded blind(int i) {
 
 struct Instance {
   explicit Instance(const Config& config = {}, std::size_t misaligned_by = 0)
-      : memory(required_bytes(kLimits) + misaligned_by) {
-    status = odometry.init(std::span(memory).subspan(misaligned_by), camera(), config, kLimits);
+      : memory(required_bytes(kStateLimits) + misaligned_by) {
+    status = odometry.init(std::span(memory).subspan(misaligned_by), camera(), config, kStateLimits);
   }
   TrackResult track(const RgbdFrame& frame) {
     const TrackResult result = odometry.track(frame);
@@ -114,16 +112,16 @@ double position_error(const TrackResult& result, int i) {
 }
 
 TEST(OdometryInit, ATooSmallBlockIsToldTheSizeThatIsNeeded) {
-  std::vector<std::byte> memory(required_bytes(kLimits) - 1);
+  std::vector<std::byte> memory(required_bytes(kStateLimits) - 1);
   Odometry odometry;
-  const Status status = odometry.init(memory, camera(), {}, kLimits);
+  const Status status = odometry.init(memory, camera(), {}, kStateLimits);
   EXPECT_EQ(status.code(), StatusCode::kOutOfMemory);
-  EXPECT_TRUE(contains(status, std::to_string(required_bytes(kLimits)))) << status.message();
+  EXPECT_TRUE(contains(status, std::to_string(required_bytes(kStateLimits)))) << status.message();
   EXPECT_EQ(odometry.track(good(0)).status.code(), StatusCode::kInvalidArgument) << "it stays closed";
 }
 
 TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
-  std::vector<std::byte> memory(required_bytes(kLimits));
+  std::vector<std::byte> memory(required_bytes(kStateLimits));
   Odometry odometry;
   const auto init = [&](const CameraModel& c, const Config& config, const Limits& limits) {
     const Status status = odometry.init(memory, c, config, limits);
@@ -133,23 +131,23 @@ TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CameraModel bad_camera = camera();
   bad_camera.pinhole.fx = nan;
-  (void)init(bad_camera, {}, kLimits);
+  (void)init(bad_camera, {}, kStateLimits);
   bad_camera = camera();
   bad_camera.distortion.k1 = nan;
-  (void)init(bad_camera, {}, kLimits);
+  (void)init(bad_camera, {}, kStateLimits);
 
   Config config;
   config.points.sigma_px = nan;
-  EXPECT_TRUE(contains(init(camera(), config, kLimits), "points.sigma_px"));
+  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "points.sigma_px"));
   config = {};
   config.motion.min_inliers = 2;
-  EXPECT_TRUE(contains(init(camera(), config, kLimits), "motion.min_inliers"));
+  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "motion.min_inliers"));
   config = {};
   config.points.detector.cell_px = 65;
-  EXPECT_TRUE(contains(init(camera(), config, kLimits), "points.detector.cell_px"));
+  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "points.detector.cell_px"));
   config = {};
   config.depth_noise.c1 = nan;
-  EXPECT_TRUE(contains(init(camera(), config, kLimits), "depth_noise"));
+  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "depth_noise"));
 
   EXPECT_TRUE(contains(init(camera(), {}, {159, 120, 250, 64}), "160x120"))
       << "smaller than the camera's image";
@@ -157,7 +155,7 @@ TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
   EXPECT_TRUE(contains(init(camera(), {}, {160, 120, 250, -1}), "segments"));
   EXPECT_TRUE(contains(init(camera(), {}, {4000, 120, 250, 64}), "width"));
   // And a good one afterwards is taken.
-  EXPECT_TRUE(odometry.init(memory, camera(), {}, kLimits).ok());
+  EXPECT_TRUE(odometry.init(memory, camera(), {}, kStateLimits).ok());
   EXPECT_EQ(odometry.track(good(0)).state, TrackState::kInitialising);
 }
 
@@ -183,7 +181,7 @@ TEST(OdometryTrack, WhatIsRefusedChangesNothing) {
     bad[1].depth.data = nullptr;
     bad[2].colour.width -= 1;
     bad[3].depth.height += 1;
-    bad[4].colour.stride_bytes = 3 * kLimits.width - 1;
+    bad[4].colour.stride_bytes = 3 * kStateLimits.width - 1;
     bad[5].depth.stride = 0;
     bad[6].depth.metres_per_unit = 0;
     bad[7].depth.metres_per_unit = std::numeric_limits<double>::quiet_NaN();
@@ -313,7 +311,7 @@ TEST(OdometryTrack, GarbageIsNeverMoreThanLost) {
     (void)instance.track(view);  // looks whether everything is finite
   }
   TrackResult result;
-  for (int i = 18; i < kFrames; ++i) result = instance.track(good(i));
+  for (int i = 18; i < kStateFrames; ++i) result = instance.track(good(i));
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
 }
 
@@ -364,7 +362,7 @@ TEST(OdometryTrack, TwoInstancesAndAnyBlockGiveTheSameBits) {
   ASSERT_TRUE(other.status.ok()) << other.status.message();
   for (std::byte& byte : other.memory) byte = std::byte{0xcd};
   // What the block held before init does not matter either.
-  ASSERT_TRUE(other.odometry.init(std::span(other.memory).subspan(13), camera(), {}, kLimits).ok());
+  ASSERT_TRUE(other.odometry.init(std::span(other.memory).subspan(13), camera(), {}, kStateLimits).ok());
   for (int i = 0; i < 8; ++i) {
     const Recorded night = dark(i);
     const RgbdFrame frame = i == 5 ? night.frame() : good(i);

@@ -14,11 +14,11 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kLimits{160, 120, 250, 64};
-constexpr int kFrames = 24;
+constexpr Limits kPriorLimits{160, 120, 250, 64};
+constexpr int kPriorFrames = 24;
 
 ProceduralSequence& sequence() {
-  static ProceduralSequence instance(kLimits.width, kLimits.height);
+  static ProceduralSequence instance(kPriorLimits.width, kPriorLimits.height);
   return instance;
 }
 
@@ -42,10 +42,8 @@ GravityPrior level(int now, double sigma_rad = 0.01) {
 double angle_between(const Matrix3& A, const Matrix3& B) { return rotation_log(A * B.transpose()).norm(); }
 double worst(const Matrix6& C, int first) { return C.diagonal().segment<3>(first).maxCoeff(); }
 
-std::uint64_t fingerprint(const TrackResult& result) { return fingerprint_of(result).value(); }
-
-struct Instance {
-  explicit Instance(const Config& config = {}, const Limits& limits = kLimits)
+struct WithPrior {
+  explicit WithPrior(const Config& config = {}, const Limits& limits = kPriorLimits)
       : memory(required_bytes(limits)) {
     const Status status = odometry.init(memory, sequence().camera(), config, limits);
     EXPECT_TRUE(status.ok()) << status.message();
@@ -63,7 +61,7 @@ struct Instance {
 TEST(OdometryPrior, OneThatSaysNothingChangesNoBit) {
   for (const bool paper : {false, true}) {
     const Config config = paper ? Config::paper() : Config();
-    Instance without(config), with(config);
+    WithPrior without(config), with(config);
     for (int i = 0; i < 10; ++i) {
       const TrackResult expected = without.odometry.track(sequence().render(i));
       EXPECT_EQ(fingerprint(with.track(i, MotionPrior())), fingerprint(expected)) << i;
@@ -72,7 +70,7 @@ TEST(OdometryPrior, OneThatSaysNothingChangesNoBit) {
 }
 
 TEST(OdometryPrior, ABadOneIsRefusedWithItsFrameAndChangesNothing) {
-  Instance without, with;
+  WithPrior without, with;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 6; ++i) {
     for (int kind = 0; kind < 3; ++kind) {
@@ -91,9 +89,9 @@ TEST(OdometryPrior, ABadOneIsRefusedWithItsFrameAndChangesNothing) {
 }
 
 TEST(OdometryPrior, AGoodOneIsOneMoreMeasurement) {
-  Instance without, with;
+  WithPrior without, with;
   double alone = 0, helped = 0;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kPriorFrames; ++i) {
     MotionPrior prior;
     if (i > 0) prior.rotation = gyro(i - 1, i, 2e-5);
     const TrackResult a = without.track(i), b = with.track(i, prior);
@@ -109,7 +107,7 @@ TEST(OdometryPrior, AGoodOneIsOneMoreMeasurement) {
 
 void expect_to_go_on_by_the_prior(const Config& config, double most_left_with_wheels) {
   for (const bool with_wheels : {false, true}) {
-    Instance instance(config);
+    WithPrior instance(config);
     for (int i = 0; i < 8; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
     double variance_m = 0, variance_rad = 0;
     for (int i = 8; i < 14; ++i) {
@@ -151,7 +149,7 @@ TEST(OdometryPrior, AFrameThatShowsNothingGoesOnByIt) {
 }
 
 TEST(OdometryPrior, WithoutOneInBetweenTheChainEnds) {
-  Instance instance;
+  WithPrior instance;
   for (int i = 0; i < 4; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
   MotionPrior prior;
   prior.rotation = gyro(3, 4);
@@ -166,9 +164,9 @@ TEST(OdometryPrior, WithoutOneInBetweenTheChainEnds) {
 TEST(OdometryPrior, ALongCoverIsBridged) {
   Config config;
   config.references.max_lost_frames = 4;
-  Limits limits = kLimits;
+  Limits limits = kPriorLimits;
   limits.kept_keyframes = 0;  // the view that was lost is not looked for
-  Instance instance(config, limits);
+  WithPrior instance(config, limits);
   for (int i = 0; i < 6; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
   for (int i = 6; i < 16; ++i) {
     MotionPrior prior;
@@ -189,24 +187,24 @@ TEST(OdometryPrior, ALongCoverIsBridged) {
 }
 
 TEST(OdometryPrior, GravityUprightsATiltedPose) {
-  Instance instance;
+  WithPrior instance;
   MotionPrior prior;
   prior.gravity = level(0);
   ASSERT_EQ(instance.track(0, prior).state, TrackState::kInitialising);
   // Where down is, is known from here on; the pose is then tilted by hand, as drift would.
   TrackResult result;
-  for (int i = 1; i < kFrames; ++i) {
+  for (int i = 1; i < kPriorFrames; ++i) {
     prior.gravity = level(i);
     result = instance.track(i, prior);
     ASSERT_EQ(result.state, TrackState::kTracking);
   }
-  EXPECT_LT(angle_between(result.T_world_camera.R, truth(kFrames - 1).R), 0.01);
+  EXPECT_LT(angle_between(result.T_world_camera.R, truth(kPriorFrames - 1).R), 0.01);
   EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
 }
 
 // A frame without light tells nothing of gravity's direction in the world but its own.
 TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
-  Instance instance;
+  WithPrior instance;
   MotionPrior prior;
   for (int i = 0; i < 6; ++i) {
     prior.gravity = level(i, 1e-3);
@@ -218,7 +216,7 @@ TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
   MotionPrior only_gyro, both;
   only_gyro.rotation = both.rotation = wrong;
   both.gravity = level(6, 1e-3);
-  Instance other;
+  WithPrior other;
   for (int i = 0; i < 6; ++i) {
     prior = {};
     prior.gravity = level(i, 1e-3);
@@ -244,7 +242,7 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
   };
   Config config;
   config.level_world = true;
-  Instance instance(config), plain;
+  WithPrior instance(config), plain;
   for (int i = 0; i < 3; ++i) {
     const TrackResult waiting = instance.track(i);
     EXPECT_EQ(waiting.state, TrackState::kInitialising);
@@ -262,12 +260,12 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
   EXPECT_GT(worst(first.pose_covariance, 3), 0.003);
   // The motion is what it is without; the tilt is put right by better readings.
   (void)plain.track(3);
-  for (int i = 4; i < kFrames; ++i) {
+  for (int i = 4; i < kPriorFrames; ++i) {
     const TrackResult result = instance.track(i, down(i, Vector3::Zero(), 0.01));
     const TrackResult expected = plain.track(i);
     ASSERT_EQ(result.state, TrackState::kTracking);
     EXPECT_LT(boxminus(result.T_camera_reference, expected.T_camera_reference).norm(), 2e-4) << i;
-    if (i == kFrames - 1) {
+    if (i == kPriorFrames - 1) {
       EXPECT_LT(tilt(i, result), 0.01);
       EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
     }
@@ -283,14 +281,14 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
 }
 
 TEST(OdometryReset, IsAsAfterInit) {
-  Instance fresh, used;
+  WithPrior fresh, used;
   for (int i = 0; i < 8; ++i) (void)used.track(i);
   used.odometry.reset();
   for (int i = 0; i < 8; ++i) EXPECT_EQ(fingerprint(used.track(i)), fingerprint(fresh.track(i))) << i;
 }
 
 TEST(OdometrySetPose, MovesTheWorldUnderneath) {
-  Instance plain, moved;
+  WithPrior plain, moved;
   const Se3 T_new{rotation_exp({0.3, -0.4, 0.5}), {10, -20, 30}};
   Matrix6 C = Matrix6::Identity() * 1e-4;
   TrackResult a, b;
@@ -300,7 +298,7 @@ TEST(OdometrySetPose, MovesTheWorldUnderneath) {
   }
   ASSERT_TRUE(moved.odometry.set_pose(T_new, C).ok());
   const Se3 W = T_new * b.T_world_camera.inverse();
-  for (int i = 12; i < kFrames; ++i) {
+  for (int i = 12; i < kPriorFrames; ++i) {
     a = plain.track(i);
     b = moved.track(i);
     ASSERT_EQ(b.state, TrackState::kTracking);
@@ -309,7 +307,7 @@ TEST(OdometrySetPose, MovesTheWorldUnderneath) {
     EXPECT_GT(worst(b.pose_covariance, 3), 0.9e-4);
   }
   // Before the first frame.
-  Instance early;
+  WithPrior early;
   ASSERT_TRUE(early.odometry.set_pose(T_new, C).ok());
   const TrackResult first = early.track(0);
   EXPECT_EQ(first.T_world_camera.t, T_new.t);
@@ -319,7 +317,7 @@ TEST(OdometrySetPose, MovesTheWorldUnderneath) {
 TEST(OdometrySetPose, RefusesNonsense) {
   Odometry closed;
   EXPECT_EQ(closed.set_pose({}, Matrix6::Zero()).code(), StatusCode::kInvalidArgument);
-  Instance instance;
+  WithPrior instance;
   (void)instance.track(0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [&](const Se3& T, const Matrix6& C) {
@@ -333,7 +331,7 @@ TEST(OdometrySetPose, RefusesNonsense) {
   Matrix6 skewed = Matrix6::Identity();
   skewed(0, 1) = 0.1;
   refused({}, skewed);
-  Instance other;
+  WithPrior other;
   (void)other.track(0);
   EXPECT_EQ(fingerprint(instance.track(1)), fingerprint(other.track(1))) << "nothing has changed";
 }

@@ -49,7 +49,7 @@ Vector6 pose_error(const TrackResult& result, int view) {
   return boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));
 }
 
-double position_error(const TrackResult& result, int view) {
+double distance_to_truth(const TrackResult& result, int view) {
   return pose_error(result, view).head<3>().norm();
 }
 
@@ -66,7 +66,7 @@ TEST(Recovery, ALensThatWasCoveredGoesOnWhereItWas) {
     const TrackResult after = walk.see(kOut + 5);
     EXPECT_EQ(after.returned, kept > 0);
     EXPECT_EQ(after.state, kept > 0 ? TrackState::kTracking : TrackState::kInitialising);
-    const double error = position_error(after, kOut + 5);
+    const double error = distance_to_truth(after, kOut + 5);
     std::printf("%d kept: %.1f mm beside the truth\n", kept, 1e3 * error);
     if (kept > 0) {
       EXPECT_LT(error, 0.015);
@@ -89,7 +89,7 @@ TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
     TrackResult result = walk.see(kAway);
     EXPECT_EQ(result.state, TrackState::kInitialising);
     EXPECT_FALSE(result.returned);
-    EXPECT_GT(position_error(result, kAway), 0.2);
+    EXPECT_GT(distance_to_truth(result, kAway), 0.2);
     int returns = 0;
     for (int view = kAway - 1; view >= 0; --view) {
       const double sigma = std::sqrt(result.pose_covariance(0, 0));
@@ -100,17 +100,17 @@ TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
         std::printf("%d kept: back at view %d, SD %.0f mm before, %.2f mm after\n", kept, view, 1e3 * sigma,
                     1e3 * std::sqrt(result.pose_covariance(0, 0)));
         const double sigma_now = std::sqrt(result.pose_covariance.block<3, 3>(0, 0).trace());
-        EXPECT_LT(position_error(result, view), 3 * sigma_now);
+        EXPECT_LT(distance_to_truth(result, view), 3 * sigma_now);
         EXPECT_LT(sigma_now, 0.02);
         EXPECT_GT(sigma, 0.1);
       }
     }
     EXPECT_EQ(returns, kept > 0 ? 1 : 0) << "once known again, there is nothing to return to";
-    std::printf("%d kept: %.1f mm beside the truth at the end\n", kept, 1e3 * position_error(result, 0));
+    std::printf("%d kept: %.1f mm beside the truth at the end\n", kept, 1e3 * distance_to_truth(result, 0));
     if (kept > 0)
-      EXPECT_LT(position_error(result, 0), 0.05);
+      EXPECT_LT(distance_to_truth(result, 0), 0.05);
     else
-      EXPECT_GT(position_error(result, 0), 0.4);
+      EXPECT_GT(distance_to_truth(result, 0), 0.4);
   }
 }
 

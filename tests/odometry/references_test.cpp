@@ -14,8 +14,9 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kLimits{.width = 160, .height = 120, .keypoints = 250, .segments = 64, .references = 3};
-constexpr int kFrames = 10;
+constexpr Limits kThreeReferences{
+    .width = 160, .height = 120, .keypoints = 250, .segments = 64, .references = 3};
+constexpr int kShownFrames = 10;
 
 using Pixels = std::set<std::pair<float, float>>;
 
@@ -30,13 +31,13 @@ struct Shown {
 
 // step: of the frames of the sequence, so many at a time.
 std::vector<Shown> run(const Config& config, int step = 1) {
-  ProceduralSequence sequence(kLimits.width, kLimits.height);
-  std::vector<std::byte> memory(required_bytes(kLimits));
+  ProceduralSequence sequence(kThreeReferences.width, kThreeReferences.height);
+  std::vector<std::byte> memory(required_bytes(kThreeReferences));
   Odometry odometry;
-  const Status status = odometry.init(memory, sequence.camera(), config, kLimits);
+  const Status status = odometry.init(memory, sequence.camera(), config, kThreeReferences);
   EXPECT_TRUE(status.ok()) << status.message();
   std::vector<Shown> all;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kShownFrames; ++i) {
     Shown shown;
     shown.result = odometry.track(sequence.render(step * i));
     EXPECT_NE(shown.result.state, TrackState::kLost) << shown.result.status.message();
@@ -96,8 +97,8 @@ TEST(References, PointsAreLookedForInFramesThatAreMatchedLater) {
     const Vector6 apart = boxminus(some[i].result.T_world_camera, all[i].result.T_world_camera);
     EXPECT_LT(apart.cwiseAbs().maxCoeff(), 0.01) << i;
   }
-  EXPECT_LE(searched, kFrames * 2 / 3);
-  EXPECT_GE(searched, kFrames / 3);
+  EXPECT_LE(searched, kShownFrames * 2 / 3);
+  EXPECT_GE(searched, kShownFrames / 3);
 }
 
 TEST(References, BothTheKeyframeAndARecentFrameServeByDefault) {
@@ -182,13 +183,14 @@ TEST(References, AnOlderKeyframeIsLeftWhenLittleOfItIsFound) {
 // after a change of keyframes (frame 4), and when all three are apart (frame 6).
 TEST(References, AWindowMovesAsOne) {
   for (const int moved : {4, 6}) {
-    ProceduralSequence sequence(kLimits.width, kLimits.height);
-    std::vector<std::byte> memory(required_bytes(kLimits)), other_memory(required_bytes(kLimits));
+    ProceduralSequence sequence(kThreeReferences.width, kThreeReferences.height);
+    std::vector<std::byte> memory(required_bytes(kThreeReferences)),
+        other_memory(required_bytes(kThreeReferences));
     Odometry odometry, other;
-    ASSERT_TRUE(odometry.init(memory, sequence.camera(), window_config(0.1), kLimits).ok());
-    ASSERT_TRUE(other.init(other_memory, sequence.camera(), window_config(0.1), kLimits).ok());
+    ASSERT_TRUE(odometry.init(memory, sequence.camera(), window_config(0.1), kThreeReferences).ok());
+    ASSERT_TRUE(other.init(other_memory, sequence.camera(), window_config(0.1), kThreeReferences).ok());
     const Se3 T_other_world = boxplus(Se3{}, (Vector6() << 3, -2, 1, 0.5, 1.2, -0.7).finished());
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kShownFrames; ++i) {
       const RgbdFrame frame = sequence.render(4 * i);
       const TrackResult a = odometry.track(frame), b = other.track(frame);
       ASSERT_EQ(b.state, a.state) << i;
@@ -204,7 +206,7 @@ TEST(References, AWindowMovesAsOne) {
 }
 
 TEST(References, APolicyNeedsLimitsForAllThatItNames) {
-  Limits limits = kLimits;
+  Limits limits = kThreeReferences;
   limits.references = 2;
   Config config;
   config.references.policy = ReferencePolicy::kWindow;

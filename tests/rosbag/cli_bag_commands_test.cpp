@@ -8,7 +8,7 @@
 
 #include "bag_of_folder.hpp"
 #include "command.hpp"
-#include "simulated_walk.hpp"
+#include "recorded_walk.hpp"
 #include "temporary_folder.hpp"
 #include "turning_hand.hpp"
 
@@ -18,14 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
+using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
 using test::TemporaryFolder;
+using test::walk;
 using test::write_file;
-
-const std::string kPlvo = PLVO_BINARY;
-
-const fs::path& walk() { return test::simulated_walk<6>(kPlvo); }
 
 class CliBagCommands : public ::testing::Test {
  protected:

@@ -5,7 +5,7 @@
 
 #include "bag_of_folder.hpp"
 #include "command.hpp"
-#include "simulated_walk.hpp"
+#include "recorded_walk.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -14,16 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
+using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
 using test::run_command;
 using test::TemporaryFolder;
+using test::walk;
 using test::write_file;
 using Messages = std::vector<RecordedMessage>;
-
-const std::string kPlvo = PLVO_BINARY;
-
-const fs::path& walk() { return test::simulated_walk<6>(kPlvo); }
 
 class CliBagImu : public ::testing::Test {
  protected:

@@ -7,7 +7,7 @@
 
 #include "bag_of_folder.hpp"
 #include "command.hpp"
-#include "simulated_walk.hpp"
+#include "recorded_walk.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -15,16 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
 using test::run_command;
 using test::TemporaryFolder;
+using test::walk;
 using test::write_file;
-
-const std::string kPlvo = PLVO_BINARY;
-constexpr int kFrames = 6;
-
-const fs::path& walk() { return test::simulated_walk<kFrames>(kPlvo); }
 
 std::vector<RecordedMessage> published(bool metres) { return test::published(walk(), metres); }
 

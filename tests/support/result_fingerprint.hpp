@@ -26,4 +26,6 @@ inline Fingerprint fingerprint_of(const TrackResult& result) {
   return print;
 }
 
+inline std::uint64_t fingerprint(const TrackResult& result) { return fingerprint_of(result).value(); }
+
 }  // namespace plvo

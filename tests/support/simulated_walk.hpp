@@ -8,16 +8,17 @@
 #include <string>
 
 #include "command.hpp"
+#include "plvo_binary.hpp"
 
 namespace plvo::test {
 
-// Made once, by `plvo`, for all tests of a program: one that changes it works on a copy.
+// Made once for all tests of a program: one that changes it works on a copy.
 template <int kFrames>
-const std::filesystem::path& simulated_walk(const std::string& plvo) {
+const std::filesystem::path& simulated_walk() {
   static const TemporaryFolder folder;
-  static const std::filesystem::path sequence = [&plvo] {
+  static const std::filesystem::path sequence = [] {
     const CommandResult made =
-        run_command(plvo + " simulate --scene bare --size 160x120 --seed 3 --quiet --frames " +
+        run_command(kPlvo + " simulate --scene bare --size 160x120 --seed 3 --quiet --frames " +
                     std::to_string(kFrames) + " --out " + (folder / "walk").string());
     EXPECT_EQ(made.exit_code, 0) << made.err;
     return folder / "walk";

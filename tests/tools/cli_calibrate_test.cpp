@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
+#include "plvo_binary.hpp"
 #include "tiny_sequence.hpp"
 #include "turning_hand.hpp"
 
@@ -13,10 +14,9 @@ namespace plvo {
 namespace {
 
 using test::CommandResult;
+using test::kPlvo;
 using test::run_command;
 using test::TemporaryFolder;
-
-const std::string kPlvo = PLVO_BINARY;
 
 TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include "plvo/base/random.hpp"
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
+#include "plvo_binary.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -17,11 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::kPlvo;
 using test::run_command;
 using test::TemporaryFolder;
 using test::write_file;
-
-const std::string kPlvo = PLVO_BINARY;
 
 fs::path shared() {
   const char* folder = std::getenv("PLVO_SHARED");

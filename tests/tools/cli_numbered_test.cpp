@@ -7,18 +7,18 @@
 
 #include "command.hpp"
 #include "numbered_sequence.hpp"
+#include "plvo_binary.hpp"
 
 namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::kPlvo;
 using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 using test::write_file;
-
-const std::string kPlvo = PLVO_BINARY;
 
 class CliNumbered : public ::testing::Test {
  protected:

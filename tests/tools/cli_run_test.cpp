@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::kPlvo;
 using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 using test::write_file;
 
-const std::string kPlvo = PLVO_BINARY;
 constexpr int kFrames = 6;
 
 std::ptrdiff_t lines_of(const fs::path& file) {
@@ -36,7 +36,7 @@ bool contains(const std::string& text, std::string_view words) {
 }
 
 // A walk through a simulated room, made once; each test works on its own copy.
-const fs::path& master_sequence() { return test::simulated_walk<kFrames>(kPlvo); }
+const fs::path& master_sequence() { return test::simulated_walk<kFrames>(); }
 
 class CliRun : public ::testing::Test {
  protected:

@@ -7,6 +7,7 @@
 #include "command.hpp"
 #include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/images/image_writer.hpp"
+#include "plvo_binary.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -14,12 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::kPlvo;
 using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 using test::write_file;
-
-const std::string kPlvo = PLVO_BINARY;
 
 class CliScale : public ::testing::Test {
  protected:

@@ -9,7 +9,7 @@
 namespace plvo::bench {
 namespace {
 
-CameraModel small_camera() {
+CameraModel edge_camera() {
   CameraModel camera;
   camera.width = 320;
   camera.height = 240;
@@ -37,10 +37,10 @@ std::vector<std::uint8_t> surfaces_as_grey(const sim::RayCaster& caster) {
 
 class BareRoom : public ::testing::Test {
  protected:
-  BareRoom() : scene_(sim::build_scene(SceneName::kBare, 1)), caster_(*scene_, small_camera(), 1) {
+  BareRoom() : scene_(sim::build_scene(SceneName::kBare, 1)), caster_(*scene_, edge_camera(), 1) {
     caster_.cast(std::vector<Se3>(240, middle_of_the_room()));
     grey_ = surfaces_as_grey(caster_);
-    edges_ = SceneEdges(SceneName::kBare, 1, small_camera()).visible(middle_of_the_room(), grey_);
+    edges_ = SceneEdges(SceneName::kBare, 1, edge_camera()).visible(middle_of_the_room(), grey_);
   }
   std::unique_ptr<sim::Scene> scene_;
   sim::RayCaster caster_;
@@ -83,7 +83,7 @@ TEST_F(BareRoom, TheFarCornerOfTheRoomIsAmongThem) {
 
 TEST_F(BareRoom, WhatDoesNotShowIsNoEdge) {
   const std::vector<std::uint8_t> plain(320 * 240, 128);
-  EXPECT_TRUE(SceneEdges(SceneName::kBare, 1, small_camera()).visible(middle_of_the_room(), plain).empty());
+  EXPECT_TRUE(SceneEdges(SceneName::kBare, 1, edge_camera()).visible(middle_of_the_room(), plain).empty());
 }
 
 }  // namespace
