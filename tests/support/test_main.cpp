@@ -13,32 +13,32 @@ namespace {
 
 std::string name_of_file(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
-// Takes what stands in other files out of the filter; false when a file is not the program's, or a test is
-// nobody's.
-bool run_only(const std::set<std::string>& files) {
-  const testing::UnitTest& all = *testing::UnitTest::GetInstance();
-  std::set<std::string> missing = files;
-  std::string others;
-  for (int i = 0; i < all.total_test_suite_count(); ++i) {
-    const testing::TestSuite& suite = *all.GetTestSuite(i);
+// False when one of the files holds no test, or a test is nobody's.
+bool run_what_stands_in(std::set<std::string> files) {
+  const testing::UnitTest& program = *testing::UnitTest::GetInstance();
+  const std::set<std::string> named = files;
+  std::string filter;
+  for (int i = 0; i < program.total_test_suite_count(); ++i) {
+    const testing::TestSuite& suite = *program.GetTestSuite(i);
+    std::string tests;
+    bool all = true;
     for (int k = 0; k < suite.total_test_count(); ++k) {
       const testing::TestInfo& test = *suite.GetTestInfo(k);
       const std::string file = name_of_file(test.file());
       if (!file.ends_with("_test.cpp")) {
-        std::fprintf(stderr, "%s:%d: tests stand in files *_test.cpp, or ctest does not run them\n",
+        std::fprintf(stderr, "%s:%d: no entry of ctest runs a test that is not in a file *_test.cpp\n",
                      test.file(), test.line());
         return false;
       }
-      missing.erase(file);
-      if (!files.contains(file)) others += std::string(":") + suite.name() + '.' + test.name();
+      if (named.contains(file)) tests += std::string(suite.name()) + '.' + test.name() + ':';
+      if (!named.contains(file)) all = false;
+      files.erase(file);
     }
+    filter += all ? std::string(suite.name()) + ".*:" : tests;  // short, for it is printed
   }
-  for (const std::string& file : missing)
-    std::fprintf(stderr, "this program has no test in %s\n", file.c_str());
-  std::string& filter = testing::GTEST_FLAG(filter);
-  if (!others.empty() && filter.find('-') == std::string::npos) filter += '-';
-  filter += others;
-  return missing.empty();
+  for (const std::string& file : files) std::fprintf(stderr, "there is no test in %s\n", file.c_str());
+  testing::GTEST_FLAG(filter) = filter;
+  return files.empty();
 }
 
 }  // namespace
@@ -47,13 +47,13 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   std::set<std::string> files;
   for (int i = 1; i < argc; ++i) files.insert(name_of_file(argv[i]));
-  if (!files.empty() && !run_only(files)) return 1;
+  if (!files.empty() && !run_what_stands_in(files)) return 1;
   const int failed = RUN_ALL_TESTS();
   if (failed != 0) return failed;
-  const testing::UnitTest& all = *testing::UnitTest::GetInstance();
-  if (all.test_to_run_count() == 0 && !testing::GTEST_FLAG(list_tests)) {
+  const testing::UnitTest& program = *testing::UnitTest::GetInstance();
+  if (program.test_to_run_count() == 0 && !testing::GTEST_FLAG(list_tests)) {
     std::fprintf(stderr, "there was no test to run\n");
     return 1;
   }
-  return all.skipped_test_count() > 0 ? 77 : 0;
+  return program.skipped_test_count() > 0 ? 77 : 0;
 }
