@@ -139,6 +139,7 @@ TEST(Lanes, PairsAreMultipliedAndRangesTakenAsLoopsDo) {
     take_range(sums, low, high);
     take_range(slow_sums, slow_low, slow_high);
     EXPECT_EQ(negative_lanes(sums), negative_lanes(slow_sums));
+    EXPECT_EQ(negative_lanes(loaded<Lanes>(b)), negative_lanes(loaded<lane_loops::Lanes>(b)));
     for (int i = 0; i < 4; ++i) {
       EXPECT_EQ(sums[i], slow_sums[i]);
       EXPECT_EQ(low[i], slow_low[i]);

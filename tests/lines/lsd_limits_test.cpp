@@ -30,7 +30,8 @@ TEST(SegmentDetectorLimits, NoPixelGrowsMoreOftenThanStated) {
       }
       DetectorRig rig(320, 240);
       rig.detect(test::expose(picture, noise, random));
-      EXPECT_LE(rig.counts().grown_pixels, std::int64_t{lsd::kMaxGrowths} * rig.counts().directed_pixels);
+      EXPECT_LE(rig.counts().grown_pixels,
+                std::int64_t{lsd::kMaxReleases + 1} * rig.counts().directed_pixels);
       // In practice far below the bound.
       EXPECT_LE(rig.counts().grown_pixels, 3 * std::int64_t{rig.counts().directed_pixels})
           << cell << " " << noise;
@@ -86,6 +87,15 @@ TEST(SegmentDetectorLimits, SaysWhatIsWrong) {
   Arena small(std::span<std::byte>(memory).first(memory.size() / 2));
   EXPECT_EQ(detector.detect(half, 2, full, small, out).code(), StatusCode::kOutOfMemory);
   EXPECT_EQ(small.used(), 0U);
+
+  const int most = lsd::LevelLineField::kMostWidth;
+  std::vector<std::uint8_t> wide_pixels(static_cast<std::size_t>(most + 1) * 2, 10);
+  std::vector<std::byte> more(SegmentDetector::scratch_bytes(most + 1, 2) + kArenaAlignment);
+  Arena enough(more);
+  for (const int width : {most, most + 1}) {
+    const GrayView wide{wide_pixels.data(), width, 2, width};
+    EXPECT_EQ(SegmentDetector(width, 2).detect(wide, 1, wide, enough, out).ok(), width == most);
+  }
 }
 
 // A dense grid of strong squares on the left, two faint ones on the right: with room for a few, the faint

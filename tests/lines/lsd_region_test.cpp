@@ -3,20 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
 
 #include "line_picture.hpp"
 #include "plvo/lines/lsd/line_validation.hpp"
-#include "plvo/lines/lsd/wedge.hpp"
+#include "plvo/math/rounding.hpp"
 
 namespace plvo::lsd {
 namespace {
 
 constexpr double kDegree = kPi / 180;
 
-double angle_of(Direction d) { return std::atan2(d.y, d.x); }
+double radians(Angle angle) { return angle / kAnglePerRadian; }
 
 double angle_between(double a, double b) { return std::abs(std::remainder(a - b, 2 * kPi)); }
 
@@ -25,30 +26,58 @@ struct Field {
   std::vector<std::byte> memory;
   Arena arena;
   LevelLineField field;
-  std::span<Pixel> storage;
+  std::span<Piece> storage;
   int width;
   int height;
 
   Field(int w, int h, std::vector<std::uint8_t> image)
       : pixels(std::move(image)), memory(1 << 21), arena(memory), width(w), height(h) {
     field = carve_field(arena, w, h);
-    storage = arena.take<Pixel>("region", static_cast<std::size_t>(w * h));
+    storage = arena.take<Piece>("region", static_cast<std::size_t>(w * h));
     compute_field({pixels.data(), w, h, w}, field, storage);
   }
   int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
+  bool is_open(Piece pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }
+  bool is_open(int x, int y) const { return is_open(piece_of(x, y)); }
+  bool is_directed(int x, int y) const {
+    const Piece piece = piece_of(x, y);
+    return (field.directed[static_cast<std::size_t>(field.index(piece))] & piece.bits) != 0;
+  }
+  Angle angle(int x, int y) const { return field.angles()[field.pixel(x, y)]; }
+  int magnitude(int x, int y) const {
+    return field.magnitude_and_releases[static_cast<std::size_t>(field.pixel(x, y))] %
+           (1 << LevelLineField::kReleaseBit);
+  }
+  static Piece piece_of(int x, int y) {
+    return {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(x / kBlockPixels),
+            static_cast<std::uint8_t>(1 << x % kBlockPixels)};
+  }
+  std::span<const Piece> seeds() const { return field.seeds.first(field.seed_count); }
 };
 
+using Pixels = std::vector<std::pair<int, int>>;  // x, y
+
+void append(Piece piece, Pixels& pixels) {
+  for (int i = 0; i < kBlockPixels; ++i)
+    if ((piece.bits >> i & 1) != 0) pixels.push_back({piece.block * kBlockPixels + i, piece.row});
+}
+Pixels pixels_of(std::span<const Piece> pieces) {
+  Pixels pixels;
+  for (const Piece piece : pieces) append(piece, pixels);
+  return pixels;
+}
+
 // Polygons under noise, twice smoothed like a pyramid level: regions of every size.
-Field busy_field(std::uint64_t seed) {
+Field busy_field(std::uint64_t seed, int width = 160) {
   Random random(seed);
-  test::Picture picture(160, 120, 90);
+  test::Picture picture(width, 120, 90);
   for (int i = 0; i < 6; ++i) {
     const Vector2 centre(160 * random.uniform(), 120 * random.uniform());
     test::fill_polygon(picture,
                        test::regular_polygon(centre, 3 + i, 15 + 25 * random.uniform(), 7 * random.uniform()),
                        255 * random.uniform());
   }
-  return {160, 120, test::expose(picture, 3, random)};
+  return {width, 120, test::expose(picture, 3, random)};
 }
 
 TEST(LevelLineField, PolarGradientIsAtan2AndHypot) {
@@ -56,104 +85,146 @@ TEST(LevelLineField, PolarGradientIsAtan2AndHypot) {
     for (int gy = -510; gy <= 510; ++gy) {
       if (gx == 0 && gy == 0) continue;
       const PolarGradient polar = polar_gradient(gx, gy);
-      ASSERT_LE(angle_between(angle_of(polar.direction), std::atan2(gy, gx)), 0.032 * kDegree)
-          << gx << " " << gy;
-      ASSERT_NEAR(std::hypot(polar.direction.x, polar.direction.y), 16384, 2);
-      ASSERT_NEAR(polar.magnitude, 16 * std::hypot(gx, gy), 1 + 0.016 * std::hypot(gx, gy));
+      ASSERT_LE(angle_between(radians(polar.angle), std::atan2(gy, gx)), 0.004 * kDegree) << gx << " " << gy;
+      ASSERT_NEAR(polar.magnitude, 8 * std::hypot(gx, gy), 0.51);
     }
   }
 }
 
 TEST(LevelLineField, IsTheTwoByTwoGradientAboveTheQuantisationNoise) {
-  const Field f = busy_field(1);
-  std::size_t directed = 0;
-  for (int y = -1; y <= f.field.height; ++y) {
-    for (int x = -1; x <= f.field.width; ++x) {
-      const std::size_t i = f.field.index(x, y);
-      const bool border = x < 0 || y < 0 || x == f.field.width || y == f.field.height;
-      double gx = 0, gy = 0;
-      if (!border) {
-        gx = 0.5 * (f.at(x + 1, y) - f.at(x, y) + f.at(x + 1, y + 1) - f.at(x, y + 1));
-        gy = 0.5 * (f.at(x, y + 1) - f.at(x, y) + f.at(x + 1, y + 1) - f.at(x + 1, y));
+  for (const int width : {160, 161, 162, 165, 168}) {  // rows that end anywhere in a block
+    const Field f = busy_field(1, width);
+    std::size_t directed = 0;
+    for (int y = 0; y < f.field.height; ++y) {
+      for (int x = 0; x < (f.field.stride - 1) * kBlockPixels; ++x) {
+        double gx = 0, gy = 0;
+        if (x < f.field.width) {
+          gx = 0.5 * (f.at(x + 1, y) - f.at(x, y) + f.at(x + 1, y + 1) - f.at(x, y + 1));
+          gy = 0.5 * (f.at(x, y + 1) - f.at(x, y) + f.at(x + 1, y + 1) - f.at(x + 1, y));
+        }
+        const bool strong = std::hypot(gx, gy) > std::sqrt(2.0) / std::sin(22.5 * kDegree);
+        ASSERT_EQ(f.is_directed(x, y), strong);
+        ASSERT_EQ(f.is_open(x, y), strong);
+        if (!strong) continue;
+        ++directed;
+        ASSERT_LE(angle_between(radians(f.angle(x, y)), std::atan2(gy, gx)), 0.004 * kDegree);
+        ASSERT_NEAR(f.magnitude(x, y), 16 * std::hypot(gx, gy), 0.51);
       }
-      if (std::hypot(gx, gy) <= std::sqrt(2.0) / std::sin(22.5 * kDegree)) {
-        ASSERT_EQ(f.field.state[i], kUsed);
-        ASSERT_TRUE(f.field.direction[i].x == 0 && f.field.direction[i].y == 0);
-        continue;
-      }
-      ++directed;
-      ASSERT_EQ(f.field.state[i], 0);
-      ASSERT_LE(angle_between(angle_of(f.field.direction[i]), std::atan2(gy, gx)), 0.032 * kDegree);
     }
+    ASSERT_GT(directed, 1000U);
+    ASSERT_EQ(f.field.seed_count, directed);
   }
-  ASSERT_GT(directed, 1000U);
-  ASSERT_EQ(f.field.seed_count, directed);
+}
+
+TEST(LevelLineField, NothingIsOpenAroundIt) {
+  const Field f = busy_field(2);
+  const LevelLineField& field = f.field;
+  for (int block = -1; block < field.stride; ++block) {
+    EXPECT_EQ(field.open()[field.index(block, -1)], 0);
+    EXPECT_EQ(field.open()[field.index(block, field.height)], 0);
+  }
+  for (int row = 0; row < field.height; ++row) {
+    EXPECT_EQ(field.open()[field.index(-1, row)], 0);
+    EXPECT_EQ(field.open()[field.index(field.stride - 1, row)], 0);
+  }
 }
 
 TEST(LevelLineField, SeedsComeStrongestFirstAndEachOnce) {
   const Field f = busy_field(2);
   std::set<std::pair<int, int>> seen;
   int before = 1 << 20;
-  for (const Pixel& seed : f.field.seeds.first(f.field.seed_count)) {
-    const int bin = f.field.magnitude[f.field.index(seed.x, seed.y)] / 12;
+  for (const auto& [x, y] : pixels_of(f.seeds())) {
+    const int bin = f.magnitude(x, y) / 6;
     EXPECT_LE(bin, before);
     before = bin;
-    EXPECT_TRUE(seen.insert({seed.x, seed.y}).second);
+    EXPECT_TRUE(seen.insert({x, y}).second);
   }
+  EXPECT_EQ(seen.size(), f.field.seed_count);
 }
 
-// Section 2.3 in angles, as the paper words it, but that the region's direction is renewed only when the
-// region has grown by an eighth.
-std::vector<std::pair<int, int>> grow_by_angles(const LevelLineField& field, std::vector<bool>& used,
-                                                Pixel seed, bool& too_close_to_call) {
-  std::vector<std::pair<int, int>> region{{seed.x, seed.y}};
-  used[field.index(seed.x, seed.y)] = true;
-  double sum_x = std::cos(angle_of(field.direction[field.index(seed.x, seed.y)]));
-  double sum_y = std::sin(angle_of(field.direction[field.index(seed.x, seed.y)]));
-  double direction = 0;
-  std::size_t renew = 1;
-  for (std::size_t next = 0; next < region.size(); ++next) {
-    if (region.size() >= renew) {
-      direction = std::atan2(sum_y, sum_x);
-      renew = region.size() + region.size() / 8 + 1;
-    }
-    for (int j = -1; j <= 1; ++j) {
-      for (int i = -1; i <= 1; ++i) {
-        const int x = region[next].first + i;
-        const int y = region[next].second + j;
-        const std::size_t at = field.index(x, y);
-        if (used[at]) continue;
-        const double angle = angle_of(field.direction[at]);
-        const double difference = angle_between(angle, direction);
-        if (std::abs(difference - 22.5 * kDegree) < 3e-4) too_close_to_call = true;
-        if (difference > 22.5 * kDegree) continue;
-        used[at] = true;
-        region.push_back({x, y});
-        sum_x += std::cos(angle);
-        sum_y += std::sin(angle);
-      }
+// Growing by sets of pixels, one block after the other.
+class SlowRegion {
+ public:
+  SlowRegion(const Field& f, std::set<std::pair<int, int>>& used, int seed_x, int seed_y)
+      : f_(f), used_(used) {
+    first_ = middle_ = f.angle(seed_x, seed_y);
+    take(seed_x / kBlockPixels, seed_y, {{seed_x, seed_y}});
+    for (std::size_t next = 0; next < pieces_.size(); ++next) {
+      const Pixels piece = pieces_[next];
+      for (const auto& [x, y] : piece) beyond_first_ += static_cast<Angle>(f_.angle(x, y) - first_);
+      size_ += piece.size();
+      if (size_ >= renew_) renew();
+      const int row = piece.front().second;
+      const int block = piece.front().first / kBlockPixels;
+      take(block, row - 1, piece);
+      take(block, row + 1, piece);
+      for (const int beside : {-1, 1})
+        for (const int down : {-1, 0, 1}) take(block + beside, row + down, piece);
     }
   }
-  return region;
-}
+  const std::vector<Pixels>& pieces() const { return pieces_; }
 
-TEST(Region, GrowsAsWithAngles) {
+ private:
+  bool fits(int x, int y) const {
+    if (x < 0 || y < 0 || x >= f_.field.width || y >= f_.field.height || !f_.is_directed(x, y)) return false;
+    const auto off = static_cast<Angle>(f_.angle(x, y) - middle_);
+    return used_.count({x, y}) == 0 && off >= -kTau && off <= kTau;
+  }
+  // Of a block, what fits and touches the pixels, and what touches that along the row.
+  void take(int block, int row, const Pixels& pixels) {
+    std::set<int> taken;
+    const int begin = block * kBlockPixels, end = begin + kBlockPixels;
+    for (const auto& [x, y] : pixels)
+      for (int i = std::max(x - 1, begin); i <= std::min(x + 1, end - 1); ++i)
+        if (std::abs(y - row) <= 1 && fits(i, row) && (pieces_.size() > 0 || i == x)) taken.insert(i);
+    for (int x = begin + 1; x < end; ++x)
+      if (taken.count(x - 1) != 0 && fits(x, row)) taken.insert(x);
+    for (int x = end - 2; x >= begin; --x)
+      if (taken.count(x + 1) != 0 && fits(x, row)) taken.insert(x);
+    if (taken.empty()) return;
+    pieces_.emplace_back();
+    for (const int x : taken) {
+      used_.insert({x, row});
+      pieces_.back().push_back({x, row});
+    }
+  }
+  void renew() {
+    middle_ = static_cast<Angle>(first_ + beyond_first_ / static_cast<int>(size_));
+    renew_ = size_ + size_ / 8 + 1;
+  }
+
+  const Field& f_;
+  std::set<std::pair<int, int>>& used_;
+  std::vector<Pixels> pieces_;
+  std::size_t size_ = 0, renew_ = 0;
+  Angle first_ = 0, middle_ = 0;
+  int beyond_first_ = 0;
+};
+
+TEST(Region, GrowsAsPixelByPixel) {
   int compared = 0;
   for (std::uint64_t seed = 3; seed < 9; ++seed) {
-    Field f = busy_field(seed);
-    std::vector<bool> used(f.field.state.size());
-    for (std::size_t i = 0; i < used.size(); ++i) used[i] = (f.field.state[i] & kUsed) != 0;
-    for (const Pixel& start : f.field.seeds.first(f.field.seed_count)) {
-      if (used[f.field.index(start.x, start.y)]) continue;
-      bool too_close_to_call = false;
-      const auto expected = grow_by_angles(f.field, used, start, too_close_to_call);
-      if (too_close_to_call) break;  // the two may differ from here on, rightly
+    Field f = busy_field(seed, 158 + static_cast<int>(seed));
+    std::set<std::pair<int, int>> used;
+    for (const Piece start : f.seeds()) {
+      const auto [x, y] = pixels_of({&start, 1}).front();
+      ASSERT_EQ(f.is_open(start), used.count({x, y}) == 0);
+      if (!f.is_open(start)) continue;
+      const SlowRegion expected(f, used, x, y);
       const Region region = grow(f.field, start, kTau, f.storage);
-      ASSERT_EQ(region.pixels.size(), expected.size());
-      for (std::size_t i = 0; i < expected.size(); ++i) {
-        ASSERT_EQ(region.pixels[i].x, expected[i].first);
-        ASSERT_EQ(region.pixels[i].y, expected[i].second);
+      ASSERT_EQ(region.pieces.size(), expected.pieces().size());
+      std::size_t size = 0;
+      double beyond = 0;
+      for (std::size_t i = 0; i < region.pieces.size(); ++i) {
+        const Pixels pixels = pixels_of(region.pieces.subspan(i, 1));
+        ASSERT_EQ(pixels, expected.pieces()[i]);
+        size += pixels.size();
+        for (const auto& [px, py] : pixels) beyond += static_cast<Angle>(f.angle(px, py) - f.angle(x, y));
       }
+      EXPECT_EQ(region.size, size);
+      EXPECT_LE(std::abs(std::remainder(f.angle(x, y) + beyond / static_cast<double>(size) - region.angle(),
+                                        65536)),
+                1);
       ++compared;
     }
   }
@@ -169,50 +240,57 @@ TEST(Region, OneDirectionHoldsTogetherAtTheLeastTolerance) {
       for (int x = 0; x < kSide; ++x) image.push_back((upright ? x : y) < kSide / 2 ? 40 : 200);
     Field f(kSide, kSide, image);
     ASSERT_EQ(f.field.seed_count, kSide - 1U);
-    EXPECT_EQ(grow(f.field, f.field.seeds[0], kLeastTolerance, f.storage).pixels.size(), kSide - 1U);
+    EXPECT_EQ(grow(f.field, f.field.seeds[0], kLeastTolerance, f.storage).size, kSide - 1U);
   }
 }
 
-TEST(Region, APixelIsAddedSoManyTimesAndNoMore) {
+TEST(Region, APixelIsGivenBackSoManyTimesAndNoMore) {
   Field f = busy_field(4);
-  const Pixel seed = f.field.seeds[0];
+  const Piece seed = f.field.seeds[0];
   for (int i = 0; i < 20; ++i) {
     const Region region = grow(f.field, seed, kTau, f.storage);
-    if (i < kMaxGrowths) {
-      EXPECT_GT(region.pixels.size(), 3U);
+    const Pixels pixels = pixels_of(region.pieces);
+    if (i <= kMaxReleases) {
+      EXPECT_GT(region.size, 3U);
     } else {
-      EXPECT_EQ(region.pixels.size(), 1U);  // all its neighbours have had their turns
+      EXPECT_EQ(region.size, 1U);  // all its neighbours have had their turns
     }
-    release(f.field, region.pixels);
+    for (const Piece piece : region.pieces) release(f.field, piece);
+    for (const auto& [x, y] : pixels) EXPECT_EQ(f.is_open(x, y), i < kMaxReleases);
+    if (i == 0) {
+      for (const auto& [x, y] : pixels)  // the magnitudes stay
+        EXPECT_NEAR(f.magnitude(x, y), busy_field(4).magnitude(x, y), 0);
+    }
   }
 }
 
 TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
   Field f = busy_field(6);
   int compared = 0;
-  for (const Pixel& start : f.field.seeds.first(f.field.seed_count)) {
-    if ((f.field.state[f.field.index(start.x, start.y)] & kUsed) != 0) continue;
+  for (const Piece start : f.seeds()) {
+    if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     const Rectangle r = fit_rectangle(f.field, region);
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();
     double mass = 0;
-    for (const Pixel& p : region.pixels) {
-      const double w = f.field.magnitude[f.field.index(p.x, p.y)];
-      centre += w * Eigen::Vector2d(p.x, p.y);
+    const Pixels pixels = pixels_of(region.pieces);
+    for (const auto& [x, y] : pixels) {
+      const double w = f.magnitude(x, y);
+      centre += w * Eigen::Vector2d(x, y);
       mass += w;
-      EXPECT_TRUE(r.along(p.x, p.y) >= r.along_min && r.along(p.x, p.y) <= r.along_max);
-      EXPECT_TRUE(r.across(p.x, p.y) >= r.across_min && r.across(p.x, p.y) <= r.across_max);
+      EXPECT_TRUE(r.along(x, y) >= r.along_min && r.along(x, y) <= r.along_max);
+      EXPECT_TRUE(r.across(x, y) >= r.across_min && r.across(x, y) <= r.across_max);
     }
     centre /= mass;
     EXPECT_NEAR(r.x_q8 / 256.0, centre.x(), 0.003);
     EXPECT_NEAR(r.y_q8 / 256.0, centre.y(), 0.003);
     EXPECT_GE(r.width_q8(), 256);
-    EXPECT_GE(static_cast<double>(region.sum_y) * r.dx - static_cast<double>(region.sum_x) * r.dy, 0);
-    if (region.pixels.size() < 5) continue;
+    EXPECT_GE(std::sin(radians(region.angle())) * r.dx - std::cos(radians(region.angle())) * r.dy, -1);
+    if (region.size < 5) continue;
     Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
-    for (const Pixel& p : region.pixels) {
-      const Eigen::Vector2d d = Eigen::Vector2d(p.x, p.y) - centre;
-      moments += static_cast<double>(f.field.magnitude[f.field.index(p.x, p.y)]) * d * d.transpose();
+    for (const auto& [x, y] : pixels) {
+      const Eigen::Vector2d d = Eigen::Vector2d(x, y) - centre;
+      moments += static_cast<double>(f.magnitude(x, y)) * d * d.transpose();
     }
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
     solver.computeDirect(moments);
@@ -255,45 +333,48 @@ TEST(Rectangle, VisitsExactlyThePixelsInside) {
   }
 }
 
-TEST(Wedge, HoldsWhatIsWithinItsTolerance) {
+TEST(AngleRange, HoldsWhatIsWithinItsTolerance) {
   Random random(3);
-  for (int trial = 0; trial < 20000; ++trial) {
-    const double angle = 2 * kPi * random.uniform();
-    const double length = trial % 3 == 0 ? 16384 : 16384 * 1000 * random.uniform() + 8192;
-    const Wedge wedge =
-        make_wedge(std::llround(length * std::cos(angle)), std::llround(length * std::sin(angle)), kTau);
-    const double spread = trial % 2 == 0 ? kPi : 0.4;
-    const double other = angle + spread * (2 * random.uniform() - 1);
-    const Direction d{static_cast<std::int16_t>(std::lround(16384 * std::cos(other))),
-                      static_cast<std::int16_t>(std::lround(16384 * std::sin(other)))};
-    const double off = angle_between(other, angle);
-    if (wedge.holds(d))
-      EXPECT_LT(off, 22.5 * kDegree + 0.016 * kDegree);
-    else
-      EXPECT_GT(off, 22.5 * kDegree - 0.016 * kDegree);
+  for (int trial = 0; trial < 5000; ++trial) {
+    const auto middle = static_cast<Angle>(random.below(65536) - 32768);
+    const auto tolerance = static_cast<Angle>(trial % 2 == 0 ? kTau : 3 + random.below(kTau));
+    const AngleRange range(middle, tolerance);
+    std::array<Angle, kBlockPixels> eight;
+    for (Angle& angle : eight) {
+      const int spread = trial % 3 == 0 ? 32768 : tolerance + 2;
+      angle = static_cast<Angle>(middle + static_cast<int>(random.below(2 * static_cast<unsigned>(spread))) -
+                                 spread);
+    }
+    const unsigned held = range.holding(eight.data());
+    for (int i = 0; i < kBlockPixels; ++i) {
+      const Angle angle = eight[static_cast<std::size_t>(i)];
+      const bool within =
+          angle_between(radians(angle), radians(middle)) <= (tolerance + 0.5) / kAnglePerRadian;
+      EXPECT_EQ(range.holds(angle), within) << angle << " " << middle << " " << tolerance;
+      EXPECT_EQ((held >> i & 1) != 0, within);
+    }
   }
-  EXPECT_FALSE(make_wedge(16384, 0, kTau).holds(Direction{0, 0}));
 }
 
-// Four at once, and what is left of a row.
-TEST(Wedge, CountsInARowWhatItHoldsOneByOne) {
-  Random random(4);
-  std::vector<Direction> row(40);
+TEST(AngleSum, IsTheMeanOfThoseChosen) {
+  Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
-    for (Direction& d : row) {
-      const double angle = 2 * kPi * random.uniform();
-      d = {static_cast<std::int16_t>(std::lround(16384 * std::cos(angle))),
-           static_cast<std::int16_t>(std::lround(16384 * std::sin(angle)))};
-      if (random.uniform() < 0.2) d = {0, 0};
+    const auto from = static_cast<Angle>(random.below(65536) - 32768);
+    AngleSum sum(from);
+    int beyond = 0, count = 0;
+    for (int block = 0; block < 5; ++block) {
+      std::array<Angle, kBlockPixels> eight;
+      const unsigned bits = block == 0 ? 1 : static_cast<unsigned>(random.below(256));
+      for (unsigned i = 0; i < kBlockPixels; ++i) {
+        const int off = static_cast<int>(random.below(40000)) - 20000;
+        eight[i] = static_cast<Angle>(from + off);
+        if ((bits >> i & 1) == 0) continue;
+        beyond += off;
+        ++count;
+      }
+      sum.add(eight.data(), bits);
     }
-    const double angle = 2 * kPi * random.uniform();
-    const Wedge wedge =
-        make_wedge(std::llround(16384 * std::cos(angle)), std::llround(16384 * std::sin(angle)), kTau);
-    const int first = static_cast<int>(18 * random.uniform());
-    const int last = first + static_cast<int>(18 * random.uniform());
-    int held = 0;
-    for (int x = first; x <= last; ++x) held += wedge.holds(row[static_cast<std::size_t>(x)]) ? 1 : 0;
-    ASSERT_EQ(count_held(wedge, row.data(), first, last), held);
+    EXPECT_EQ(sum.mean(static_cast<std::size_t>(count)), static_cast<Angle>(from + beyond / count));
   }
 }
 
@@ -301,13 +382,14 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
   Field f = busy_field(8);
   const FalseAlarms alarms(f.width, f.height);
   int meaningful = 0;
-  for (const Pixel& start : f.field.seeds.first(f.field.seed_count)) {
-    if ((f.field.state[f.field.index(start.x, start.y)] & kUsed) != 0) continue;
+  for (const Piece start : f.seeds()) {
+    if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     Rectangle r = fit_rectangle(f.field, region);
-    if (region.pixels.size() < 10 || !is_dense(r, region.pixels.size())) continue;
+    if (region.size < 10 || !is_dense(r, region.size)) continue;
     const double found = meaningfulness(f.field, alarms, r);
-    const Wedge across = make_wedge(-r.dy, r.dx, kTau);
+    const AngleRange across(
+        static_cast<Angle>(round_to<std::int32_t>(std::atan2(r.dx, -r.dy) * kAnglePerRadian)), kTau);
     int n = 0, k = 0;
     for (int y = 0; y < f.field.height; ++y) {
       for (int x = 0; x < f.field.width; ++x) {
@@ -315,7 +397,7 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
         const std::int32_t t = r.across(x, y);
         if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
         ++n;
-        k += across.holds(f.field.direction[f.field.index(x, y)]) ? 1 : 0;
+        k += f.is_directed(x, y) && across.holds(f.angle(x, y)) ? 1 : 0;
       }
     }
     EXPECT_EQ(found, alarms.meaningfulness(n, k));

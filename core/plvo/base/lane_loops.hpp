@@ -164,9 +164,10 @@ inline void take_range(const WideLanes& value, WideLanes& low, WideLanes& high) 
   }
 }
 
-inline unsigned negative_lanes(const WideLanes& lanes) {
+template <Laned A>
+inline unsigned negative_lanes(const A& lanes) {
   unsigned bits = 0;
-  for (int i = 0; i < 4; ++i) bits |= (lanes[i] < 0 ? 1U : 0U) << i;
+  for (int i = 0; i < A::kCount; ++i) bits |= (lanes[i] < 0 ? 1U : 0U) << i;
   return bits;
 }
 

@@ -156,6 +156,21 @@ inline __attribute__((always_inline)) void dot_pairs(const Lanes& a, const Lanes
 }
 
 // Bit i: lane i is below 0.
+inline __attribute__((always_inline)) unsigned negative_lanes(const Lanes& lanes) {
+#ifdef __SSE2__
+  const auto packed = __builtin_ia32_packsswb128(lanes, lanes);
+  return static_cast<unsigned>(__builtin_ia32_pmovmskb128(packed)) & 0xffU;
+#else
+  using Bytes = std::int8_t __attribute__((vector_size(8)));
+  const Bytes bytes = __builtin_convertvector(lanes >> 15, Bytes);
+  std::uint64_t eight;
+  std::memcpy(&eight, &bytes, sizeof eight);
+  // Byte i keeps its bit i; the product's highest byte is the sum of all.
+  static_assert(std::endian::native == std::endian::little);
+  return static_cast<unsigned>((eight & 0x8040201008040201U) * 0x0101010101010101U >> 56);
+#endif
+}
+
 inline __attribute__((always_inline)) unsigned negative_lanes(const WideLanes& lanes) {
 #ifdef __SSE2__
   using Floats = float __attribute__((vector_size(16)));

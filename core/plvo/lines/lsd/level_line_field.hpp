@@ -1,83 +1,110 @@
 // SPDX-License-Identifier: Apache-2.0
 // The gradient field that the segment detector works on (Grompone von Gioi, Jakubowicz, Morel, Randall, "LSD:
 // a fast line segment detector with a false detection control", PAMI 2010, section 2.1–2.2): 2×2 gradients of
-// an 8-bit image, over integers, as unit vectors (no angle is ever computed: two directions are compared by
-// their cross and dot product), their magnitude, and the pseudo-ordering of the pixels by magnitude. Pixels
-// whose gradient may be an effect of quantisation alone have no direction and take no part.
+// an 8-bit image as angles and magnitudes, and the pseudo-ordering of the pixels by magnitude. Pixels whose
+// gradient may be an effect of quantisation alone have no angle and take no part. A row is made of blocks of
+// eight pixels, which are looked at together: what is true or false of each is one bit of the block's byte.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "plvo/base/arena.hpp"
 #include "plvo/image/image_view.hpp"
+#include "plvo/math/trigonometry.hpp"
 
 namespace plvo::lsd {
 
-// A pixel of the field; x and y count from 0 without the border. Neither it nor Direction has initialisers:
-// a frame's scratch holds a million of them, all of which are written before they are read. Aligned as the
-// numbers that take a region's place (lsd.hpp).
-struct alignas(std::int32_t) Pixel {
-  std::int16_t x;
-  std::int16_t y;
+// 2^16 to a turn, from the x axis towards the y axis: differences wrap by themselves.
+using Angle = std::int16_t;
+inline constexpr double kAnglePerRadian = 32768 / kPi;
+
+inline constexpr int kBlockPixels = 8;
+
+// Some pixels of one block: bit i is the pixel (8 · block + i, row), counted from 0. It has no initialisers:
+// a frame's scratch holds a hundred thousand, all of which are written before they are read.
+struct Piece {
+  std::uint16_t row;
+  std::uint8_t block;
+  std::uint8_t bits;
 };
 
-// The direction of the gradient, towards the brighter side; length 2^14, or 0 for "none".
-struct Direction {
-  std::int16_t x;
-  std::int16_t y;
-};
+// How often a pixel may be given back: what bounds the detector's time. It is added to a region once more.
+inline constexpr int kMaxReleases = 5;
 
-inline constexpr int kDirectionBits = 14;
-
-// How often a pixel may be added to a region before it stays where it is: what bounds the detector's time.
-inline constexpr std::uint8_t kMaxGrowths = 6;
-inline constexpr std::uint8_t kUsed = 0x80;         // bit of state: in a region, or must not be in one
-inline constexpr std::uint8_t kGrowthsMask = 0x7f;  // bits of state: how often it was added to a region
-
-// Grid (width − 1) × (height − 1) of the image, with a border of one pixel that is always used. Entry (x, y)
-// is the gradient at the corner that pixels (x, y) … (x + 1, y + 1) share, that is at (x + ½, y + ½) of the
-// image.
+// Grid (width − 1) × (height − 1) of the image. Entry (x, y) is the gradient at the corner that pixels
+// (x, y) … (x + 1, y + 1) share, that is at (x + ½, y + ½) of the image.
 struct LevelLineField {
+  static constexpr int kMostWidth = 256 * kBlockPixels;
+
   int width = 0;
   int height = 0;
-  int stride = 0;
-  std::span<std::uint8_t> state;
-  std::span<Direction> direction;
-  std::span<std::uint16_t> magnitude;  // 1/32 grey level per pixel; set only where there is a direction
-  std::span<Pixel> seeds;              // capacity: width · height
+  int stride = 0;  // blocks of a row, and one that has no pixels: it is beside the first and the last one
+  // By block: which pixels have an angle, and which of these are in no region. By pixel, where there is an
+  // angle: that of the gradient, towards the brighter side; and the magnitude, in 1/16 grey level per pixel,
+  // with how often the pixel was given back from kReleaseBit on. What regions look at around their pieces has
+  // a row before the first, and one behind the last, where nothing is open.
+  std::span<std::uint8_t> directed;
+  std::span<std::uint8_t> padded_open;
+  std::span<Angle> padded_angles;
+  std::span<std::uint16_t> magnitude_and_releases;
+  std::span<Piece> seeds;  // of one pixel each; capacity: width · height
   std::size_t seed_count = 0;
 
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>((y + 1) * stride + x + 1); }
+  static constexpr int kReleaseBit = 13;
+
+  std::ptrdiff_t index(int block, int row) const { return row * std::ptrdiff_t{stride} + block; }
+  std::ptrdiff_t index(Piece piece) const { return index(piece.block, piece.row); }
+  // Of block 0: of others, by their index, from there.
+  std::uint8_t* open() const { return padded_open.data() + stride + 1; }
+  Angle* angles() const { return padded_angles.data() + (stride + 1) * kBlockPixels; }
+  std::ptrdiff_t pixel(int x, int y) const { return index(0, y) * kBlockPixels + x; }
 };
 
-// Takes the field's arrays for an image of that size.
+// Takes the field's arrays for an image of that size, at most LevelLineField::kMostWidth wide.
 constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_height) {
   LevelLineField field;
   field.width = image_width > 1 ? image_width - 1 : 0;
   field.height = image_height > 1 ? image_height - 1 : 0;
-  field.stride = field.width + 2;
-  const std::size_t padded =
-      static_cast<std::size_t>(field.stride) * static_cast<std::size_t>(field.height + 2);
-  const std::size_t pixels = static_cast<std::size_t>(field.width) * static_cast<std::size_t>(field.height);
-  field.state = memory.take<std::uint8_t>("lines/lsd", padded);
-  field.direction = memory.take<Direction>("lines/lsd", padded);
-  field.magnitude = memory.take<std::uint16_t>("lines/lsd", padded);
-  field.seeds = memory.take<Pixel>("lines/lsd", pixels);
+  field.stride = (field.width + kBlockPixels - 1) / kBlockPixels + 1;
+  const auto stride = static_cast<std::size_t>(field.stride);
+  const auto rows = static_cast<std::size_t>(field.height);
+  const std::size_t padded = stride * (rows + 2) + 2;
+  field.directed = memory.take<std::uint8_t>("lines/lsd", stride * rows);
+  field.padded_open = memory.take<std::uint8_t>("lines/lsd", padded);
+  field.padded_angles = memory.take<Angle>("lines/lsd", padded * kBlockPixels);
+  field.magnitude_and_releases = memory.take<std::uint16_t>("lines/lsd", stride * rows * kBlockPixels);
+  field.seeds = memory.take<Piece>("lines/lsd", static_cast<std::size_t>(field.width) * rows);
   return field;
 }
 
-// Unit vector and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The
-// direction is off by at most 0.03°, the magnitude (1/32 grey level) by at most 0.1 %.
+// Of its first pixel, and of its last one.
+inline int first_x(Piece piece) {
+  return piece.block * kBlockPixels + std::countr_zero(unsigned{piece.bits});
+}
+inline int last_x(Piece piece) {
+  return piece.block * kBlockPixels + std::bit_width(unsigned{piece.bits}) - 1;
+}
+
+// Calls visit(x, y) for every pixel of a piece.
+template <typename Visit>
+void for_each_pixel(Piece piece, Visit&& visit) {
+  for (unsigned rest = piece.bits; rest != 0; rest &= rest - 1)
+    visit(piece.block * kBlockPixels + std::countr_zero(rest), static_cast<int>(piece.row));
+}
+
+// Angle and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The angle is
+// off by at most 0.004°, the magnitude (1/16 grey level) by at most a half.
 struct PolarGradient {
-  Direction direction{};
+  Angle angle = 0;
   std::uint16_t magnitude = 0;
 };
 PolarGradient polar_gradient(int gx, int gy);
 
-// Fills the field from image, and its seeds: every pixel with a direction, strongest first in 1024 bins,
-// in raster order within a bin. unordered: scratch for width · height pixels, free again on return.
-void compute_field(GrayView image, LevelLineField& field, std::span<Pixel> unordered);
+// Fills the field from image, and its seeds: every pixel with an angle, strongest first in 1024 bins, in
+// raster order within a bin. unordered: scratch for width · height pixels, free again on return.
+void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unordered);
 
 }  // namespace plvo::lsd

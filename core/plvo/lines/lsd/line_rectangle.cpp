@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "plvo/base/lanes.hpp"
+#include "plvo/lines/lsd/angle_range.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -19,21 +21,41 @@ struct Moments {
   double xx = 0, xy = 0, yy = 0;  // about the centre
 };
 
-Moments weigh(const LevelLineField& field, std::span<const Pixel> pixels) {
+// Of one piece, about its block: sums of the pixels' magnitudes, times nothing, x, and x².
+struct PieceMass {
+  std::int32_t m, mx, mxx;
+};
+
+PieceMass weigh(const std::uint16_t* magnitudes, unsigned bits) {
+  Lanes w;
+  std::memcpy(&w, magnitudes, sizeof w);
+  w = w & chosen(bits) & std::int16_t{(1 << LevelLineField::kReleaseBit) - 1};
+  WideLanes m, mx, mxx;
+  dot_pairs(w, Lanes{1, 1, 1, 1, 1, 1, 1, 1}, m);
+  dot_pairs(w, Lanes{0, 1, 2, 3, 4, 5, 6, 7}, mx);
+  dot_pairs(w, Lanes{0, 1, 4, 9, 16, 25, 36, 49}, mxx);
+  WideLanes sums, more;
+  add_pairs(m, mx, sums);
+  add_pairs(mxx, mxx, more);
+  return {sums[0] + sums[1], sums[2] + sums[3], more[0] + more[1]};
+}
+
+Moments weigh(const LevelLineField& field, const Region& region) {
   // Integers about the seed: exact, so the order of the pixels does not matter.
-  const Pixel seed = pixels.front();
-  const std::uint16_t* const magnitudes = field.magnitude.data();
+  const int seed_x = first_x(region.seed);
+  const std::uint16_t* const magnitudes = field.magnitude_and_releases.data();
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
-  for (const Pixel& pixel : pixels) {
-    const std::int64_t w = magnitudes[field.index(pixel.x, pixel.y)];
-    const std::int64_t x = pixel.x - seed.x;
-    const std::int64_t y = pixel.y - seed.y;
-    m += w;
-    mx += w * x;
-    my += w * y;
-    mxx += w * x * x;
-    mxy += w * x * y;
-    myy += w * y * y;
+  for (const Piece piece : region.pieces) {
+    const PieceMass of = weigh(magnitudes + field.index(piece) * kBlockPixels, piece.bits);
+    const std::int64_t x = piece.block * kBlockPixels - seed_x;
+    const std::int64_t y = piece.row - region.seed.row;
+    const std::int64_t piece_mx = of.m * x + of.mx;
+    m += of.m;
+    mx += piece_mx;
+    my += of.m * y;
+    mxx += (piece_mx + of.mx) * x + of.mxx;
+    mxy += piece_mx * y;
+    myy += of.m * y * y;
   }
   Moments moments;
   moments.mass = static_cast<double>(m);
@@ -47,42 +69,43 @@ Moments weigh(const LevelLineField& field, std::span<const Pixel> pixels) {
 
 struct Range {
   std::int32_t low, high;
-  void take(std::int32_t value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
 };
 
-// Least and greatest x · dx + y · dy, in 2^-14 px: four pixels at once.
-Range range_along(std::span<const Pixel> pixels, std::int32_t dx, std::int32_t dy) {
-  static_assert(sizeof(Pixel) == 2 * sizeof(std::int16_t));
-  const auto along = [&](Pixel p) { return p.x * dx + p.y * dy; };
-  const std::int32_t first = along(pixels.front());
-  Range range{first, first};
-  const Lanes direction = Lanes{1, 0, 1, 0, 1, 0, 1, 0} * static_cast<std::int16_t>(dx) +
-                          Lanes{0, 1, 0, 1, 0, 1, 0, 1} * static_cast<std::int16_t>(dy);
-  WideLanes low = WideLanes{} + first;
-  WideLanes high = low;
-  std::size_t i = 0;
-  for (; i + 4 <= pixels.size(); i += 4) {
-    Lanes four;
-    std::memcpy(&four, &pixels[i], sizeof four);
+// Two numbers of 16 bits as one of 32, and four such as lanes.
+std::int32_t pair_of(int x, int y) {
+  return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xffffU) | static_cast<std::uint32_t>(y)
+                                                                                   << 16);
+}
+Lanes pairs(const WideLanes& four) {
+  Lanes lanes;
+  std::memcpy(&lanes, &four, sizeof lanes);
+  return lanes;
+}
+
+// Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px: of a piece, those of its first and
+// its last pixel.
+void range_along_and_across(std::span<const Piece> pieces, std::int32_t dx, std::int32_t dy, Range& along,
+                            Range& across) {
+  const std::int32_t axis = pair_of(dx, dy), normal = pair_of(-dy, dx);
+  const Lanes axes = pairs(WideLanes{axis, axis, normal, normal});
+  WideLanes low = WideLanes{} + std::numeric_limits<std::int32_t>::max();
+  WideLanes high = WideLanes{} + std::numeric_limits<std::int32_t>::min();
+  for (const Piece piece : pieces) {
+    const std::int32_t first = pair_of(first_x(piece), piece.row);
+    const std::int32_t last = pair_of(last_x(piece), piece.row);
+    const Lanes ends = pairs(WideLanes{first, last, first, last});
     WideLanes value;
-    dot_pairs(four, direction, value);
+    dot_pairs(ends, axes, value);
     take_range(value, low, high);
   }
-  for (; i < pixels.size(); ++i) range.take(along(pixels[i]));
-  for (int lane = 0; lane < 4; ++lane) {
-    range.take(low[lane]);
-    range.take(high[lane]);
-  }
-  return range;
+  along = {std::min(low[0], low[1]), std::max(high[0], high[1])};
+  across = {std::min(low[2], low[3]), std::max(high[2], high[3])};
 }
 
 // From the centre, 2^-8 px, and the centre itself.
 Range about(Range range, std::int64_t centre_q22) {
   const auto offset = [&](std::int64_t q14) {
-    return static_cast<std::int32_t>((q14 * 256 - centre_q22) >> kDirectionBits);
+    return static_cast<std::int32_t>((q14 * 256 - centre_q22) >> Rectangle::kDirectionBits);
   };
   return {std::min<std::int32_t>(offset(range.low), 0), std::max<std::int32_t>(offset(range.high), 0)};
 }
@@ -90,7 +113,7 @@ Range about(Range range, std::int64_t centre_q22) {
 }  // namespace
 
 Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
-  const Moments moments = weigh(field, region.pixels);
+  const Moments moments = weigh(field, region);
   // The first principal axis is at angle φ with tan 2φ = 2 xy / (xx − yy); half-angle formulas give it
   // without one.
   const double difference = moments.xx - moments.yy;
@@ -107,23 +130,25 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
       dx = moments.xy / (h * dy);
     }
   }
-  // The brighter side, where the gradients point, is on the right: (−dy, dx) · sum ≥ 0.
-  if (static_cast<double>(region.sum_y) * dx < static_cast<double>(region.sum_x) * dy) {
+  // The brighter side, where the gradients point, is on the right.
+  const double angle = region.angle() / kAnglePerRadian;
+  if (sin(angle) * dx < cos(angle) * dy) {
     dx = -dx;
     dy = -dy;
   }
   Rectangle r;
-  const Pixel seed = region.pixels.front();
-  r.x_q8 = to_fixed(seed.x + moments.x, 256);
-  r.y_q8 = to_fixed(seed.y + moments.y, 256);
-  r.dx = to_fixed(dx, 1 << kDirectionBits);
-  r.dy = to_fixed(dy, 1 << kDirectionBits);
+  r.x_q8 = to_fixed(first_x(region.seed) + moments.x, 256);
+  r.y_q8 = to_fixed(region.seed.row + moments.y, 256);
+  r.dx = to_fixed(dx, 1 << Rectangle::kDirectionBits);
+  r.dy = to_fixed(dy, 1 << Rectangle::kDirectionBits);
   // The smaller principal moment; rounding may take it below 0.
   r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (moments.xx + moments.yy - h) / moments.mass)), 256);
   const std::int64_t x_q8 = r.x_q8;
   const std::int64_t y_q8 = r.y_q8;
-  const Range along = about(range_along(region.pixels, r.dx, r.dy), x_q8 * r.dx + y_q8 * r.dy);
-  const Range across = about(range_along(region.pixels, -r.dy, r.dx), y_q8 * r.dx - x_q8 * r.dy);
+  Range along, across;
+  range_along_and_across(region.pieces, r.dx, r.dy, along, across);
+  along = about(along, x_q8 * r.dx + y_q8 * r.dy);
+  across = about(across, y_q8 * r.dx - x_q8 * r.dy);
   r.along_min = along.low;
   r.along_max = along.high;
   r.across_min = across.low;
@@ -136,7 +161,7 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
   return r;
 }
 
-bool is_dense(const Rectangle& rectangle, std::size_t region_size) {
+bool is_dense(const Rectangle& rectangle, std::int32_t region_size) {
   const std::int64_t area_q16 = std::int64_t{rectangle.length_q8()} * rectangle.width_q8();
   return static_cast<std::int64_t>(region_size) * 10 * 65536 >= area_q16 * 7;
 }

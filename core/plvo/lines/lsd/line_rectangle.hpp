@@ -14,6 +14,8 @@
 namespace plvo::lsd {
 
 struct Rectangle {
+  static constexpr int kDirectionBits = 14;
+
   // Centre in the field's grid, 2^-8 pixels.
   std::int32_t x_q8 = 0;
   std::int32_t y_q8 = 0;
@@ -44,7 +46,7 @@ struct Rectangle {
 Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
 
 // Does the region fill at least 70 % of its rectangle?
-bool is_dense(const Rectangle& rectangle, std::size_t region_size);
+bool is_dense(const Rectangle& rectangle, std::int32_t region_size);
 
 // Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle: from x = first
 // to x = last.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Region growing (LSD, section 2.3): pixels that touch and whose gradient points the same way up to a
-// tolerance. The region's direction is that of the sum of its unit vectors, renewed whenever the region has
-// grown by an eighth: a neighbour's test does not wait for what the one before it changed. A pixel belongs to
-// one region at a time and is added at most kMaxGrowths times in its life, so that all growing together takes
-// at most 8 · kMaxGrowths looks per pixel of the image.
+// tolerance. A region grows by pieces of rows: of the blocks around a piece, those pixels that touch it, and
+// in their blocks what touches them beside. The region's angle is the mean of those pixels'
+// whose pieces have had their turn, renewed whenever these have become an eighth more. (The paper's is that
+// of the sum of their unit vectors; angles so near each other have the same mean, by a thousandth of the
+// tolerance.) A pixel belongs to one region at a time and is given back at most kMaxReleases times in its
+// life, so that all growing together takes a bounded number of looks per pixel of the image.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +16,26 @@
 
 namespace plvo::lsd {
 
-// A tolerance of an angle below 90°, as its tangent · 2^15.
-struct Tolerance {
-  std::int32_t tangent_q15 = 0;
-};
-
-inline constexpr Tolerance kTau{13573};  // 22.5°: tan = √2 − 1
-// Directions are off by up to 0.03°: with less, pixels of one direction would not hold together.
-inline constexpr Tolerance kLeastTolerance{18};
+inline constexpr Angle kTau = 4096;  // 22.5°
+// Angles are off by up to 0.004°: with less, pixels of one direction would not hold together.
+inline constexpr Angle kLeastTolerance = 3;
 
 struct Region {
-  std::span<Pixel> pixels;  // the seed first
-  std::int64_t sum_x = 0;   // of the directions
-  std::int64_t sum_y = 0;
+  std::span<Piece> pieces;  // no pixel is in two
+  std::int32_t size = 0;    // pixels
+  Piece seed{};             // one pixel
+  // What its pixels' angles are beyond one of them, summed.
+  Angle from = 0;
+  std::int32_t beyond = 0;
+
+  Angle angle() const { return static_cast<Angle>(from + beyond / size); }  // the mean
 };
 
-// Grows from seed into storage (capacity: every pixel of the field) and marks what it takes as used.
-Region grow(LevelLineField& field, Pixel seed, Tolerance tolerance, std::span<Pixel> storage);
+// Grows from seed, one pixel that is open, into storage (capacity: every pixel of the field) and marks what
+// it takes.
+Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece> storage);
 
-// Gives the region's pixels back, but for those that have been added kMaxGrowths times.
-void release(LevelLineField& field, std::span<const Pixel> pixels);
+// Gives pixels back, but for those that have been given back kMaxReleases times.
+void release(LevelLineField& field, Piece piece);
 
 }  // namespace plvo::lsd

@@ -3,60 +3,99 @@
 
 #include <algorithm>
 
-#include "plvo/lines/lsd/wedge.hpp"
+#include "plvo/base/lanes.hpp"
+#include "plvo/lines/lsd/angle_range.hpp"
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::lsd {
 namespace {
 
-std::int32_t squared_distance(Pixel a, Pixel b) {
-  const std::int32_t dx = a.x - b.x;
-  const std::int32_t dy = a.y - b.y;
+std::int32_t squared_distance(int x, int y, Piece seed) {
+  const std::int32_t dx = x - first_x(seed);
+  const std::int32_t dy = y - seed.row;
   return dx * dx + dy * dy;
 }
 
-// Twice the standard deviation of the directions within a rectangle's width of the seed, taken over sines of
-// the angle to the seed's direction (they are small), and never above kTau.
-Tolerance spread_near_seed(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
-  const Pixel seed = region.pixels.front();
-  const Direction d = field.direction[field.index(seed.x, seed.y)];
+// Twice the standard deviation of the angles within a rectangle's width of the seed, and never above kTau.
+Angle spread_near_seed(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
   const std::int64_t reach = std::int64_t{rectangle.width_q8()} * rectangle.width_q8();
+  const Angle middle = region.angle();
   std::int64_t n = 0;
   std::int64_t sum = 0;
   std::int64_t squares = 0;
-  for (const Pixel& pixel : region.pixels) {
-    if (std::int64_t{squared_distance(seed, pixel)} * 65536 > reach) continue;
-    const Direction e = field.direction[field.index(pixel.x, pixel.y)];
-    const std::int64_t sine = (d.x * e.y - d.y * e.x) / 16384;  // · 2^14
-    ++n;
-    sum += sine;
-    squares += sine * sine;
+  for (const Piece piece : region.pieces) {
+    for_each_pixel(piece, [&](int x, int y) {
+      if (std::int64_t{squared_distance(x, y, region.seed)} * 65536 > reach) return;
+      const auto beyond = static_cast<Angle>(field.angles()[field.pixel(x, y)] - middle);
+      ++n;
+      sum += beyond;
+      squares += std::int64_t{beyond} * beyond;
+    });
   }
   const auto count = static_cast<double>(n);
   const double mean = static_cast<double>(sum) / count;
   const double variance = static_cast<double>(squares) / count - mean * mean;
-  const double sine = 2 * sqrt(std::max(variance, 0.0)) / 16384.0;
-  if (sine >= 0.38) return kTau;  // sin 22.5° = 0.383
-  return {std::max(kLeastTolerance.tangent_q15,
-                   static_cast<std::int32_t>(sine / sqrt(1 - sine * sine) * 32768.0))};
+  const double spread = 2 * sqrt(std::max(variance, 0.0));
+  return spread >= kTau ? kTau : std::max(kLeastTolerance, static_cast<Angle>(spread));
 }
 
-// Keeps the pixels for which keep(pixel) holds, in their order; releases the rest.
+// Keeps of each piece the pixels that keep(piece) has as bits; gives the rest back.
 template <typename Keep>
 void filter(LevelLineField& field, Region& region, Keep&& keep) {
   std::size_t kept = 0;
-  region.sum_x = region.sum_y = 0;
-  for (const Pixel pixel : region.pixels) {
-    if (!keep(pixel)) {
-      release(field, {&pixel, 1});
-      continue;
-    }
-    const Direction d = field.direction[field.index(pixel.x, pixel.y)];
-    region.sum_x += d.x;
-    region.sum_y += d.y;
-    region.pixels[kept++] = pixel;
+  AngleSum sum(region.from);
+  region.size = 0;
+  for (const Piece piece : region.pieces) {
+    const unsigned bits = keep(piece) & piece.bits;
+    Piece part = piece;
+    part.bits = static_cast<std::uint8_t>(piece.bits & ~bits);
+    release(field, part);
+    part.bits = static_cast<std::uint8_t>(bits);
+    region.pieces[kept] = part;
+    kept += bits != 0 ? 1 : 0;
+    region.size += kOnes[bits];
+    sum.add(field.angles() + field.index(piece) * kBlockPixels, bits);
   }
-  region.pixels = region.pixels.first(kept);
+  region.pieces = region.pieces.first(kept);
+  region.beyond = sum.beyond();
+}
+
+// What is at most `reach` (2^-8 px) to either side of a rectangle's axis.
+class Strip {
+ public:
+  Strip(const Rectangle& r, std::int32_t reach)
+      : dx_(r.dx),
+        dy_(r.dy),
+        centre_(static_cast<std::int32_t>((std::int64_t{r.y_q8} * r.dx - std::int64_t{r.x_q8} * r.dy) >> 8)),
+        reach_(reach << (Rectangle::kDirectionBits - 8)) {}
+  unsigned holding(Piece piece) const {
+    // From the axis, 2^-14 px.
+    const WideLanes first =
+        WideLanes{0, 1, 2, 3} * -dy_ + (piece.row * dx_ - piece.block * kBlockPixels * dy_ - centre_);
+    const WideLanes last = first + -4 * dy_;
+    const WideLanes above = WideLanes{} + reach_;
+    const unsigned out = negative_lanes(above - first) | negative_lanes(first + reach_) |
+                         (negative_lanes(above - last) | negative_lanes(last + reach_)) << 4;
+    return ~out;
+  }
+
+ private:
+  std::int32_t dx_, dy_, centre_, reach_;
+};
+
+// Which pixels of the piece's block are at most so far from the seed.
+unsigned within(std::int32_t squared_px, Piece seed, Piece piece) {
+  const Lanes x =
+      Lanes{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(piece.block * kBlockPixels - first_x(seed));
+  const Lanes y = Lanes{} + static_cast<std::int16_t>(piece.row - seed.row);
+  Lanes first, last;
+  interleave(x, y, first, last);
+  WideLanes squared_first, squared_last;
+  dot_pairs(first, first, squared_first);
+  dot_pairs(last, last, squared_last);
+  const WideLanes most = WideLanes{} + squared_px;
+  return ~(negative_lanes(most - squared_first) | negative_lanes(most - squared_last) << 4);
 }
 
 // A region whose gradient spreads further across than this is not one edge with whiskers but bent, or several
@@ -66,43 +105,57 @@ constexpr std::int32_t kMaxAcrossSd_q8 = 192;
 // Noise beside an edge grows onto it as whiskers, which make the rectangle wide and empty without moving the
 // edge. Cuts them off, beyond twice the standard deviation of the gradient's mass (at least a pixel), at most
 // twice; true if that makes the region dense.
-bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size) {
-  for (int i = 0; i < 2 && !is_dense(rectangle, region.pixels.size()); ++i) {
+bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::int32_t min_size) {
+  for (int i = 0; i < 2 && !is_dense(rectangle, region.size); ++i) {
     if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
     const std::int32_t reach = std::max<std::int32_t>(256, 2 * rectangle.across_sd);
-    filter(field, region, [&](Pixel pixel) {
-      const std::int32_t t = rectangle.across(pixel.x, pixel.y);
-      return t >= -reach && t <= reach;
-    });
-    if (region.pixels.size() < min_size) return false;
+    const Strip strip(rectangle, reach);
+    filter(field, region, [&](Piece piece) { return strip.holding(piece); });
+    if (region.size < min_size) return false;
     rectangle = fit_rectangle(field, region);
   }
-  return is_dense(rectangle, region.pixels.size());
+  return is_dense(rectangle, region.size);
+}
+
+// How many of a row's pixels from x = first to x = last have an angle in the range.
+int count_held(const LevelLineField& field, const AngleRange& range, int y, int first, int last) {
+  int held = 0;
+  const int last_block = last / kBlockPixels;
+  unsigned asked = 0xffU << first % kBlockPixels & 0xffU;
+  for (int block = first / kBlockPixels; block <= last_block; ++block) {
+    if (block == last_block) asked &= 0xffU >> (kBlockPixels - 1 - last % kBlockPixels);
+    const std::ptrdiff_t at = field.index(block, y);
+    held += kOnes[field.directed[static_cast<std::size_t>(at)] &
+                  range.holding(field.angles() + at * kBlockPixels) & asked];
+    asked = 0xffU;
+  }
+  return held;
 }
 
 }  // namespace
 
-bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
-             std::span<Pixel> storage) {
-  if (is_dense(rectangle, region.pixels.size())) return true;
-  const Pixel seed = region.pixels.front();
-  const Tolerance tolerance = spread_near_seed(field, region, rectangle);
+bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::int32_t min_size,
+             std::span<Piece> storage) {
+  if (is_dense(rectangle, region.size)) return true;
+  const Piece seed = region.seed;
+  const Angle tolerance = spread_near_seed(field, region, rectangle);
   if (trim(field, region, rectangle, min_size)) return true;
-  release(field, region.pixels);
+  for (const Piece piece : region.pieces) release(field, piece);
   region = grow(field, seed, tolerance, storage);
-  if (region.pixels.size() < min_size) return false;
+  if (region.size < min_size) return false;
   rectangle = fit_rectangle(field, region);
   std::int32_t farthest = 0;
-  for (const Pixel& pixel : region.pixels) farthest = std::max(farthest, squared_distance(seed, pixel));
+  for (const Piece piece : region.pieces)
+    for_each_pixel(piece, [&](int x, int y) { farthest = std::max(farthest, squared_distance(x, y, seed)); });
   double squared_radius = farthest;
-  for (int i = 0; i < 24 && !is_dense(rectangle, region.pixels.size()); ++i) {
+  for (int i = 0; i < 24 && !is_dense(rectangle, region.size); ++i) {
     squared_radius *= 0.75 * 0.75;
     const auto most = static_cast<std::int32_t>(squared_radius);
-    filter(field, region, [&](Pixel pixel) { return squared_distance(seed, pixel) <= most; });
-    if (region.pixels.size() < min_size) return false;
+    filter(field, region, [&](Piece piece) { return within(most, seed, piece); });
+    if (region.size < min_size) return false;
     rectangle = fit_rectangle(field, region);
   }
-  return is_dense(rectangle, region.pixels.size());
+  return is_dense(rectangle, region.size);
 }
 
 double meaningfulness(const LevelLineField& field, const FalseAlarms& false_alarms,
@@ -110,10 +163,11 @@ double meaningfulness(const LevelLineField& field, const FalseAlarms& false_alar
   int n = 0;
   int k = 0;
   // A gradient points across its edge, to the brighter side.
-  const Wedge across = make_wedge(-rectangle.dy, rectangle.dx, kTau);
+  const AngleRange across(
+      static_cast<Angle>(round_to<std::int32_t>(atan2(rectangle.dx, -rectangle.dy) * kAnglePerRadian)), kTau);
   for_each_row(field, rectangle, [&](int y, int first, int last) {
     n += last - first + 1;
-    k += count_held(across, field.direction.data() + field.index(0, y), first, last);
+    k += count_held(field, across, y, first, last);
   });
   return false_alarms.meaningfulness(n, k);
 }

@@ -17,8 +17,8 @@ namespace plvo::lsd {
 // twice the spread of the directions near the seed, then pixel by pixel from the far end (radius · 3/4, at
 // most 24 times). Pixels left out are released. False when fewer than min_size pixels remain. storage: the
 // memory that holds the region.
-bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::size_t min_size,
-             std::span<Pixel> storage);
+bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::int32_t min_size,
+             std::span<Piece> storage);
 
 // −log10 of the number of false alarms of the rectangle as it is: a segment when ≥ 0. The paper tries those
 // that fail again, with less width and at finer precisions; here that found a twentieth of the segments more,

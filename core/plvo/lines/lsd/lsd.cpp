@@ -29,17 +29,17 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
   field.height = band.height - 1;
   lsd::compute_field(band, field, scratch.region);
   counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
-  const std::size_t min_size = min_region(search_.width, search_.height);
-  for (const lsd::Pixel seed : field.seeds.first(field.seed_count)) {
-    if ((field.state[field.index(seed.x, seed.y)] & lsd::kUsed) != 0) continue;
+  const auto min_size = static_cast<std::int32_t>(min_region(search_.width, search_.height));
+  for (const lsd::Piece seed : field.seeds.first(field.seed_count)) {
+    if ((field.open()[field.index(seed)] & seed.bits) == 0) continue;
     lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
-    counts.grown_pixels += static_cast<std::int64_t>(region.pixels.size());
-    if (region.pixels.size() < min_size) continue;
+    counts.grown_pixels += region.size;
+    if (region.size < min_size) continue;
     ++counts.regions;
     lsd::Rectangle rectangle = lsd::fit_rectangle(field, region);
-    if (!lsd::is_dense(rectangle, region.pixels.size())) {
+    if (!lsd::is_dense(rectangle, region.size)) {
       const bool tightened = lsd::tighten(field, region, rectangle, min_size, scratch.region);
-      counts.grown_pixels += static_cast<std::int64_t>(region.pixels.size());
+      counts.grown_pixels += region.size;
       if (!tightened) continue;
     }
     ++counts.dense;
@@ -93,6 +93,11 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
       reduced.height != search_.height) {
     return {StatusCode::kInvalidArgument,
             "lines: the image is missing or not of the size that was announced"};
+  }
+  if (reduced.width > lsd::LevelLineField::kMostWidth) {
+    return Status(StatusCode::kInvalidArgument,
+                  "lines: an image to be searched is at most so many pixels wide: ")
+        .append(lsd::LevelLineField::kMostWidth);
   }
   const ScratchScope scope(scratch_memory);
   Scratch scratch = carve(scratch_memory, search_);

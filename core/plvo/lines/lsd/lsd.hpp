@@ -4,9 +4,10 @@
 // reduced level of the image pyramid (half resolution serves VGA) and then placed on the full-resolution
 // image. No threshold on contrast decides what a segment is, the number of false alarms does.
 //
-// Time is bounded: each pixel is added to a region at most kMaxGrowths = 6 times and looked at by its 8
-// neighbours each time; every other pass over a region or its rectangle costs at most a constant times the
-// region's size, and at most as many segments are placed as the caller has room for.
+// Time is bounded: each pixel is given back at most kMaxReleases = 5 times, so it is added to a region at
+// most six times, and each time the blocks around it are looked at; every other pass over a region or its
+// rectangle costs at most a constant times the region's size, and at most as many segments are placed as the
+// caller has room for.
 #pragma once
 
 #include <bit>
@@ -60,7 +61,8 @@ class SegmentDetector {
   // cleared, then filled with the segments, most meaningful first. Where more are found than fit, half of the
   // room goes to the most meaningful; the other half goes round a 6 × 4 grid of cells, the best of every cell
   // (by its middle) before the second of any; the rest is counted in out.dropped(). Fails on images of
-  // another size than announced, on an image that is not there, and when scratch is too small.
+  // another size than announced or wider than LevelLineField::kMostWidth, on an image that is not there, and
+  // when scratch is too small.
   Status detect(GrayView reduced, double scale, GrayView full, Arena& scratch, FixedVector<Segment>& out,
                 SegmentCounts* counts = nullptr) const;
 
@@ -74,7 +76,7 @@ class SegmentDetector {
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Pixel> region;
+    std::span<lsd::Piece> region;
     std::span<Candidate> candidates;
   };
 
@@ -94,7 +96,7 @@ class SegmentDetector {
     Scratch scratch;
     const int band_height = band_rows(search) + 1;
     scratch.field = lsd::carve_field(memory, search.width, band_height);
-    scratch.region = memory.take<lsd::Pixel>("lines/lsd", scratch_pixels(search.width, band_height));
+    scratch.region = memory.take<lsd::Piece>("lines/lsd", scratch_pixels(search.width, band_height) + 1);
     // No two meaningful regions share a pixel: that bounds their number.
     const std::size_t bound =
         scratch_pixels(search.width, search.height) / min_region(search.width, search.height) + 1;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which angles are the same as another up to a tolerance: what grows a region, and what counts a rectangle's
+// aligned pixels. Eight at once.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "plvo/base/lanes.hpp"
+#include "plvo/lines/lsd/level_line_field.hpp"
+
+namespace plvo::lsd {
+
+// Of a byte: not every processor counts bits in one instruction.
+inline constexpr auto kOnes = [] {
+  std::array<std::uint8_t, 256> ones{};
+  for (unsigned i = 0; i < 256; ++i) ones[i] = static_cast<std::uint8_t>(std::popcount(i));
+  return ones;
+}();
+
+// All bits of lane i where bit i is set.
+inline Lanes chosen(unsigned bits) {
+  return ((Lanes{} + static_cast<std::int16_t>(bits)) & Lanes{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
+}
+
+class AngleRange {
+ public:
+  AngleRange(Angle middle, Angle tolerance)
+      : least_(static_cast<Angle>(middle - tolerance)), most_(static_cast<std::uint16_t>(2 * tolerance)) {}
+  bool holds(Angle angle) const { return static_cast<std::uint16_t>(angle - least_) <= most_; }
+  // Bit i: the angle eight[i] is in it.
+  unsigned holding(const Angle* eight) const {
+#ifdef PLVO_LANE_LOOPS
+    unsigned held = 0;
+    for (int i = kBlockPixels - 1; i >= 0; --i) held = held << 1 | (holds(eight[i]) ? 1U : 0U);
+    return held;
+#else
+    // Lanes have a sign: the range begins at the least number of 16 bits.
+    Lanes angles;
+    load(eight, angles);
+    const Lanes from_least = angles - static_cast<std::int16_t>(least_ - INT16_MIN);
+    const Lanes held = from_least <= static_cast<std::int16_t>(INT16_MIN + most_);
+    return negative_lanes(held);
+#endif
+  }
+
+ private:
+  Angle least_;
+  std::uint16_t most_;
+};
+
+// Sums what pixels' angles are beyond one angle.
+class AngleSum {
+ public:
+  explicit AngleSum(Angle from) : from_(from) {}
+  // Of eight pixels, those whose bit is set.
+  void add(const Angle* eight, unsigned bits) {
+    Lanes angles;
+    load(eight, angles);
+    const Lanes beyond = angles - from_;
+    WideLanes pairs;
+    dot_pairs(beyond, chosen(bits), pairs);  // a chosen lane is −1
+    minus_ += pairs;
+  }
+  std::int32_t beyond() const { return -(minus_[0] + minus_[1] + minus_[2] + minus_[3]); }
+
+ private:
+  Angle from_;
+  WideLanes minus_{};
+};
+
+}  // namespace plvo::lsd
