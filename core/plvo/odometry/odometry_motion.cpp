@@ -10,6 +10,12 @@ namespace {
 // Beyond so many times the last motion's own time a prediction is worse than none.
 constexpr int kLongestPrediction = 3;
 
+// Most matches say something else. Before a bare or a repeating wall an image may be aligned where it does
+// not belong, and what little agrees there is taken for a motion.
+bool contradicted(const TrackResult& result) {
+  return 2 * (result.points.inliers + result.lines.inliers) < result.points.matched + result.lines.matched;
+}
+
 }  // namespace
 
 // How the camera moves while the frame is exposed, if it goes on as it did.
@@ -60,9 +66,10 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return count;
 }
 
-// A first motion from the latest reference: by its image; failing that by its features, where they are
-// predicted; failing that from each, wherever it may be, unless other sensors say where. Then the motion from
-// all of them. The keyframe's points are described, and those of the keyframe before, not a recent frame's.
+// A first motion from the latest reference: by its image; failing that, or where most matches contradict it,
+// by its features, where they are predicted; failing that from each, wherever it may be, unless other sensors
+// say where. Then the motion from all of them. The keyframe's points are described, and those of the keyframe
+// before, not a recent frame's.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
   References references;
@@ -87,7 +94,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   Se3 T_current_latest;
   if (config().points.registered &&
       rooms_.tracking.align(latest, current, arena_, T_current_latest, result) &&
-      refine(T_current_latest * latest.pose.T_reference_base))
+      refine(T_current_latest * latest.pose.T_reference_base) && !contradicted(result))
     return;
   const auto findable = [](const Reference& from) {
     const PointFeatures& points = from.features->points;
