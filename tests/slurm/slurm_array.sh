@@ -103,8 +103,9 @@ wait_for "the end of the second array" none_left
 
 measure[3]=$work/alone
 "${measure[@]}" >"$work/alone.log" 2>&1 || fail "the run without Slurm failed"
-# Drift and errors; the page and the raw results have times, which are not the same.
-cmp "$work/results/lighting.md" "$work/alone/lighting.md" || fail "the tables differ"
+# Drift and errors; the page and the raw results have times, which are not the same, nor is what else the machine does.
+tables() { sed 's/, load [0-9.]*;/;/' "$work/$1/lighting.md"; }
+cmp <(tables results) <(tables alone) || fail "the tables differ"
 for file in "$work"/alone/jobs/*.txt; do
   cmp "$file" "$work/results/jobs/$(basename "$file")" || fail "the trajectories differ"
 done
