@@ -111,15 +111,15 @@ TEST(ThreadPair, NeedsTheMemoryOfTwo) {
   ThreadPair pair;
   Config config;
   config.side_by_side = pair.side_by_side();
-  Limits limits = Limits::qvga();
+  Limits limits;
   std::vector<std::byte> memory(2 * required_bytes(limits));
-  CameraModel camera = ProceduralSequence(320, 240).camera();
+  CameraModel camera = ProceduralSequence(limits.width, limits.height).camera();
   Odometry odometry;
   const Status refused = odometry.init(memory, camera, config, limits);
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_TRUE(test::says(refused, "cores")) << refused.message();
   limits.cores = 2;
-  EXPECT_GT(required_bytes(limits), required_bytes(Limits::qvga()));
+  EXPECT_GT(required_bytes(limits), required_bytes(Limits()));
   EXPECT_TRUE(odometry.init(memory, camera, config, limits).ok());
   limits.cores = 3;
   EXPECT_FALSE(odometry.init(memory, camera, config, limits).ok());
