@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/level_line_field.hpp"
 
@@ -56,6 +57,11 @@ class AngleSum {
   explicit AngleSum(Angle from) : from_(from) {}
   // Of eight pixels, those whose bit is set.
   void add(const Angle* eight, unsigned bits) {
+    if constexpr (kLaneLoops) {
+      for (unsigned rest = bits; rest != 0; rest &= rest - 1)
+        minus_[0] -= static_cast<Angle>(eight[std::countr_zero(rest)] - from_);
+      return;
+    }
     Lanes angles;
     load(eight, angles);
     const Lanes beyond = angles - from_;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 
 namespace plvo::lsd {
@@ -111,10 +112,13 @@ void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unord
       if (bits == 0) continue;
       Angle* const angle = angles + at * kBlockPixels;
       std::uint16_t* const magnitude = magnitudes + at * kBlockPixels;
-      for (int i = 0; i < kBlockPixels; ++i)
-        make_polar(gradients.gx[i], gradients.gy[i], angle[i], magnitude[i]);
+      // Side by side, those that have no angle too.
+      if constexpr (!kLaneLoops)
+        for (int i = 0; i < kBlockPixels; ++i)
+          make_polar(gradients.gx[i], gradients.gy[i], angle[i], magnitude[i]);
       for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
+        if constexpr (kLaneLoops) make_polar(gradients.gx[i], gradients.gy[i], angle[i], magnitude[i]);
         ++starts[bin_of(magnitude[i]) + 1];
         unordered[count++] = {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(block),
                               static_cast<std::uint8_t>(1 << i)};

@@ -2,9 +2,11 @@
 #include "plvo/lines/lsd/line_rectangle.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 #include "plvo/math/rounding.hpp"
@@ -27,9 +29,21 @@ struct PieceMass {
 };
 
 PieceMass weigh(const std::uint16_t* magnitudes, unsigned bits) {
+  constexpr std::int16_t kMagnitude = (1 << LevelLineField::kReleaseBit) - 1;
+  if constexpr (kLaneLoops) {
+    PieceMass of{};
+    for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
+      const int x = std::countr_zero(rest);
+      const int w = magnitudes[x] & kMagnitude;
+      of.m += w;
+      of.mx += w * x;
+      of.mxx += w * x * x;
+    }
+    return of;
+  }
   Lanes w;
   std::memcpy(&w, magnitudes, sizeof w);
-  w = w & chosen(bits) & std::int16_t{(1 << LevelLineField::kReleaseBit) - 1};
+  w = w & chosen(bits) & kMagnitude;
   WideLanes m, mx, mxx;
   dot_pairs(w, Lanes{1, 1, 1, 1, 1, 1, 1, 1}, m);
   dot_pairs(w, Lanes{0, 1, 2, 3, 4, 5, 6, 7}, mx);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/lines/lsd/line_support_region.hpp"
 
+#include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 
@@ -39,6 +40,7 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
   // branches on it.
   const auto take = [&](std::ptrdiff_t at, int row, int block, unsigned touching) {
     const unsigned free = open[at];
+    if (kLaneLoops && (free & touching) == 0) return;  // eight looks cost more than the branch
     const unsigned fit = free & range.holding(angles + at * kBlockPixels);
     const unsigned taken = spread(fit & touching, fit);
     open[at] = static_cast<std::uint8_t>(free & ~taken);
