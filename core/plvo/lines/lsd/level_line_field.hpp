@@ -85,7 +85,7 @@ inline int first_x(Piece piece) {
   return piece.block * kBlockPixels + std::countr_zero(unsigned{piece.bits});
 }
 inline int last_x(Piece piece) {
-  return piece.block * kBlockPixels + std::bit_width(unsigned{piece.bits}) - 1;
+  return piece.block * kBlockPixels + static_cast<int>(std::bit_width(unsigned{piece.bits})) - 1;
 }
 
 // Calls visit(x, y) for every pixel of a piece.
