@@ -10,10 +10,14 @@ namespace {
 // Beyond so many times the last motion's own time a prediction is worse than none.
 constexpr int kLongestPrediction = 3;
 
-// Most matches say something else. Before a bare or a repeating wall an image may be aligned where it does
-// not belong, and what little agrees there is taken for a motion.
+// What an image that is aligned where it does not belong may agree with by chance, before a bare or a
+// repeating wall; more do not agree by chance, however many others there are.
+constexpr int kChanceInliers = 20;
+
+// Few matches agree, and most say something else.
 bool contradicted(const TrackResult& result) {
-  return 2 * (result.points.inliers + result.lines.inliers) < result.points.matched + result.lines.matched;
+  const int inliers = result.points.inliers + result.lines.inliers;
+  return inliers < kChanceInliers && 2 * inliers < result.points.matched + result.lines.matched;
 }
 
 }  // namespace
@@ -66,7 +70,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return count;
 }
 
-// A first motion from the latest reference: by its image; failing that, or where most matches contradict it,
+// A first motion from the latest reference: by its image; failing that, or where matches contradict it,
 // by its features, where they are predicted; failing that from each, wherever it may be, unless other sensors
 // say where. Then the motion from all of them. The keyframe's points are described, and those of the keyframe
 // before, not a recent frame's.
