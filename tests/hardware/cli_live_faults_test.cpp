@@ -228,7 +228,7 @@ TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
     }
   }
   // A frame that waited for one of them would wait for ever.
-  for (long row = 2; row <= 60; ++row) {
+  for (long row = 2; row <= 61; ++row) {
     tell_device("allow 1");
     wait_for_rows(row);
   }

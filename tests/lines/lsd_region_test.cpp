@@ -46,8 +46,8 @@ struct Field {
   }
   Angle angle(int x, int y) const { return field.angles()[field.pixel(x, y)]; }
   int magnitude(int x, int y) const {
-    return field.magnitude_and_releases[static_cast<std::size_t>(field.pixel(x, y))] %
-           (1 << LevelLineField::kReleaseBit);
+    return field.magnitude_and_releases[static_cast<std::size_t>(field.pixel(x, y))] &
+           ((1 << LevelLineField::kReleaseBit) - 1);
   }
   static Piece piece_of(int x, int y) {
     return {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(x / kBlockPixels),

@@ -20,15 +20,16 @@ constexpr int kMinMagnitudeSquared = 55;
 
 // Bins of 3/8 grey level: 962 up to the greatest magnitude, 8 · 510 · √2. Bin 0 holds the strongest.
 constexpr std::size_t kBins = 1024;
-constexpr std::size_t bin_of(std::uint16_t magnitude) { return kBins - 1 - magnitude / 6U; }
+constexpr std::size_t bin_of(std::int16_t magnitude) {
+  return kBins - 1 - static_cast<std::uint16_t>(magnitude) / 6U;
+}
 
 // atan(r) / r in angles for 0 ≤ r ≤ 1, a polynomial of r² whose greatest error is 0.12 of an angle (least
 // squares weighted until all its extremes are equal).
 constexpr float kArcTangent[5] = {10428.9841F, -3445.2039F, 1879.1296F, -888.21295F, 217.42242F};
 
-// Whole numbers decide on the octant, so that a compiler can do several side by side.
-inline __attribute__((always_inline)) void make_polar(int gx, int gy, Angle& angle_out,
-                                                      std::uint16_t& magnitude_out) {
+// Whole numbers decide on the octant, so that a compiler can do several side by side. Of nothing it is 0.
+inline __attribute__((always_inline)) PolarGradient polar(int gx, int gy) {
   const int ax = gx < 0 ? -gx : gx, ay = gy < 0 ? -gy : gy;
   const int major = ax > ay ? ax : ay, minor = ax > ay ? ay : ax;
   const float r = static_cast<float>(minor) / static_cast<float>(major > 0 ? major : 1);
@@ -40,8 +41,7 @@ inline __attribute__((always_inline)) void make_polar(int gx, int gy, Angle& ang
   angle = gx < 0 ? 32768 - angle : angle;
   angle = gy < 0 ? -angle : angle;
   const float magnitude = 8 * __builtin_sqrtf(static_cast<float>(gx * gx + gy * gy));
-  angle_out = static_cast<Angle>(angle);
-  magnitude_out = static_cast<std::uint16_t>(static_cast<int>(magnitude + 0.5F));
+  return {static_cast<Angle>(angle), static_cast<std::int16_t>(static_cast<int>(magnitude + 0.5F))};
 }
 
 // The gradients of a block.
@@ -75,18 +75,14 @@ unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, Bl
 
 }  // namespace
 
-PolarGradient polar_gradient(int gx, int gy) {
-  PolarGradient gradient;
-  make_polar(gx, gy, gradient.angle, gradient.magnitude);
-  return gradient;
-}
+PolarGradient polar_gradient(int gx, int gy) { return polar(gx, gy); }
 
 void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unordered) {
   std::fill(field.padded_open.begin(), field.padded_open.end(), std::uint8_t{0});
   std::uint8_t* const directed = field.directed.data();
   std::uint8_t* const open = field.open();
   Angle* const angles = field.angles();
-  std::uint16_t* const magnitudes = field.magnitude_and_releases.data();
+  std::int16_t* const magnitudes = field.magnitude_and_releases.data();
   std::array<std::uint32_t, kBins + 1> starts{};
   std::size_t count = 0;
   const int blocks = field.stride - 1;
@@ -111,14 +107,18 @@ void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unord
       directed[at] = open[at] = static_cast<std::uint8_t>(bits);
       if (bits == 0) continue;
       Angle* const angle = angles + at * kBlockPixels;
-      std::uint16_t* const magnitude = magnitudes + at * kBlockPixels;
+      std::int16_t* const magnitude = magnitudes + at * kBlockPixels;
+      const auto make_polar = [&](int i) {
+        const PolarGradient gradient = polar(gradients.gx[i], gradients.gy[i]);
+        angle[i] = gradient.angle;
+        magnitude[i] = gradient.magnitude;
+      };
       // Side by side, those that have no angle too.
       if constexpr (!kLaneLoops)
-        for (int i = 0; i < kBlockPixels; ++i)
-          make_polar(gradients.gx[i], gradients.gy[i], angle[i], magnitude[i]);
+        for (int i = 0; i < kBlockPixels; ++i) make_polar(i);
       for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
-        if constexpr (kLaneLoops) make_polar(gradients.gx[i], gradients.gy[i], angle[i], magnitude[i]);
+        if constexpr (kLaneLoops) make_polar(i);
         ++starts[bin_of(magnitude[i]) + 1];
         unordered[count++] = {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(block),
                               static_cast<std::uint8_t>(1 << i)};

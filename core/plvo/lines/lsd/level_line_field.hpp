@@ -49,7 +49,7 @@ struct LevelLineField {
   std::span<std::uint8_t> directed;
   std::span<std::uint8_t> padded_open;
   std::span<Angle> padded_angles;
-  std::span<std::uint16_t> magnitude_and_releases;
+  std::span<std::int16_t> magnitude_and_releases;
   std::span<Piece> seeds;  // of one pixel each; capacity: width · height
   std::size_t seed_count = 0;
 
@@ -75,7 +75,7 @@ constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_h
   field.directed = memory.take<std::uint8_t>("lines/lsd", stride * rows);
   field.padded_open = memory.take<std::uint8_t>("lines/lsd", padded);
   field.padded_angles = memory.take<Angle>("lines/lsd", padded * kBlockPixels);
-  field.magnitude_and_releases = memory.take<std::uint16_t>("lines/lsd", stride * rows * kBlockPixels);
+  field.magnitude_and_releases = memory.take<std::int16_t>("lines/lsd", stride * rows * kBlockPixels);
   field.seeds = memory.take<Piece>("lines/lsd", static_cast<std::size_t>(field.width) * rows);
   return field;
 }
@@ -99,7 +99,7 @@ void for_each_pixel(Piece piece, Visit&& visit) {
 // off by at most 0.004°, the magnitude (1/16 grey level) by at most a half.
 struct PolarGradient {
   Angle angle = 0;
-  std::uint16_t magnitude = 0;
+  std::int16_t magnitude = 0;
 };
 PolarGradient polar_gradient(int gx, int gy);
 

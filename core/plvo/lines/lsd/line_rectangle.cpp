@@ -23,12 +23,12 @@ struct Moments {
   double xx = 0, xy = 0, yy = 0;  // about the centre
 };
 
-// Of one piece, about its block: sums of the pixels' magnitudes, times nothing, x, and x².
+// Of one piece, about its block: sums of the pixels' magnitudes, by themselves, times x, and times x².
 struct PieceMass {
   std::int32_t m, mx, mxx;
 };
 
-PieceMass weigh(const std::uint16_t* magnitudes, unsigned bits) {
+PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   constexpr std::int16_t kMagnitude = (1 << LevelLineField::kReleaseBit) - 1;
   if constexpr (kLaneLoops) {
     PieceMass of{};
@@ -42,7 +42,7 @@ PieceMass weigh(const std::uint16_t* magnitudes, unsigned bits) {
     return of;
   }
   Lanes w;
-  std::memcpy(&w, magnitudes, sizeof w);
+  load(magnitudes, w);
   w = w & chosen(bits) & kMagnitude;
   WideLanes m, mx, mxx;
   dot_pairs(w, Lanes{1, 1, 1, 1, 1, 1, 1, 1}, m);
@@ -57,7 +57,7 @@ PieceMass weigh(const std::uint16_t* magnitudes, unsigned bits) {
 Moments weigh(const LevelLineField& field, const Region& region) {
   // Integers about the seed: exact, so the order of the pixels does not matter.
   const int seed_x = first_x(region.seed);
-  const std::uint16_t* const magnitudes = field.magnitude_and_releases.data();
+  const std::int16_t* const magnitudes = field.magnitude_and_releases.data();
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
   for (const Piece piece : region.pieces) {
     const PieceMass of = weigh(magnitudes + field.index(piece) * kBlockPixels, piece.bits);

@@ -65,6 +65,7 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
     const unsigned touching = (bits | bits << 1 | bits >> 1) & 0xffU;
     take(at - stride, piece.row - 1, piece.block, touching);
     take(at + stride, piece.row + 1, piece.block, touching);
+    // Beside a block hardly anything is open: there a branch pays.
     const auto take_beside = [&](int right, unsigned touching_there) {
       for (int down = -1; down <= 1; ++down) {
         const std::ptrdiff_t there = at + down * stride + right;
@@ -80,13 +81,13 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
 
 void release(LevelLineField& field, Piece piece) {
   const std::ptrdiff_t at = field.index(piece);
-  std::int16_t* const magnitudes =
-      reinterpret_cast<std::int16_t*>(field.magnitude_and_releases.data()) + at * kBlockPixels;
+  constexpr std::int16_t kReleases = (1 << (16 - LevelLineField::kReleaseBit)) - 1;
+  static_assert(kMaxReleases <= kReleases);
+  std::int16_t* const magnitudes = field.magnitude_and_releases.data() + at * kBlockPixels;
   Lanes lanes;
   load(magnitudes, lanes);
-  const Lanes may =
-      (((lanes >> LevelLineField::kReleaseBit) & std::int16_t{7}) != std::int16_t{kMaxReleases}) &
-      chosen(piece.bits);
+  const Lanes may = (((lanes >> LevelLineField::kReleaseBit) & kReleases) != std::int16_t{kMaxReleases}) &
+                    chosen(piece.bits);
   const Lanes more = lanes + (may & std::int16_t{1 << LevelLineField::kReleaseBit});
   store(more, magnitudes);
   std::uint8_t& open = field.open()[at];

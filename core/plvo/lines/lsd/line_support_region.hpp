@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Region growing (LSD, section 2.3): pixels that touch and whose gradient points the same way up to a
 // tolerance. A region grows by pieces of rows: of the blocks around a piece, those pixels that touch it, and
-// in their blocks what touches them beside. The region's angle is the mean of those pixels'
-// whose pieces have had their turn, renewed whenever these have become an eighth more. (The paper's is that
-// of the sum of their unit vectors; angles so near each other have the same mean, by a thousandth of the
-// tolerance.) A pixel belongs to one region at a time and is given back at most kMaxReleases times in its
-// life, so that all growing together takes a bounded number of looks per pixel of the image.
+// in their blocks what touches them beside. The region's angle is the mean of those pixels whose pieces have
+// had their turn, renewed whenever these have become an eighth more. (The paper's is that of the sum of their
+// unit vectors, which is nearly the same where all point nearly the same way.) A pixel belongs to one region
+// at a time and is given back at most kMaxReleases times in its life, so that all growing together takes a
+// bounded number of looks per pixel of the image.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ struct Region {
   Angle angle() const { return static_cast<Angle>(from + beyond / size); }  // the mean
 };
 
-// Grows from seed, one pixel that is open, into storage (capacity: every pixel of the field) and marks what
-// it takes.
+// Grows from seed, one pixel, which is taken whether it is open or not, into storage (capacity: every pixel
+// of the field and one more) and marks what it takes.
 Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece> storage);
 
 // Gives pixels back, but for those that have been given back kMaxReleases times.
