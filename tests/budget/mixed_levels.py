@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Some sources of the core are compiled for size, the others for speed. Of a function that both kinds emit (a template, an
-inline function) the linker keeps one copy, perhaps the slow one: there may be none. Arguments: nm, the archive, the names of
-the sources that are compiled for size."""
-import pathlib
+inline function) the linker keeps one copy, perhaps the slow one: there may be none. Arguments: nm, the archive, how the names
+of the sources begin that are compiled for size."""
 import subprocess
 import sys
 
@@ -15,14 +14,13 @@ def shared(nm_lines, small):
         kind, _, name = symbol.partition(" ")
         if kind == "W":
             member = where.split(":")[-2]
-            seen[member.removesuffix(".o") in small].add(name)
+            seen[member.startswith(small)].add(name)
     return sorted(seen[True] & seen[False])
 
 
 def main():
-    nm, archive, *sources = sys.argv[1:]
+    nm, archive, small = sys.argv[1:]
     lines = subprocess.run([nm, "-A", "-C", "--defined-only", archive], capture_output=True, text=True, check=True).stdout.splitlines()
-    small = {pathlib.Path(source).name for source in sources}
     found = shared(lines, small)
     for name in found:
         print(f"compiled for size and for speed: {name}")

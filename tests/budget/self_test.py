@@ -44,8 +44,8 @@ class MixedLevels(unittest.TestCase):
     def test_a_function_of_both_kinds_is_found(self):
         lines = ["core.a:cold.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W hot()",
                  "core.a:cold.cpp.o:0000 T cold()", "core.a:hot.cpp.o:     U cold()"]
-        self.assertEqual(mixed_levels.shared(lines, {"cold.cpp"}), ["both(int)"])
-        self.assertEqual(mixed_levels.shared(lines, {"cold.cpp", "hot.cpp"}), [])
+        self.assertEqual(mixed_levels.shared(lines, "cold"), ["both(int)"])
+        self.assertEqual(mixed_levels.shared(lines, ("cold", "hot")), [])
 
 
 class Stack(unittest.TestCase):

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
@@ -48,7 +50,7 @@ struct Template {
   int pixels = 0;
   Matrix4 normal;
 };
-constexpr double kUnit = 1.0 / 16;
+constexpr double kValueUnit = 1.0 / 16;
 
 // A patch that is stretched or shrunk by more is no longer the same to look at.
 constexpr double kMostStretch = 3;
@@ -88,6 +90,13 @@ inline __attribute__((always_inline)) void blend_down(const Lanes taps[kTaps], c
     sums[i] = (above + below + 64) >> 7;
   }
   narrow(sums[0], sums[1], out);
+}
+
+int pixels_of(const WindowMask& mask) {
+  std::uint64_t eight_rows;
+  static_assert(kRows == 9);
+  std::memcpy(&eight_rows, mask.data(), sizeof eight_rows);
+  return count_bits(eight_rows) + count_bits(mask[8]);
 }
 
 // The window and one pixel around it, smoothed as a reading at whole pixels is.
@@ -195,7 +204,8 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
                                    {gx_value, gy_value, value_value, value_one},
                                    {gx_one, gy_one, value_one, one_one}};
   for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) t.normal(r, c) = (r < 3 ? kUnit : 1) * (c < 3 ? kUnit : 1) * sums[r][c];
+    for (int c = 0; c < 4; ++c)
+      t.normal(r, c) = (r < 3 ? kValueUnit : 1) * (c < 3 ? kValueUnit : 1) * sums[r][c];
   return t;
 }
 
@@ -404,9 +414,9 @@ Moments correlate(const Template& t, const Window& values) {
     squared += values[k] * static_cast<std::int16_t>(values[k] * t.one[k]);
   }
   Moments moments;
-  moments.with_template << kUnit * kUnit * with_gx, kUnit * kUnit * with_gy, kUnit * kUnit * with_value,
-      kUnit * sum;
-  moments.squared = kUnit * kUnit * static_cast<double>(squared);
+  moments.with_template << kValueUnit * kValueUnit * with_gx, kValueUnit * kValueUnit * with_gy,
+      kValueUnit * kValueUnit * with_value, kValueUnit * sum;
+  moments.squared = kValueUnit * kValueUnit * static_cast<double>(squared);
   return moments;
 }
 
@@ -420,6 +430,7 @@ bool PatchWarp::is_identity() const {
 Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
                       double start_y, const AlignmentOptions& options, const PatchWarp& warp) {
   Alignment result;
+  if (pixels_of(mask) < kLeastPixels) return result;
   const bool warped = !warp.is_identity();
   const Matrix2 W = warped ? warp.W : Matrix2(Matrix2::Identity());
   if (!(W.cwiseAbs().maxCoeff() < kMostStretch &&
@@ -428,7 +439,6 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
   WarpedWindow window;
   if (warped) window = warp_window(warp);
   const Template t = make_template(patch, mask);
-  if (t.pixels < kLeastPixels) return result;
   Cholesky<4> factor;
   if (!factor.factor(t.normal)) return result;
 

@@ -34,8 +34,8 @@ struct Alignment {
   int iterations = 0;
 };
 
-// How the patch has been deformed since: a pixel (dx, dy) from its centre is now at W (dx, dy) from it. The
-// identity costs nothing; anything else about twice as much.
+// How the patch has been deformed since: a pixel (dx, dy) from its centre is now at W (dx, dy) from it. With
+// any but the identity the window is read pixel by pixel, which takes six times the instructions.
 struct PatchWarp {
   Matrix2 W = Matrix2::Identity();
   // Below this much of an offset in pixels at the window's rim, W is as good as the identity.

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/random.hpp"
 
 namespace plvo {
@@ -39,14 +40,6 @@ constexpr std::array<PixelPair, 256> make_pattern() {
 }
 
 constexpr std::array<PixelPair, 256> kPattern = make_pattern();
-
-int count_bits(std::uint64_t x) {
-  // Parallel sums of neighbouring fields; no processor instruction that an older board lacks.
-  x -= (x >> 1) & 0x5555555555555555ULL;
-  x = (x & 0x3333333333333333ULL) + ((x >> 2) & 0x3333333333333333ULL);
-  x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fULL;
-  return static_cast<int>((x * 0x0101010101010101ULL) >> 56);
-}
 
 }  // namespace
 
