@@ -46,6 +46,9 @@ class MixedLevels(unittest.TestCase):
                  "core.a:cold.cpp.o:0000 T cold()", "core.a:hot.cpp.o:     U cold()"]
         self.assertEqual(mixed_levels.shared(lines, "cold"), ["both(int)"])
         self.assertEqual(mixed_levels.shared(lines, ("cold", "hot")), [])
+        self.assertTrue(mixed_levels.is_there(lines, "cold"))
+        self.assertFalse(mixed_levels.is_there(lines, "tepid"))
+        self.assertFalse(mixed_levels.is_there([], "cold"))
 
 
 class Stack(unittest.TestCase):

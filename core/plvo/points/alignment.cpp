@@ -47,7 +47,6 @@ constexpr auto kWeights = make_weights();
 // and one. All zero where the mask is. And their normal equations, in grey levels.
 struct Template {
   std::array<std::int16_t, kPixels> gx, gy, value, one;
-  int pixels = 0;
   Matrix4 normal;
 };
 constexpr double kValueUnit = 1.0 / 16;
@@ -198,7 +197,6 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
     value_one += t.value[k] * t.one[k];
     one_one += t.one[k] * t.one[k];
   }
-  t.pixels = one_one;
   const std::int32_t sums[4][4] = {{gx_gx, gx_gy, gx_value, gx_one},
                                    {gx_gy, gy_gy, gy_value, gy_one},
                                    {gx_value, gy_value, value_value, value_one},
@@ -430,7 +428,8 @@ bool PatchWarp::is_identity() const {
 Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
                       double start_y, const AlignmentOptions& options, const PatchWarp& warp) {
   Alignment result;
-  if (pixels_of(mask) < kLeastPixels) return result;
+  const int pixels = pixels_of(mask);
+  if (pixels < kLeastPixels) return result;
   const bool warped = !warp.is_identity();
   const Matrix2 W = warped ? warp.W : Matrix2(Matrix2::Identity());
   if (!(W.cwiseAbs().maxCoeff() < kMostStretch &&
@@ -477,9 +476,9 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     if (!converged) continue;
 
     const double residual = moments.squared - solution.dot(moments.with_template);
-    const double mean = t.normal(2, 3) / t.pixels;
-    const double variance = t.normal(2, 2) / t.pixels - mean * mean;
-    const double residual_variance = (residual > 0 ? residual : 0) / (t.pixels - 4) / (gain * gain);
+    const double mean = t.normal(2, 3) / pixels;
+    const double variance = t.normal(2, 2) / pixels - mean * mean;
+    const double residual_variance = (residual > 0 ? residual : 0) / (pixels - 4) / (gain * gain);
     if (!(residual_variance <= options.max_residual * options.max_residual * variance)) return result;
     // Covariance of (c_x, c_y): the noise of one pixel through the inverse of the normal equations, so that
     // what gain and offset take of the gradients' information is not counted. Regressors are twice the

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/level_line_field.hpp"
@@ -16,7 +17,7 @@ namespace plvo::lsd {
 // Of a byte: not every processor counts bits in one instruction.
 inline constexpr auto kOnes = [] {
   std::array<std::uint8_t, 256> ones{};
-  for (unsigned i = 0; i < 256; ++i) ones[i] = static_cast<std::uint8_t>(std::popcount(i));
+  for (unsigned i = 0; i < 256; ++i) ones[i] = static_cast<std::uint8_t>(count_bits(i));
   return ones;
 }();
 
