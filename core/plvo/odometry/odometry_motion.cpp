@@ -10,15 +10,14 @@ namespace {
 // Beyond so many times the last motion's own time a prediction is worse than none.
 constexpr int kLongestPrediction = 3;
 
-// What an image that is aligned where it does not belong may agree with by chance, before a bare or a
-// repeating wall; more do not agree by chance, however many others there are.
-constexpr int kChanceInliers = 20;
-
-// Few matches agree, and most say something else.
-bool contradicted(const TrackResult& result) {
-  const int inliers = result.points.inliers + result.lines.inliers;
-  return inliers < kChanceInliers && 2 * inliers < result.points.matched + result.lines.matched;
-}
+// A first motion convinces where at least this share is found of what it puts into the image. An image that
+// is aligned where it does not belong finds less than a tenth; a search by features, before a wall that
+// repeats itself and a brick off, a fifth. So does a right one in a blurred image: it is not refused, but
+// others are looked for as well.
+constexpr double kConvincingByImage = 0.1;
+constexpr double kConvincingByFeatures = 0.2;
+// Or two ways lead to the same motion: within this distance (m and rad).
+constexpr double kSameMotion = 0.02;
 
 }  // namespace
 
@@ -70,10 +69,10 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return count;
 }
 
-// A first motion from the latest reference: by its image; failing that, or where matches contradict it,
-// by its features, where they are predicted; failing that from each, wherever it may be, unless other sensors
-// say where. Then the motion from all of them. The keyframe's points are described, and those of the keyframe
-// before, not a recent frame's.
+// A first motion from the latest reference, by its image; failing that by features: where they are predicted,
+// or from each reference, wherever they may be, unless other sensors say where. Each leads to the motion from
+// all references. The first that convinces is taken, else the one that most agree with. The keyframe's points
+// are described, and those of the keyframe before, not a recent frame's.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
   References references;
@@ -83,33 +82,50 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
   const Reference& latest = all[latest_of(all)];
+  const bool registered = config().points.registered;
   const auto refine = [&](const Se3& T_current_base) {
     rooms_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
     return tracked.motion.status == StatusCode::kOk;
   };
-  const auto find = [&](const Reference& from, double radius_px) {
-    find_points(depth, result);
-    describe_points(result);
-    rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
-    if (tracked.motion.status != StatusCode::kOk) return false;
-    return !config().points.registered ||
-           refine(tracked.motion.T_current_reference * from.pose.T_reference_base);
+  // Of the motions that did not convince: where it led to, from where, and how many agree with it.
+  struct {
+    Se3 motion, start;
+    int inliers = 0;
+  } best;
+  const auto convinces = [&](const Se3& start, double share) {
+    const Se3& motion = tracked.motion.T_current_reference;
+    const int inliers = result.points.inliers + result.lines.inliers;
+    if (inliers >= share * features_in_view(all, camera(), motion)) return true;
+    if (inliers > best.inliers) best = {motion, start, inliers};
+    return false;
   };
-  Se3 T_current_latest;
-  if (config().points.registered &&
-      rooms_.tracking.align(latest, current, arena_, T_current_latest, result) &&
-      refine(T_current_latest * latest.pose.T_reference_base) && !contradicted(result))
-    return;
+  if (Se3 start; registered && rooms_.tracking.align(latest, current, arena_, start, result)) {
+    start = start * latest.pose.T_reference_base;
+    if (refine(start) && convinces(start, kConvincingByImage)) return;
+  }
+
+  find_points(depth, result);
+  describe_points(result);
   const auto findable = [](const Reference& from) {
     const PointFeatures& points = from.features->points;
     return points.described || points.keypoints.empty();
   };
+  const auto find = [&](const Reference& from, double radius_px) {
+    rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
+    if (tracked.motion.status != StatusCode::kOk) return false;
+    if (!registered) return true;
+    const Se3 start = tracked.motion.T_current_reference * from.pose.T_reference_base;
+    if (best.inliers > 0 && boxminus(start, best.motion).norm() < kSameMotion) return refine(best.start);
+    return refine(start) && convinces(start, kConvincingByFeatures);
+  };
   if (find(findable(latest) ? latest : all[0], config().points.match.radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
     if (!findable(references[r])) continue;
-    if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
-    if (find(references[r], config().references.wide_search_px)) return;
+    Reference anywhere = references[r];
+    if (!sensed_.known()) anywhere.prior.T_current_reference = Se3{};
+    if (find(anywhere, config().references.wide_search_px)) return;
   }
+  if (best.inliers > 0) (void)refine(best.start);
 }
 
 }  // namespace plvo

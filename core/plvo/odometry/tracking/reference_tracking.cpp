@@ -120,6 +120,26 @@ std::size_t latest_of(std::span<const Reference> references) {
   return latest;
 }
 
+int features_in_view(std::span<const Reference> references, const CameraModel& camera,
+                     const Se3& T_current_base) {
+  int count = 0;
+  for (const Reference& reference : references) {
+    const Se3 T_current_reference = T_current_base * reference.pose.T_reference_base.inverse();
+    const auto is_seen = [&](const Vector3& p) {
+      const Vector3 here = T_current_reference * p;
+      if (!(here.z() > kNearestSeen_m)) return false;
+      const Vector2 at = project(camera.pinhole, here);
+      return at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1;
+    };
+    const PointFeatures& points = reference.features->points;
+    for (const Point3d& point : points.points.first(points.keypoints.size()))
+      count += point.p.z() > 0 && is_seen(point.p) ? 1 : 0;
+    for (const Line3d& line : reference.features->lines.lines_3d())
+      count += is_seen(0.5 * (line.a + line.b)) ? 1 : 0;
+  }
+  return count;
+}
+
 // Relative to the first of them; the last good frame's besides, where it is no reference.
 ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Reference> references,
                                                         const MotionReference& last,
