@@ -121,9 +121,8 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   if (find(findable(latest) ? latest : all[0], config().points.match.radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
     if (!findable(references[r])) continue;
-    Reference anywhere = references[r];
-    if (!sensed_.known()) anywhere.prior.T_current_reference = Se3{};
-    if (find(anywhere, config().references.wide_search_px)) return;
+    if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
+    if (find(references[r], config().references.wide_search_px)) return;
   }
   if (best.inliers > 0) (void)refine(best.start);
 }
