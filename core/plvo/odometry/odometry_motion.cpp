@@ -95,7 +95,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   const auto convinces = [&](const Se3& start, double share) {
     const Se3& motion = tracked.motion.T_current_reference;
     const int inliers = result.points.inliers + result.lines.inliers;
-    if (inliers >= share * features_in_view(all, camera(), motion)) return true;
+    if (is_share_of_view(inliers, share, all, camera(), motion)) return true;
     if (inliers > best.inliers) best = {motion, start, inliers};
     return false;
   };

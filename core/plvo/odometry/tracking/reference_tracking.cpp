@@ -120,9 +120,14 @@ std::size_t latest_of(std::span<const Reference> references) {
   return latest;
 }
 
-int features_in_view(std::span<const Reference> references, const CameraModel& camera,
-                     const Se3& T_current_base) {
-  int count = 0;
+bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
+                      const CameraModel& camera, const Se3& T_current_base) {
+  // Nearly always they are that share of all features, in view or not.
+  std::size_t all = 0;
+  for (const Reference& reference : references)
+    all += reference.features->points.keypoints.size() + reference.features->lines.count_3d;
+  if (inliers >= share * static_cast<double>(all)) return true;
+  int in_view = 0;
   for (const Reference& reference : references) {
     const Se3 T_current_reference = T_current_base * reference.pose.T_reference_base.inverse();
     const auto is_seen = [&](const Vector3& p) {
@@ -133,11 +138,11 @@ int features_in_view(std::span<const Reference> references, const CameraModel& c
     };
     const PointFeatures& points = reference.features->points;
     for (const Point3d& point : points.points.first(points.keypoints.size()))
-      count += point.p.z() > 0 && is_seen(point.p) ? 1 : 0;
+      in_view += point.p.z() > 0 && is_seen(point.p) ? 1 : 0;
     for (const Line3d& line : reference.features->lines.lines_3d())
-      count += is_seen(0.5 * (line.a + line.b)) ? 1 : 0;
+      in_view += is_seen(0.5 * (line.a + line.b)) ? 1 : 0;
   }
-  return count;
+  return inliers >= share * in_view;
 }
 
 // Relative to the first of them; the last good frame's besides, where it is no reference.

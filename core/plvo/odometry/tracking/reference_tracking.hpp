@@ -35,9 +35,10 @@ struct Reference {
 // Of the references, the one that was taken last.
 std::size_t latest_of(std::span<const Reference> references);
 
-// Points and lines (by their middles) of the references that this motion from the base puts into the image.
-int features_in_view(std::span<const Reference> references, const CameraModel& camera,
-                     const Se3& T_current_base);
+// Whether so many inliers are at least this share of what this motion from the base puts into the image:
+// points, and lines by their middles, of all references.
+bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
+                      const CameraModel& camera, const Se3& T_current_base);
 
 // What was found of one reference in the current frame.
 struct ReferenceTracks {
