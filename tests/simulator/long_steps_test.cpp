@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
-#include <memory>
-#include <vector>
 
-#include "plvo/odometry/odometry.hpp"
-#include "simulator_support.hpp"
+#include "tracked_walk.hpp"
 
 namespace plvo {
 namespace {
@@ -17,50 +14,30 @@ namespace {
 // Half of what a brick is high, and more than any right motion errs.
 constexpr double kOff_m = 0.035;
 
-void expect_no_motion_off(const SimulatorOptions& options) {
-  std::unique_ptr<SimulatedCamera> camera;
-  const Status created = SimulatedCamera::create(options, camera);
-  ASSERT_TRUE(created.ok()) << created.message();
-  const Limits limits;
-  std::vector<std::byte> memory(required_bytes(limits));
-  Odometry odometry;
-  const Status ready = odometry.init(memory, camera->model(), Config{}, limits);
-  ASSERT_TRUE(ready.ok()) << ready.message();
-
+void expect_no_motion_off(SceneName scene, double fps, int frames) {
+  SimulatorOptions options;
+  options.scene = scene;
+  options.fps = fps;
+  options.frames = frames;
+  const test::TrackedWalk walk = test::track_walk(options, Limits{}, Config{});
   int tracked = 0;
   double most = 0;
-  RgbdFrame frame;
-  while (camera->next(frame).ok()) {
-    const TrackResult result = odometry.track(frame);
+  for (std::size_t i = 0; i < walk.results.size(); ++i) {
+    const TrackResult& result = walk.results[i];
     if (result.state != TrackState::kTracking) continue;
-    const Se3 truth =
-        camera->ground_truth(frame.stamp_ns).inverse() * camera->ground_truth(result.reference_stamp_ns);
-    const double error = boxminus(result.T_camera_reference, truth).head<3>().norm();
-    EXPECT_LT(error, kOff_m) << "at " << frame.stamp_ns << ", with " << result.points.inliers
+    const double error = walk.error_of_motion(i).head<3>().norm();
+    EXPECT_LT(error, kOff_m) << "at " << result.stamp_ns << ", with " << result.points.inliers
                              << " points and " << result.lines.inliers << " lines";
     most = std::max(most, error);
     ++tracked;
   }
-  std::printf("%d of %d frames tracked, at most %.1f mm off\n", tracked, options.frames, 1e3 * most);
-  EXPECT_GT(tracked, 0.85 * options.frames);
+  std::printf("%d of %d frames tracked, at most %.1f mm off\n", tracked, frames, 1e3 * most);
+  EXPECT_GT(tracked, 0.85 * frames);
 }
 
 // 18 cm and 9° from one frame to the next, before bricks.
-TEST(LongSteps, ABrickOffDoesNotConvince) {
-  SimulatorOptions options;
-  options.scene = SceneName::kBare;
-  options.fps = 3;
-  options.frames = 38;
-  expect_no_motion_off(options);
-}
-
-TEST(LongSteps, NeitherDoesOneInAHall) {
-  SimulatorOptions options;
-  options.scene = SceneName::kHall;
-  options.fps = 4;
-  options.frames = 24;
-  expect_no_motion_off(options);
-}
+TEST(LongSteps, ABrickOffDoesNotConvince) { expect_no_motion_off(SceneName::kBare, 3, 38); }
+TEST(LongSteps, NeitherDoesOneInAHall) { expect_no_motion_off(SceneName::kHall, 4, 24); }
 
 }  // namespace
 }  // namespace plvo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated walk at 320×240, tracked, beside its truth.
+// A simulated walk, tracked, beside its truth.
 #pragma once
 
 #include <algorithm>
@@ -32,9 +32,11 @@ struct TrackedWalk {
     return static_cast<std::size_t>(std::find_if(results.begin(), results.end(), is_reference) -
                                     results.begin());
   }
+  Vector6 error_of_motion(std::size_t i) const {
+    return boxminus(results[i].T_camera_reference, truth[i].inverse() * truth[reference(i)]);
+  }
   double nees_of_motion(std::size_t i) const {
-    const Se3 T = truth[i].inverse() * truth[reference(i)];
-    return nees(boxminus(results[i].T_camera_reference, T), results[i].motion_covariance);
+    return nees(error_of_motion(i), results[i].motion_covariance);
   }
   double nees_of_pose(std::size_t i) const {
     const Se3 T = truth.front().inverse() * truth[i];
@@ -44,13 +46,8 @@ struct TrackedWalk {
 
 // stamp_error_ns: by how much each stamp but the first is wrong; the truth is that of the wrong stamp.
 inline TrackedWalk track_walk(
-    SceneName scene, int frames, const Config& config, double stamp_sigma_s = 0,
+    const SimulatorOptions& options, const Limits& limits, const Config& config, double stamp_sigma_s = 0,
     const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
-  SimulatorOptions options = small_options(scene);
-  options.camera.width = 320;
-  options.camera.height = 240;
-  options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
-  options.frames = frames;
   TrackedWalk walk;
   std::unique_ptr<SimulatedCamera> camera;
   const Status created = SimulatedCamera::create(options, camera);
@@ -58,7 +55,6 @@ inline TrackedWalk track_walk(
   if (!created.ok()) return walk;
   CameraModel model = camera->model();
   model.stamp_sigma_s = stamp_sigma_s;
-  const Limits limits = Limits::qvga();
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;
   const Status status = odometry.init(memory, model, config, limits);
@@ -68,8 +64,22 @@ inline TrackedWalk track_walk(
     if (!walk.truth.empty()) frame.stamp_ns += stamp_error_ns();
     walk.truth.push_back(camera->ground_truth(frame.stamp_ns));
     walk.results.push_back(odometry.track(frame));
-    EXPECT_NE(walk.results.back().state, TrackState::kLost) << walk.results.back().status.message();
   }
+  return walk;
+}
+
+// At 320×240; no frame may be lost.
+inline TrackedWalk track_walk(
+    SceneName scene, int frames, const Config& config, double stamp_sigma_s = 0,
+    const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
+  SimulatorOptions options = small_options(scene);
+  options.camera.width = 320;
+  options.camera.height = 240;
+  options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
+  options.frames = frames;
+  TrackedWalk walk = track_walk(options, Limits::qvga(), config, stamp_sigma_s, stamp_error_ns);
+  for (const TrackResult& result : walk.results)
+    EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
   return walk;
 }
 

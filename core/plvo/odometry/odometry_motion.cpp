@@ -11,9 +11,9 @@ namespace {
 constexpr int kLongestPrediction = 3;
 
 // A first motion convinces where at least this share is found of what it puts into the image. An image that
-// is aligned where it does not belong finds less than a tenth; a search by features, before a wall that
-// repeats itself and a brick off, a fifth. So does a right one in a blurred image: it is not refused, but
-// others are looked for as well.
+// is aligned where it does not belong mostly finds less than a tenth; a search by features, before a wall
+// that repeats itself and a brick off, a fifth. So does a right one in a blurred image: it is not refused,
+// but others are looked for as well.
 constexpr double kConvincingByImage = 0.1;
 constexpr double kConvincingByFeatures = 0.2;
 // Or two ways lead to the same motion: within this distance (m and rad).

@@ -21,7 +21,7 @@ constexpr int kRows = kWindowRows;
 constexpr int kPixels = kColumns * kRows;
 constexpr int kLeastPixels = kPixels / 3;
 // After the first step a patch that is there leaves no more than so many times the variance that it may end
-// with: of ten thousand that end well a few do on the way.
+// with: of ten thousand that end well three do on the way, at most.
 constexpr double kHopeless = 3;
 constexpr int kFractionBits = 5;  // positions are read on a grid of 1/32 px
 constexpr int kTaps = 4;          // of the cubic B-spline
