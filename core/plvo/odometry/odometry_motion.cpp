@@ -92,11 +92,13 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     Se3 motion, start;
     int inliers = 0;
   } best;
+  bool last_is_best = false;  // nothing was tried since
   const auto convinces = [&](const Se3& start, double share) {
     const Se3& motion = tracked.motion.T_current_reference;
     const int inliers = result.points.inliers + result.lines.inliers;
     if (is_share_of_view(inliers, share, all, camera(), motion)) return true;
-    if (inliers > best.inliers) best = {motion, start, inliers};
+    last_is_best = inliers > best.inliers;
+    if (last_is_best) best = {motion, start, inliers};
     return false;
   };
   if (Se3 start; registered && rooms_.tracking.align(latest, current, arena_, start, result)) {
@@ -111,6 +113,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     return points.described || points.keypoints.empty();
   };
   const auto find = [&](const Reference& from, double radius_px) {
+    last_is_best = false;
     rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
     if (tracked.motion.status != StatusCode::kOk) return false;
     if (!registered) return true;
@@ -124,7 +127,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
     if (find(references[r], config().references.wide_search_px)) return;
   }
-  if (best.inliers > 0) (void)refine(best.start);
+  if (best.inliers > 0 && !last_is_best) (void)refine(best.start);
 }
 
 }  // namespace plvo
