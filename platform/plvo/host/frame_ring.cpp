@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 
 namespace plvo {
 
@@ -15,8 +14,7 @@ FrameRing::FrameRing(int width, int height, std::size_t slots, RingPolicy policy
       reading_(slots_.size()) {
   free_.reserve(slots_.size());
   for (std::size_t i = slots_.size(); i-- > 0;) {
-    slots_[i].colour.resize(pixels_ * 3);
-    slots_[i].depth.resize(pixels_);
+    slots_[i].copy.reserve(pixels_);
     free_.push_back(i);
   }
 }
@@ -50,7 +48,8 @@ bool FrameRing::push(const RgbdFrame& frame, std::int64_t arrival_ns) {
   const std::size_t slot = free_.back();
   free_.pop_back();
   lock.unlock();
-  copy(frame, arrival_ns, slots_[slot]);
+  slots_[slot].copy.assign(frame);
+  slots_[slot].arrival_ns = arrival_ns;
   lock.lock();
   ready_[(first_ + ready_count_) % ready_.size()] = slot;
   ++ready_count_;
@@ -58,26 +57,6 @@ bool FrameRing::push(const RgbdFrame& frame, std::int64_t arrival_ns) {
   lock.unlock();
   frame_ready_.notify_one();
   return true;
-}
-
-void FrameRing::copy(const RgbdFrame& frame, std::int64_t arrival_ns, Slot& slot) const {
-  slot.frame = frame;
-  slot.arrival_ns = arrival_ns;
-  const std::size_t row_bytes =
-      static_cast<std::size_t>(frame.colour.width) * (frame.colour.format == PixelFormat::kGray8 ? 1 : 3);
-  for (int y = 0; frame.colour.data != nullptr && y < frame.colour.height; ++y) {
-    std::memcpy(slot.colour.data() + static_cast<std::size_t>(y) * row_bytes,
-                frame.colour.data + y * frame.colour.stride_bytes, row_bytes);
-  }
-  for (int y = 0; frame.depth.data != nullptr && y < frame.depth.height; ++y) {
-    std::memcpy(slot.depth.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.depth.width),
-                frame.depth.data + y * frame.depth.stride,
-                static_cast<std::size_t>(frame.depth.width) * sizeof(std::uint16_t));
-  }
-  if (frame.colour.data != nullptr) slot.frame.colour.data = slot.colour.data();
-  if (frame.depth.data != nullptr) slot.frame.depth.data = slot.depth.data();
-  slot.frame.colour.stride_bytes = static_cast<std::ptrdiff_t>(row_bytes);
-  slot.frame.depth.stride = frame.depth.width;
 }
 
 void FrameRing::close() {
@@ -105,7 +84,7 @@ FrameRing::Take FrameRing::take(RgbdFrame& frame, std::int64_t& arrival_ns, int 
   }
   reading_ = pop_ready();
   ++counters_.taken;
-  frame = slots_[reading_].frame;
+  frame = slots_[reading_].copy.frame();
   arrival_ns = slots_[reading_].arrival_ns;
   return Take::kFrame;
 }

@@ -11,8 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "plvo/base/status.hpp"
-#include "plvo/image/frame.hpp"
+#include "plvo/host/frame_copy.hpp"
 
 namespace plvo {
 
@@ -49,13 +48,10 @@ class FrameRing {
 
  private:
   struct Slot {
-    std::vector<std::uint8_t> colour;
-    std::vector<std::uint16_t> depth;
-    RgbdFrame frame;
+    FrameCopy copy;
     std::int64_t arrival_ns = 0;
   };
   std::size_t pop_ready();
-  void copy(const RgbdFrame& frame, std::int64_t arrival_ns, Slot& slot) const;
 
   const std::size_t pixels_;
   const RingPolicy policy_;

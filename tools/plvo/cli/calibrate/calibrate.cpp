@@ -22,6 +22,7 @@
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/cli/options/camera_options.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/prefetched_camera.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -142,8 +143,8 @@ class Calibrate {
         return !interrupted();
       };
       const CameraModel camera = calibrate::with_timing(calibration_.camera, timing);
-      if (Status status =
-              calibrate::track_recording(*opened.camera, camera, share, on_frame, recordings.back());
+      PrefetchedCamera prefetched(*opened.camera);
+      if (Status status = calibrate::track_recording(prefetched, camera, share, on_frame, recordings.back());
           !status.ok())
         return status;
       // Units a metre, as files say it; more digits than those are the division's.

@@ -22,6 +22,7 @@
 #include "plvo/cli/run/run_outputs.hpp"
 #include "plvo/cli/run/run_summary.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/prefetched_camera.hpp"
 #include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
@@ -63,7 +64,7 @@ class Run {
   int execute() {
     if (Status status = open(); !status.ok()) return fail(status);
     catch_interrupt();
-    const Status failure = loop();
+    const Status failure = replay();
     console_.clear();
     Status written = finish();
     if (!failure.ok()) return fail(failure);
@@ -97,10 +98,17 @@ class Run {
     return outputs_.open(options_.outputs);
   }
 
-  Status loop() {
-    PacedCamera camera(*opened_.camera, options_.pace, clock_, wait_for_enter);
+  Status replay() {
+    PrefetchedCamera prefetched(*opened_.camera);
+    PacedCamera camera(prefetched, options_.pace, clock_, wait_for_enter);
     prefault_program();
     summary_->resident_start = resident_memory();
+    const Status failure = loop(camera);
+    summary_->resident_end = resident_memory();
+    return failure;
+  }
+
+  Status loop(RgbdCamera& camera) {
     FrameRecord record;
     for (; !interrupted(); ++record.number) {
       RgbdFrame frame;
@@ -138,7 +146,6 @@ class Run {
   }
 
   Status finish() {
-    summary_->resident_end = resident_memory();
     summary_->interrupted = interrupted();
     summary_->arena_bytes = block_.odometry().memory_used();
     summary_->arena_peak = block_.odometry().memory_peak();
