@@ -139,6 +139,44 @@ TEST(TwoReferences, AnExactPoseAndAnUnknownOneAreTheLimits) {
   EXPECT_GT(difference(exact.H, unknown.H), 0.3);
 }
 
+// A pose that is wrong by many of its SDs, with robust weights: the solution is a minimum of the cost over
+// the motion and the pose together, and both come near the truth.
+TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TwoReferences two(seed, 60, 0);
+    const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
+    const Vector6 sd = (Vector6() << 1e-3, 1e-3, 1e-3, 5e-4, 5e-4, 5e-4).finished();
+    const Vector6 wrong = (Vector6() << 8, -6, 7, 8, -7, 6).finished();
+    two.references[1].covariance = sd.cwiseAbs2().asDiagonal();
+    two.references[1].T_reference_base = boxplus(two.T_1_0, sd.cwiseProduct(wrong));
+    const auto kernels = MotionProblem::make_kernels(sets, RobustLoss::kHuber);
+    MotionProblem problem(sets, two.references, {}, kernels, boxplus(two.truth, kAway));
+    LevenbergMarquardt<6> solver;
+    const LmSummary summary = solver.solve(problem, {});
+    ASSERT_TRUE(converged(summary.status)) << static_cast<int>(summary.status);
+
+    // Of the motion, and of the pose in its SDs, about the solution.
+    const MotionReference found = problem.poses()[1];
+    const auto cost = [&](const Vector6& of_motion, const Vector6& of_pose) {
+      MotionReferences exact;
+      exact[1].T_reference_base = boxplus(found.T_reference_base, sd.cwiseProduct(of_pose));
+      MotionProblem at(sets, exact, {}, kernels, boxplus(problem.T_current_reference(), of_motion));
+      Matrix6 H;
+      Vector6 g;
+      return at.linearize(Vector6::Zero(), H, g) + 0.5 * (found.moved + of_pose).squaredNorm();
+    };
+    const double least = cost(Vector6::Zero(), Vector6::Zero());
+    EXPECT_NEAR(least, summary.final_cost, 1e-6 * least);
+    for (int k = 0; k < 6; ++k)
+      for (const double side : {-1.0, 1.0}) {
+        EXPECT_GT(cost(side * 3e-4 * Vector6::Unit(k), Vector6::Zero()), least);
+        EXPECT_GT(cost(Vector6::Zero(), side * 0.3 * Vector6::Unit(k)), least);
+      }
+    const Vector6 left = boxminus(found.T_reference_base, two.T_1_0).cwiseQuotient(sd);
+    EXPECT_LT(left.norm(), 0.75 * wrong.norm());
+  }
+}
+
 TEST(CorrelatedResiduals, WeighAsADenseCovarianceSays) {
   // n numbers that share a part of their error tell of their common value 1ᵀ Σ⁻¹ 1.
   for (const int n : {1, 2, 7, 40})

@@ -226,20 +226,22 @@ TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
   }
 }
 
+// The texture warped about a corner, and shifted.
+GrayImage render_warped(const test::Texture& texture, const StrongestCorner& about, const Matrix2& W,
+                        double dx, double dy, Random& random) {
+  const Matrix2 back = (Matrix2() << W(1, 1), -W(0, 1), -W(1, 0), W(0, 0)).finished() /
+                       (W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0));
+  GrayImage image(kImageSide, kImageSide, 5);
+  image.paint([&](int x, int y) {
+    const Vector2 at = back * Vector2(x - about.x - dx, y - about.y - dy) + Vector2(about.x, about.y);
+    return std::clamp(texture(at.x(), at.y()), 0.0, 255.0) + 0.5 * test::gaussian(random);
+  });
+  return image;
+}
+
 // A keyframe's patch after the camera came nearer, turned and looked from the side.
 TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
   Random random(9);
-  const auto render_warped = [&](const test::Texture& texture, const StrongestCorner& about, const Matrix2& W,
-                                 double dx, double dy) {
-    const Matrix2 back = (Matrix2() << W(1, 1), -W(0, 1), -W(1, 0), W(0, 0)).finished() /
-                         (W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0));
-    GrayImage image(kImageSide, kImageSide, 5);
-    image.paint([&](int x, int y) {
-      const Vector2 at = back * Vector2(x - about.x - dx, y - about.y - dy) + Vector2(about.x, about.y);
-      return std::clamp(texture(at.x(), at.y()), 0.0, 255.0) + 0.5 * test::gaussian(random);
-    });
-    return image;
-  };
   const Matrix2 warps[] = {(Matrix2() << 1.3, 0, 0, 1.3).finished(), (Matrix2() << 0.8, 0, 0, 0.8).finished(),
                            (Matrix2() << 0.94, -0.34, 0.34, 0.94).finished(),
                            (Matrix2() << 1.1, 0.2, -0.05, 0.85).finished()};
@@ -254,7 +256,7 @@ TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
     for (const Matrix2& W : warps) {
       const double dx = 0.37;
       const double dy = -0.21;
-      const GrayImage current = render_warped(texture, at, W, dx, dy);
+      const GrayImage current = render_warped(texture, at, W, dx, dy, random);
       const auto squared_error = [&](const Alignment& got) {
         return (got.x - at.x - dx) * (got.x - at.x - dx) + (got.y - at.y - dy) * (got.y - at.y - dy);
       };
@@ -278,28 +280,52 @@ TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
   EXPECT_GT(std::sqrt(without / std::max(found_without, 1)), 3 * std::sqrt(with / found));
 }
 
-TEST(Alignment, AWarpNextToNoneIsNone) {
+// A slight warp moves the patch itself, any other makes the window be read pixel by pixel: on both sides of
+// the border between them a patch is located as well, and better than without its warp.
+TEST(Alignment, FollowsASlightWarpAsWellAsAnyOther) {
   Random random(10);
-  const test::Texture texture(4, 100, kGrain);
-  const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
-  const GrayImage current = render(texture, 0.3, 0.4, 1, 0, 1, random);
-  const Patch patch = cut_patch(reference.view(), kImageCentre, kImageCentre);
-  const Alignment plain = align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {});
-  // As good as none: the same bits. Just beyond it: the same place, read pixel by pixel.
-  PatchWarp warp;
-  warp.W(0, 1) = 0.012;
-  EXPECT_TRUE(warp.is_identity());
-  const Alignment same =
-      align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
-  EXPECT_EQ(same.x, plain.x);
-  EXPECT_EQ(same.sigma_px, plain.sigma_px);
-  warp.W(0, 1) = 0.013;
-  EXPECT_FALSE(warp.is_identity());
-  const Alignment near =
-      align_patch(patch, kWholeWindow, current.view(), kImageCentre, kImageCentre, {}, warp);
-  ASSERT_TRUE(plain.ok && near.ok);
-  EXPECT_NEAR(near.x, plain.x, 0.1);
-  EXPECT_NEAR(near.y, plain.y, 0.1);
+  constexpr double kWarpBorder = 0.075;  // of an entry, by which a pixel at the rim moves 0.3 px
+  struct Kind {
+    double entry;
+    bool slight;
+    double squared = 0, squared_without = 0;
+    int found = 0;
+  };
+  Kind kinds[] = {{0.98 * kWarpBorder, true}, {1.02 * kWarpBorder, false}};
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const test::Texture texture(seed, 100, kGrain);
+    const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
+    const StrongestCorner at = strongest_corner(reference.view());
+    const Patch patch = cut_patch(reference.view(), at.x, at.y);
+    const double dx = random.uniform() - 0.5, dy = random.uniform() - 0.5;
+    for (Kind& kind : kinds) {
+      const double e = kind.entry;
+      for (const Matrix2& W :
+           {(Matrix2() << 1 + e, 0, 0, 1 + e).finished(), (Matrix2() << 1, -e, e, 1).finished(),
+            (Matrix2() << 1, e, 0, 1 - e).finished()}) {
+        ASSERT_EQ(PatchWarp{W}.is_slight(), kind.slight);
+        const GrayImage current = render_warped(texture, at, W, dx, dy, random);
+        const auto squared_error = [&](const Alignment& got) {
+          EXPECT_TRUE(got.ok);
+          return (got.x - at.x - dx) * (got.x - at.x - dx) + (got.y - at.y - dy) * (got.y - at.y - dy);
+        };
+        kind.squared += squared_error(align_patch(patch, kWholeWindow, current.view(), at.x, at.y, {}, {W}));
+        kind.squared_without +=
+            squared_error(align_patch(patch, kWholeWindow, current.view(), at.x, at.y, {}));
+        ++kind.found;
+      }
+    }
+  }
+  double rms[2];
+  for (int i = 0; i < 2; ++i) {
+    rms[i] = std::sqrt(kinds[i].squared / kinds[i].found);
+    const double without = std::sqrt(kinds[i].squared_without / kinds[i].found);
+    std::printf("%s: %.4f px, without its warp %.4f px\n", kinds[i].slight ? "slight" : "read by pixels",
+                rms[i], without);
+    EXPECT_LT(rms[i], 0.04);
+    EXPECT_GT(without, 5 * rms[i]);
+  }
+  EXPECT_LT(rms[0], 1.5 * rms[1]);
 }
 
 TEST(Alignment, AWarpThatNoSurfaceMakesIsRefused) {

@@ -80,7 +80,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
                  MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
       MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
-  Ransac ransac(sets, references, config, kernels, scratch, solving);
+  solving.references = references;
+  Ransac ransac(sets, solving.references, config, kernels, scratch, solving);
   if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
   const double least_share = config.min_inlier_ratio * static_cast<double>(ransac.usable());
@@ -105,11 +106,12 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   first.max_iterations = kFirstRoundSteps;
   for (int round = 0;; ++round) {
     if (!consensus()) return StatusCode::kNoConsensus;
-    problem.start(sets, references, shared, kernels, T);
+    problem.start(sets, solving.references, shared, kernels, T);
     estimate.lm = solving.solve(round == 0 ? first : lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
+    solving.references = problem.poses();
     Cholesky<6> cholesky;
     if (cholesky.factor(solver.hessian())) estimate.shared = problem.shared(cholesky.inverse());
     shared.value = estimate.shared.value;
@@ -128,6 +130,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
     return StatusCode::kNotConverged;
   estimate.T_current_reference = T;
+  estimate.motions = motions_to_current(T, solving.references);
   return StatusCode::kOk;
 }
 

@@ -26,7 +26,8 @@ struct MotionEstimate {
   // min_inliers; kNoConsensus; kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever
   // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
-  Se3 T_current_reference;  // X' = R X + t, equation (11)
+  Se3 T_current_reference;   // X' = R X + t, equation (11)
+  MotionsToCurrent motions;  // that, and those of the other references, whose poses are estimated with it
   // C_H (23) of the ⊞-perturbation (v, ω) of T_current_reference, with the robust weights: (Σ w Jᵀ Σ⁻¹ J)⁻¹.
   // m², m rad, rad².
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();

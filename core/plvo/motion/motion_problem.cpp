@@ -34,23 +34,6 @@ double share_of(const ConstraintSet& set) {
   return set.weight() * (n > 1 ? 1 / (1 + (n - 1) * set.correlation()) : 1);
 }
 
-// H ← (H⁻¹ + S)⁻¹ on the motion's part of H, S = L Lᵀ, the gradient and the cost with it: what is left when a
-// motion of covariance S between the two frames is minimised over.
-double convolve(const Matrix6& L, JointInformation& sum) {
-  const Matrix<kJointSize, 6> HL = sum.H.block<kJointSize, 6>(0, 0).lazyProduct(L);
-  const Matrix6 M = Matrix6::Identity() + L.transpose().lazyProduct(HL.block<6, 6>(0, 0));
-  Cholesky<6> cholesky;
-  if (!cholesky.factor(M)) return 0;
-  const Vector6 Lg = L.transpose().lazyProduct(sum.g.head<6>());
-  const Vector6 x = cholesky.solve(Lg);
-  const Matrix<6, kJointSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
-  sum.H -= HL.lazyProduct(gain);
-  for (int c = 0; c < kJointSize; ++c)
-    for (int r = c + 1; r < kJointSize; ++r) sum.H(r, c) = sum.H(c, r) = 0.5 * (sum.H(r, c) + sum.H(c, r));
-  sum.g -= HL.lazyProduct(x);
-  return -0.5 * Lg.dot(x);
-}
-
 // Lower Cholesky factor with zero columns where there is nothing.
 Matrix6 root(const Matrix6& S) {
   Matrix6 L = Matrix6::Zero();
@@ -87,6 +70,8 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   candidate_gain_.setZero();
   for (Matrix6& information : information_) information.setZero();
   of_references_ = {};
+  for (std::size_t r = 0; r < kMaxPoses; ++r) candidate_moved_[r] = references_[r].moved;
+  for (PoseGain& gain : pose_gain_) gain.setZero();
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
     sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind], every);
@@ -105,7 +90,11 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
     if (r == 0) candidate_of_references_.base = sum_.H.block<6, 6>(0, 0);
   }
   candidate_of_references_.others = sum_.H.block<6, 6>(0, 0) - candidate_of_references_.base;
-  if (shared_.any()) cost += eliminate_shared();
+  if (shared_.any()) {
+    cost += eliminate_shared();
+    for (std::size_t r = 1; r < kMaxPoses; ++r)
+      candidate_moved_[r] -= pose_gain_[r].lazyProduct(candidate_shared_ - shared_.value);
+  }
   H = sum_.H.block<6, 6>(0, 0);
   g = sum_.g.head<6>();
   return cost;
@@ -146,13 +135,35 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   B.block<3, 3>(0, 3) = Q * T.R;
   B.block<3, 3>(3, 3) = T.R;
   double cost = 0;
-  if (references_[r].covariance.trace() > 0) cost = convolve(B.lazyProduct(root_[r]), of_reference_);
+  // T_current_reference moves by −B, where T_reference_base moves by one.
+  if (references_[r].covariance.trace() > 0) cost = eliminate_pose(r, -B.lazyProduct(root_[r]));
   // Aᵀ H A with A the identity but for Q above the diagonal: a shift of columns, then of rows.
   Joint& H = of_reference_.H;
   H.block<kJointSize, 3>(0, 3) += H.block<kJointSize, 3>(0, 0).lazyProduct(Q).eval();
   H.block<3, kJointSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kJointSize>(0, 0)).eval();
   of_reference_.g.segment<3>(3) += Q.transpose().lazyProduct(of_reference_.g.head<3>());
   return cost;
+}
+
+// With the prior, at the pose's best for this motion: H ← (H⁻¹ + L Lᵀ)⁻¹ on the motion's part, the gradient
+// and the cost with it.
+double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
+  JointInformation& sum = of_reference_;
+  const Vector6& moved = references_[r].moved;
+  const Matrix<kJointSize, 6> HL = sum.H.block<kJointSize, 6>(0, 0).lazyProduct(L);
+  const Matrix6 M = Matrix6::Identity() + L.transpose().lazyProduct(HL.block<6, 6>(0, 0));
+  Cholesky<6> cholesky;
+  if (!cholesky.factor(M)) return std::numeric_limits<double>::infinity();
+  const Vector6 g = L.transpose().lazyProduct(sum.g.head<6>()) + moved;
+  const Vector6 step = cholesky.solve(g);
+  const Matrix<6, kJointSize> gain = cholesky.inverse().lazyProduct(HL.transpose());
+  sum.H -= HL.lazyProduct(gain);
+  for (int c = 0; c < kJointSize; ++c)
+    for (int i = c + 1; i < kJointSize; ++i) sum.H(i, c) = sum.H(c, i) = 0.5 * (sum.H(i, c) + sum.H(c, i));
+  sum.g -= HL.lazyProduct(step);
+  candidate_moved_[r] = moved - step;
+  pose_gain_[r] = gain.rightCols<SharedErrors::kCount>();
+  return 0.5 * moved.squaredNorm() - 0.5 * g.dot(step);
 }
 
 // With the prior, at the shared errors' best value for this motion.
@@ -189,6 +200,13 @@ SharedErrorEstimate MotionProblem::shared(const Matrix6& covariance) const {
 
 void MotionProblem::accept() {
   T_ = {renormalise(candidate_.R), candidate_.t};
+  for (std::size_t r = 1; r < kMaxPoses; ++r) {
+    MotionReference& reference = references_[r];
+    if (!(reference.covariance.trace() > 0)) continue;
+    const Vector6 step = root_[r].lazyProduct(candidate_moved_[r] - reference.moved);
+    reference.T_reference_base = boxplus(reference.T_reference_base, step);
+    reference.moved = candidate_moved_[r];
+  }
   shared_.value = candidate_shared_;
   inverse_ = candidate_inverse_;
   gain_ = candidate_gain_;

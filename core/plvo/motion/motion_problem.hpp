@@ -23,12 +23,14 @@ inline constexpr std::size_t kMaxConstraintKinds = 3 * kMaxReferences + 1;
 inline constexpr std::size_t kInformedKinds = 2 * kMaxReferences + 1;
 
 // A frame that matches are with. The motion is solved against the base, reference 0; the pose of any other
-// relative to it is known with a covariance (of the ⊞-perturbation of T_reference_base), and marginalised:
-// with the Schur complement H of its own motion it leaves (H⁻¹ + B C Bᵀ)⁻¹, B the derivative of
-// T_current_reference with respect to that perturbation.
+// relative to it is known with a covariance (of the ⊞-perturbation of T_reference_base). It is estimated with
+// the motion and eliminated: with the Schur complement H of the reference's own motion that leaves
+// (H⁻¹ + B C Bᵀ)⁻¹, B the derivative of T_current_reference with respect to the perturbation.
 struct MotionReference {
   Se3 T_reference_base;
   Matrix6 covariance = Matrix6::Zero();
+  // Where it is an estimate: by L moved from what was known, C = L Lᵀ.
+  Vector6 moved = Vector6::Zero();
 };
 using MotionReferences = std::array<MotionReference, kMaxPoses>;
 
@@ -55,12 +57,14 @@ class MotionProblem {
              const SharedErrors& shared, const Kernels& kernels, const Se3& T, std::size_t every = 1,
              bool exact_poses = false);
 
-  // The shared errors are eliminated like landmarks: moved to their optimum for the candidate, H and g their
-  // Schur complement.
+  // The shared errors, and the references' poses, are eliminated like landmarks: moved to their optimum for
+  // the candidate, H and g their Schur complement. All weights are those at the state they are moved from.
   double linearize(const Vector6& step, Matrix6& H, Vector6& g);
   void accept();
 
   const Se3& T_current_reference() const { return T_; }
+  // With their poses as estimated at the accepted state: a start() with them goes on from there.
+  const MotionReferences& poses() const { return references_; }
   // At the accepted state, where the motion has this covariance.
   SharedErrorEstimate shared(const Matrix6& covariance) const;
   // The Schur complement of one kind at the accepted state, the shared errors taken for known: C_P⁻¹ (14),
@@ -72,15 +76,20 @@ class MotionProblem {
  private:
   using SharedMatrix = Matrix<SharedErrors::kCount, SharedErrors::kCount>;
   using SharedGain = Matrix<SharedErrors::kCount, 6>;
+  using PoseGain = Matrix<6, SharedErrors::kCount>;
 
   double add_reference(std::size_t r, const Se3& T);
   double add_kinds(std::size_t r, const Se3& T, bool& any);
   double bring_to_base(std::size_t r, const Se3& T);
+  double eliminate_pose(std::size_t r, const Matrix6& root);
   double eliminate_shared();
 
   std::span<ConstraintSet* const> sets_;
   MotionReferences references_;
-  std::array<Matrix6, kMaxPoses> root_;  // of the references' covariances
+  std::array<Matrix6, kMaxPoses> root_;  // L of the references' covariances
+  // The candidate's moved; and how that follows the shared errors.
+  std::array<Vector6, kMaxPoses> candidate_moved_;
+  std::array<PoseGain, kMaxPoses> pose_gain_;
   Kernels kernels_;
   // What a kind's inliers weigh together, as a share of what as many independent ones would.
   std::array<double, kMaxConstraintKinds> share_{};
@@ -96,8 +105,10 @@ class MotionProblem {
   JointInformation sum_, of_reference_, of_kind_;
 };
 
-// What RANSAC's refinements and the estimate after them use in turns.
+// What RANSAC's refinements and the estimate after them use in turns, and the references as they are known so
+// far.
 struct MotionSolver {
+  MotionReferences references;
   MotionProblem problem;
   LevenbergMarquardt<6> solver;
   LmSummary solve(const LmOptions& options);

@@ -10,6 +10,7 @@
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -163,7 +164,64 @@ std::int32_t smooth(const Patch& patch, Smoothed& out) {
   return totals[0] + totals[1] + totals[2] + totals[3];
 }
 
-Template make_template(const Patch& patch, const WindowMask& mask) {
+// Where the pixels of a slightly warped window lie in the template: at (W⁻¹ − I) (dx, dy) from where they are
+// in the window. In 2^-kMoveBits px for each pixel from the centre.
+class WindowMove {
+ public:
+  explicit WindowMove(const Matrix2& W) {
+    const double scale = (1 << kMoveBits) / (W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0));
+    constexpr double kOne = 1 << kMoveBits;
+    across_x_ = round_to<std::int16_t>(W(1, 1) * scale - kOne);
+    down_x_ = round_to<std::int16_t>(-W(0, 1) * scale);
+    across_y_ = round_to<std::int16_t>(-W(1, 0) * scale);
+    down_y_ = round_to<std::int16_t>(W(0, 0) * scale - kOne);
+  }
+
+  bool is_none() const { return across_x_ == 0 && down_x_ == 0 && across_y_ == 0 && down_y_ == 0; }
+
+  // To first order, of a row of the window, 1/16 of a grey level. The gradient is that of the spline, which
+  // is exact at whole pixels: in its own direction the difference of the neighbours, unsmoothed. Of 255 · 16
+  // the sum stays within 4800: where a neighbour pulls it up, it was down itself.
+  void add_change(const Patch& patch, std::size_t row, Lanes& values) const {
+    constexpr const Weights& kWhole = kWeights[0];
+    static_assert(kWhole[0] == kWhole[2]);
+    const std::uint8_t* p = patch.data() + (row + 1) * kPatchSide + kPatchSide / 2 - kWindowReach;
+    Lanes difference[3], smooth_across[3];
+    for (int i = 0; i < 3; ++i, p += kPatchSide) {
+      Lanes left, here, right;
+      load_bytes(p - 1, left);
+      load_bytes(p, here);
+      load_bytes(p + 1, right);
+      difference[i] = right - left;
+      smooth_across[i] = ((left + right) * kWhole[0] + here * kWhole[1] + std::int16_t{4}) >> 3;
+    }
+    const Lanes gx =
+        ((difference[0] + difference[2]) * kWhole[0] + difference[1] * kWhole[1] + std::int16_t{4}) >> 3;
+    const Lanes gy = smooth_across[2] - smooth_across[0];
+    constexpr Lanes kAcross = {-4, -3, -2, -1, 0, 1, 2, 3};
+    static_assert(kWindowReach == 4);
+    const auto down = static_cast<std::int16_t>(static_cast<int>(row) - kWindowReach);
+    const Lanes dx = kAcross * across_x_ + static_cast<std::int16_t>(down_x_ * down);
+    const Lanes dy = kAcross * across_y_ + static_cast<std::int16_t>(down_y_ * down);
+    Lanes gradient[2], offset[2];
+    interleave(gx, gy, gradient[0], gradient[1]);
+    interleave(dx, dy, offset[0], offset[1]);
+    WideLanes change[2];
+    for (int i = 0; i < 2; ++i) {
+      dot_pairs(gradient[i], offset[i], change[i]);
+      change[i] = (change[i] + (1 << kMoveBits)) >> (kMoveBits + 1);  // twice the gradient
+    }
+    Lanes eight;
+    narrow(change[0], change[1], eight);
+    values = values + eight;
+  }
+
+ private:
+  static constexpr int kMoveBits = 12;
+  std::int16_t across_x_, down_x_, across_y_, down_y_;
+};
+
+Template make_template(const Patch& patch, const WindowMask& mask, const WindowMove& move) {
   Template t;
   Smoothed smoothed;
   // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
@@ -181,6 +239,7 @@ Template make_template(const Patch& patch, const WindowMask& mask) {
     const std::size_t first = y * kColumns;
     store(on & (right - left), &t.gx[first]);
     store(on & (below - above), &t.gy[first]);
+    if (!move.is_none()) move.add_change(patch, y, here);
     store(on & (here - static_cast<std::int16_t>(mean)), &t.value[first]);
     store(on & std::int16_t{1}, &t.one[first]);
   }
@@ -401,7 +460,7 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
 }
 
 Moments correlate(const Template& t, const Window& values) {
-  // 72 products of at most 4080 · 4080: below 2^31. Squares too, 72 · 4080².
+  // 72 products of at most 4080 with a template's 4800: below 2^31. Squares too, 72 · 4080².
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
   std::int32_t with_value = 0;
@@ -423,9 +482,11 @@ Moments correlate(const Template& t, const Window& values) {
 
 }  // namespace
 
-bool PatchWarp::is_identity() const {
-  constexpr double kNegligible_px = 0.05;
-  return (W - Matrix2::Identity()).cwiseAbs().maxCoeff() * kWindowReach < kNegligible_px;
+// No pixel of the window moves by more, along x or y. To first order what is left out is then a twentieth of
+// the second derivative, at the rim.
+bool PatchWarp::is_slight() const {
+  constexpr double kMost_px = 0.3;
+  return (W - Matrix2::Identity()).cwiseAbs().rowwise().sum().maxCoeff() * kWindowReach < kMost_px;
 }
 
 Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image, double start_x,
@@ -433,14 +494,14 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
   Alignment result;
   const int pixels = pixels_of(mask);
   if (pixels < kLeastPixels) return result;
-  const bool warped = !warp.is_identity();
-  const Matrix2 W = warped ? warp.W : Matrix2(Matrix2::Identity());
+  const Matrix2& W = warp.W;
   if (!(W.cwiseAbs().maxCoeff() < kMostStretch &&
         W(0, 0) * W(1, 1) - W(0, 1) * W(1, 0) > 1 / (kMostStretch * kMostStretch)))
     return result;
+  const bool warped = !warp.is_slight();
   WarpedWindow window;
   if (warped) window = warp_window(warp);
-  const Template t = make_template(patch, mask);
+  const Template t = make_template(patch, mask, WindowMove(warped ? Matrix2(Matrix2::Identity()) : W));
   Cholesky<4> factor;
   if (!factor.factor(t.normal)) return result;
 

@@ -34,12 +34,12 @@ struct Alignment {
   int iterations = 0;
 };
 
-// How the patch has been deformed since: a pixel (dx, dy) from its centre is now at W (dx, dy) from it. With
-// any but the identity the window is read pixel by pixel, which takes six times the instructions.
+// How the patch has been deformed since: a pixel (dx, dy) from its centre is now at W (dx, dy) from it.
 struct PatchWarp {
   Matrix2 W = Matrix2::Identity();
-  // Below this much of an offset in pixels at the window's rim, W is as good as the identity.
-  bool is_identity() const;
+  // So little that the patch itself is moved along its gradient, once. With any other the window is read
+  // pixel by pixel, which takes six times the instructions in every step.
+  bool is_slight() const;
 };
 
 // patch: cut around whole pixel (px, py) of the reference's level; of its window the pixels in `mask` are
