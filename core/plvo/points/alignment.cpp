@@ -102,68 +102,6 @@ int pixels_of(const WindowMask& mask) {
   return count_bits(eight_rows) + count_bits(mask[8]);
 }
 
-// The window and one pixel around it, smoothed as a reading at whole pixels is.
-constexpr int kSmoothedSide = 2 * kWindowReach + 3;
-using Smoothed = std::array<std::int16_t, kSmoothedSide * kSmoothedSide>;
-
-// Of all of it.
-std::int32_t sum_of(const Smoothed& smoothed) {
-  std::int32_t total = 0;
-  for (const std::int16_t value : smoothed) total += value;
-  return total;
-}
-
-[[maybe_unused]] std::int32_t smooth_each(const Patch& patch, Smoothed& out) {
-  constexpr const Weights& kWhole = kWeights[0];
-  static_assert(kWhole[3] == 0, "the fourth tap would reach beyond the patch");
-  std::array<std::int16_t, kSmoothedSide*(kPatchSide + 1)> rows{};
-  for (int y = 0; y < kPatchSide; ++y)
-    for (int x = 0; x < kSmoothedSide; ++x) {
-      const std::uint8_t* p = patch.data() + y * kPatchSide + x;
-      rows[static_cast<std::size_t>(y * kSmoothedSide + x)] =
-          static_cast<std::int16_t>((p[0] * kWhole[0] + p[1] * kWhole[1] + p[2] * kWhole[2] + 4) >> 3);
-    }
-  for (int i = 0; i < kSmoothedSide * kSmoothedSide; ++i)
-    out[static_cast<std::size_t>(i)] = blend_down(rows.data() + i, kSmoothedSide, kWhole);
-  return sum_of(out);
-}
-
-// As smooth_each, which fills `out` and returns its sum: a row at once, as its first eight and its last.
-std::int32_t smooth(const Patch& patch, Smoothed& out) {
-  if constexpr (kLaneLoops) return smooth_each(patch, out);
-  constexpr const Weights& kWhole = kWeights[0];
-  constexpr int kLast = kSmoothedSide - kColumns;
-  constexpr Lanes kOnce[2] = {{1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 1, 1, 1}};
-  static_assert(2 * kColumns - kSmoothedSide == 5, "what both have is counted once");
-  WideLanes totals = {};
-  for (std::size_t half = 0; half < 2; ++half) {
-    const std::uint8_t* p = patch.data() + half * kLast;
-    std::int16_t* to = out.data() + half * kLast;
-    const DownWeights down(kWhole);
-    Lanes taps[kTaps] = {};
-    for (int y = 0; y < kPatchSide; ++y, p += kPatchSide) {
-      Lanes left, here, right;
-      load_bytes(p, left);
-      load_bytes(p + 1, here);
-      load_bytes(p + 2, right);
-      static_assert(kWhole[0] == kWhole[2]);
-      taps[2] = ((left + right) * kWhole[0] + here * kWhole[1] + std::int16_t{4}) >> 3;
-      if (y > 1) {
-        Lanes smoothed;
-        blend_down(taps, down, smoothed);
-        store(smoothed, to);
-        to += kSmoothedSide;
-        WideLanes sums;
-        dot_pairs(smoothed, kOnce[half], sums);
-        totals += sums;
-      }
-      taps[0] = taps[1];
-      taps[1] = taps[2];
-    }
-  }
-  return totals[0] + totals[1] + totals[2] + totals[3];
-}
-
 // Where the pixels of a slightly warped window lie in the template: at (W⁻¹ − I) (dx, dy) from where they are
 // in the window. In 2^-kMoveBits px for each pixel from the centre.
 class WindowMove {
@@ -179,25 +117,9 @@ class WindowMove {
 
   bool is_none() const { return across_x_ == 0 && down_x_ == 0 && across_y_ == 0 && down_y_ == 0; }
 
-  // To first order, of a row of the window, 1/16 of a grey level. The gradient is that of the spline, which
-  // is exact at whole pixels: in its own direction the difference of the neighbours, unsmoothed. Of 255 · 16
-  // the sum stays within 4800: where a neighbour pulls it up, it was down itself.
-  void add_change(const Patch& patch, std::size_t row, Lanes& values) const {
-    constexpr const Weights& kWhole = kWeights[0];
-    static_assert(kWhole[0] == kWhole[2]);
-    const std::uint8_t* p = patch.data() + (row + 1) * kPatchSide + kPatchSide / 2 - kWindowReach;
-    Lanes difference[3], smooth_across[3];
-    for (int i = 0; i < 3; ++i, p += kPatchSide) {
-      Lanes left, here, right;
-      load_bytes(p - 1, left);
-      load_bytes(p, here);
-      load_bytes(p + 1, right);
-      difference[i] = right - left;
-      smooth_across[i] = ((left + right) * kWhole[0] + here * kWhole[1] + std::int16_t{4}) >> 3;
-    }
-    const Lanes gx =
-        ((difference[0] + difference[2]) * kWhole[0] + difference[1] * kWhole[1] + std::int16_t{4}) >> 3;
-    const Lanes gy = smooth_across[2] - smooth_across[0];
+  // To first order, of a row of the window: by twice the gradient, in the unit of the values. Of 255 · 16 the
+  // sum stays within 4800: where a neighbour pulls it up, it was down itself.
+  void add_change(std::size_t row, const Lanes& gx, const Lanes& gy, Lanes& values) const {
     constexpr Lanes kAcross = {-4, -3, -2, -1, 0, 1, 2, 3};
     static_assert(kWindowReach == 4);
     const auto down = static_cast<std::int16_t>(static_cast<int>(row) - kWindowReach);
@@ -209,7 +131,7 @@ class WindowMove {
     WideLanes change[2];
     for (int i = 0; i < 2; ++i) {
       dot_pairs(gradient[i], offset[i], change[i]);
-      change[i] = (change[i] + (1 << kMoveBits)) >> (kMoveBits + 1);  // twice the gradient
+      change[i] = (change[i] + (1 << kMoveBits)) >> (kMoveBits + 1);
     }
     Lanes eight;
     narrow(change[0], change[1], eight);
@@ -221,28 +143,48 @@ class WindowMove {
   std::int16_t across_x_, down_x_, across_y_, down_y_;
 };
 
+// The patch as the spline reads it at whole pixels, and the spline's own gradient there: smoothed either way,
+// and along itself the difference of the neighbours, unsmoothed.
 Template make_template(const Patch& patch, const WindowMask& mask, const WindowMove& move) {
-  Template t;
-  Smoothed smoothed;
-  // About their mean, the grey levels are nearly orthogonal to the constant: gain and offset separate well.
-  const std::int32_t mean = smooth(patch, smoothed) / (kSmoothedSide * kSmoothedSide);
-  constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
-  for (std::size_t y = 0; y < kRows; ++y) {
-    const std::int16_t* row = smoothed.data() + (y + 1) * kSmoothedSide + 1;
-    Lanes here, left, right, above, below;
-    load(row, here);
-    load(row - 1, left);
-    load(row + 1, right);
-    load(row - kSmoothedSide, above);
-    load(row + kSmoothedSide, below);
-    const Lanes on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
-    const std::size_t first = y * kColumns;
-    store(on & (right - left), &t.gx[first]);
-    store(on & (below - above), &t.gy[first]);
-    if (!move.is_none()) move.add_change(patch, y, here);
-    store(on & (here - static_cast<std::int16_t>(mean)), &t.value[first]);
-    store(on & std::int16_t{1}, &t.one[first]);
+  constexpr const Weights& kWhole = kWeights[0];
+  static_assert(kWhole[0] == kWhole[2] && kWhole[3] == 0);
+  Lanes smoothed[kRows + kTaps - 1] = {}, difference[kRows + 2];
+  const std::uint8_t* p = patch.data() + (kPatchRadius - kWindowReach - 1) * (kPatchSide + 1) + 1;
+  for (std::size_t y = 0; y < kRows + 2; ++y, p += kPatchSide) {
+    Lanes left, here, right;
+    load_bytes(p - 1, left);
+    load_bytes(p, here);
+    load_bytes(p + 1, right);
+    smoothed[y] = ((left + right) * kWhole[0] + here * kWhole[1] + std::int16_t{4}) >> 3;
+    difference[y] = right - left;
   }
+  Template t;
+  const DownWeights down(kWhole);
+  constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
+  WideLanes total = {};
+  for (std::size_t y = 0; y < kRows; ++y) {
+    const Lanes on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
+    const Lanes one = on & std::int16_t{1};
+    const Lanes gx =
+        ((difference[y] + difference[y + 2]) * kWhole[0] + difference[y + 1] * kWhole[1] + std::int16_t{4}) >>
+        3;
+    const Lanes gy = smoothed[y + 2] - smoothed[y];
+    Lanes value;
+    blend_down(&smoothed[y], down, value);
+    if (!move.is_none()) move.add_change(y, gx, gy, value);
+    WideLanes sums;
+    dot_pairs(value, one, sums);
+    total += sums;
+    const std::size_t first = y * kColumns;
+    store(on & gx, &t.gx[first]);
+    store(on & gy, &t.gy[first]);
+    store(value, &t.value[first]);
+    store(one, &t.one[first]);
+  }
+  // About their mean, the grey levels are orthogonal to the constant: gain and offset separate well.
+  const auto mean = static_cast<std::int16_t>((total[0] + total[1] + total[2] + total[3]) / pixels_of(mask));
+  for (std::size_t k = 0; k < kPixels; ++k)
+    t.value[k] = static_cast<std::int16_t>((t.value[k] - mean) * t.one[k]);
   std::int32_t gx_gx = 0, gx_gy = 0, gx_value = 0, gy_gy = 0, gy_value = 0, value_value = 0;
   for (std::size_t k = 0; k < kPixels; ++k) {
     gx_gx += t.gx[k] * t.gx[k];

@@ -25,7 +25,7 @@ using Descriptor = std::array<std::uint64_t, 4>;
 
 // Raw pixels around (x, y) on the keypoint's level: what alignment.hpp compares with, and a rim for its
 // smoothing and its gradients.
-inline constexpr int kPatchRadius = 6;
+inline constexpr int kPatchRadius = 5;
 inline constexpr int kPatchSide = 2 * kPatchRadius + 1;
 using Patch = std::array<std::uint8_t, kPatchSide * kPatchSide>;
 
