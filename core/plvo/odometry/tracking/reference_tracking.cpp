@@ -198,7 +198,8 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
     const std::size_t latest = at.latest;
-    const Se3& T_current_latest = tracked.motion.motions[latest];
+    // With the poses as they were known: moved to what they show, matches show less than they err.
+    const Se3 T_current_latest = motions_to_current(tracked.motion.T_current_reference, poses)[latest];
     const Pinhole& pinhole = current.extraction.camera().pinhole;
     tracked.shown = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
                                     T_current_latest, scratch);
