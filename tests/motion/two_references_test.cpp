@@ -177,6 +177,55 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
   }
 }
 
+// The pose and the shared errors are eliminated together: what both are moved to, the motion held, is what
+// one dense system of them says.
+TEST(TwoReferences, APoseAndSharedErrorsMoveAsADenseSystemSays) {
+  CameraModel camera;
+  camera.readout_s = 0.03;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TwoReferences two(seed, 40, 0);
+    const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
+    const Vector6 sd = (Vector6() << 2e-3, 1e-3, 3e-3, 1e-3, 5e-4, 2e-3).finished();
+    two.references[1].covariance = sd.cwiseAbs2().asDiagonal();
+    const SharedErrors shared(Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004);
+    const Se3 T = boxplus(two.truth, kAway);
+    const auto kernels = MotionProblem::make_kernels(sets, RobustLoss::kNone);
+    MotionProblem problem(sets, two.references, shared, kernels, T);
+    Matrix6 H;
+    Vector6 g;
+    (void)problem.linearize(Vector6::Zero(), H, g);
+    problem.accept();
+
+    // T_current_reference about the pose in its SDs, numerically; the sets' own information of the rest.
+    const Se3 T_1 = T * two.T_1_0.inverse();
+    Eigen::MatrixXd J(6, 6);
+    constexpr double kStep = 1e-3;
+    for (int k = 0; k < 6; ++k) {
+      const Se3 moved = T * boxplus(two.T_1_0, kStep * sd[k] * Vector6::Unit(k)).inverse();
+      J.col(k) = boxminus(moved, T_1) / kStep;
+    }
+    JointInformation base, other;
+    for (std::size_t kind = 0; kind < sets.size(); ++kind)
+      (void)sets[kind]->linearize(kind < 2 ? T : T_1, shared, kernels[kind], kind < 2 ? base : other);
+    constexpr int n = SharedErrors::kCount;
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(6 + n, 6 + n);
+    dense.topLeftCorner(6, 6) =
+        J.transpose() * Eigen::MatrixXd(other.H.topLeftCorner<6, 6>()) * J + Eigen::MatrixXd::Identity(6, 6);
+    dense.topRightCorner(6, n) = J.transpose() * Eigen::MatrixXd(other.H.topRightCorner<6, n>());
+    dense.bottomLeftCorner(n, 6) = dense.topRightCorner(6, n).transpose();
+    dense.bottomRightCorner(n, n) =
+        Eigen::MatrixXd(base.H.bottomRightCorner<n, n>() + other.H.bottomRightCorner<n, n>());
+    for (int k = 0; k < n; ++k) dense(6 + k, 6 + k) += 1 / (shared.sigma(k) * shared.sigma(k));
+    Eigen::VectorXd gradient(6 + n);
+    gradient << J.transpose() * Eigen::VectorXd(other.g.head<6>()),
+        Eigen::VectorXd(base.g.tail<n>() + other.g.tail<n>());
+    const Eigen::VectorXd expected = -dense.inverse() * gradient;
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(problem.poses()[1].moved[k], expected[k], 1e-3);
+    const SharedErrorEstimate found = problem.shared(Matrix6::Zero());
+    for (int k = 0; k < n; ++k) EXPECT_NEAR(found.value[k], expected[6 + k], 1e-3 * shared.sigma(k));
+  }
+}
+
 TEST(CorrelatedResiduals, WeighAsADenseCovarianceSays) {
   // n numbers that share a part of their error tell of their common value 1ᵀ Σ⁻¹ 1.
   for (const int n : {1, 2, 7, 40})
