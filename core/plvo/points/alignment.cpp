@@ -68,7 +68,7 @@ void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
       (tap[0] * w[0] + tap[1] * w[1] + tap[2] * w[2] + tap[3] * w[3] + std::int16_t{4}) >> 3;
   store(blended, out);
 }
-std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
+[[maybe_unused]] std::int16_t blend_down(const std::int16_t* p, int stride, const Weights& w) {
   return static_cast<std::int16_t>(
       (p[0] * w[0] + p[stride] * w[1] + p[2 * stride] * w[2] + p[3 * stride] * w[3] + 64) >> 7);
 }
