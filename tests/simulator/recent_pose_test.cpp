@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hall seen through a rolling shutter: little has depth, so a recent frame's pose is known to a millimetre or
-// worse, of which its matches tell more. Where it was thought to be they are outliers; the motion is found all
-// the same, with the pose, and nothing has to be searched for.
+// A hall seen through a rolling shutter: little has depth, so a recent frame's pose is known to a millimetre
+// or worse, of which its matches tell more. Where it was thought to be they are outliers; the motion is found
+// all the same, with the pose, and nothing has to be searched for.
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>

@@ -44,7 +44,7 @@ class MotionProblem {
   // One kernel per set; made once, for the quantile in it takes longer than a residual.
   static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
 
-  // For start(): it takes 11 kB, so the core has one in the arena for one estimate after the other.
+  // For start(): it takes 16 kB, so the core has one in the arena for one estimate after the other.
   MotionProblem() = default;
   MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                 const SharedErrors& shared, const Kernels& kernels, const Se3& T) {
