@@ -99,8 +99,11 @@ class Run {
   }
 
   Status replay() {
-    PrefetchedCamera prefetched(*opened_.camera);
-    PacedCamera camera(prefetched, options_.pace, clock_, wait_for_enter);
+    // The simulated camera takes every processor for a frame by itself.
+    std::optional<PrefetchedCamera> prefetched;
+    if (!options_.camera.simulated) prefetched.emplace(*opened_.camera);
+    RgbdCamera& source = prefetched ? static_cast<RgbdCamera&>(*prefetched) : *opened_.camera;
+    PacedCamera camera(source, options_.pace, clock_, wait_for_enter);
     prefault_program();
     summary_->resident_start = resident_memory();
     const Status failure = loop(camera);
