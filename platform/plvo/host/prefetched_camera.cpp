@@ -47,9 +47,15 @@ void PrefetchedCamera::work() {
     const bool last = !goes_on_after(slot.status);
     lock.lock();
     ++read_;
+    last_read_ = last;
     changed_.notify_all();
     if (last) return;
   }
+}
+
+void PrefetchedCamera::wait_until_ahead() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return last_read_ || read_ - taken_ == slots_.size() - 1; });
 }
 
 Status PrefetchedCamera::next(RgbdFrame& frame) {

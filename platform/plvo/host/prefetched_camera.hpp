@@ -25,6 +25,9 @@ class PrefetchedCamera final : public RgbdCamera {
   PrefetchedCamera(const PrefetchedCamera&) = delete;
   PrefetchedCamera& operator=(const PrefetchedCamera&) = delete;
 
+  // Returns when it is as far ahead as it goes: what reading takes, memory too, has been taken then.
+  void wait_until_ahead();
+
   CameraModel model() const override { return model_; }
   // What the camera's next() came to. After the end of the stream, and after what it cannot go on from, it is
   // asked no more: that is the answer from then on.
@@ -43,7 +46,8 @@ class PrefetchedCamera final : public RgbdCamera {
   // Counted from the first call: the slots in [taken_, read_) wait. The one before them belongs to the
   // reader.
   std::size_t read_ = 0, taken_ = 0;
-  bool ended_ = false;
+  bool ended_ = false;  // nobody will ask any more
+  bool last_read_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::thread thread_;

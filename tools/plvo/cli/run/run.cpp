@@ -105,6 +105,7 @@ class Run {
     RgbdCamera& source = prefetched ? static_cast<RgbdCamera&>(*prefetched) : *opened_.camera;
     PacedCamera camera(source, options_.pace, clock_, wait_for_enter);
     prefault_program();
+    if (prefetched) prefetched->wait_until_ahead();
     summary_->resident_start = resident_memory();
     const Status failure = loop(camera);
     summary_->resident_end = resident_memory();
