@@ -8,6 +8,12 @@
 
 namespace plvo {
 
+// Whether a camera can be asked again after its next() has come to this.
+constexpr bool goes_on_after(StatusCode code) {
+  return code == StatusCode::kOk || code == StatusCode::kDamaged || code == StatusCode::kTimeout ||
+         code == StatusCode::kUnplugged;
+}
+
 class RgbdCamera {
  public:
   // The calibration that the frames of this camera obey, as known after the camera was opened.

@@ -2,19 +2,6 @@
 #include "plvo/host/prefetched_camera.hpp"
 
 namespace plvo {
-namespace {
-
-bool goes_on_after(const Status& status) {
-  switch (status.code()) {
-    case StatusCode::kOk:
-    case StatusCode::kDamaged:
-    case StatusCode::kTimeout:
-    case StatusCode::kUnplugged: return true;
-    default: return false;
-  }
-}
-
-}  // namespace
 
 PrefetchedCamera::PrefetchedCamera(RgbdCamera& camera) : camera_(camera), model_(camera.model()) {
   for (Slot& slot : slots_)
@@ -44,7 +31,7 @@ void PrefetchedCamera::work() {
     // What is no frame has stamps at most.
     if (!slot.status.ok()) frame = {frame.stamp_ns, frame.depth_stamp_ns, {}, {}};
     slot.copy.assign(frame);
-    const bool last = !goes_on_after(slot.status);
+    const bool last = !goes_on_after(slot.status.code());
     lock.lock();
     ++read_;
     last_read_ = last;
@@ -63,7 +50,7 @@ Status PrefetchedCamera::next(RgbdFrame& frame) {
   changed_.wait(lock, [this] { return taken_ < read_; });
   const Slot& slot = slots_[taken_ % slots_.size()];
   // The last answer stays.
-  if (goes_on_after(slot.status)) ++taken_;
+  if (goes_on_after(slot.status.code())) ++taken_;
   lock.unlock();
   changed_.notify_all();
   frame = slot.copy.frame();

@@ -48,9 +48,7 @@ void LiveCapture::run() {
       on_trouble(status);
     }
     poll_recording();
-    if (!status.ok() && status.code() != StatusCode::kTimeout && status.code() != StatusCode::kUnplugged &&
-        status.code() != StatusCode::kDamaged)
-      break;
+    if (!goes_on_after(status.code())) break;
   }
   const OpenNi2Counters counters = camera_.counters();
   {
@@ -92,8 +90,7 @@ void LiveCapture::on_trouble(const Status& status) {
     state_.damaged += status.code() == StatusCode::kDamaged ? 1 : 0;
     state_.timeouts += status.code() == StatusCode::kTimeout ? 1 : 0;
     if (passes && trouble_since_ns_ == 0) trouble_since_ns_ = posix_monotonic_ns();
-    if (!passes && status.code() != StatusCode::kDamaged && status.code() != StatusCode::kEndOfStream)
-      state_.end = status;
+    if (!goes_on_after(status.code()) && status.code() != StatusCode::kEndOfStream) state_.end = status;
   }
   if (passes || status.code() == StatusCode::kDamaged) console_.write(LogLevel::kWarning, status.message());
 }
