@@ -205,6 +205,24 @@ TEST(LevenbergMarquardt, UnobservedParameterStaysPut) {
   EXPECT_EQ(problem.x.z(), 3);
 }
 
+TEST(LevenbergMarquardt, TheNextStepIsTheOneItWouldHaveTried) {
+  Bowl problem;
+  LevenbergMarquardt<3> solver;
+  LmOptions options = LmOptions::one_step();
+  LmSummary summary = solver.solve(problem, options);
+  EXPECT_EQ(summary.status, LmStatus::kMaxIterations);
+  EXPECT_EQ(problem.x, Vector3(1, 2, 3));
+  const Vector3 next = solver.next_step();
+  EXPECT_LT((problem.x + next).norm(), 1e-4) << "a bowl's minimum, but for the damping";
+  options.max_iterations = 1;
+  (void)solver.solve(problem, options);
+  EXPECT_EQ(problem.x, Vector3(1, 2, 3) + next);
+
+  problem.negative_curvature = true;
+  (void)solver.solve(problem, LmOptions::one_step());
+  EXPECT_EQ(solver.next_step(), Vector3(0, 0, 0)) << "there is none";
+}
+
 TEST(LevenbergMarquardt, SingularIsReported) {
   Bowl problem;
   problem.negative_curvature = true;

@@ -98,6 +98,25 @@ TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
   EXPECT_LT(test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)), 0.1);
 }
 
+// As the odometry stops: what is left is small beside what the matches can tell.
+TEST(Estimator, ALastStepUnseenIsAsGoodAsSeen) {
+  Gaussian gaussian(19);
+  Bench bench;
+  for (int trial = 0; trial < 30; ++trial) {
+    const SimulatedPair pair = test::simulate(gaussian, 60, 20, 0.2);
+    const Se3 near = boxplus(pair.truth, 3e-3 * gaussian.vector<6>());
+    const MotionStart start(&near, {}, true);
+    const MotionEstimate exact = bench.estimate(pair, {}, 42, start, {.step_tolerance = 1e-12});
+    const MotionEstimate unseen = bench.estimate(pair, {}, 42, start, {.decrease_tolerance = 2e-2});
+    ASSERT_EQ(exact.status, StatusCode::kOk);
+    ASSERT_EQ(unseen.status, StatusCode::kOk);
+    EXPECT_LE(unseen.lm.iterations, exact.lm.iterations);
+    const double left =
+        test::nees(unseen.T_current_reference, exact.T_current_reference, test::inverse(exact.C_H));
+    EXPECT_LT(left, 0.05 * 0.05) << trial;
+  }
+}
+
 TEST(Estimator, NaNsAreLeftOut) {
   Gaussian gaussian(12);
   SimulatedPair pair = test::simulate(gaussian, 60, 20);

@@ -46,6 +46,9 @@ struct LmOptions {
   double decrease_tolerance = 0;
   double initial_damping = 1e-5;  // first μ, relative to D = diag(H); 0 < initial_damping ≤ max_damping
   double max_damping = 1e10;      // μ ≤ max_damping
+
+  // No step is tried: next_step() is all that comes of it.
+  static constexpr LmOptions one_step() { return {.max_iterations = 0}; }
 };
 
 struct LmSummary {
@@ -95,11 +98,15 @@ class LevenbergMarquardt {
   // H and g at the state where solve() left the problem; g for proofs alone, that it is where solve() says.
   const Matrix<N, N>& hessian() const { return H_; }
   const Vector<N>& gradient() const { return g_; }
+  // The step from there that would have been tried next; zero where none could be made. Who takes it unseen
+  // saves a pass over the residuals.
+  const Vector<N>& next_step() const { return step_; }
 
  private:
   template <typename Problem>
   LmSummary run(Problem& problem, const LmOptions& options) {
     LmSummary summary;
+    step_.setZero();
     double cost = problem.linearize(Vector<N>::Zero(), H_, g_);
     summary.initial_cost = summary.final_cost = cost;
     if (!is_finite(cost) || !H_.allFinite() || !g_.allFinite()) return summary;
@@ -108,9 +115,9 @@ class LevenbergMarquardt {
     double mu = options.initial_damping;
     double growth = 2;
     while (true) {
+      const bool solved = solve_damped(mu);
       if (g_.cwiseAbs().maxCoeff() <= options.gradient_tolerance)
         return finish(summary, LmStatus::kGradientTolerance);
-      const bool solved = solve_damped(mu);
       if (solved && step_.cwiseAbs().maxCoeff() <= options.step_tolerance)
         return finish(summary, LmStatus::kStepTolerance);
       const double predicted = solved ? 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_) : 0;
@@ -161,9 +168,12 @@ class LevenbergMarquardt {
       diagonal_[i] = H_(i, i) > floor ? H_(i, i) : floor;
       damped_(i, i) += mu * diagonal_[i];
     }
+    step_.setZero();
     if (!cholesky_.factor(damped_)) return false;
     step_ = -cholesky_.solve(g_);
-    return step_.allFinite();
+    if (step_.allFinite()) return true;
+    step_.setZero();
+    return false;
   }
 
   Matrix<N, N> H_, H_new_, damped_;

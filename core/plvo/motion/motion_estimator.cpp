@@ -11,8 +11,6 @@ namespace {
 // the motion that RANSAC found would otherwise fail the test for the motion's error, and never get to correct
 // it.
 constexpr double kFirstRoundScale = 4;
-// It only has to lead to the next one.
-constexpr int kFirstRoundSteps = 2;
 // Rounds of "judge the inliers again, refine" after it, at most, and the share of the inliers that may change
 // when it has settled: those few lie at the thresholds, and one more or less of them moves nothing.
 constexpr int kMaxRounds = 3;
@@ -102,12 +100,10 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
-  LmOptions first = lm;
-  first.max_iterations = kFirstRoundSteps;
   for (int round = 0;; ++round) {
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, solving.references, shared, kernels, T);
-    estimate.lm = solving.solve(round == 0 ? first : lm);
+    estimate.lm = solving.solve(round == 0 ? LmOptions::one_step() : lm);  // it only leads to the next
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -136,7 +132,12 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
 
 }  // namespace
 
-LmSummary MotionSolver::solve(const LmOptions& options) { return solver.solve(problem, options); }
+LmSummary MotionSolver::solve(const LmOptions& options) {
+  const LmSummary summary = solver.solve(problem, options);
+  if (converged(summary.status) || summary.status == LmStatus::kMaxIterations)
+    problem.advance(solver.next_step());
+  return summary;
+}
 
 void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                      const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,

@@ -214,4 +214,10 @@ void MotionProblem::accept() {
   of_references_ = candidate_of_references_;
 }
 
+void MotionProblem::advance(const Vector6& step) {
+  const Se3 T = boxplus(T_, step);
+  T_ = {renormalise(T.R), T.t};
+  shared_.value -= gain_.lazyProduct(step);
+}
+
 }  // namespace plvo

@@ -61,6 +61,10 @@ class MotionProblem {
   // the candidate, H and g their Schur complement. All weights are those at the state they are moved from.
   double linearize(const Vector6& step, Matrix6& H, Vector6& g);
   void accept();
+  // Takes one more step unseen, a last one that is small, or that another start() follows: the motion and the
+  // shared errors are then where it leads; the references' poses, and all that is said of the accepted
+  // state's information, stay.
+  void advance(const Vector6& step);
 
   const Se3& T_current_reference() const { return T_; }
   // With their poses as estimated at the accepted state: a start() with them goes on from there.
@@ -111,6 +115,7 @@ struct MotionSolver {
   MotionReferences references;
   MotionProblem problem;
   LevenbergMarquardt<6> solver;
+  // The last step, which the solver would have tried next, is taken unseen.
   LmSummary solve(const LmOptions& options);
 };
 

@@ -20,7 +20,6 @@ constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
 // Sets drawn from the consensus until one is not degenerate.
 constexpr int kDegeneracyDraws = 200;
-constexpr int kRefinementSteps = 2;
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
@@ -171,10 +170,7 @@ void Ransac::refine(Se3& T) {
     if (inliers_ < 3) break;
     // A hypothesis needs no honest weights: the references' poses are taken for exact.
     solver_.problem.start(sets_, references_, {}, kernels_, T, stride, true);
-    LmOptions options;
-    options.max_iterations = kRefinementSteps;
-    options.step_tolerance = 1e-4;
-    (void)solver_.solve(options);
+    (void)solver_.solve(LmOptions::one_step());
     T = solver_.problem.T_current_reference();
   }
   inliers_ = kept_inliers;

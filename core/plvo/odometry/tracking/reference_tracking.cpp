@@ -11,9 +11,10 @@ namespace plvo {
 namespace {
 
 // The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
-// The second stops when the next step is a fiftieth of what the sensor can tell.
+// The second takes its last step unseen when that is a fifth of what the sensor can tell: what is left then
+// is a fiftieth.
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4};
-constexpr LmOptions kFineSolve{.max_iterations = 20, .decrease_tolerance = 2e-4};
+constexpr LmOptions kFineSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
 // Sparse alignment, at most: rounds over a level, and Gauss–Newton steps in each. After a step of less (m and
 // rad) another round is in vain.
