@@ -24,9 +24,11 @@ constexpr std::int16_t to_lane(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
 }
 
-// The first bit of a cell's position, 2^-16 px, says that the cell is plain: whole, and inside the raw image
-// wherever it is read.
+// The last bits of a cell's position, 2^-16 px, say what it is. Plain: whole, and inside the raw image
+// wherever it is read. Near: plain, and its pixels lie in the raw image nearly as they do in this one
+// (NearCell).
 constexpr std::int64_t kPlain = 1;
+constexpr std::int64_t kNear = std::int64_t{1} << 32;
 
 constexpr std::int16_t kWeightOne = 1 << kWeightBits;
 constexpr std::int16_t kWeightMask = kWeightOne - 1;
@@ -46,17 +48,48 @@ std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t
 // Two neighbours, the left one in the low byte.
 std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p[0] | p[1] << 8); }
 
-// As blend, eight at once: of the pairs above and below, and at fractions of a pixel.
+// As blend, eight at once: of what lies above and below, blended along the row, · 2^7.
+inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const Lanes& lower, const Lanes& fy,
+                                                      std::uint8_t* out) {
+  // The product of the change and fy, by the change's high and low bytes: it has more than 16 bits.
+  const Lanes change = lower - upper;
+  const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
+  store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
+}
+
+// Of the pairs above and below, and at fractions of a pixel.
 void blend_pairs(const Lanes& above, const Lanes& below, const Lanes& fx, const Lanes& fy,
                  std::uint8_t* out) {
   const Lanes upper_left = above & 255;
   const Lanes lower_left = below & 255;
   const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
   const Lanes lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
-  // The product of the change and fy, by the change's high and low bytes: it has more than 16 bits.
-  const Lanes change = lower - upper;
-  const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
-  store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
+  blend_rows(upper, lower, fy, out);
+}
+
+// Eight at once, each from its own column of the row `from` on: x and y in 2^-7 px, from 0 to below 2 px.
+inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, std::ptrdiff_t stride,
+                                                      const Lanes& x, const Lanes& y, std::uint8_t* out) {
+#ifdef PLVO_LANE_LOOPS
+  for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i] + i * kWeightOne, y[i]);
+#else
+  // Nothing is fetched from a place of its own: of three pixels of each of three rows all are weighed, and
+  // one has no weight.
+  const Lanes beyond = x - kWeightOne;
+  const Lanes last = beyond > 0 ? beyond : Lanes{};
+  const Lanes first = last - beyond;
+  const Lanes middle = kWeightOne - first - last;
+  const auto along = [&](const std::uint8_t* row) {
+    Lanes a, b, c;
+    load_bytes(row, a);
+    load_bytes(row + 1, b);
+    load_bytes(row + 2, c);
+    return a * first + b * middle + c * last;
+  };
+  const Lanes top = along(from), centre = along(from + stride), bottom = along(from + 2 * stride);
+  const Lanes is_below = y >= kWeightOne;
+  blend_rows(is_below ? centre : top, is_below ? bottom : centre, y & kWeightMask, out);
+#endif
 }
 
 // At eight places, in 2^-7 px from the pixel `from`.
@@ -79,6 +112,49 @@ void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x
 }
 
 }  // namespace
+
+// A cell that the lens hardly turns or scales: each pixel is read less than 2 px right of, and below, a pixel
+// of the raw image that has the same place in a cell of its own. Where exactly, in 2^-13 px, in 16 bits.
+struct UndistortionMap::NearCell {
+  static constexpr int kBits = 13;
+  static constexpr int kToWeight = kBits - kWeightBits;
+  static constexpr std::int32_t kHalf = 1 << (kFractionBits - 1);
+  static constexpr std::int16_t kRound = 1 << (kToWeight - 1);
+  static constexpr std::int16_t lane(std::int32_t q16) {
+    constexpr int kShift = kFractionBits - kBits;
+    return static_cast<std::int16_t>((q16 + (1 << (kShift - 1))) >> kShift);
+  }
+
+  // x and y alike: of a row's pixels, and how they change from row to row.
+  struct Axis {
+    std::int32_t base;  // the raw cell's first column, or row
+    std::int16_t bend;
+    Lanes first, step;
+
+    __attribute__((always_inline)) Axis(std::int32_t at, std::int32_t right, std::int32_t down,
+                                        std::int32_t twist, std::int32_t bend_right, std::int32_t bend_down)
+        : base((at - kHalf) >> kFractionBits), bend(lane(bend_down)) {
+      constexpr Lanes kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
+      constexpr Lanes kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
+      first = kSteps * lane(right) + kBows * lane(bend_right) +
+              static_cast<std::int16_t>(lane(at - (base << kFractionBits)) + kRound);
+      step = kSteps * lane(twist) + lane(down);
+    }
+    // In 2^-7 px.
+    __attribute__((always_inline)) void of_row(int j, Lanes& out) const {
+      out = (first + step * static_cast<std::int16_t>(j) + static_cast<std::int16_t>(bow(j) * bend)) >>
+            kToWeight;
+    }
+  };
+
+  static constexpr std::int32_t kOne = 1 << kFractionBits;
+  __attribute__((always_inline)) explicit NearCell(const Cell& c)
+      : x(x_of(c.at), x_of(c.right) - kOne, x_of(c.down), x_of(c.twist), x_of(c.bend_right),
+          x_of(c.bend_down)),
+        y(y_of(c.at), y_of(c.right), y_of(c.down) - kOne, y_of(c.twist), y_of(c.bend_right),
+          y_of(c.bend_down)) {}
+  Axis x, y;
+};
 
 void UndistortionMap::init(const CameraModel& camera) {
   width_ = camera.width;
@@ -109,7 +185,10 @@ void UndistortionMap::init(const CameraModel& camera) {
               pair_of((d - c - b + a) / (kCell * kCell)),
               pair_of((at(kHalf, 0) + at(kHalf, kCell) - corners) / kSag),
               pair_of((at(0, kHalf) + at(kCell, kHalf) - corners) / kSag)};
-      cell.at = (cell.at & ~kPlain) | (kCell * (column + 1) <= width_ && is_plain(cell) ? kPlain : 0);
+      cell.at &= ~(kPlain | kNear);
+      if (kCell * (column + 1) > width_ || !is_plain(cell)) continue;
+      cell.at |= kPlain | kNear;
+      if (!is_near(cell)) cell.at &= ~kNear;
     }
   }
 }
@@ -129,6 +208,48 @@ bool UndistortionMap::is_plain(const Cell& c) const {
     }
   }
   return true;
+}
+
+bool UndistortionMap::is_near(const Cell& c) const {
+  constexpr int kMost = 2 * kWeightOne;
+  const NearCell near(c);
+  if (near.x.base < 0 || near.y.base < 0 || near.x.base + kCell + 2 > width_ ||
+      near.y.base + kCell + 2 > height_)
+    return false;
+  for (int j = 0; j < kCell; ++j) {
+    Lanes x, y;
+    near.x.of_row(j, x);
+    near.y.of_row(j, y);
+    for (int i = 0; i < kCell; ++i) {
+      // By the map itself: 16 bits may have been too few.
+      const std::int64_t at =
+          c.at + i * (c.right + j * c.twist) + j * c.down + bow(i) * c.bend_right + bow(j) * c.bend_down;
+      const auto close = [](std::int32_t q16, int whole, int weight) {
+        const int off = (q16 >> (kFractionBits - kWeightBits)) - (whole << kWeightBits) - weight;
+        return off >= -2 && off <= 2;
+      };
+      if (x[i] < 0 || y[i] < 0 || x[i] >= kMost || y[i] >= kMost || !close(x_of(at), near.x.base + i, x[i]) ||
+          !close(y_of(at), near.y.base + j, y[i]))
+        return false;
+    }
+  }
+  return true;
+}
+
+// Rows of a near cell: each is read as three rows of the raw image.
+inline __attribute__((always_inline)) void UndistortionMap::undistort_near(const Cell& cell, int first,
+                                                                           int last, GrayView raw,
+                                                                           std::uint8_t* out,
+                                                                           std::ptrdiff_t out_stride) {
+  const NearCell near(cell);
+  const std::uint8_t* const from = raw.data + near.y.base * raw.stride + near.x.base;
+#pragma GCC unroll 8
+  for (int j = first; j < last; ++j) {
+    Lanes x, y;
+    near.x.of_row(j, x);
+    near.y.of_row(j, y);
+    blend_near(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
+  }
 }
 
 // Rows of a plain cell: in each all eight pixels at once.
@@ -197,7 +318,12 @@ void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int
     for (int x = 0; x < width_; x += kCell) {
       const Cell& c = cell(x, top);
       std::uint8_t* const out = ideal.row(top + first) + x;
-      if ((c.at & kPlain) != 0)
+      if ((c.at & kNear) != 0) {
+        if (last - first == kCell)
+          undistort_near(c, 0, kCell, raw, out, ideal.stride);
+        else
+          undistort_near(c, first, last, raw, out, ideal.stride);
+      } else if ((c.at & kPlain) != 0)
         undistort_plain(c, first, last, raw, out, ideal.stride);
       else
         undistort_clamped(c, first, last, raw, std::min(kCell, width_ - x), out, ideal.stride);

@@ -140,8 +140,13 @@ class UndistortionMap {
   }
   // Does the whole of the cell lie inside the raw image, and does it fit the 16-bit lanes?
   bool is_plain(const Cell& c) const;
+  // Besides, is it read nearly as it lies?
+  bool is_near(const Cell& c) const;
+  struct NearCell;
 
   // The cell's rows from first to before last.
+  static void undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
+                             std::ptrdiff_t out_stride);
   static void undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                               std::ptrdiff_t out_stride);
   void undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count, std::uint8_t* out,
