@@ -7,14 +7,10 @@
 namespace plvo {
 namespace {
 
-// The first round over the consensus widens the χ² thresholds by this factor: a match far more precise than
-// the motion that RANSAC found would otherwise fail the test for the motion's error, and never get to correct
-// it.
-constexpr double kFirstRoundScale = 4;
-// Rounds of "judge the inliers again, refine" after it, at most, and the share of the inliers that may change
-// when it has settled: those few lie at the thresholds, and one more or less of them moves nothing.
-constexpr int kMaxRounds = 3;
-constexpr double kSettledShare = 0.01;
+// The consensus is solved over twice, the first time with χ² thresholds widened by this factor: a match far
+// more precise than the motion that RANSAC found would otherwise fail the test for the motion's error, and
+// never get to correct it.
+constexpr double kWideScale = 4;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -91,19 +87,20 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   if (start.estimated) {
     T = *start.prediction;
     ransac.refine(T);
-    (void)ransac.judge(T, kFirstRoundScale);
+    ransac.judge(T, kWideScale);
   }
   if (!start.estimated || !consensus()) {
     if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    (void)ransac.judge(T, kFirstRoundScale);
+    ransac.judge(T, kWideScale);
   }
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
-  for (int round = 0;; ++round) {
+  for (const bool wide : {true, false}) {
+    if (!wide) ransac.judge(T, 1);
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, solving.references, shared, kernels, T);
-    estimate.lm = solving.solve(round == 0 ? LmOptions::one_step() : lm);  // it only leads to the next
+    estimate.lm = solving.solve(wide ? LmOptions::one_step() : lm);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -114,9 +111,6 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
       estimate.information[kind] = problem.information(kind);
     estimate.references = problem.references();
-    if (round == kMaxRounds) break;
-    const int changed = ransac.judge(T, 1);
-    if (round > 0 && changed <= kSettledShare * ransac.inliers()) break;
   }
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||

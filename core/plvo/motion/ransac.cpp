@@ -176,8 +176,7 @@ void Ransac::refine(Se3& T) {
   inliers_ = kept_inliers;
 }
 
-int Ransac::judge(const Se3& T, double scale, std::size_t stride) {
-  int changed = 0;
+void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   inliers_ = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
@@ -189,12 +188,9 @@ int Ransac::judge(const Se3& T, double scale, std::size_t stride) {
                 set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold
             ? 1
             : 0;
-    std::uint8_t& old = set.inliers()[candidate.index];
-    changed += flag != old ? 1 : 0;
-    old = flag;
+    set.inliers()[candidate.index] = flag;
     inliers_ += flag;
   }
-  return changed;
 }
 
 int Ransac::iterations_needed() const {

@@ -62,8 +62,8 @@ class Ransac {
   void refine(Se3& T);
 
   // Sets the inlier flag of every stride-th match by the χ² test under T, with the thresholds scaled by
-  // `scale`, and clears the others; how many flags changed.
-  int judge(const Se3& T, double scale, std::size_t stride = 1);
+  // `scale`, and clears the others.
+  void judge(const Se3& T, double scale, std::size_t stride = 1);
   int inliers() const { return inliers_; }
 
   // False when no minimal set of the flagged inliers fixes the motion: all lines parallel, all points on a
