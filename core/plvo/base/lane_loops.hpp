@@ -157,6 +157,10 @@ inline void dot_pairs(const Lanes& a, const Lanes& b, WideLanes& sums) {
   for (int i = 0; i < 4; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
 }
 
+inline void clamp(std::int16_t low, std::int16_t high, Lanes& lanes) {
+  for (int i = 0; i < 8; ++i) lanes[i] = std::clamp(lanes[i], low, high);
+}
+
 inline void take_range(const WideLanes& value, WideLanes& low, WideLanes& high) {
   for (int i = 0; i < 4; ++i) {
     low[i] = std::min(low[i], value[i]);

@@ -108,6 +108,14 @@ inline __attribute__((always_inline)) void take_range(const WideLanes& value, Wi
   high = value > high ? value : high;
 }
 
+// Lane by lane, no less than low and no more than high.
+inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t high, Lanes& lanes) {
+  const Lanes least = Lanes{} + low;
+  const Lanes most = Lanes{} + high;
+  lanes = lanes < least ? least : lanes;
+  lanes = lanes > most ? most : lanes;
+}
+
 // Four sums of a and four of b: of the numbers that are four apart.
 inline __attribute__((always_inline)) void add_halves(const Lanes& a, const Lanes& b, Lanes& sums) {
   sums = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +

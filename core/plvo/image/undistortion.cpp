@@ -13,7 +13,11 @@ namespace {
 constexpr int kWeightBits = 7;  // of a position's fraction in the blend
 constexpr int kLaneBits = 10;   // of a position's fraction within a row of a cell
 constexpr int kLaneShift = 16 - kLaneBits;
-constexpr std::int32_t kMaxLane = 12 << kLaneBits;  // times the longest stride still below 2^15
+// In a row, in px: pixels at most so far from the first one, whose offset from the raw image's border counts
+// up to so much. Together they fit the lanes, and the first times the longest stride has 15 bits.
+constexpr std::int32_t kMostWay = 10;
+constexpr std::int32_t kMostOutside = 20;
+static_assert((kMostWay + 1 + kMostOutside) << kLaneBits < 1 << 15);
 
 constexpr std::int64_t pair_of(double x, double y) {
   return round_to<std::int64_t>(x * 65536) * (std::int64_t{1} << 32) + round_to<std::int64_t>(y * 65536);
@@ -24,9 +28,8 @@ constexpr std::int16_t to_lane(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
 }
 
-// The last bits of a cell's position, 2^-16 px, say what it is. Plain: whole, and inside the raw image
-// wherever it is read. Near: plain, and its pixels lie in the raw image nearly as they do in this one
-// (NearCell).
+// The last bits of a cell's position, 2^-16 px, say what it is. Plain: whole, and its rows fit the lanes.
+// Near: besides, its pixels lie in the raw image nearly as they do in this one (NearCell).
 constexpr std::int64_t kPlain = 1;
 constexpr std::int64_t kNear = std::int64_t{1} << 32;
 
@@ -55,16 +58,6 @@ inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const 
   const Lanes change = lower - upper;
   const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
-}
-
-// Of the pairs above and below, and at fractions of a pixel.
-void blend_pairs(const Lanes& above, const Lanes& below, const Lanes& fx, const Lanes& fy,
-                 std::uint8_t* out) {
-  const Lanes upper_left = above & 255;
-  const Lanes lower_left = below & 255;
-  const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
-  const Lanes lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
-  blend_rows(upper, lower, fy, out);
 }
 
 // Eight at once, each from its own column of the row `from` on: x and y in 2^-7 px, from 0 to below 2 px.
@@ -108,7 +101,12 @@ void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x
     above[i] = pair_at(from + offset[i]);
     below[i] = pair_at(from_below + offset[i]);
   }
-  blend_pairs(above, below, x & kWeightMask, y & kWeightMask, out);
+  const Lanes fx = x & kWeightMask;
+  const Lanes upper_left = above & 255;
+  const Lanes lower_left = below & 255;
+  const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
+  const Lanes lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
+  blend_rows(upper, lower, y & kWeightMask, out);
 }
 
 }  // namespace
@@ -194,19 +192,12 @@ void UndistortionMap::init(const CameraModel& camera) {
 }
 
 bool UndistortionMap::is_plain(const Cell& c) const {
-  constexpr std::int32_t kMargin = 1 << (kFractionBits - 5);
-  for (int j = 0; j < kCell; ++j) {
-    const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
-    const std::int64_t right = c.right + j * c.twist;
+  constexpr std::int32_t kMost = kMostWay << kFractionBits;
+  for (int j = 0; j < kCell; ++j)
     for (int i = 0; i < kCell; ++i) {
-      const std::int64_t moved = i * right + bow(i) * c.bend_right;
-      const std::int32_t x = x_of(start + moved);
-      const std::int32_t y = y_of(start + moved);
-      if (x < kMargin || y < kMargin || x > last_x_ - kMargin || y > last_y_ - kMargin) return false;
-      constexpr std::int32_t kMost = (kMaxLane - (2 << kLaneBits)) << kLaneShift;
-      if (std::max({x_of(moved), -x_of(moved), y_of(moved), -y_of(moved)}) > kMost) return false;
+      const std::int64_t way = i * (c.right + j * c.twist) + bow(i) * c.bend_right;
+      if (std::max({x_of(way), -x_of(way), y_of(way), -y_of(way)}) > kMost) return false;
     }
-  }
   return true;
 }
 
@@ -252,9 +243,26 @@ inline __attribute__((always_inline)) void UndistortionMap::undistort_near(const
   }
 }
 
-// Rows of a plain cell: in each all eight pixels at once.
+// Along one axis the place of a row's first pixel, and what the eight are clamped to, from a pixel of the raw
+// image on: the one that it lies in, or the border's nearest.
+struct UndistortionMap::PlainStart {
+  std::int32_t base;
+  std::int16_t at;         // 2^-10 px
+  std::int16_t low, high;  // 2^-7 px
+
+  __attribute__((always_inline)) PlainStart(std::int32_t q16, std::int32_t last)
+      : base(std::clamp(q16 >> kFractionBits, 0, last >> kFractionBits)) {
+    constexpr std::int32_t kMost = kMostOutside << kFractionBits;
+    at = static_cast<std::int16_t>(std::clamp(q16 - (base << kFractionBits), -kMost, kMost) >> kLaneShift);
+    low = static_cast<std::int16_t>(std::max(-base * kWeightOne, INT16_MIN));
+    high = static_cast<std::int16_t>(
+        std::min((last >> (kFractionBits - kWeightBits)) - base * kWeightOne, INT16_MAX));
+  }
+};
+
+// Rows of a plain cell: in each all eight pixels at once, clamped to what the camera saw.
 void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
-                                      std::ptrdiff_t out_stride) {
+                                      std::ptrdiff_t out_stride) const {
   const Cell c = cell;  // what is written cannot change it
   constexpr Lanes kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr Lanes kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
@@ -265,48 +273,28 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
   for (int j = first; j < last; ++j, out += out_stride) {
     const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
     const std::int64_t right = c.right + j * c.twist;
-    const std::int32_t x = x_of(start);
-    const std::int32_t y = y_of(start);
-    constexpr std::int32_t kFraction = (1 << kFractionBits) - 1;
-    const auto x0 = static_cast<std::int16_t>((x & kFraction) >> kLaneShift);
-    const auto y0 = static_cast<std::int16_t>((y & kFraction) >> kLaneShift);
-    const Lanes at_x = (kSteps * to_lane(x_of(right)) + bent_x + x0) >> kToWeight;
-    const Lanes at_y = (kSteps * to_lane(y_of(right)) + bent_y + y0) >> kToWeight;
-    const std::uint8_t* const from = raw.data + (y >> kFractionBits) * raw.stride + (x >> kFractionBits);
-    blend_eight(from, raw.stride, at_x, at_y, out);
+    const PlainStart x(x_of(start), last_x_), y(y_of(start), last_y_);
+    Lanes at_x = (kSteps * to_lane(x_of(right)) + bent_x + x.at) >> kToWeight;
+    Lanes at_y = (kSteps * to_lane(y_of(right)) + bent_y + y.at) >> kToWeight;
+    clamp(x.low, x.high, at_x);
+    clamp(y.low, y.high, at_y);
+    blend_eight(raw.data + y.base * raw.stride + x.base, raw.stride, at_x, at_y, out);
   }
 }
 
-// Rows of a cell whose pixels are clamped to what the camera saw.
-void UndistortionMap::undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count,
-                                        std::uint8_t* out, std::ptrdiff_t out_stride) const {
+// Rows of any cell, pixel by pixel.
+void UndistortionMap::undistort_each(const Cell& cell, int first, int last, GrayView raw, int count,
+                                     std::uint8_t* out, std::ptrdiff_t out_stride) const {
   const Cell c = cell;
   constexpr int kToWeight = kFractionBits - kWeightBits;
   for (int j = first; j < last; ++j, out += out_stride) {
     const std::int64_t right = c.right + j * c.twist;
     std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
-    // visit(i, x, y) of every pixel, in 2^-7 px.
-    const auto for_pixels = [&](int pixels, const auto& visit) {
-      for (int i = 0; i < pixels; ++i, start += right) {
-        const std::int64_t at = start + bow(i) * c.bend_right;
-        visit(i, std::clamp<std::int32_t>(x_of(at), 0, last_x_) >> kToWeight,
-              std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
-      }
-    };
-    if (kLaneLoops || count < kCell) {
-      for_pixels(count,
-                 [&](int i, std::int32_t x, std::int32_t y) { out[i] = blend(raw.data, raw.stride, x, y); });
-      continue;
+    for (int i = 0; i < count; ++i, start += right) {
+      const std::int64_t at = start + bow(i) * c.bend_right;
+      out[i] = blend(raw.data, raw.stride, std::clamp<std::int32_t>(x_of(at), 0, last_x_) >> kToWeight,
+                     std::clamp<std::int32_t>(y_of(at), 0, last_y_) >> kToWeight);
     }
-    Lanes above, below, fx, fy;
-    for_pixels(kCell, [&](int i, std::int32_t x, std::int32_t y) {
-      const std::uint8_t* const p = raw.data + (y >> kWeightBits) * raw.stride + (x >> kWeightBits);
-      above[i] = pair_at(p);
-      below[i] = pair_at(p + raw.stride);
-      fx[i] = static_cast<std::int16_t>(x & kWeightMask);
-      fy[i] = static_cast<std::int16_t>(y & kWeightMask);
-    });
-    blend_pairs(above, below, fx, fy, out);
   }
 }
 
@@ -318,15 +306,14 @@ void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int
     for (int x = 0; x < width_; x += kCell) {
       const Cell& c = cell(x, top);
       std::uint8_t* const out = ideal.row(top + first) + x;
-      if ((c.at & kNear) != 0) {
-        if (last - first == kCell)
-          undistort_near(c, 0, kCell, raw, out, ideal.stride);
-        else
-          undistort_near(c, first, last, raw, out, ideal.stride);
-      } else if ((c.at & kPlain) != 0)
+      if ((c.at & kNear) != 0 && last - first == kCell)
+        undistort_near(c, 0, kCell, raw, out, ideal.stride);
+      else if ((c.at & kNear) != 0)
+        undistort_near(c, first, last, raw, out, ideal.stride);
+      else if ((c.at & kPlain) != 0)
         undistort_plain(c, first, last, raw, out, ideal.stride);
       else
-        undistort_clamped(c, first, last, raw, std::min(kCell, width_ - x), out, ideal.stride);
+        undistort_each(c, first, last, raw, std::min(kCell, width_ - x), out, ideal.stride);
     }
   }
 }

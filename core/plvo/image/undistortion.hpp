@@ -138,19 +138,20 @@ class UndistortionMap {
     return static_cast<std::uint32_t>(x - 1) < static_cast<std::uint32_t>(last_x_ - 1) &&
            static_cast<std::uint32_t>(y - 1) < static_cast<std::uint32_t>(last_y_ - 1);
   }
-  // Does the whole of the cell lie inside the raw image, and does it fit the 16-bit lanes?
+  // Do the rows of a whole cell fit the 16-bit lanes?
   bool is_plain(const Cell& c) const;
   // Besides, is it read nearly as it lies?
   bool is_near(const Cell& c) const;
   struct NearCell;
+  struct PlainStart;
 
   // The cell's rows from first to before last.
   static void undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                              std::ptrdiff_t out_stride);
-  static void undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
-                              std::ptrdiff_t out_stride);
-  void undistort_clamped(const Cell& cell, int first, int last, GrayView raw, int count, std::uint8_t* out,
-                         std::ptrdiff_t out_stride) const;
+  void undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
+                       std::ptrdiff_t out_stride) const;
+  void undistort_each(const Cell& cell, int first, int last, GrayView raw, int count, std::uint8_t* out,
+                      std::ptrdiff_t out_stride) const;
 
   std::span<Cell> cells_;
   std::size_t columns_ = 0;

@@ -7,10 +7,12 @@
 namespace plvo {
 namespace {
 
-// The consensus is solved over twice, the first time with χ² thresholds widened by this factor: a match far
-// more precise than the motion that RANSAC found would otherwise fail the test for the motion's error, and
-// never get to correct it.
-constexpr double kWideScale = 4;
+// The consensus is solved over twice, the first time with wider χ² thresholds: a match far more precise than
+// the motion so far would otherwise fail the test for the motion's error, and never get to correct it. Wider
+// by the first factor around a motion that RANSAC found and refined, by the second around one that the caller
+// estimated.
+constexpr double kWiderThanRefined = 4;
+constexpr double kWiderThanEstimated = 9;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -86,12 +88,11 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   Se3 T;
   if (start.estimated) {
     T = *start.prediction;
-    ransac.refine(T);
-    ransac.judge(T, kWideScale);
+    ransac.judge(T, kWiderThanEstimated);
   }
   if (!start.estimated || !consensus()) {
     if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    ransac.judge(T, kWideScale);
+    ransac.judge(T, kWiderThanRefined);
   }
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;

@@ -57,13 +57,8 @@ class Ransac {
   // The best motion found; false when no hypothesis scored at all.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
-  // A motion that is known to be near, brought nearer by a part of the matches that agree with it; writes the
-  // inlier flags.
-  void refine(Se3& T);
-
-  // Sets the inlier flag of every stride-th match by the χ² test under T, with the thresholds scaled by
-  // `scale`, and clears the others.
-  void judge(const Se3& T, double scale, std::size_t stride = 1);
+  // Sets the inlier flag of every match by the χ² test under T, with the thresholds scaled by `scale`.
+  void judge(const Se3& T, double scale) { judge(T, scale, 1); }
   int inliers() const { return inliers_; }
 
   // False when no minimal set of the flagged inliers fixes the motion: all lines parallel, all points on a
@@ -75,6 +70,10 @@ class Ransac {
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
+  // Brings T nearer by a part of the matches that agree with it, and writes the inlier flags.
+  void refine(Se3& T);
+  // Of every stride-th match; clears the other flags.
+  void judge(const Se3& T, double scale, std::size_t stride);
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
