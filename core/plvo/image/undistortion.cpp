@@ -251,12 +251,13 @@ struct UndistortionMap::PlainStart {
   std::int16_t low, high;  // 2^-7 px
 
   __attribute__((always_inline)) PlainStart(std::int32_t q16, std::int32_t last)
-      : base(std::clamp(q16 >> kFractionBits, 0, last >> kFractionBits)) {
+      : base(std::clamp<std::int32_t>(q16 >> kFractionBits, 0, last >> kFractionBits)) {
     constexpr std::int32_t kMost = kMostOutside << kFractionBits;
-    at = static_cast<std::int16_t>(std::clamp(q16 - (base << kFractionBits), -kMost, kMost) >> kLaneShift);
-    low = static_cast<std::int16_t>(std::max(-base * kWeightOne, INT16_MIN));
+    at = static_cast<std::int16_t>(std::clamp<std::int32_t>(q16 - (base << kFractionBits), -kMost, kMost) >>
+                                   kLaneShift);
+    low = static_cast<std::int16_t>(std::max<std::int32_t>(-base * kWeightOne, INT16_MIN));
     high = static_cast<std::int16_t>(
-        std::min((last >> (kFractionBits - kWeightBits)) - base * kWeightOne, INT16_MAX));
+        std::min<std::int32_t>((last >> (kFractionBits - kWeightBits)) - base * kWeightOne, INT16_MAX));
   }
 };
 
