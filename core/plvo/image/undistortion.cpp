@@ -228,19 +228,23 @@ bool UndistortionMap::is_near(const Cell& c) const {
 }
 
 // Rows of a near cell: each is read as three rows of the raw image.
-inline __attribute__((always_inline)) void UndistortionMap::undistort_near(const Cell& cell, int first,
-                                                                           int last, GrayView raw,
-                                                                           std::uint8_t* out,
-                                                                           std::ptrdiff_t out_stride) {
+void UndistortionMap::undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
+                                     std::ptrdiff_t out_stride) {
   const NearCell near(cell);
   const std::uint8_t* const from = raw.data + near.y.base * raw.stride + near.x.base;
-#pragma GCC unroll 8
-  for (int j = first; j < last; ++j) {
+  const auto undistort_row = [&](int j) __attribute__((always_inline)) {
     Lanes x, y;
     near.x.of_row(j, x);
     near.y.of_row(j, y);
     blend_near(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
+  };
+  // Rows that are known when it is compiled: what their number is multiplied with is a constant.
+  if (!kLaneLoops && first == 0 && last == kCell) {
+#pragma GCC unroll 8
+    for (int j = 0; j < kCell; ++j) undistort_row(j);
+    return;
   }
+  for (int j = first; j < last; ++j) undistort_row(j);
 }
 
 // Along one axis the place of a row's first pixel, and what the eight are clamped to, from a pixel of the raw
@@ -307,9 +311,7 @@ void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int
     for (int x = 0; x < width_; x += kCell) {
       const Cell& c = cell(x, top);
       std::uint8_t* const out = ideal.row(top + first) + x;
-      if ((c.at & kNear) != 0 && last - first == kCell)
-        undistort_near(c, 0, kCell, raw, out, ideal.stride);
-      else if ((c.at & kNear) != 0)
+      if ((c.at & kNear) != 0)
         undistort_near(c, first, last, raw, out, ideal.stride);
       else if ((c.at & kPlain) != 0)
         undistort_plain(c, first, last, raw, out, ideal.stride);
