@@ -86,19 +86,28 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
+  const auto draw = [&] {
+    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return false;
+    ransac.judge(T, kWiderThanRefined);
+    return true;
+  };
+  bool drawn = !start.estimated;
   if (start.estimated) {
     T = *start.prediction;
     ransac.judge(T, kWiderThanEstimated);
+    drawn = !consensus();
   }
-  if (!start.estimated || !consensus()) {
-    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    ransac.judge(T, kWiderThanRefined);
-  }
+  if (drawn && !draw()) return StatusCode::kNoConsensus;
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
-  for (const bool wide : {true, false}) {
+  for (bool wide = true, done = false; !done; done = !wide, wide = false) {
     if (!wide) ransac.judge(T, 1);
+    if (!consensus() && !drawn) {
+      // The estimate was farther off than it seemed.
+      drawn = wide = true;
+      if (!draw()) return StatusCode::kNoConsensus;
+    }
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, solving.references, shared, kernels, T);
     estimate.lm = solving.solve(wide ? LmOptions::one_step() : lm);
