@@ -98,6 +98,24 @@ TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
   EXPECT_LT(test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)), 0.1);
 }
 
+// Nothing, little or much of the matches may agree with an estimate, at first or when it is refined.
+TEST(Estimator, HoweverFarOffAnEstimateIsTheMotionIsFound) {
+  Gaussian gaussian(23);
+  const SimulatedPair pair = test::simulate(gaussian, 100, 30, 0.3);
+  Bench bench;
+  const MotionEstimate drawn = bench.estimate(pair, {}, 42);
+  ASSERT_EQ(drawn.status, StatusCode::kOk);
+  Vector6 off;
+  off << 2e-3, -1e-3, 1e-3, 1e-3, -1e-3, 1e-3;
+  for (double far = 1; far < 300; far *= 1.1) {
+    const Se3 start = boxplus(pair.truth, far * off);
+    const MotionEstimate found = bench.estimate(pair, {}, 42, {&start, {}, true});
+    ASSERT_EQ(found.status, StatusCode::kOk) << far;
+    // χ²(6) exceeds 30 once in 25 000.
+    EXPECT_LT(test::nees(found.T_current_reference, pair.truth, test::inverse(found.C_H)), 30) << far;
+  }
+}
+
 // As the odometry stops: what is left is small beside what the matches can tell.
 TEST(Estimator, ALastStepUnseenIsAsGoodAsSeen) {
   Gaussian gaussian(19);

@@ -213,8 +213,7 @@ bool UndistortionMap::is_near(const Cell& c) const {
     near.y.of_row(j, y);
     for (int i = 0; i < kCell; ++i) {
       // By the map itself: 16 bits may have been too few.
-      const std::int64_t at =
-          c.at + i * (c.right + j * c.twist) + j * c.down + bow(i) * c.bend_right + bow(j) * c.bend_down;
+      const std::int64_t at = position(c, i, j);
       const auto close = [](std::int32_t q16, int whole, int weight) {
         const int off = (q16 >> (kFractionBits - kWeightBits)) - (whole << kWeightBits) - weight;
         return off >= -2 && off <= 2;

@@ -123,10 +123,8 @@ class UndistortionMap {
     return cells_[static_cast<std::size_t>(y) / kCell * columns_ + static_cast<std::size_t>(x) / kCell];
   }
   static constexpr int within_cell(int x) { return static_cast<int>(static_cast<unsigned>(x) % kCell); }
-  std::int64_t position(int x, int y) const {
-    const Cell& c = cell(x, y);
-    const int i = within_cell(x);
-    const int j = within_cell(y);
+  std::int64_t position(int x, int y) const { return position(cell(x, y), within_cell(x), within_cell(y)); }
+  static std::int64_t position(const Cell& c, int i, int j) {
     return c.at + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
   }
   bool nearest(std::int64_t at, int& raw_x, int& raw_y) const {

@@ -170,10 +170,10 @@ class LevenbergMarquardt {
     }
     step_.setZero();
     if (!cholesky_.factor(damped_)) return false;
-    step_ = -cholesky_.solve(g_);
-    if (step_.allFinite()) return true;
-    step_.setZero();
-    return false;
+    const Vector<N> step = -cholesky_.solve(g_);
+    if (!step.allFinite()) return false;
+    step_ = step;
+    return true;
   }
 
   Matrix<N, N> H_, H_new_, damped_;

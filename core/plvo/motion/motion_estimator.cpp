@@ -86,31 +86,14 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
 
   Se3 T;
-  const auto draw = [&] {
-    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return false;
-    ransac.judge(T, kWiderThanRefined);
-    return true;
-  };
-  bool drawn = !start.estimated;
-  if (start.estimated) {
-    T = *start.prediction;
-    ransac.judge(T, kWiderThanEstimated);
-    drawn = !consensus();
-  }
-  if (drawn && !draw()) return StatusCode::kNoConsensus;
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   SharedErrors shared = start.shared;
-  for (bool wide = true, done = false; !done; done = !wide, wide = false) {
-    if (!wide) ransac.judge(T, 1);
-    if (!consensus() && !drawn) {
-      // The estimate was farther off than it seemed.
-      drawn = wide = true;
-      if (!draw()) return StatusCode::kNoConsensus;
-    }
+  // From T, over the inliers that are flagged.
+  const auto refine = [&](const LmOptions& options) {
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, solving.references, shared, kernels, T);
-    estimate.lm = solving.solve(wide ? LmOptions::one_step() : lm);
+    estimate.lm = solving.solve(options);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
     T = problem.T_current_reference();
@@ -118,10 +101,34 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     Cholesky<6> cholesky;
     if (cholesky.factor(solver.hessian())) estimate.shared = problem.shared(cholesky.inverse());
     shared.value = estimate.shared.value;
-    for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
-      estimate.information[kind] = problem.information(kind);
-    estimate.references = problem.references();
+    return StatusCode::kOk;
+  };
+  // Leaves the inliers at the thresholds flagged.
+  const auto approach = [&](double scale) {
+    ransac.judge(T, scale);
+    const StatusCode status = refine(LmOptions::one_step());
+    if (status == StatusCode::kOk) ransac.judge(T, 1);
+    return status;
+  };
+  StatusCode status = StatusCode::kOk;
+  if (start.estimated) {
+    T = *start.prediction;
+    status = approach(kWiderThanEstimated);
+    if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
   }
+  if (!start.estimated || !consensus()) {
+    // What an estimate that nothing agrees with made of them is forgotten.
+    solving.references = references;
+    shared = start.shared;
+    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+    status = approach(kWiderThanRefined);
+    if (status != StatusCode::kOk) return status;
+  }
+  status = refine(lm);
+  if (status != StatusCode::kOk) return status;
+  for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
+    estimate.information[kind] = problem.information(kind);
+  estimate.references = problem.references();
   // What is not determined does not converge either: say the cause, not the symptom.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
       !invert_information(solver.hessian(), config, estimate.C_H))
