@@ -58,6 +58,16 @@ TEST(Lanes, LoopsMakeTheSameNumbers) {
     expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x + one; });
     expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x - one; });
     expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x * one; });
+    const std::int16_t low = std::min(a[0], b[0]);
+    const std::int16_t high = std::max(a[0], b[0]);
+    const auto clamped = [&]<typename T>(const T& x, const T&) -> T {
+      T lanes = x;
+      clamp(low, high, lanes);
+      return lanes;
+    };
+    expect_alike(a, b, clamped);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_EQ(stored(clamped(loaded<Lanes>(a), loaded<Lanes>(b)))[i], std::clamp(a[i], low, high));
     expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x & one; });
     expect_alike(a, b, [&]<typename T>(const T& x, const T&) -> T { return x >> bits; });
     expect_alike(a, b, []<typename T>(const T& x, const T& y) -> T { return (x - y) != 0; });

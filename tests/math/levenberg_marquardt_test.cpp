@@ -214,6 +214,7 @@ TEST(LevenbergMarquardt, TheNextStepIsTheOneItWouldHaveTried) {
   EXPECT_EQ(problem.x, Vector3(1, 2, 3));
   const Vector3 next = solver.next_step();
   EXPECT_LT((problem.x + next).norm(), 1e-4) << "a bowl's minimum, but for the damping";
+  EXPECT_NEAR(solver.next_decrease(), summary.initial_cost, 1e-4 * summary.initial_cost);
   options.max_iterations = 1;
   (void)solver.solve(problem, options);
   EXPECT_EQ(problem.x, Vector3(1, 2, 3) + next);
@@ -221,6 +222,7 @@ TEST(LevenbergMarquardt, TheNextStepIsTheOneItWouldHaveTried) {
   problem.negative_curvature = true;
   (void)solver.solve(problem, LmOptions::one_step());
   EXPECT_EQ(solver.next_step(), Vector3(0, 0, 0)) << "there is none";
+  EXPECT_EQ(solver.next_decrease(), 0);
 }
 
 TEST(LevenbergMarquardt, SingularIsReported) {

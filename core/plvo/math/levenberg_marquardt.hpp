@@ -101,12 +101,15 @@ class LevenbergMarquardt {
   // The step from there that would have been tried next; zero where none could be made. Who takes it unseen
   // saves a pass over the residuals.
   const Vector<N>& next_step() const { return step_; }
+  // What that step promises to lower the cost by: ½ k² where it is k standard deviations long.
+  double next_decrease() const { return predicted_; }
 
  private:
   template <typename Problem>
   LmSummary run(Problem& problem, const LmOptions& options) {
     LmSummary summary;
     step_.setZero();
+    predicted_ = 0;
     double cost = problem.linearize(Vector<N>::Zero(), H_, g_);
     summary.initial_cost = summary.final_cost = cost;
     if (!is_finite(cost) || !H_.allFinite() || !g_.allFinite()) return summary;
@@ -116,12 +119,12 @@ class LevenbergMarquardt {
     double growth = 2;
     while (true) {
       const bool solved = solve_damped(mu);
+      predicted_ = solved ? 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_) : 0;
       if (g_.cwiseAbs().maxCoeff() <= options.gradient_tolerance)
         return finish(summary, LmStatus::kGradientTolerance);
       if (solved && step_.cwiseAbs().maxCoeff() <= options.step_tolerance)
         return finish(summary, LmStatus::kStepTolerance);
-      const double predicted = solved ? 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_) : 0;
-      if (solved && predicted <= options.decrease_tolerance)
+      if (solved && predicted_ <= options.decrease_tolerance)
         return finish(summary, LmStatus::kDecreaseTolerance);
       if (summary.iterations >= options.max_iterations) return finish(summary, LmStatus::kMaxIterations);
       ++summary.iterations;
@@ -129,7 +132,7 @@ class LevenbergMarquardt {
       bool taken = false;
       if (solved) {
         const double new_cost = problem.linearize(step_, H_new_, g_new_);
-        const double gain = (cost - new_cost) / predicted;
+        const double gain = (cost - new_cost) / predicted_;
         taken = is_finite(new_cost) && new_cost <= cost && H_new_.allFinite() && g_new_.allFinite();
         if (taken) {
           problem.accept();
@@ -178,6 +181,7 @@ class LevenbergMarquardt {
 
   Matrix<N, N> H_, H_new_, damped_;
   Vector<N> g_, g_new_, diagonal_, step_;
+  double predicted_ = 0;  // of step_
   Cholesky<N> cholesky_;
 };
 

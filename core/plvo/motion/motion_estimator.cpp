@@ -7,12 +7,16 @@
 namespace plvo {
 namespace {
 
-// The consensus is solved over twice, the first time with wider χ² thresholds: a match far more precise than
+// The consensus is solved over twice, first with wider χ² thresholds: a match far more precise than
 // the motion so far would otherwise fail the test for the motion's error, and never get to correct it. Wider
 // by the first factor around a motion that RANSAC found and refined, by the second around one that the caller
 // estimated.
 constexpr double kWiderThanRefined = 4;
 constexpr double kWiderThanEstimated = 9;
+// Where the wide round led more SDs away than this it is made again, from there: what matches were judged by
+// is not where the motion is, and a consensus at the thresholds would leave out good ones for good.
+constexpr double kFarSigmas = 5;
+constexpr int kMaxWideRounds = 4;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -105,10 +109,15 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   };
   // Leaves the inliers at the thresholds flagged.
   const auto approach = [&](double scale) {
-    ransac.judge(T, scale);
-    const StatusCode status = refine(LmOptions::one_step());
-    if (status == StatusCode::kOk) ransac.judge(T, 1);
-    return status;
+    for (int round = 0; round < kMaxWideRounds; ++round) {
+      ransac.judge(T, scale);
+      const StatusCode status = refine(LmOptions::one_step());
+      if (status != StatusCode::kOk) return status;
+      if (solver.next_decrease() <= 0.5 * kFarSigmas * kFarSigmas) break;
+      scale = kWiderThanRefined;
+    }
+    ransac.judge(T, 1);
+    return StatusCode::kOk;
   };
   StatusCode status = StatusCode::kOk;
   if (start.estimated) {
