@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "plvo/base/build.hpp"
+#include "plvo/base/lanes.hpp"
+
 namespace plvo {
 namespace {
 
@@ -18,6 +21,34 @@ void repeat_borders(std::uint16_t* row, int width, int pad) {
 
 const std::uint8_t* clamped_row(GrayView image, int y) {
   return image.row(std::clamp(y, 0, image.height - 1));
+}
+
+// Every second of the sums, weighted with its neighbours.
+std::uint8_t binomial5(const std::uint16_t* s) {
+  const std::uint32_t sum = s[-2] + s[2] + 4u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 6u * s[0];
+  return static_cast<std::uint8_t>((sum + 128) >> 8);
+}
+
+// Eight of them, from sums of at most 16 · 255: sums that lie side by side are two columns of a product.
+void binomial5_of_eight(const std::uint16_t* s, std::uint8_t* out) {
+  constexpr Lanes kBefore = {1, 4, 1, 4, 1, 4, 1, 4}, kHere = {6, 4, 6, 4, 6, 4, 6, 4},
+                  kAfter = {1, 0, 1, 0, 1, 0, 1, 0};
+  WideLanes sums[2];
+  for (int half = 0; half < 2; ++half, s += 8) {
+    const auto* const at = reinterpret_cast<const std::int16_t*>(s);
+    Lanes two;
+    WideLanes before, here, after;
+    load(at - 2, two);
+    dot_pairs(two, kBefore, before);
+    load(at, two);
+    dot_pairs(two, kHere, here);
+    load(at + 2, two);
+    dot_pairs(two, kAfter, after);
+    sums[half] = (before + here + after + 128) >> 8;
+  }
+  Lanes eight;
+  narrow(sums[0], sums[1], eight);
+  store_bytes(eight, out);
 }
 
 }  // namespace
@@ -62,11 +93,10 @@ void halve_binomial5(GrayView in, ImageView<std::uint8_t> out, std::span<std::ui
       sums[x] = static_cast<std::uint16_t>(r0[x] + r4[x] + 4 * (r1[x] + r3[x]) + 6 * r2[x]);
     repeat_borders(sums, width, 3);
     std::uint8_t* line = out.row(y);
-    for (int x = 0; x < out.width; ++x) {
-      const std::uint16_t* s = sums + 2 * x;
-      const std::uint32_t sum = s[-2] + s[2] + 4u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 6u * s[0];
-      line[x] = static_cast<std::uint8_t>((sum + 128) >> 8);
-    }
+    int x = 0;
+    if constexpr (!kLaneLoops)
+      for (; x + 8 <= out.width; x += 8) binomial5_of_eight(sums + 2 * x, line + x);
+    for (; x < out.width; ++x) line[x] = binomial5(sums + 2 * x);
   }
 }
 

@@ -4,16 +4,18 @@
 #include <array>
 
 #include "plvo/base/build.hpp"
+#include "plvo/math/pair.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
 namespace {
 
 constexpr int kPlaneReach = 3;
+constexpr int kPlaneSide = 2 * kPlaneReach + 1;
 constexpr int kStride = 3;  // px
-constexpr int kReadings = (2 * kPlaneReach + 1) * (2 * kPlaneReach + 1);
+constexpr int kReadings = kPlaneSide * kPlaneSide;
 constexpr int kSumOfSquares =
-    kPlaneReach * (kPlaneReach + 1) * (2 * kPlaneReach + 1) / 3;  // of −kPlaneReach … kPlaneReach
+    kPlaneReach * (kPlaneReach + 1) * kPlaneSide / 3;  // of −kPlaneReach … kPlaneReach
 // Fewer of them than this show an edge or a hole.
 constexpr int kLeastReadings = 45;
 // SD of the readings from the plane, at most so many σ_d: real and rendered noise is half of one.
@@ -21,58 +23,79 @@ constexpr double kMaxRms = 1;
 // Of the ray times the normal, for a ray with z = 1.
 constexpr double kLeastSteepness = 0.15;
 
-// Readings of a window, in the image's own units, and the sums that their plane takes; x and y in strides
-// from the middle. Inverse depths are counted from that of the first reading.
+constexpr int kPlanePairs = (kPlaneSide + 1) / 2;  // of a row; the last holds one reading
+
+// What a window reads, row by row, in the image's own units; 0: none.
+struct PlaneReadings {
+  std::array<std::array<std::uint16_t, 2 * kPlanePairs>, kPlaneSide> units;
+  int missing = 0;
+};
+
+void read_plane(const DepthSampler& depth, const DepthSampler::Place& place, PlaneReadings& window) {
+  constexpr int kFar = kPlaneReach * kStride;
+  const bool whole =
+      depth.holds_raw(place.x - kFar, place.y - kFar) && depth.holds_raw(place.x + kFar, place.y + kFar);
+  for (int j = 0; j < kPlaneSide; ++j) {
+    auto& row = window.units[static_cast<std::size_t>(j)];
+    row[kPlaneSide] = 0;
+    for (int i = 0; i < kPlaneSide; ++i) {
+      const int x = place.x + kStride * (i - kPlaneReach);
+      const int y = place.y + kStride * (j - kPlaneReach);
+      const std::uint16_t reading = !kSmallCode && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
+      row[static_cast<std::size_t>(i)] = reading;
+      window.missing += reading == 0 ? 1 : 0;
+    }
+  }
+}
+
+// The sums that the plane of the readings takes; x and y in strides from the middle. Inverse depths are
+// counted from that of the first reading.
 struct PlaneSums {
   int n, x, y, xx, xy, yy;
   double from, q, qx, qy, qq;
 };
 
-// False when too many are missing.
-bool add_up(const DepthSampler& depth, const DepthSampler::Place& place, PlaneSums& s) {
-  constexpr int kSide = 2 * kPlaneReach + 1;
-  constexpr int kFar = kPlaneReach * kStride;
-  std::array<std::array<std::uint16_t, kSide>, kSide> units;
-  const bool whole =
-      depth.holds_raw(place.x - kFar, place.y - kFar) && depth.holds_raw(place.x + kFar, place.y + kFar);
-  int missing = 0;
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
-      const int x = place.x + kStride * (i - kPlaneReach);
-      const int y = place.y + kStride * (j - kPlaneReach);
-      const std::uint16_t reading = !kSmallCode && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
-      units[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = reading;
-      missing += reading == 0 ? 1 : 0;
-    }
-  if (kReadings - missing < kLeastReadings) return false;
-  s = {kReadings, 0, 0, kSide * kSumOfSquares, 0, kSide * kSumOfSquares, 0, 0, 0, 0, 0};
-  for (int j = -kPlaneReach; j <= kPlaneReach; ++j) {
-    double q = 0, qx = 0, qq = 0;
+void leave_out_missing(const PlaneReadings& window, PlaneSums& s) {
+  for (int j = -kPlaneReach; j <= kPlaneReach; ++j)
     for (int i = -kPlaneReach; i <= kPlaneReach; ++i) {
-      const int reading =
-          units[static_cast<std::size_t>(j + kPlaneReach)][static_cast<std::size_t>(i + kPlaneReach)];
-      if (reading == 0) {
-        s.n -= 1;
-        s.x -= i;
-        s.y -= j;
-        s.xx -= i * i;
-        s.xy -= i * j;
-        s.yy -= j * j;
+      if (window.units[static_cast<std::size_t>(j + kPlaneReach)][static_cast<std::size_t>(i + kPlaneReach)] >
+          0)
         continue;
-      }
-      const double inverse = 1.0 / reading;
-      if (s.from == 0) s.from = inverse;
-      const double dq = inverse - s.from;
+      s.n -= 1;
+      s.x -= i;
+      s.y -= j;
+      s.xx -= i * i;
+      s.xy -= i * j;
+      s.yy -= j * j;
+    }
+}
+
+// At least one reading is there.
+PlaneSums add_up(const PlaneReadings& window) {
+  PlaneSums s = {kReadings, 0, 0, kPlaneSide * kSumOfSquares, 0, kPlaneSide * kSumOfSquares, 0, 0, 0, 0, 0};
+  if (window.missing > 0) leave_out_missing(window, s);
+  for (std::size_t i = 0; s.from == 0; ++i) {
+    const int reading = window.units[i / kPlaneSide][i % kPlaneSide];
+    if (reading > 0) s.from = 1.0 / reading;
+  }
+  // Down the columns, two side by side.
+  for (int pair = 0; pair < kPlanePairs; ++pair) {
+    const auto left = static_cast<std::size_t>(2 * pair);
+    Pair q{}, qy{}, qq{};
+    for (int j = -kPlaneReach; j <= kPlaneReach; ++j) {
+      const auto& row = window.units[static_cast<std::size_t>(j + kPlaneReach)];
+      const Pair reading = {static_cast<double>(row[left]), static_cast<double>(row[left + 1])};
+      const Pair dq = reading > 0 ? 1 / reading - s.from : Pair{};
       q += dq;
-      qx += dq * i;
+      qy += dq * j;
       qq += dq * dq;
     }
-    s.q += q;
-    s.qx += qx;
-    s.qy += q * j;
-    s.qq += qq;
+    s.q += q[0] + q[1];
+    s.qx += q[0] * (2 * pair - kPlaneReach) + q[1] * (2 * pair + 1 - kPlaneReach);
+    s.qy += qy[0] + qy[1];
+    s.qq += qq[0] + qq[1];
   }
-  return true;
+  return s;
 }
 
 // q(x, y) = q0 + slope_x x + slope_y y, least squares.
@@ -112,9 +135,11 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   Vector2 located(u, v);
   if (!depth.locate(located)) return false;
   const DepthSampler::Place place(depth, located);
-  PlaneSums sums;
+  if (!place.inside) return false;
+  PlaneReadings window;
+  read_plane(depth, place, window);
   InversePlane plane;
-  if (!place.inside || !add_up(depth, place, sums) || !fit(sums, plane)) return false;
+  if (kReadings - window.missing < kLeastReadings || !fit(add_up(window), plane)) return false;
 
   // In 1/m, by the pixel of the raw image.
   const double per_m = 1 / depth.metres_per_unit();
