@@ -12,7 +12,7 @@ namespace {
 
 // The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
 // The second takes its last step unseen when that is a fifth of what the sensor can tell: what is left then
-// is a fiftieth.
+// is less than a twentieth.
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4};
 constexpr LmOptions kFineSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
