@@ -54,6 +54,26 @@ TEST(PlaneWindow, FindsThePlaneOfTheWorld) {
   }
 }
 
+// What is left out must be out of every sum.
+TEST(PlaneWindow, HolesDoNotTiltIt) {
+  const Wall wall{Vector3(0.5, 0.1, -0.8).normalized(), 1.7};
+  constexpr int kU = 48, kV = 36;
+  // Of the readings, three pixels apart: the first, the last of a row, in the middle, in a corner.
+  const auto hole = [](int x, int y) {
+    const int i = (x - kU) / 3, j = (y - kV) / 3;
+    return (i == -3 && j == -3) || (i == 3 && j == -1) || (i == 0 && j == 0) || (i == 3 && j == 3);
+  };
+  const DepthPicture picture(kWidth, kHeight, [&](int x, int y) {
+    return hole(x, y) ? 0.0 : depth_of_plane(kPinhole, x, y, wall.n, -wall.d);
+  });
+  SurfaceSample whole, holed;
+  ASSERT_TRUE(observe_surface(picture_of(wall).sampler(), kPinhole, kU, kV, 1, whole));
+  ASSERT_TRUE(observe_surface(picture.sampler(), kPinhole, kU, kV, 1, holed));
+  EXPECT_NEAR(wall.n.dot(holed.p), -wall.d, 2 * DepthPicture::kUnit);
+  EXPECT_GT(wall.n.dot(holed.normal), 0.9999);
+  EXPECT_GT(holed.normal_variance, whole.normal_variance) << "it is known less well";
+}
+
 TEST(PlaneWindow, ItsVarianceOfTheNormalIsWhatNoiseMakesOfIt) {
   Gaussian gaussian(7);
   const Wall wall{Vector3(0.4, -0.2, -0.9).normalized(), 2};

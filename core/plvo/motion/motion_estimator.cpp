@@ -7,9 +7,9 @@
 namespace plvo {
 namespace {
 
-// The consensus is solved over twice, first with wider χ² thresholds: a match far more precise than
-// the motion so far would otherwise fail the test for the motion's error, and never get to correct it. Wider
-// by the first factor around a motion that RANSAC found and refined, by the second around one that the caller
+// The consensus is solved over twice, first with wider χ² thresholds: a match far more precise than the
+// motion so far would otherwise fail the test for the motion's error, and never get to correct it. Wider by
+// the first factor around a motion that RANSAC found and refined, by the second around one that the caller
 // estimated.
 constexpr double kWiderThanRefined = 4;
 constexpr double kWiderThanEstimated = 9;
