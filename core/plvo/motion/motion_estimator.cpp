@@ -15,7 +15,7 @@ constexpr double kWiderThanRefined = 4;
 constexpr double kWiderThanEstimated = 9;
 // Where the wide round led more SDs away than this it is made again, from there: what matches were judged by
 // is not where the motion is, and a consensus at the thresholds would leave out good ones for good.
-constexpr double kFarSigmas = 5;
+constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
 // Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
 // error.
