@@ -75,46 +75,54 @@ TEST(Estimator, SameSeedSameBits) {
   EXPECT_EQ(a.ransac.draws, b.ransac.draws);
 }
 
-TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
-  Gaussian gaussian(17);
-  const SimulatedPair pair = test::simulate(gaussian, 200, 40, 0.4);
+// A pair whose motion RANSAC has drawn, and what other starts lead to.
+struct DrawnPair {
+  DrawnPair(std::uint64_t seed, int points, int lines, double outliers) {
+    Gaussian gaussian(seed);
+    pair = test::simulate(gaussian, points, lines, outliers);
+    drawn = bench.estimate(pair, {}, 42);
+  }
+  MotionEstimate estimate_from(const Vector6& off) {
+    const Se3 start = boxplus(pair.truth, off);
+    return bench.estimate(pair, {}, 42, {&start, {}, true});
+  }
+  double nees(const MotionEstimate& found) const {
+    return test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H));
+  }
+
+  SimulatedPair pair;
   Bench bench;
-  const MotionEstimate drawn = bench.estimate(pair, {}, 42);
-  ASSERT_EQ(drawn.status, StatusCode::kOk);
+  MotionEstimate drawn;
+};
+
+TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
+  DrawnPair pair(17, 200, 40, 0.4);
+  ASSERT_EQ(pair.drawn.status, StatusCode::kOk);
   Vector6 off;
   off << 3e-3, -2e-3, 2e-3, 2e-3, -1e-3, 1e-3;
-  const Se3 near = boxplus(pair.truth, off);
-  const MotionEstimate refined = bench.estimate(pair, {}, 42, {&near, {}, true});
+  const MotionEstimate refined = pair.estimate_from(off);
   ASSERT_EQ(refined.status, StatusCode::kOk);
   EXPECT_EQ(refined.ransac.draws, 0);
-  EXPECT_LT(test::nees(refined.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)),
-            0.1);
+  EXPECT_LT(pair.nees(refined), 0.1);
 
   // Nothing agrees with it: it is a prediction like any other.
-  const Se3 far = boxplus(pair.truth, 200 * off);
-  const MotionEstimate found = bench.estimate(pair, {}, 42, {&far, {}, true});
+  const MotionEstimate found = pair.estimate_from(200 * off);
   ASSERT_EQ(found.status, StatusCode::kOk);
   EXPECT_GT(found.ransac.draws, 0);
-  EXPECT_LT(test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)), 0.1);
+  EXPECT_LT(pair.nees(found), 0.1);
 }
 
 // Nothing, little or much of the matches may agree with an estimate, at first or when it is refined.
 TEST(Estimator, HoweverFarOffAnEstimateIsTheMotionIsFound) {
-  Gaussian gaussian(23);
-  const SimulatedPair pair = test::simulate(gaussian, 100, 30, 0.3);
-  Bench bench;
-  const MotionEstimate drawn = bench.estimate(pair, {}, 42);
-  ASSERT_EQ(drawn.status, StatusCode::kOk);
+  DrawnPair pair(23, 100, 30, 0.3);
+  ASSERT_EQ(pair.drawn.status, StatusCode::kOk);
   Vector6 off;
   off << 2e-3, -1e-3, 1e-3, 1e-3, -1e-3, 1e-3;
   for (double far = 1; far < 300; far *= 1.1) {
-    const Se3 start = boxplus(pair.truth, far * off);
-    const MotionEstimate found = bench.estimate(pair, {}, 42, {&start, {}, true});
+    const MotionEstimate found = pair.estimate_from(far * off);
     ASSERT_EQ(found.status, StatusCode::kOk) << far;
     // The same matches, and so the same motion but for where the solver stops.
-    EXPECT_LT(test::nees(found.T_current_reference, drawn.T_current_reference, test::inverse(drawn.C_H)),
-              1e-6)
-        << far;
+    EXPECT_LT(pair.nees(found), 1e-6) << far;
   }
 }
 
