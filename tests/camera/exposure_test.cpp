@@ -111,6 +111,22 @@ TEST(Exposure, DepthIsSeenWhereTheSurfaceWasAtItsTime) {
   }
 }
 
+TEST(Exposure, DepthSeesItInItsOwnRow) {
+  CameraModel camera = rolling_camera(0.03);
+  camera.depth_timing = {true, 0, 0.03};
+  Random random(10);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Exposure exposure(camera, velocity_of(random), uniform(random, -0.02, 0.02));
+    const double v = uniform(random, 0, 479);
+    const Vector3 p = back_project(camera.pinhole, uniform(random, 0, 639), v, uniform(random, 0.5, 5));
+    const Vector2 seen = project(camera.pinhole, exposure.as_depth_sees(p, v));
+    double row = v;
+    for (int i = 0; i < 20; ++i) row = project(camera.pinhole, exposure.at_depth_time(p, v, row)).y();
+    const Vector2 expected = project(camera.pinhole, exposure.at_depth_time(p, v, row));
+    EXPECT_LT((seen - expected).norm(), 0.2) << trial;
+  }
+}
+
 TEST(Exposure, DepthOfUnknownTimingComesWithItsColour) {
   const Vector6 velocity = Vector6::Ones();
   EXPECT_FALSE(Exposure(rolling_camera(0.03), velocity, 0.01).depth_apart());

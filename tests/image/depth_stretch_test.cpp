@@ -96,7 +96,7 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
         for (int i = 0; i < line.count; ++i) {
           const Vector2 seen = line.first + i * line.step;
           Vector2 located = seen;
-          const bool found = sampler.locate(located);
+          const bool found = sampler.locate(located, DepthSampler::kUnknown);
           if (!stretch.go_to(i)) continue;
           for (const int side : {-3, 0, 3}) {
             const Vector2 p = located + side * line.across;
@@ -147,11 +147,33 @@ TEST(DepthStretch, FollowsTheSurfaceThatIsSeen) {
     for (int i = 0; i < 90; ++i) {
       ASSERT_TRUE(stretch.go_to(i));
       Vector2 located(20 + 3 * i, row);
-      ASSERT_TRUE(sampler.locate(located));
+      ASSERT_TRUE(sampler.locate(located, DepthSampler::kUnknown));
       same += stretch.at(0) == sampler.at(static_cast<int>(located.x() + 0.5), static_cast<int>(row + 0.5));
     }
     EXPECT_GT(same, 70) << row;
   }
+}
+
+TEST(DepthSampler, WhoKnowsHowDeepFindsItWhereItIsLookedUp) {
+  Random random(11);
+  int compared = 0;
+  for (const Distortion& lens : kStretchLenses) {
+    const RawScene scene(rolling_camera(lens), [](int x, int y) { return 1 + 0.003 * x + 0.001 * y; });
+    for (int trial = 0; trial < 300; ++trial) {
+      const Exposure exposure(rolling_camera(lens), random_velocity(random), 0.02);
+      const DepthSampler sampler = scene.sampler(exposure);
+      const Vector2 seen(random.below(kRawWidth), random.below(kRawHeight));
+      Vector2 looked_up = seen, known = seen;
+      if (!sampler.locate(looked_up, DepthSampler::kUnknown)) continue;
+      const double depth =
+          sampler.at(static_cast<int>(looked_up.x() + 0.5), static_cast<int>(looked_up.y() + 0.5));
+      if (depth == 0) continue;
+      if (!sampler.locate(known, sampler.at_colour_time(seen.y(), looked_up, depth))) continue;
+      EXPECT_LT((known - looked_up).norm(), 0.3) << seen.transpose();
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 500);
 }
 
 TEST(DepthStretch, BesideTheImageThereIsNoDepth) {

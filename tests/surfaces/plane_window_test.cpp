@@ -123,11 +123,14 @@ TEST(PlaneWindow, IsCarriedFromDepthsTimeToColours) {
   velocity[2] = -0.5;
   const Exposure exposure(camera, velocity, -0.02);
   const DepthPicture picture(kWidth, kHeight, [](int, int) { return 1.51; });
-  SurfaceSample sample;
-  double depth_row = -1;
-  ASSERT_TRUE(observe_surface(picture.sampler(exposure), kPinhole, 60, 20, 1, sample, &depth_row));
-  EXPECT_NEAR(sample.p.z(), 1.5, 2 * DepthPicture::kUnit);
-  EXPECT_NEAR(depth_row, 20, 0.5);
+  for (const double expected_m : {DepthSampler::kUnknown, 1.5}) {
+    SurfaceSample sample;
+    double depth_row = -1;
+    ASSERT_TRUE(
+        observe_surface(picture.sampler(exposure), kPinhole, 60, 20, 1, sample, expected_m, &depth_row));
+    EXPECT_NEAR(sample.p.z(), 1.5, 2 * DepthPicture::kUnit);
+    EXPECT_NEAR(depth_row, 20, 0.5);
+  }
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 namespace plvo {
 namespace {
 
-// p after `seconds` at a constant velocity, to second order in the angle: a camera that turns by 2 rad/s errs
+// Where a point is at a constant velocity, to second order in the angle: a camera that turns by 2 rad/s errs
 // by 5e-6 rad within half a readout of 30 ms.
-Vector3 moved(const Vector3& p, const Vector3& v, const Vector3& omega, double seconds) {
-  const Vector3 theta = seconds * omega;
-  const Vector3 step = theta.cross(p) + seconds * v;
-  return p + step + 0.5 * theta.cross(step);
-}
+struct Path {
+  Vector3 p, rate, bend;
+  Path(const Vector3& at, const Vector3& v, const Vector3& omega)
+      : p(at), rate(omega.cross(at) + v), bend(0.5 * omega.cross(rate)) {}
+  Vector3 after(double seconds) const { return p + seconds * (rate + seconds * bend); }
+};
 
 }  // namespace
 
@@ -41,27 +42,41 @@ double Exposure::depth_lag_s(double v, double depth_v) const {
 
 Vector3 Exposure::at_mid_exposure(const Vector3& p) const {
   if (!rolling_ || !(p.z() > 0)) return p;
-  return moved(p, v_, omega_, -delay_s(p));
+  return Path(p, v_, omega_).after(-delay_s(p));
 }
 
 Vector3 Exposure::as_seen(const Vector3& p_mid) const {
   if (!rolling_ || !(p_mid.z() > 0)) return p_mid;
   // The row at which it is seen depends on when it is seen; each guess is twenty times better than the one
   // before.
+  const Path path(p_mid, v_, omega_);
   Vector3 seen = p_mid;
   constexpr int kGuesses = 3;
-  for (int i = 0; i < kGuesses && seen.z() > 0; ++i) seen = moved(p_mid, v_, omega_, delay_s(seen));
+  for (int i = 0; i < kGuesses && seen.z() > 0; ++i) seen = path.after(delay_s(seen));
   return seen;
 }
 
 Vector3 Exposure::rate(const Vector3& p) const { return v_ + omega_.cross(p); }
 
 Vector3 Exposure::at_depth_time(const Vector3& p, double v, double depth_v) const {
-  return moved(p, v_, omega_, depth_lag_s(v, depth_v));
+  return Path(p, v_, omega_).after(depth_lag_s(v, depth_v));
+}
+
+Vector3 Exposure::as_depth_sees(const Vector3& p, double v) const {
+  // As as_seen; of depth a tenth of a pixel is enough.
+  const Path path(p, v_, omega_);
+  Vector3 seen = p;
+  double depth_v = v;
+  constexpr int kGuesses = 2;
+  for (int i = 0; i < kGuesses && seen.z() > 0; ++i) {
+    seen = path.after(depth_lag_s(v, depth_v));
+    depth_v = pinhole_.fy * seen.y() / seen.z() + pinhole_.cy;
+  }
+  return seen;
 }
 
 Vector3 Exposure::from_depth_time(const Vector3& p, double v, double depth_v) const {
-  return moved(p, v_, omega_, -depth_lag_s(v, depth_v));
+  return Path(p, v_, omega_).after(-depth_lag_s(v, depth_v));
 }
 
 }  // namespace plvo

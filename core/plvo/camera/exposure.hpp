@@ -38,6 +38,8 @@ class Exposure {
   // p as colour's row v saw it → where it was when depth's row depth_v was exposed, and back. Rows in px.
   Vector3 at_depth_time(const Vector3& p, double v, double depth_v) const;
   Vector3 from_depth_time(const Vector3& p, double v, double depth_v) const;
+  // p as colour's row v saw it → where it was when that row of depth was exposed which shows it.
+  Vector3 as_depth_sees(const Vector3& p, double v) const;
 
   // Seconds from the exposure of colour's middle row to that of depth's row depth_v, if depth is apart.
   double depth_delay_s(double depth_v) const { return depth_lag_s(0.5 * last_row_, depth_v); }

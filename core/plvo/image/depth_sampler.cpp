@@ -210,18 +210,26 @@ bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, d
   return true;
 }
 
-bool DepthSampler::locate(Vector2& pixel) const {
+bool DepthSampler::locate(Vector2& pixel, double expected_m) const {
   if (!exposure_.depth_apart()) return true;
-  double depth_m = kUnknownDepth_m;
   Vector2 located = pixel;
-  if (!follow(pixel, kGuesses, located, depth_m)) return false;
+  if (expected_m > 0) {
+    const Pinhole& pinhole = exposure_.pinhole();
+    const Vector3 p =
+        exposure_.as_depth_sees(back_project(pinhole, pixel.x(), pixel.y(), expected_m), pixel.y());
+    if (!(p.z() > kNearestSeen_m)) return false;
+    located = project(pinhole, p);
+  } else {
+    double depth_m = kUnknownDepth_m;
+    if (!follow(pixel, kGuesses, located, depth_m)) return false;
+  }
   pixel = located;
   return located.x() >= 0 && located.y() >= 0 && located.x() < depth_.width && located.y() < depth_.height;
 }
 
-DepthSample DepthSampler::sample(double u, double v, int radius) const {
+DepthSample DepthSampler::sample(double u, double v, int radius, double expected_m) const {
   Vector2 located(u, v);
-  if (!locate(located)) return {};
+  if (!locate(located, expected_m)) return {};
   DepthSample result = sample_window(located, radius);
   if (result.depth_m > 0) result.depth_m = at_colour_time(v, located, result.depth_m);
   if (!(result.depth_m > 0)) return {};

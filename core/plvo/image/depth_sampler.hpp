@@ -37,8 +37,9 @@ class DepthSampler {
   DepthSampler with(const Exposure& exposure) const { return {depth_, map_, noise_, exposure}; }
 
   // Where the depth image shows what the colour image shows at `pixel`; false where it cannot be known. The
-  // place itself unless depth is exposed apart.
-  bool locate(Vector2& pixel) const;
+  // place itself unless depth is exposed apart. expected_m: how deep that is; kUnknown: it is looked up.
+  bool locate(Vector2& pixel, double expected_m) const;
+  static constexpr double kUnknown = 0;
   // The same by so many guesses, from where it may be, maybe beside the image, and how deep. False where
   // that is nearer than any sensor sees, or far from the image.
   bool follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const;
@@ -91,8 +92,8 @@ class DepthSampler {
 
   static constexpr int kMaxRadius = 3;
   // The depth at colour pixel (u, v), inside the image, from a plane fitted to the nearer surface in the
-  // window of (2·radius+1)² pixels around it; with radius 0 the one reading there.
-  DepthSample sample(double u, double v, int radius) const;
+  // window of (2·radius+1)² pixels around it; with radius 0 the one reading there. expected_m as in locate().
+  DepthSample sample(double u, double v, int radius, double expected_m = kUnknown) const;
 
   const DepthNoise& noise() const { return noise_; }
   const Exposure& exposure() const { return exposure_; }

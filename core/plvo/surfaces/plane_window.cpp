@@ -131,9 +131,9 @@ bool fit(const PlaneSums& s, InversePlane& plane) {
 }  // namespace
 
 bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u, double v,
-                     double noise_scale, SurfaceSample& sample, double* depth_row) {
+                     double noise_scale, SurfaceSample& sample, double expected_m, double* depth_row) {
   Vector2 located(u, v);
-  if (!depth.locate(located)) return false;
+  if (!depth.locate(located, expected_m)) return false;
   const DepthSampler::Place place(depth, located);
   if (!place.inside) return false;
   PlaneReadings window;

@@ -11,8 +11,10 @@ namespace plvo {
 
 // The surface that colour pixel (u, v), inside the image, shows. False where nearly all of the window must
 // have depth and does not, where it is no plane within the noise (an edge, a curve), or is seen at less than
-// about 9°. noise_scale: of the variances, over σ_d² of (2). depth_row, when asked for: where it was read.
+// about 9°. noise_scale: of the variances, over σ_d² of (2). expected_m: as DepthSampler::locate takes it.
+// depth_row, when asked for: where it was read.
 bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u, double v,
-                     double noise_scale, SurfaceSample& sample, double* depth_row = nullptr);
+                     double noise_scale, SurfaceSample& sample, double expected_m = DepthSampler::kUnknown,
+                     double* depth_row = nullptr);
 
 }  // namespace plvo

@@ -16,21 +16,30 @@ double registered_sigma_px(const PointConfig& config, const Alignment& alignment
   return sqrt(config.sigma_px * config.sigma_px + alignment.sigma_px * alignment.sigma_px);
 }
 
-// Where the reference keypoint's 3D point is seen after the motion.
-Prediction predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference) {
-  if (!(point.p.z() > 0)) return {};
+// Where the current image is expected to show something, and how deep.
+struct Expected {
+  Vector2 pixel = Vector2::Zero();
+  double depth_m = DepthSampler::kUnknown;
+};
+
+// The reference keypoint's 3D point after the motion; false where that is out of sight.
+bool predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference,
+             Expected& expected) {
+  if (!(point.p.z() > 0)) return false;
   const Vector3 p = view.exposure.as_seen(T_current_reference * point.p);
-  if (!(p.z() > kNearestSeen_m)) return {};
+  if (!(p.z() > kNearestSeen_m)) return false;
   const Vector2 pixel = project(view.pinhole, p);
   const GrayView image = view.pyramid.level(0);
-  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height)) return {};
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.width && pixel.y() < image.height))
+    return false;
+  expected = {pixel, p.z()};
+  return true;
 }
 
-// Adds a track of reference keypoint i, found at `pixel`, if there is depth.
+// Adds a track of reference keypoint i, found at `pixel`, if there is depth; expected_m as in sample().
 void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, double sigma_px,
-               PointTracks& tracks) {
-  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y(), view.config.depth_reach_px);
+               double expected_m, PointTracks& tracks) {
+  const DepthSample depth = view.depth.sample(pixel.x(), pixel.y(), view.config.depth_reach_px, expected_m);
   if (!(depth.depth_m > 0)) return;
   const std::size_t track = tracks.matches.size();
   if (!tracks.matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(track)})) return;
@@ -50,21 +59,21 @@ PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current
   return {project_derivative(pinhole, T_current_reference * p) * facing};
 }
 
-// Registers the keypoint's patch around (u, v) and, if it is there and has depth, adds a track.
-void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i, double u,
-                       double v, const AlignmentOptions& options, const PatchWarp& warp,
+// Registers the keypoint's patch around where it is expected and, if it is there and has depth, adds a track.
+void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i,
+                       const Expected& expected, const AlignmentOptions& options, const PatchWarp& warp,
                        PointTracks& tracks) {
   const Keypoint& keypoint = reference.keypoints[i];
   const double scale = 1 << keypoint.level;
   // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
   const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
   const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
-  const Alignment alignment =
-      align_patch(reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
-                  u / scale - offset_x, v / scale - offset_y, options, warp);
+  const Alignment alignment = align_patch(
+      reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
+      expected.pixel.x() / scale - offset_x, expected.pixel.y() / scale - offset_y, options, warp);
   if (!alignment.ok) return;
   add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
-            scale * registered_sigma_px(view.config, alignment), tracks);
+            scale * registered_sigma_px(view.config, alignment), expected.depth_m, tracks);
 }
 
 // The room from `first` on.
@@ -96,8 +105,11 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   const std::span<Prediction> predictions = scratch.take<Prediction>("predictions", n);
   FixedVector<Match> putative(scratch.take<Match>("putative matches", n));
   if (predictions.size() < n || putative.capacity() < n) return;
-  for (std::size_t i = 0; i < n; ++i)
-    predictions[i] = predict(view, reference_points[i], T_current_reference);
+  for (std::size_t i = 0; i < n; ++i) {
+    Expected at;
+    const bool visible = predict(view, reference_points[i], T_current_reference, at);
+    predictions[i] = {static_cast<float>(at.pixel.x()), static_cast<float>(at.pixel.y()), visible};
+  }
 
   PointMatchConfig config = view.config.match;
   config.radius_px = radius_px;
@@ -105,13 +117,14 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
   match_points(reference, predictions, current, image.width, image.height, config, scratch, putative);
   for (const Match& match : putative) {
     const Keypoint& found = current.keypoints[match.current];
+    const Vector2 at(static_cast<double>(found.u), static_cast<double>(found.v));
     if (view.config.registered)
-      register_keypoint(view, reference, match.reference, found.u, found.v, kRough,
+      register_keypoint(view, reference, match.reference, {at}, kRough,
                         warp_of(view.pinhole, reference_points[match.reference].p, T_current_reference),
                         tracks);
     else
-      add_track(view, match.reference, {static_cast<double>(found.u), static_cast<double>(found.v)},
-                view.config.sigma_px * (1 << found.level), tracks);
+      add_track(view, match.reference, at, view.config.sigma_px * (1 << found.level), DepthSampler::kUnknown,
+                tracks);
   }
 }
 
@@ -123,9 +136,9 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
   const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
     found.matches.clear();
     for (std::size_t i = begin; i < end; ++i) {
-      const Prediction prediction = predict(view, reference_points[i], T_current_reference);
-      if (prediction.visible)
-        register_keypoint(view, reference, i, prediction.u, prediction.v, AlignmentOptions{},
+      Expected expected;
+      if (predict(view, reference_points[i], T_current_reference, expected))
+        register_keypoint(view, reference, i, expected, AlignmentOptions{},
                           warp_of(view.pinhole, reference_points[i].p, T_current_reference), found);
     }
   };

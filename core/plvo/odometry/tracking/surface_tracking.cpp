@@ -23,7 +23,8 @@ bool match_sample(const DepthSampler& depth, const Pinhole& pinhole, const Noise
     return false;
   SurfaceSample to;
   double depth_row = 0;
-  if (!observe_surface(depth, pinhole, pixel.x(), pixel.y(), noise_scale, to, &depth_row)) return false;
+  if (!observe_surface(depth, pinhole, pixel.x(), pixel.y(), noise_scale, to, seen.z(), &depth_row))
+    return false;
   match.normal = T.R * from.normal;
   if (!(match.normal.dot(to.normal) > kLeastCosine)) return false;
   match.p_reference = from.p;
