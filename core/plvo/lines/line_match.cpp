@@ -2,8 +2,11 @@
 #include "plvo/lines/line_match.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
+#include "plvo/base/lanes.hpp"
+#include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -17,6 +20,36 @@ LinePose pose_of(const Segment& segment) {
   return {static_cast<float>(m.x()), static_cast<float>(m.y()), static_cast<float>(u.x()),
           static_cast<float>(u.y()), static_cast<float>(0.5 * segment.length_px())};
 }
+
+constexpr float kDirectionOne = 1 << 14;
+// Of a coordinate of a unit vector; of one without direction, which matches nothing, whatever.
+std::int16_t fixed(float unit) {
+  return unit > -1 ? unit < 1 ? round_to<std::int16_t>(unit * kDirectionOne) : 1 << 14 : -(1 << 14);
+}
+
+// Which of four current segments may point the predicted one's way: nearly all do not, so four are looked at
+// at once. Whom rounding lets through compatible() turns away.
+class AngleGate {
+ public:
+  AngleGate(const LinePose& predicted, float cos_angle)
+      : least_(static_cast<std::int32_t>(cos_angle * (kDirectionOne * kDirectionOne)) - kRounding) {
+    const std::int16_t x = fixed(predicted.ux), y = fixed(predicted.uy);
+    direction_ = Lanes{x, y, x, y, x, y, x, y};
+  }
+  unsigned passing(const std::int16_t* four) const {
+    Lanes directions;
+    load(four, directions);
+    WideLanes cosines;
+    dot_pairs(directions, direction_, cosines);
+    return ~negative_lanes(cosines - least_) & 0xfU;
+  }
+
+ private:
+  // Four numbers rounded by ½, times at most √2 · 2^14 between them.
+  static constexpr std::int32_t kRounding = 1 << 15;
+  Lanes direction_;
+  std::int32_t least_;
+};
 
 struct Gates {
   float cos_angle, max_offset, min_overlap;
@@ -67,23 +100,33 @@ void match_lines(std::span<const Segment> predicted, std::span<const LineDescrip
   const LineMatchScratch scratch = take_line_match_scratch(memory, predicted.size(), current.size());
   if (memory.exhausted()) return;
   for (std::size_t j = 0; j < current.size(); ++j) {
-    scratch.current[j] = pose_of(current[j]);
+    const LinePose pose = pose_of(current[j]);
+    scratch.current[j] = pose;
+    scratch.directions[2 * j] = fixed(pose.ux);
+    scratch.directions[2 * j + 1] = fixed(pose.uy);
     scratch.best_of_current[j] = {kNoLine, std::numeric_limits<int>::max()};
   }
+  std::fill(scratch.directions.begin() + static_cast<std::ptrdiff_t>(2 * current.size()),
+            scratch.directions.end(), std::int16_t{0});
   const Gates gates{static_cast<float>(cos(config.max_angle_rad)), static_cast<float>(config.max_offset_px),
                     static_cast<float>(config.min_overlap), static_cast<float>(cos(config.same_line_rad)),
                     static_cast<float>(config.same_line_px)};
 
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const LinePose pose = pose_of(predicted[i]);
+    const AngleGate angle(pose, gates.cos_angle);
     std::size_t count = 0;
-    for (std::size_t j = 0; j < current.size(); ++j) {
-      if (!compatible(pose, scratch.current[j], gates)) continue;
+    const auto consider = [&](std::size_t j) {
+      if (!compatible(pose, scratch.current[j], gates)) return;
       const int distance = descriptor_distance(reference_descriptors[i], current_descriptors[j]);
       scratch.candidates[count++] = {static_cast<std::uint16_t>(j), distance};
       LineCandidate& back = scratch.best_of_current[j];
       if (distance < back.distance) back = {static_cast<std::uint16_t>(i), distance};
-    }
+    };
+    for (std::size_t four = 0; four < current.size(); four += 4)
+      for (unsigned rest = angle.passing(scratch.directions.data() + 2 * four); rest != 0; rest &= rest - 1)
+        if (const std::size_t j = four + static_cast<std::size_t>(std::countr_zero(rest)); j < current.size())
+          consider(j);
     scratch.best_of_reference[i] =
         clear_best(scratch.candidates.first(count), scratch.current, gates, config).index;
   }

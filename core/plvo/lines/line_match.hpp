@@ -41,12 +41,15 @@ struct LineCandidate {
 
 struct LineMatchScratch {
   std::span<LinePose> current;
+  std::span<std::int16_t> directions;  // of the current ones: ux and uy in turns, 2^-14
   std::span<LineCandidate> candidates, best_of_current;
   std::span<std::uint16_t> best_of_reference;
 };
 constexpr LineMatchScratch take_line_match_scratch(Arena& memory, std::size_t references,
                                                    std::size_t currents) {
-  return {memory.take<LinePose>("line match", currents), memory.take<LineCandidate>("line match", currents),
+  return {memory.take<LinePose>("line match", currents),
+          memory.take<std::int16_t>("line match", (currents + 3) / 4 * 8),
+          memory.take<LineCandidate>("line match", currents),
           memory.take<LineCandidate>("line match", currents),
           memory.take<std::uint16_t>("line match", references)};
 }
