@@ -271,7 +271,7 @@ TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
   for (const Piece start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
-    const Rectangle r = fit_rectangle(f.field, region);
+    const Rectangle r = fit_rectangle(region, weigh(f.field, region));
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();
     double mass = 0;
     const Pixels pixels = pixels_of(region.pieces);
@@ -363,6 +363,7 @@ TEST(AngleSum, AddsWhatIsChosen) {
     const auto from = static_cast<Angle>(random.below(65536) - 32768);
     AngleSum sum(from);
     int beyond = 0;
+    std::int64_t squares = 0, found_squares = 0;
     for (int block = 0; block < 5; ++block) {
       std::array<Angle, kBlockPixels> eight;
       const auto bits = static_cast<unsigned>(random.below(256));
@@ -371,11 +372,20 @@ TEST(AngleSum, AddsWhatIsChosen) {
         eight[i] = static_cast<Angle>(from + off);
         if ((bits >> i & 1) == 0) continue;
         beyond += off;
+        squares += std::int64_t{off} * off;
       }
       sum.add(eight.data(), bits);
+      found_squares += squares_beyond(from, eight.data(), bits);
     }
     EXPECT_EQ(sum.beyond(), beyond);
+    EXPECT_EQ(found_squares, squares);
   }
+}
+
+TEST(AngleSum, SquaresHalfTurns) {
+  std::array<Angle, kBlockPixels> eight;
+  eight.fill(INT16_MIN);
+  EXPECT_EQ(squares_beyond(0, eight.data(), 0xffU), std::int64_t{8} << 30);
 }
 
 TEST(Validation, CountsWhatTheRectangleHolds) {
@@ -385,7 +395,7 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
   for (const Piece start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
-    Rectangle r = fit_rectangle(f.field, region);
+    Rectangle r = fit_rectangle(region, weigh(f.field, region));
     if (region.size < 10 || !is_dense(r, region.size)) continue;
     const double found = meaningfulness(f.field, alarms, r);
     const AngleRange across(

@@ -77,4 +77,24 @@ class AngleSum {
   WideLanes minus_{};
 };
 
+// The sum of their squares.
+inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits) {
+  if constexpr (kLaneLoops) {
+    std::int64_t sum = 0;
+    for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
+      const auto beyond = static_cast<Angle>(eight[std::countr_zero(rest)] - from);
+      sum += std::int64_t{beyond} * beyond;
+    }
+    return sum;
+  }
+  Lanes angles;
+  load(eight, angles);
+  const Lanes beyond = (angles - from) & chosen(bits);
+  WideLanes pairs;
+  dot_pairs(beyond, beyond, pairs);
+  // Of two half turns the sum is 2^31.
+  const auto sum_of = [&](int i) { return std::int64_t{static_cast<std::uint32_t>(pairs[i])}; };
+  return sum_of(0) + sum_of(1) + sum_of(2) + sum_of(3);
+}
+
 }  // namespace plvo::lsd

@@ -88,13 +88,6 @@ inline int last_x(Piece piece) {
   return piece.block * kBlockPixels + static_cast<int>(std::bit_width(unsigned{piece.bits})) - 1;
 }
 
-// Calls visit(x, y) for every pixel of a piece.
-template <typename Visit>
-void for_each_pixel(Piece piece, Visit&& visit) {
-  for (unsigned rest = piece.bits; rest != 0; rest &= rest - 1)
-    visit(piece.block * kBlockPixels + std::countr_zero(rest), static_cast<int>(piece.row));
-}
-
 // Angle and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The angle is
 // off by at most 0.004°, the magnitude (1/16 grey level) by at most a half.
 struct PolarGradient {

@@ -17,12 +17,6 @@ namespace {
 
 std::int32_t to_fixed(double value, double one) { return round_to<std::int32_t>(value * one); }
 
-struct Moments {
-  double mass = 0;
-  double x = 0, y = 0;            // centre, from the seed
-  double xx = 0, xy = 0, yy = 0;  // about the centre
-};
-
 // Of one piece, about its block: sums of the pixels' magnitudes, by themselves, times x, and times x².
 struct PieceMass {
   std::int32_t m, mx, mxx;
@@ -52,33 +46,6 @@ PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   add_pairs(m, mx, sums);
   add_pairs(mxx, mxx, more);
   return {sums[0] + sums[1], sums[2] + sums[3], more[0] + more[1]};
-}
-
-Moments weigh(const LevelLineField& field, const Region& region) {
-  // Integers about the seed: exact, so the order of the pixels does not matter.
-  const int seed_x = first_x(region.seed);
-  const std::int16_t* const magnitudes = field.magnitude_and_releases.data();
-  std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
-  for (const Piece piece : region.pieces) {
-    const PieceMass of = weigh(magnitudes + field.index(piece) * kBlockPixels, piece.bits);
-    const std::int64_t x = piece.block * kBlockPixels - seed_x;
-    const std::int64_t y = piece.row - region.seed.row;
-    const std::int64_t piece_mx = of.m * x + of.mx;
-    m += of.m;
-    mx += piece_mx;
-    my += of.m * y;
-    mxx += (piece_mx + of.mx) * x + of.mxx;
-    mxy += piece_mx * y;
-    myy += of.m * y * y;
-  }
-  Moments moments;
-  moments.mass = static_cast<double>(m);
-  moments.x = static_cast<double>(mx) / moments.mass;
-  moments.y = static_cast<double>(my) / moments.mass;
-  moments.xx = static_cast<double>(mxx) - moments.x * static_cast<double>(mx);
-  moments.xy = static_cast<double>(mxy) - moments.x * static_cast<double>(my);
-  moments.yy = static_cast<double>(myy) - moments.y * static_cast<double>(my);
-  return moments;
 }
 
 struct Range {
@@ -126,22 +93,57 @@ Range about(Range range, std::int64_t centre_q22) {
 
 }  // namespace
 
-Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
-  const Moments moments = weigh(field, region);
+void GradientMass::add(const LevelLineField& field, Piece seed, Piece piece) {
+  const PieceMass of =
+      weigh(field.magnitude_and_releases.data() + field.index(piece) * kBlockPixels, piece.bits);
+  const std::int64_t x = piece.block * kBlockPixels - first_x(seed);
+  const std::int64_t y = piece.row - seed.row;
+  const std::int64_t piece_mx = of.m * x + of.mx;
+  m += of.m;
+  mx += piece_mx;
+  my += of.m * y;
+  mxx += (piece_mx + of.mx) * x + of.mxx;
+  mxy += piece_mx * y;
+  myy += of.m * y * y;
+}
+
+void GradientMass::operator-=(const GradientMass& part) {
+  m -= part.m;
+  mx -= part.mx;
+  my -= part.my;
+  mxx -= part.mxx;
+  mxy -= part.mxy;
+  myy -= part.myy;
+}
+
+GradientMass weigh(const LevelLineField& field, const Region& region) {
+  GradientMass mass;
+  for (const Piece piece : region.pieces) mass.add(field, region.seed, piece);
+  return mass;
+}
+
+Rectangle fit_rectangle(const Region& region, const GradientMass& mass) {
+  // The centre, from the seed, and the moments about it.
+  const auto m = static_cast<double>(mass.m);
+  const double x = static_cast<double>(mass.mx) / m;
+  const double y = static_cast<double>(mass.my) / m;
+  const double xx = static_cast<double>(mass.mxx) - x * static_cast<double>(mass.mx);
+  const double xy = static_cast<double>(mass.mxy) - x * static_cast<double>(mass.my);
+  const double yy = static_cast<double>(mass.myy) - y * static_cast<double>(mass.my);
   // The first principal axis is at angle φ with tan 2φ = 2 xy / (xx − yy); half-angle formulas give it
   // without one.
-  const double difference = moments.xx - moments.yy;
-  const double h = sqrt(difference * difference + 4 * moments.xy * moments.xy);
+  const double difference = xx - yy;
+  const double h = sqrt(difference * difference + 4 * xy * xy);
   double dx = 1;
   double dy = 0;
   if (h > 0) {
     // Of cos φ and sin φ take the larger from its square root, the other from sin 2φ = 2 sin φ cos φ.
     if (difference >= 0) {
       dx = sqrt(0.5 * (1 + difference / h));
-      dy = moments.xy / (h * dx);
+      dy = xy / (h * dx);
     } else {
       dy = sqrt(0.5 * (1 - difference / h));
-      dx = moments.xy / (h * dy);
+      dx = xy / (h * dy);
     }
   }
   // The brighter side, where the gradients point, is on the right.
@@ -151,12 +153,12 @@ Rectangle fit_rectangle(const LevelLineField& field, const Region& region) {
     dy = -dy;
   }
   Rectangle r;
-  r.x_q8 = to_fixed(first_x(region.seed) + moments.x, 256);
-  r.y_q8 = to_fixed(region.seed.row + moments.y, 256);
+  r.x_q8 = to_fixed(first_x(region.seed) + x, 256);
+  r.y_q8 = to_fixed(region.seed.row + y, 256);
   r.dx = to_fixed(dx, 1 << Rectangle::kDirectionBits);
   r.dy = to_fixed(dy, 1 << Rectangle::kDirectionBits);
   // The smaller principal moment; rounding may take it below 0.
-  r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (moments.xx + moments.yy - h) / moments.mass)), 256);
+  r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (xx + yy - h) / m)), 256);
   const std::int64_t x_q8 = r.x_q8;
   const std::int64_t y_q8 = r.y_q8;
   Range along, across;

@@ -43,7 +43,16 @@ struct Rectangle {
 };
 
 // region: at least one pixel.
-Rectangle fit_rectangle(const LevelLineField& field, const Region& region);
+// The sums of a region's magnitudes, by themselves and times x, y, x², x y and y² from its seed: whole
+// numbers, so that pieces may come and go in any order.
+struct GradientMass {
+  std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
+  void add(const LevelLineField& field, Piece seed, Piece piece);
+  void operator-=(const GradientMass& part);
+};
+GradientMass weigh(const LevelLineField& field, const Region& region);
+
+Rectangle fit_rectangle(const Region& region, const GradientMass& mass);
 
 // Does the region fill at least 70 % of its rectangle?
 bool is_dense(const Rectangle& rectangle, std::int32_t region_size);

@@ -22,6 +22,13 @@ unsigned spread(unsigned seeds, unsigned fit) {
   return up | down;
 }
 
+// No pixel beside this one is open: many are left over so. At a block's ends it is not looked for.
+bool is_alone(const std::uint8_t* open, std::ptrdiff_t stride, unsigned bit) {
+  const unsigned beside = bit << 1 | bit >> 1;
+  const unsigned open_around = (open[0] & beside) | ((open[-stride] | open[stride]) & (beside | bit));
+  return (open_around | (bit & 0x81U)) == 0;
+}
+
 }  // namespace
 
 Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece> storage) {
@@ -49,9 +56,14 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
     piece_count += taken != 0 ? 1 : 0;
   };
   // The seed is taken, whether it was open or has been given back too often.
-  std::uint8_t& open_at_seed = open[field.index(seed)];
-  open_at_seed = static_cast<std::uint8_t>(open_at_seed | seed.bits);
-  take(field.index(seed), seed.row, seed.block, seed.bits);
+  const std::ptrdiff_t at_seed = field.index(seed);
+  open[at_seed] = static_cast<std::uint8_t>(open[at_seed] | seed.bits);
+  if (is_alone(open + at_seed, stride, seed.bits)) {
+    open[at_seed] = static_cast<std::uint8_t>(open[at_seed] & ~seed.bits);
+    pieces[0] = seed;
+    return {storage.first(1), 1, seed, seed_angle, 0};
+  }
+  take(at_seed, seed.row, seed.block, seed.bits);
   for (std::size_t next = 0; next < piece_count; ++next) {
     const Piece piece = pieces[next];
     const std::ptrdiff_t at = field.index(piece);

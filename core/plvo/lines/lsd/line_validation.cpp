@@ -17,48 +17,65 @@ std::int32_t squared_distance(int x, int y, Piece seed) {
   return dx * dx + dy * dy;
 }
 
+// Which pixels of the piece's block are at most so far from the seed.
+unsigned within(std::int32_t squared_px, Piece seed, Piece piece) {
+  const Lanes x =
+      Lanes{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(piece.block * kBlockPixels - first_x(seed));
+  const Lanes y = Lanes{} + static_cast<std::int16_t>(piece.row - seed.row);
+  Lanes first, last;
+  interleave(x, y, first, last);
+  WideLanes squared_first, squared_last;
+  dot_pairs(first, first, squared_first);
+  dot_pairs(last, last, squared_last);
+  const WideLanes most = WideLanes{} + squared_px;
+  return ~(negative_lanes(most - squared_first) | negative_lanes(most - squared_last) << 4);
+}
+
 // Twice the standard deviation of the angles within a rectangle's width of the seed, and never above kTau.
 Angle spread_near_seed(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
-  const std::int64_t reach = std::int64_t{rectangle.width_q8()} * rectangle.width_q8();
+  const auto reach =
+      static_cast<std::int32_t>(std::int64_t{rectangle.width_q8()} * rectangle.width_q8() / 65536);
   const Angle middle = region.angle();
-  std::int64_t n = 0;
-  std::int64_t sum = 0;
+  std::int32_t n = 0;
+  AngleSum sum(middle);
   std::int64_t squares = 0;
   for (const Piece piece : region.pieces) {
-    for_each_pixel(piece, [&](int x, int y) {
-      if (std::int64_t{squared_distance(x, y, region.seed)} * 65536 > reach) return;
-      const auto beyond = static_cast<Angle>(field.angles()[field.pixel(x, y)] - middle);
-      ++n;
-      sum += beyond;
-      squares += std::int64_t{beyond} * beyond;
-    });
+    const unsigned near = within(reach, region.seed, piece) & piece.bits;
+    if (near == 0) continue;
+    const Angle* const angles = field.angles() + field.index(piece) * kBlockPixels;
+    n += kOnes[near];
+    sum.add(angles, near);
+    squares += squares_beyond(middle, angles, near);
   }
-  const auto count = static_cast<double>(n);
-  const double mean = static_cast<double>(sum) / count;
-  const double variance = static_cast<double>(squares) / count - mean * mean;
+  const double mean = static_cast<double>(sum.beyond()) / n;
+  const double variance = static_cast<double>(squares) / n - mean * mean;
   const double spread = 2 * sqrt(std::max(variance, 0.0));
   return spread >= kTau ? kTau : std::max(kLeastTolerance, static_cast<Angle>(spread));
 }
 
 // Keeps of each piece the pixels that keep(piece) has as bits; gives the rest back.
 template <typename Keep>
-void filter(LevelLineField& field, Region& region, Keep&& keep) {
+void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& keep) {
   std::size_t kept = 0;
-  AngleSum sum(region.from);
-  region.size = 0;
+  AngleSum lost_angles(region.from);
+  GradientMass lost_mass;
   for (const Piece piece : region.pieces) {
     const unsigned bits = keep(piece) & piece.bits;
     Piece part = piece;
     part.bits = static_cast<std::uint8_t>(piece.bits & ~bits);
-    release(field, part);
+    if (part.bits != 0) {
+      lost_mass.add(field, region.seed, part);
+      lost_angles.add(field.angles() + field.index(part) * kBlockPixels, part.bits);
+      region.size -= kOnes[part.bits];
+      release(field, part);
+    }
     part.bits = static_cast<std::uint8_t>(bits);
     region.pieces[kept] = part;
     kept += bits != 0 ? 1 : 0;
-    region.size += kOnes[bits];
-    sum.add(field.angles() + field.index(piece) * kBlockPixels, bits);
   }
   region.pieces = region.pieces.first(kept);
-  region.beyond = sum.beyond();
+  region.beyond -= lost_angles.beyond();
+  mass -= lost_mass;
 }
 
 // What is at most `reach` (2^-8 px) to either side of a rectangle's axis.
@@ -84,20 +101,6 @@ class Strip {
   std::int32_t dx_, dy_, centre_, reach_;
 };
 
-// Which pixels of the piece's block are at most so far from the seed.
-unsigned within(std::int32_t squared_px, Piece seed, Piece piece) {
-  const Lanes x =
-      Lanes{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(piece.block * kBlockPixels - first_x(seed));
-  const Lanes y = Lanes{} + static_cast<std::int16_t>(piece.row - seed.row);
-  Lanes first, last;
-  interleave(x, y, first, last);
-  WideLanes squared_first, squared_last;
-  dot_pairs(first, first, squared_first);
-  dot_pairs(last, last, squared_last);
-  const WideLanes most = WideLanes{} + squared_px;
-  return ~(negative_lanes(most - squared_first) | negative_lanes(most - squared_last) << 4);
-}
-
 // A region whose gradient spreads further across than this is not one edge with whiskers but bent, or several
 // edges.
 constexpr std::int32_t kMaxAcrossSd_q8 = 192;
@@ -105,14 +108,15 @@ constexpr std::int32_t kMaxAcrossSd_q8 = 192;
 // Noise beside an edge grows onto it as whiskers, which make the rectangle wide and empty without moving the
 // edge. Cuts them off, beyond twice the standard deviation of the gradient's mass (at least a pixel), at most
 // twice; true if that makes the region dense.
-bool trim(LevelLineField& field, Region& region, Rectangle& rectangle, std::int32_t min_size) {
+bool trim(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
+          std::int32_t min_size) {
   for (int i = 0; i < 2 && !is_dense(rectangle, region.size); ++i) {
     if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
     const std::int32_t reach = std::max<std::int32_t>(256, 2 * rectangle.across_sd);
     const Strip strip(rectangle, reach);
-    filter(field, region, [&](Piece piece) { return strip.holding(piece); });
+    filter(field, region, mass, [&](Piece piece) { return strip.holding(piece); });
     if (region.size < min_size) return false;
-    rectangle = fit_rectangle(field, region);
+    rectangle = fit_rectangle(region, mass);
   }
   return is_dense(rectangle, region.size);
 }
@@ -134,26 +138,28 @@ int count_held(const LevelLineField& field, const AngleRange& range, int y, int 
 
 }  // namespace
 
-bool tighten(LevelLineField& field, Region& region, Rectangle& rectangle, std::int32_t min_size,
-             std::span<Piece> storage) {
+bool tighten(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
+             std::int32_t min_size, std::span<Piece> storage) {
   if (is_dense(rectangle, region.size)) return true;
   const Piece seed = region.seed;
   const Angle tolerance = spread_near_seed(field, region, rectangle);
-  if (trim(field, region, rectangle, min_size)) return true;
+  if (trim(field, region, mass, rectangle, min_size)) return true;
   for (const Piece piece : region.pieces) release(field, piece);
   region = grow(field, seed, tolerance, storage);
   if (region.size < min_size) return false;
-  rectangle = fit_rectangle(field, region);
+  mass = weigh(field, region);
+  rectangle = fit_rectangle(region, mass);
   std::int32_t farthest = 0;
   for (const Piece piece : region.pieces)
-    for_each_pixel(piece, [&](int x, int y) { farthest = std::max(farthest, squared_distance(x, y, seed)); });
+    farthest = std::max({farthest, squared_distance(first_x(piece), piece.row, seed),
+                         squared_distance(last_x(piece), piece.row, seed)});
   double squared_radius = farthest;
   for (int i = 0; i < 24 && !is_dense(rectangle, region.size); ++i) {
     squared_radius *= 0.75 * 0.75;
     const auto most = static_cast<std::int32_t>(squared_radius);
-    filter(field, region, [&](Piece piece) { return within(most, seed, piece); });
+    filter(field, region, mass, [&](Piece piece) { return within(most, seed, piece); });
     if (region.size < min_size) return false;
-    rectangle = fit_rectangle(field, region);
+    rectangle = fit_rectangle(region, mass);
   }
   return is_dense(rectangle, region.size);
 }

@@ -36,9 +36,10 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
     counts.grown_pixels += region.size;
     if (region.size < min_size) continue;
     ++counts.regions;
-    lsd::Rectangle rectangle = lsd::fit_rectangle(field, region);
+    lsd::GradientMass mass = lsd::weigh(field, region);
+    lsd::Rectangle rectangle = lsd::fit_rectangle(region, mass);
     if (!lsd::is_dense(rectangle, region.size)) {
-      const bool tightened = lsd::tighten(field, region, rectangle, min_size, scratch.region);
+      const bool tightened = lsd::tighten(field, region, mass, rectangle, min_size, scratch.region);
       counts.grown_pixels += region.size;
       if (!tightened) continue;
     }
