@@ -24,7 +24,7 @@ endif()
 # not: GCC 12 takes two of them together just behind the stores that made them one by one, and every such load waits for
 # both. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
 # processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
-# loops do not do so. golden_native_test holds this.
+# loops do not do so. house_embedding holds this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize$<SEMICOLON>-fno-tree-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <limits> <span> <Eigen/Core>)
