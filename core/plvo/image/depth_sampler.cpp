@@ -191,6 +191,15 @@ DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located, 
   beside = raw - Vector2(x, y);
 }
 
+void DepthSampler::fetch() const {
+  if constexpr (kSmallCode) return;  // small processors have no room to keep it
+  constexpr int kCacheLine = 64 / sizeof(std::uint16_t);
+  for (int y = 0; y < depth_.height; ++y) {
+    const volatile std::uint16_t* const row = depth_.data + y * depth_.stride;
+    for (int x = 0; x < depth_.width; x += kCacheLine) (void)row[x];
+  }
+}
+
 bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const {
   // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
   // rotation's, the same for every depth.

@@ -53,6 +53,10 @@ class DepthSampler {
         .z();
   }
 
+  // Brings the image near, for who is about to read all over it. It mostly comes from another processor, and
+  // each reading would wait for memory by itself; read in a row, it is there before it is asked for.
+  void fetch() const;
+
   // Depth at one pixel of the depth image, in metres, 0 where there is none or (x, y) is outside the image.
   double at(int x, int y) const {
     int raw_x = 0;

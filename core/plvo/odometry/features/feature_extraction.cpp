@@ -176,6 +176,7 @@ void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& ex
   if constexpr (!kLinesBuilt) return;
   const StageTimer timer(*config_, result, Stage::kLines);
   if (!lines.lifted) {
+    depth.fetch();
     lift_segments(depth.with(exposure), noise, scratch, lines);
     lines.lifted = true;
   } else if (exposure.depth_apart()) {
