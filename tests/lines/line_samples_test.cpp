@@ -31,7 +31,7 @@ TEST(LineSamples, OneAPixelIsThePapersCount) {
 TEST(LineSamples, WiderSpacingTakesFewerButLeavesEnough) {
   EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {100, 3, 0}), 0);
   EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {100, 3, 0}), 12);
-  EXPECT_EQ(sample_count(segment(0, 0, 18, 24), {100, 3, 0}), kEnoughSamples);
+  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {100, 3, 0}), kEnoughSamples);
   EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {100, 3, 0}), 33);
   EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {100, 3, 0}), 100);
 }

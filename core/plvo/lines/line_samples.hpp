@@ -26,7 +26,7 @@ inline constexpr int kMaxSideReach = 5;  // px
 
 // A segment so short that the spacing would leave fewer samples than this gets so many, but never more than
 // one a pixel.
-inline constexpr int kEnoughSamples = 14;
+inline constexpr int kEnoughSamples = 20;
 
 struct SampleOptions {
   int max_samples = kMaxLineSamples;
