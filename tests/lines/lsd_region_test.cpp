@@ -388,6 +388,41 @@ TEST(AngleSum, SquaresHalfTurns) {
   EXPECT_EQ(squares_beyond(0, eight.data(), 0xffU), std::int64_t{8} << 30);
 }
 
+// What is cut off is taken from a region's sums: they are those of what is left.
+TEST(Validation, ATightenedRegionHasTheSumsOfItsPixels) {
+  Field f = busy_field(9);
+  int cut = 0;
+  for (const Piece start : f.seeds()) {
+    if (!f.is_open(start)) continue;
+    Region region = grow(f.field, start, kTau, f.storage);
+    if (region.size < 10) continue;
+    const std::int32_t grown = region.size;
+    GradientMass mass = weigh(f.field, region);
+    Rectangle rectangle = fit_rectangle(region, mass);
+    if (!tighten(f.field, region, mass, rectangle, 10, f.storage) || region.size == grown) continue;
+    ++cut;
+    std::int32_t size = 0;
+    std::int64_t beyond = 0, m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
+    for (const auto& [px, py] : pixels_of(region.pieces)) {
+      ++size;
+      beyond += static_cast<Angle>(f.angle(px, py) - region.from);
+      const std::int64_t w = f.magnitude(px, py);
+      const std::int64_t x = px - first_x(region.seed), y = py - region.seed.row;
+      m += w;
+      mx += w * x;
+      my += w * y;
+      mxx += w * x * x;
+      mxy += w * x * y;
+      myy += w * y * y;
+    }
+    EXPECT_EQ(region.size, size);
+    EXPECT_EQ(region.beyond, beyond);
+    EXPECT_TRUE(mass.m == m && mass.mx == mx && mass.my == my);
+    EXPECT_TRUE(mass.mxx == mxx && mass.mxy == mxy && mass.myy == myy);
+  }
+  EXPECT_GT(cut, 10);
+}
+
 TEST(Validation, CountsWhatTheRectangleHolds) {
   Field f = busy_field(8);
   const FalseAlarms alarms(f.width, f.height);
