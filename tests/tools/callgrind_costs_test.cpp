@@ -46,6 +46,22 @@ TEST(CallgrindCosts, OfAFunctionAreItsOwnAndThoseOfWhatItCalls) {
   EXPECT_EQ(costs.of("absent("), 0U);
 }
 
+TEST(CallgrindCosts, OfALambdaAreThoseOfItsFunction) {
+  std::istringstream file(
+      "events: Ir\n"
+      "fn=(1) track(int)\n"
+      "10 5\n"
+      "cfn=(2) track(int)::{lambda(int)#1}::operator()(int) const\n"
+      "calls=1 7\n"
+      "* 100\n"
+      "\n"
+      "fn=(2)\n"
+      "7 100\n");
+  const CallgrindCosts costs = read_callgrind(file);
+  EXPECT_EQ(costs.total, 105U);
+  EXPECT_EQ(costs.of("track("), 105U);
+}
+
 TEST(CallgrindCosts, OfAFileThatIsNoProfileAreNone) {
   std::istringstream file("not a profile\n");
   EXPECT_EQ(read_callgrind(file).total, 0U);

@@ -31,7 +31,7 @@ bool read_cost(const std::string& line, std::uint64_t& cost) {
 std::uint64_t CallgrindCosts::of(const std::string& name) const {
   std::uint64_t sum = 0;
   for (const auto& [function, cost] : inclusive)
-    if (function.starts_with(name)) sum += cost;
+    if (function.starts_with(name) && function.find("::{lambda") == std::string::npos) sum += cost;
   return sum;
 }
 

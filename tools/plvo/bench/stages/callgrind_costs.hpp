@@ -13,7 +13,8 @@ struct CallgrindCosts {
   std::uint64_t total = 0;
   std::map<std::string, std::uint64_t> inclusive;  // by the function's demangled name
 
-  // Of all functions whose name begins so; 0 for none.
+  // Of all functions whose name begins so; 0 for none. A lambda that the compiler left a function of its own
+  // is in the costs of the one that it stands in.
   std::uint64_t of(const std::string& name) const;
 };
 
