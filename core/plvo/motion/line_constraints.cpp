@@ -120,7 +120,12 @@ struct Observed {
   Matrix3 G, G_current;  // line frames
 };
 
-bool weigh(const EndOffsets& first, const EndOffsets& second, const Landmark& landmark, Observed& at) {
+// first: the reference's, in the line frame at.G.
+bool observe_both(const EndOffsets& first, const Line3d& current, const Se3& T, const Landmark& landmark,
+                  Observed& at) {
+  at.G_current = T.R.lazyProduct(at.G);
+  const EndOffsets second = observe(current, T * landmark.q, at.G_current);
+
   // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
   // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference.
   at.stations = first.lambda - Vector2(first.C_le.lazyProduct(landmark.w_reference));
@@ -281,15 +286,13 @@ bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shar
   Landmark landmark{own.q, own.frame.col(2), Vector4::Zero(), Vector4::Zero()};
   Observed at;
   at.G = own.frame;
-  at.G_current = T.R.lazyProduct(at.G);
   // From its own line the reference's segment is nowhere off.
   EndOffsets first{Vector4::Zero(), {-own.half_length, own.half_length}, own.C, Matrix<2, 4>::Zero()};
-  if (!weigh(first, observe(current, T * landmark.q, at.G_current), landmark, at)) return false;
+  if (!observe_both(first, current, T, landmark, at)) return false;
   landmark = moved(landmark, at);
   at.G = frame_along(landmark.d);
-  at.G_current = T.R.lazyProduct(at.G);
   first = observe(reference_[matches_[i].reference], landmark.q, at.G);
-  if (!weigh(first, observe(current, T * landmark.q, at.G_current), landmark, at)) return false;
+  if (!observe_both(first, current, T, landmark, at)) return false;
   Held& held = held_[i];
   for (int end = 0; end < 2; ++end) {
     held.ends[end] = landmark.q + at.ends[end] * landmark.d;
