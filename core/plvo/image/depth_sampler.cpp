@@ -229,7 +229,7 @@ bool DepthSampler::locate(Vector2& pixel, double expected_m) const {
     if (!(p.z() > kNearestSeen_m)) return false;
     located = project(pinhole, p);
   } else {
-    double depth_m = kUnknownDepth_m;
+    double depth_m = kAssumedDepth_m;
     if (!follow(pixel, kGuesses, located, depth_m)) return false;
   }
   pixel = located;

@@ -44,7 +44,7 @@ class DepthSampler {
   // that is nearer than any sensor sees, or far from the image.
   bool follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const;
   static constexpr int kGuesses = 2;
-  static constexpr double kUnknownDepth_m = 2;
+  static constexpr double kAssumedDepth_m = 2;
   // A depth read at `located`, as it was when colour's row v was exposed.
   double at_colour_time(double v, const Vector2& located, double depth_m) const {
     if (!exposure_.depth_apart()) return depth_m;

@@ -39,7 +39,7 @@ bool DepthStretch::work_out(int i, Knot& knot) {
   Vector2 rate = Vector2::Zero();
   if (exposure.depth_apart()) {
     const bool led = depth_m_ > 0;
-    if (!led) depth_m_ = DepthSampler::kUnknownDepth_m;
+    if (!led) depth_m_ = DepthSampler::kAssumedDepth_m;
     located += shift_;
     if (!sampler_.follow(seen, led ? 1 : DepthSampler::kGuesses, located, depth_m_)) {
       shift_ = Vector2::Zero();
