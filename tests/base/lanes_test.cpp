@@ -133,6 +133,20 @@ TEST(Lanes, AreSortedAndAddedAsLoopsDo) {
   }
 }
 
+TEST(Lanes, AreScaledAsLoopsDo) {
+  Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    const Eight a = any_numbers(random);
+    Eight shares = any_numbers(random);
+    for (std::int16_t& share : shares) share = static_cast<std::int16_t>(share & 127);
+    Lanes fast;
+    lane_loops::Lanes slow;
+    scale_by_share(loaded<Lanes>(a), loaded<Lanes>(shares), fast);
+    scale_by_share(loaded<lane_loops::Lanes>(a), loaded<lane_loops::Lanes>(shares), slow);
+    EXPECT_EQ(stored(fast), stored(slow));
+  }
+}
+
 TEST(Lanes, PairsAreMultipliedAndRangesTakenAsLoopsDo) {
   Random random(3);
   WideLanes low = {}, high = {};

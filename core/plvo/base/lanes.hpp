@@ -15,6 +15,26 @@
 
 namespace plvo {
 
+// Sixteen bytes side by side, for what has no loops in its place.
+using Bytes = std::uint8_t __attribute__((vector_size(16)));
+
+// Bit i: the highest bit of byte i, all of whose bits are equal.
+inline __attribute__((always_inline)) unsigned set_bytes(const Bytes& bytes) {
+#ifdef __SSE2__
+  using Signed = char __attribute__((vector_size(16)));
+  return static_cast<unsigned>(__builtin_ia32_pmovmskb128(reinterpret_cast<Signed>(bytes)));
+#else
+  // Byte i of each half keeps its bit i; the product's highest byte is the sum of all.
+  static_assert(std::endian::native == std::endian::little);
+  std::uint64_t halves[2];
+  std::memcpy(halves, &bytes, sizeof halves);
+  const auto gather = [](std::uint64_t half) {
+    return static_cast<unsigned>((half & 0x8040201008040201U) * 0x0101010101010101U >> 56);
+  };
+  return gather(halves[0]) | gather(halves[1]) << 8;
+#endif
+}
+
 #ifdef PLVO_LANE_LOOPS
 
 using lane_loops::Lanes;
@@ -31,7 +51,6 @@ inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Lane
   // byte.
   static_assert(std::endian::native == std::endian::little);
   using Words = std::uint64_t __attribute__((vector_size(16)));
-  using Bytes = std::uint8_t __attribute__((vector_size(16)));
   const Words words = {bytes, 0};
   Bytes eight;
   std::memcpy(&eight, &words, sizeof eight);
@@ -51,7 +70,6 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes,
 inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const places[4], Lanes& first_two,
                                                       Lanes& others) {
   using Words = std::uint32_t __attribute__((vector_size(16)));
-  using Bytes = std::uint8_t __attribute__((vector_size(16)));
   std::uint32_t four[4];
   for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
   const Words words = {four[0], four[1], four[2], four[3]};
@@ -91,12 +109,11 @@ inline __attribute__((always_inline)) void store(const WideLanes& lanes, std::in
 // Into eight bytes, which must hold the numbers.
 inline __attribute__((always_inline)) void store_bytes(const Lanes& lanes, std::uint8_t* to) {
 #ifdef __SSE2__
-  using Bytes = char __attribute__((vector_size(16)));
-  const Bytes packed = __builtin_ia32_packuswb128(lanes, lanes);
+  const auto packed = __builtin_ia32_packuswb128(lanes, lanes);
   std::memcpy(to, &packed, 8);
 #else
-  using Bytes = std::uint8_t __attribute__((vector_size(8)));
-  const Bytes eight = __builtin_convertvector(lanes, Bytes);
+  using EightBytes = std::uint8_t __attribute__((vector_size(8)));
+  const EightBytes eight = __builtin_convertvector(lanes, EightBytes);
   std::memcpy(to, &eight, sizeof eight);
 #endif
 }
@@ -114,6 +131,16 @@ inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t 
   const Lanes most = Lanes{} + high;
   lanes = lanes < least ? least : lanes;
   lanes = lanes > most ? most : lanes;
+}
+
+// Lane by lane a · share / 2^8, rounded down; a share is 0 … 127.
+inline __attribute__((always_inline)) void scale_by_share(const Lanes& a, const Lanes& share, Lanes& scaled) {
+#ifdef __SSE2__
+  scaled = __builtin_ia32_pmulhw128(a, share << 8);
+#else
+  // By the high and the low byte: the product has more than 16 bits.
+  scaled = (a >> 8) * share + (((a & 255) * share) >> 8);
+#endif
 }
 
 // Four sums of a and four of b: of the numbers that are four apart.
@@ -169,8 +196,8 @@ inline __attribute__((always_inline)) unsigned negative_lanes(const Lanes& lanes
   const auto packed = __builtin_ia32_packsswb128(lanes, lanes);
   return static_cast<unsigned>(__builtin_ia32_pmovmskb128(packed)) & 0xffU;
 #else
-  using Bytes = std::int8_t __attribute__((vector_size(8)));
-  const Bytes bytes = __builtin_convertvector(lanes >> 15, Bytes);
+  using EightBytes = std::int8_t __attribute__((vector_size(8)));
+  const EightBytes bytes = __builtin_convertvector(lanes >> 15, EightBytes);
   std::uint64_t eight;
   std::memcpy(&eight, &bytes, sizeof eight);
   // Byte i keeps its bit i; the product's highest byte is the sum of all.

@@ -28,10 +28,13 @@ constexpr std::int16_t to_lane(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
 }
 
-// The last bits of a cell's position, 2^-16 px, say what it is. Plain: whole, and its rows fit the lanes.
-// Near: besides, its pixels lie in the raw image nearly as they do in this one (NearCell).
+// The last bits of a cell's position, 2^-16 px in x and in y, say what it is. Plain: whole, and its rows fit
+// the lanes. Near: besides, its pixels lie in the raw image nearly as they do in this one (NearCell).
+// Shifted: besides, all of them as many whole pixels away.
+constexpr std::int64_t kKinds = (std::int64_t{1} << 32) + 1;
 constexpr std::int64_t kPlain = 1;
-constexpr std::int64_t kNear = std::int64_t{1} << 32;
+constexpr std::int64_t kNear = kKinds;
+constexpr std::int64_t kShifted = std::int64_t{1} << 32;
 
 constexpr std::int16_t kWeightOne = 1 << kWeightBits;
 constexpr std::int16_t kWeightMask = kWeightOne - 1;
@@ -54,9 +57,8 @@ std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p
 // As blend, eight at once: of what lies above and below, blended along the row, · 2^7.
 inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const Lanes& lower, const Lanes& fy,
                                                       std::uint8_t* out) {
-  // The product of the change and fy, by the change's high and low bytes: it has more than 16 bits.
-  const Lanes change = lower - upper;
-  const Lanes half = (change >> 8) * fy + (((change & 255) * fy) >> 8);
+  Lanes half;
+  scale_by_share(lower - upper, fy, half);
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
 }
 
@@ -82,6 +84,23 @@ inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, 
   const Lanes top = along(from), centre = along(from + stride), bottom = along(from + 2 * stride);
   const Lanes is_below = y >= kWeightOne;
   blend_rows(is_below ? centre : top, is_below ? bottom : centre, y & kWeightMask, out);
+#endif
+}
+
+// The same where all x, and all y, are below 1 px.
+inline __attribute__((always_inline)) void blend_shifted(const std::uint8_t* from, std::ptrdiff_t stride,
+                                                         const Lanes& x, const Lanes& y, std::uint8_t* out) {
+#ifdef PLVO_LANE_LOOPS
+  for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i] + i * kWeightOne, y[i]);
+#else
+  const Lanes left = kWeightOne - x;
+  const auto along = [&](const std::uint8_t* row) {
+    Lanes a, b;
+    load_bytes(row, a);
+    load_bytes(row + 1, b);
+    return a * left + b * x;
+  };
+  blend_rows(along(from), along(from + stride), y, out);
 #endif
 }
 
@@ -138,6 +157,12 @@ struct UndistortionMap::NearCell {
               static_cast<std::int16_t>(lane(at - (base << kFractionBits)) + kRound);
       step = kSteps * lane(twist) + lane(down);
     }
+    // Where all are as many whole pixels right of theirs, or below: from there on.
+    __attribute__((always_inline)) void shift() {
+      const int whole = first[0] >> kBits;
+      base += whole;
+      first = first - static_cast<std::int16_t>(whole << kBits);
+    }
     // In 2^-7 px.
     __attribute__((always_inline)) void of_row(int j, Lanes& out) const {
       out = (first + step * static_cast<std::int16_t>(j) + static_cast<std::int16_t>(bow(j) * bend)) >>
@@ -147,9 +172,9 @@ struct UndistortionMap::NearCell {
 
   static constexpr std::int32_t kOne = 1 << kFractionBits;
   __attribute__((always_inline)) explicit NearCell(const Cell& c)
-      : x(x_of(c.at), x_of(c.right) - kOne, x_of(c.down), x_of(c.twist), x_of(c.bend_right),
+      : x(x_of(place(c)), x_of(c.right) - kOne, x_of(c.down), x_of(c.twist), x_of(c.bend_right),
           x_of(c.bend_down)),
-        y(y_of(c.at), y_of(c.right), y_of(c.down) - kOne, y_of(c.twist), y_of(c.bend_right),
+        y(y_of(place(c)), y_of(c.right), y_of(c.down) - kOne, y_of(c.twist), y_of(c.bend_right),
           y_of(c.bend_down)) {}
   Axis x, y;
 };
@@ -183,10 +208,14 @@ void UndistortionMap::init(const CameraModel& camera) {
               pair_of((d - c - b + a) / (kCell * kCell)),
               pair_of((at(kHalf, 0) + at(kHalf, kCell) - corners) / kSag),
               pair_of((at(0, kHalf) + at(kCell, kHalf) - corners) / kSag)};
-      cell.at &= ~(kPlain | kNear);
+      cell.at &= ~kKinds;
       if (kCell * (column + 1) > width_ || !is_plain(cell)) continue;
-      cell.at |= kPlain | kNear;
-      if (!is_near(cell)) cell.at &= ~kNear;
+      cell.at |= kNear;
+      bool shifted = false;
+      if (!is_near(cell, shifted))
+        cell.at ^= kNear ^ kPlain;
+      else if (shifted)
+        cell.at ^= kNear ^ kShifted;
     }
   }
 }
@@ -201,9 +230,10 @@ bool UndistortionMap::is_plain(const Cell& c) const {
   return true;
 }
 
-bool UndistortionMap::is_near(const Cell& c) const {
+bool UndistortionMap::is_near(const Cell& c, bool& shifted) const {
   constexpr int kMost = 2 * kWeightOne;
   const NearCell near(c);
+  shifted = true;
   if (near.x.base < 0 || near.y.base < 0 || near.x.base + kCell + 2 > width_ ||
       near.y.base + kCell + 2 > height_)
     return false;
@@ -221,21 +251,34 @@ bool UndistortionMap::is_near(const Cell& c) const {
       if (x[i] < 0 || y[i] < 0 || x[i] >= kMost || y[i] >= kMost || !close(x_of(at), near.x.base + i, x[i]) ||
           !close(y_of(at), near.y.base + j, y[i]))
         return false;
+      if (x[i] >> kWeightBits != near.x.first[0] >> NearCell::kBits ||
+          y[i] >> kWeightBits != near.y.first[0] >> NearCell::kBits)
+        shifted = false;
     }
   }
   return true;
 }
 
-// Rows of a near cell: each is read as three rows of the raw image.
+// Rows of a near cell: each is read as three rows of the raw image, as two where it is shifted.
+template <bool kIsShifted>
 void UndistortionMap::undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                                      std::ptrdiff_t out_stride) {
-  const NearCell near(cell);
+  NearCell near(cell);
+  if (kIsShifted) {
+    near.x.shift();
+    near.y.shift();
+  }
   const std::uint8_t* const from = raw.data + near.y.base * raw.stride + near.x.base;
   const auto undistort_row = [&](int j) __attribute__((always_inline)) {
     Lanes x, y;
     near.x.of_row(j, x);
     near.y.of_row(j, y);
-    blend_near(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
+    const std::uint8_t* const row = from + j * raw.stride;
+    std::uint8_t* const to = out + (j - first) * out_stride;
+    if constexpr (kIsShifted)
+      blend_shifted(row, raw.stride, x, y, to);
+    else
+      blend_near(row, raw.stride, x, y, to);
   };
   // Rows that are known when it is compiled: what their number is multiplied with is a constant.
   if (!kLaneLoops && first == 0 && last == kCell) {
@@ -310,9 +353,12 @@ void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int
     for (int x = 0; x < width_; x += kCell) {
       const Cell& c = cell(x, top);
       std::uint8_t* const out = ideal.row(top + first) + x;
-      if ((c.at & kNear) != 0)
-        undistort_near(c, first, last, raw, out, ideal.stride);
-      else if ((c.at & kPlain) != 0)
+      const std::int64_t kind = c.at & kKinds;
+      if (kind == kShifted && !kLaneLoops)
+        undistort_near<true>(c, first, last, raw, out, ideal.stride);
+      else if (kind == kShifted || kind == kNear)
+        undistort_near<false>(c, first, last, raw, out, ideal.stride);
+      else if (kind == kPlain)
         undistort_plain(c, first, last, raw, out, ideal.stride);
       else
         undistort_each(c, first, last, raw, std::min(kCell, width_ - x), out, ideal.stride);

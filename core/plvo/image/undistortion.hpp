@@ -124,8 +124,11 @@ class UndistortionMap {
   }
   static constexpr int within_cell(int x) { return static_cast<int>(static_cast<unsigned>(x) % kCell); }
   std::int64_t position(int x, int y) const { return position(cell(x, y), within_cell(x), within_cell(y)); }
+  // A cell's first pixel: its kind, which the last bits say, moves it by no more than 2^-16 px, and a shifted
+  // one as a near one.
+  static constexpr std::int64_t place(const Cell& c) { return c.at | (c.at >> 32 & 1); }
   static std::int64_t position(const Cell& c, int i, int j) {
-    return c.at + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
+    return place(c) + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
   }
   bool nearest(std::int64_t at, int& raw_x, int& raw_y) const {
     constexpr std::int32_t kHalf = 1 << (kFractionBits - 1);
@@ -138,12 +141,13 @@ class UndistortionMap {
   }
   // Do the rows of a whole cell fit the 16-bit lanes?
   bool is_plain(const Cell& c) const;
-  // Besides, is it read nearly as it lies?
-  bool is_near(const Cell& c) const;
+  // Besides, is it read nearly as it lies? And all of it as many whole pixels away?
+  bool is_near(const Cell& c, bool& shifted) const;
   struct NearCell;
   struct PlainStart;
 
   // The cell's rows from first to before last.
+  template <bool kIsShifted>
   static void undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                              std::ptrdiff_t out_stride);
   void undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
