@@ -133,6 +133,16 @@ TEST(Lanes, AreSortedAndAddedAsLoopsDo) {
   }
 }
 
+TEST(Lanes, OfSixteenBytesOneBitEach) {
+  Random random(6);
+  for (int round = 0; round < 200; ++round) {
+    const std::uint32_t chosen = random.below(1 << 16);
+    Bytes bytes = {};
+    for (int i = 0; i < 16; ++i) bytes[i] = (chosen >> i & 1) != 0 ? 255 : 0;
+    EXPECT_EQ(set_bytes(bytes), chosen);
+  }
+}
+
 TEST(Lanes, AreScaledAsLoopsDo) {
   Random random(5);
   for (int round = 0; round < 200; ++round) {

@@ -21,6 +21,13 @@ struct Cell {
   int x0, y0, x1, y1;  // pixels of its level, half open
 };
 
+// All bits of byte i where column x + i is one of the cell's.
+Bytes columns_of(const Cell& cell, int x) {
+  constexpr Bytes kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const auto columns = static_cast<std::uint8_t>(std::min<int>(cell.x1 - x, sizeof(Bytes)));
+  return kPlaces < columns ? ~Bytes{} : Bytes{};
+}
+
 // Threshold to start from: an eighth of the range of grey levels in the cell, of every second pixel.
 [[maybe_unused]] int contrast_threshold_each(GrayView image, const Cell& cell) {
   int low = 255;
@@ -38,11 +45,9 @@ struct Cell {
 // The same, sixteen columns at once. What lies beyond the cell is in the image, by the keypoints' margin.
 int contrast_threshold(GrayView image, const Cell& cell) {
   if constexpr (kLaneLoops) return contrast_threshold_each(image, cell);
-  using Bytes = std::uint8_t __attribute__((vector_size(16)));
   constexpr int kBytes = sizeof(Bytes);
   static_assert(kKeypointMargin >= kBytes);
   constexpr Bytes kNever = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};
-  constexpr Bytes kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   Bytes low = ~Bytes{}, high = {};
   for (int x = cell.x0; x < cell.x1; x += kBytes) {
     Bytes least = ~Bytes{}, most = {};
@@ -52,8 +57,7 @@ int contrast_threshold(GrayView image, const Cell& cell) {
       least = levels < least ? levels : least;
       most = levels > most ? levels : most;
     }
-    const auto columns = static_cast<std::uint8_t>(std::min(cell.x1 - x, kBytes));
-    const Bytes out = (kPlaces < columns ? Bytes{} : ~Bytes{}) | kNever;
+    const Bytes out = ~columns_of(cell, x) | kNever;
     least |= out;
     most &= ~out;
     low = least < low ? least : low;
@@ -66,6 +70,13 @@ int contrast_threshold(GrayView image, const Cell& cell) {
     highest = std::max<std::uint8_t>(highest, high[i]);
   }
   return (highest - lowest) / 8;
+}
+
+// Of a byte at most 128 each.
+template <typename Word>
+Word sum_of_bytes(Word bytes) {
+  constexpr Word kPairs = ~Word{0} / 0xffff;  // … 00010001: the lowest bit of every two bytes
+  return ((bytes & 255 * kPairs) + (bytes >> 8 & 255 * kPairs)) * kPairs >> (8 * sizeof(Word) - 16);
 }
 
 // The segment test's scores of one row of cells and a rim of one pixel around it. Those up to the noise floor
@@ -86,18 +97,62 @@ class Band {
                        scores_.data() + (y - y0_) * stride_);
   }
 
-  // Scores side by side in a word of the processor, a byte each.
-  using Word = std::size_t;
-  static constexpr int kAtOnce = sizeof(Word);
-
   // Pixels of the cell that pass at this threshold, 0 … 127.
   int count_above(const Cell& cell, int threshold) const {
-    constexpr Word kPairs = ~Word{0} / 0xffff;  // … 00010001: the lowest bit of every two bytes
+    if constexpr (kLaneLoops) return count_above_by_words(cell, threshold);
+    int count = 0;
+    for (int x = cell.x0; x < cell.x1; x += kBytes) {
+      Bytes counts = {};  // of a column in each byte: a cell has at most kMaxCell rows
+      for (int y = cell.y0; y < cell.y1; ++y) counts -= read(x, y) > splat(threshold);
+      counts &= columns_of(cell, x);
+      std::uint64_t halves[2];
+      std::memcpy(halves, &counts, sizeof halves);
+      count += static_cast<int>(sum_of_bytes(halves[0]) + sum_of_bytes(halves[1]));
+    }
+    return count;
+  }
+
+  // So many pixels from x on, of a row, are looked at together.
+  static constexpr int kAtOnce = kLaneLoops ? sizeof(std::size_t) : sizeof(Bytes);
+
+  // Bit i: the pixel (x + i, y) is in the cell, passes, and is a local maximum. Of equal neighbours the first
+  // is the maximum: the suppression has a total order.
+  unsigned maxima(const Cell& cell, int x, int y, int threshold) const {
+    if constexpr (kLaneLoops) return maxima_by_words(cell, x, y, threshold);
+    const Bytes centre = read(x, y);
+    const Bytes least =
+        higher(higher(higher(read(x - 1, y - 1), read(x, y - 1)), higher(read(x + 1, y - 1), read(x - 1, y))),
+               splat(threshold));
+    const Bytes reached =
+        higher(higher(read(x + 1, y), read(x - 1, y + 1)), higher(read(x, y + 1), read(x + 1, y + 1)));
+    const Bytes is_maximum = (centre > least) & (centre >= reached);
+    return set_bytes(is_maximum) & ((1U << std::min(cell.x1 - x, kBytes)) - 1);
+  }
+
+ private:
+  static constexpr int kBytes = sizeof(Bytes);
+
+  const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
+
+  // What lies beyond the cell is not looked at; there is still memory of the band's.
+  Bytes read(int x, int y) const {
+    Bytes scores;
+    std::memcpy(&scores, at(x, y), sizeof scores);
+    return scores;
+  }
+  static Bytes splat(int level) { return Bytes{} + static_cast<std::uint8_t>(level); }
+  static Bytes higher(const Bytes& a, const Bytes& b) { return a > b ? a : b; }
+
+  // The same without registers for bytes: scores side by side in a word of the processor, a byte each.
+  using Word = std::size_t;
+  static constexpr Word kHighest = ~Word{0} / 255 * 128;  // of every byte
+
+  int count_above_by_words(const Cell& cell, int threshold) const {
     Word count = 0;
     for (int x = cell.x0; x < cell.x1; x += kAtOnce) {
-      Word counts = 0;  // of a column in each byte: a cell has at most kMaxCell rows
+      Word counts = 0;
       for (int y = cell.y0; y < cell.y1; ++y) counts += above(cell, x, y, threshold) >> 7;
-      count += ((counts & 255 * kPairs) + (counts >> 8 & 255 * kPairs)) * kPairs >> (8 * kAtOnce - 16);
+      count += sum_of_bytes(counts);
     }
     return static_cast<int>(count);
   }
@@ -105,13 +160,21 @@ class Band {
   // Of the kAtOnce pixels from x on, those of the cell that pass: the highest bit of a byte each.
   Word above(const Cell& cell, int x, int y, int threshold) const {
     Word scores = 0;
-    std::memcpy(&scores, at(x, y), sizeof scores);  // beyond the cell there is still memory of the band's
+    std::memcpy(&scores, at(x, y), sizeof scores);
     const Word sums = (scores & ~kHighest) + (kHighest >> 7) * static_cast<Word>(127 - threshold);
     const Word hits = (sums | scores) & kHighest;
     return x + kAtOnce <= cell.x1 ? hits : hits & ((Word{1} << (8 * (cell.x1 - x))) - 1);
   }
 
-  // Of equal neighbours the first is the maximum: the suppression has a total order.
+  unsigned maxima_by_words(const Cell& cell, int x, int y, int threshold) const {
+    unsigned bits = 0;
+    for (Word hits = above(cell, x, y, threshold); hits != 0; hits &= hits - 1) {
+      const int i = std::countr_zero(hits) / 8;
+      bits |= (is_maximum(x + i, y) ? 1U : 0U) << i;
+    }
+    return bits;
+  }
+
   bool is_maximum(int x, int y) const {
     const std::uint8_t* s = at(x, y);
     const std::uint8_t* above = s - stride_;
@@ -120,11 +183,6 @@ class Band {
     return above[-1] < centre && above[0] < centre && above[1] < centre && s[-1] < centre && s[1] <= centre &&
            below[-1] <= centre && below[0] <= centre && below[1] <= centre;
   }
-
- private:
-  static constexpr Word kHighest = ~Word{0} / 255 * 128;  // of every byte
-
-  const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
   std::span<std::uint8_t> scores_;
   int x0_ = 0, y0_ = 0, stride_ = 0;  // of the rim's first pixel, and from row to row
@@ -208,9 +266,8 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
   DepthQueue queue(search.depth, best);
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int block = cell.x0; block < cell.x1; block += Band::kAtOnce) {
-      for (Band::Word hits = band.above(cell, block, y, threshold); hits != 0; hits &= hits - 1) {
-        const int x = block + std::countr_zero(hits) / 8;
-        if (!band.is_maximum(x, y)) continue;
+      for (unsigned maxima = band.maxima(cell, block, y, threshold); maxima != 0; maxima &= maxima - 1) {
+        const int x = block + std::countr_zero(maxima);
         const auto strength = static_cast<float>(corner_strength(image, x, y));
         if (strength < static_cast<float>(search.config.min_strength)) continue;
         ++search.found;
@@ -266,9 +323,16 @@ Keypoint refine(const Pyramid& pyramid, const Candidate& candidate) {
 // strongest.
 std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t capacity) {
   if (candidates.size() <= capacity) return candidates.size();
-  Candidate* first = candidates.begin();
+  // Ranks beyond that one need no order.
+  std::array<std::size_t, kKeypointsPerCell> of_rank{};
+  for (const Candidate& candidate : candidates) ++of_rank[candidate.rank];
+  std::size_t last_rank = 0;
+  for (std::size_t fitting = of_rank[0]; fitting < capacity; fitting += of_rank[last_rank]) ++last_rank;
+  Candidate* const first = candidates.begin();
+  Candidate* const end = std::partition(
+      first, candidates.end(), [&](const Candidate& candidate) { return candidate.rank <= last_rank; });
   // Rank, then strength, then place: a total order, so that the sort's algorithm cannot show.
-  heap_sort(first, candidates.end(), [](const Candidate& a, const Candidate& b) {
+  heap_sort(first, end, [](const Candidate& a, const Candidate& b) {
     if (a.rank != b.rank) return a.rank < b.rank;
     if (a.strength != b.strength) return a.strength > b.strength;
     if (a.level != b.level) return a.level < b.level;
