@@ -50,18 +50,20 @@ TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
   EXPECT_EQ(read_file(folder / "out" / "growth.md"), run.out);
 
   const Rows sizes = rows_below(run.out, "Image size");
-  ASSERT_EQ(sizes.size(), 1U + 4) << run.out;
-  EXPECT_EQ(sizes[3][0], "640×480");
-  EXPECT_EQ(number(sizes, 3, "× default"), 1);
-  EXPECT_LT(number(sizes, 1, "keypoints"), number(sizes, 2, "keypoints")) << "the room of Limits::qvga";
-  for (std::size_t row = 1; row < 4; ++row) {
+  constexpr std::size_t kTiny = 1, kQvgaRoom = 2, kQvga = 3, kVga = 4, kLargest = 5;
+  ASSERT_EQ(sizes.size(), 1 + kLargest) << run.out;
+  EXPECT_EQ(sizes[kVga][0], "640×480");
+  EXPECT_EQ(number(sizes, kVga, "× default"), 1);
+  EXPECT_LT(number(sizes, kTiny, "keypoints"), number(sizes, kQvgaRoom, "keypoints"));
+  EXPECT_LT(number(sizes, kQvgaRoom, "keypoints"), number(sizes, kQvga, "keypoints"));
+  for (std::size_t row = kTiny; row < kLargest; ++row) {
     for (const char* column : {"image", "lines", "all", "× default"})
       EXPECT_LE(number(sizes, row, column), number(sizes, row + 1, column)) << run.out;
     EXPECT_GT(number(sizes, row, "CPU ×"), 0);
   }
   // Four times the pixels, four times the reading of them.
-  EXPECT_NEAR(number(sizes, 4, "image") / number(sizes, 3, "image"), 4, 0.3);
-  for (std::size_t row = 1; row <= 4; ++row) {
+  EXPECT_NEAR(number(sizes, kLargest, "image") / number(sizes, kVga, "image"), 4, 0.3);
+  for (std::size_t row = kTiny; row <= kLargest; ++row) {
     double sum = 0;
     for (const char* column : {"image", "points", "lines", "matching", "motion", "rest"})
       sum += number(sizes, row, column);
@@ -73,7 +75,7 @@ TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
   EXPECT_EQ(number(walks, 1, "frames"), 2);
   EXPECT_GE(number(walks, 1, "p99"), number(walks, 1, "median"));
   EXPECT_GE(number(walks, 1, "most"), number(walks, 1, "p99"));
-  EXPECT_NEAR(number(walks, 1, "median"), number(sizes, 3, "all"), 0.11) << "the same frames";
+  EXPECT_NEAR(number(walks, 1, "median"), number(sizes, kVga, "all"), 0.11) << "the same frames";
   EXPECT_NE(run.out.find("\n- rendered walk, p99 / median: "), std::string::npos) << run.out;
 }
 

@@ -49,13 +49,13 @@ Status measure_stages(const NamedFolder& sequence, const JobOptions& options, co
                       StageTimes& times) {
   RecordedCamera camera;
   if (Status status = open(sequence, options, camera); !status.ok()) return status;
-  Limits limits;
+  Limits limits = setting.tiny ? Limits::tiny() : Limits();
   limits.width = camera.model().width;
   limits.height = camera.model().height;
   limits.keypoints = setting.keypoints;
   limits.segments = setting.segments;
   if (Status status = limits.validate(); !status.ok()) return status;
-  Config config;
+  Config config = setting.tiny ? Config::tiny() : Config();
   config.stage_clock = posix_thread_cpu_ns;
   std::vector<std::byte> memory(required_bytes(limits) + kArenaAlignment);
   Odometry odometry;

@@ -19,6 +19,7 @@ enum class Replacement : std::uint8_t { kRecorded, kNoise, kStripes, kCheckerboa
 
 struct StageSetting {
   Replacement replacement = Replacement::kRecorded;
+  bool tiny = false;                   // Config::tiny(), and what of Limits::tiny() is not below
   int keypoints = Limits{}.keypoints;  // room for so many
   int segments = Limits{}.segments;
 };

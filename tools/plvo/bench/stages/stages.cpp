@@ -115,6 +115,14 @@ void add_stages(CLI::App& app, int& exit_code) {
                    "own (default), or what is hardest: noise, stripes, checkerboard")
       ->transform(CLI::CheckedTransformer(replacements).description(""))
       ->type_name("WHAT");
+  command->add_flag_callback(
+      "--tiny",
+      [options] {
+        options->setting.tiny = true;
+        options->setting.keypoints = Limits::tiny().keypoints;
+        options->setting.segments = Limits::tiny().segments;
+      },
+      "As plvo run --preset tiny, but for --keypoints and --segments where they are given");
   command
       ->add_option("--keypoints", options->setting.keypoints,
                    fmt::format("Room for so many (default {})", options->setting.keypoints))
