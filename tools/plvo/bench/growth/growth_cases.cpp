@@ -22,15 +22,17 @@ class Planner {
   }
 
   void add_sizes() {
-    StageSetting small;
-    small.keypoints = Limits::qvga().keypoints;
-    small.segments = Limits::qvga().segments;
-    StageSetting tiny;
+    StageSetting tiny, quarter, small;
     tiny.tiny = true;
     tiny.keypoints = Limits::tiny().keypoints;
     tiny.segments = Limits::tiny().segments;
+    quarter.keypoints = Limits{}.keypoints / 4;
+    quarter.segments = Limits{}.segments / 4;
+    small.keypoints = Limits::qvga().keypoints;
+    small.segments = Limits::qvga().segments;
     GrowthTable table{"Image size", "size", {}};
     table.rows.push_back({"320×240, tiny", add_case(0.5, tiny, options_.frames)});
+    table.rows.push_back({"320×240, a quarter of the features", add_case(0.5, quarter, options_.frames)});
     table.rows.push_back({"320×240, room of Limits::qvga", add_case(0.5, small, options_.frames)});
     table.rows.push_back({"320×240", add_case(0.5, {}, options_.frames)});
     for (const GrowthTable::Row& row : table.rows)

@@ -91,7 +91,7 @@ std::string verdict(const GrowthPlan::Bound& bound, const std::vector<GrowthResu
       break;
     case GrowthPlan::Bound::Of::kP99OfMedian: value = p99_of_median(instructions(result)); break;
   }
-  return fmt::format("- {}: {:.2f}, wanted at most {:.2f}: {}\n", bound.what, value, bound.most,
+  return fmt::format("- {}: {:.3f}, wanted at most {:.3f}: {}\n", bound.what, value, bound.most,
                      value <= bound.most ? "held" : "NOT held");
 }
 
