@@ -13,13 +13,16 @@ TEST(GrowthCases, ChangeOneThingAtATime) {
   GrowthPlan plan;
   ASSERT_TRUE(plan_growth({}, {}, plan).ok());
   ASSERT_EQ(plan.tables.size(), 4U);
-  const std::size_t rows[] = {4, 5, 6, 4};
+  const std::size_t rows[] = {6, 5, 6, 4};
   std::size_t measured = 1 + plan.walks.rows.size();  // the first is in each of these tables
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(plan.tables[i].rows.size(), rows[i]) << plan.tables[i].title;
     measured += rows[i] - 1;
   }
   EXPECT_EQ(plan.cases.size(), measured) << "nothing is measured twice";
+  const StageSetting& tiny = plan.cases[plan.tables[0].rows[0].measured].setting;
+  EXPECT_TRUE(tiny.tiny);
+  EXPECT_EQ(tiny.segments, Limits::tiny().segments);
   const StageSetting usual;
   for (const std::size_t table : {1U, 2U, 3U}) {
     for (const GrowthTable::Row& row : plan.tables[table].rows) {
@@ -28,12 +31,13 @@ TEST(GrowthCases, ChangeOneThingAtATime) {
                           (one.setting.segments != usual.segments ? 1 : 0) +
                           (one.setting.replacement != usual.replacement ? 1 : 0);
       EXPECT_EQ(changed, row.measured == 0 ? 0 : 1) << row.name;
+      EXPECT_FALSE(one.setting.tiny) << row.name;
       EXPECT_EQ(one.sequence.folder, plan.cases[0].sequence.folder) << row.name;
     }
   }
   EXPECT_EQ(plan.cases[plan.tables[1].rows[4].measured].setting.keypoints, 2000);
   EXPECT_EQ(plan.cases[plan.tables[2].rows[0].measured].setting.segments, 20);
-  EXPECT_EQ(plan.bounds.size(), 2U + 3 + 1);
+  EXPECT_EQ(plan.bounds.size(), 4U + 3 + 1);
 }
 
 TEST(GrowthCases, AreThoseOfTheTablesAskedFor) {

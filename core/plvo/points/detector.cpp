@@ -72,7 +72,7 @@ int contrast_threshold(GrayView image, const Cell& cell) {
   return (highest - lowest) / 8;
 }
 
-// Of a byte at most 128 each.
+// Of bytes of at most 128.
 template <typename Word>
 Word sum_of_bytes(Word bytes) {
   constexpr Word kPairs = ~Word{0} / 0xffff;  // … 00010001: the lowest bit of every two bytes
