@@ -18,20 +18,22 @@ namespace plvo {
 // Sixteen bytes side by side, for what has no loops in its place.
 using Bytes = std::uint8_t __attribute__((vector_size(16)));
 
-// Bit i: the highest bit of byte i, all of whose bits are equal.
+// Bit i: byte i of eight, all of whose bits are equal.
+inline __attribute__((always_inline)) unsigned gather_bytes(std::uint64_t eight) {
+  // Byte i keeps its bit i; the product's highest byte is the sum of all.
+  static_assert(std::endian::native == std::endian::little);
+  return static_cast<unsigned>((eight & 0x8040201008040201U) * 0x0101010101010101U >> 56);
+}
+
+// The same of sixteen.
 inline __attribute__((always_inline)) unsigned set_bytes(const Bytes& bytes) {
 #ifdef __SSE2__
   using Signed = char __attribute__((vector_size(16)));
   return static_cast<unsigned>(__builtin_ia32_pmovmskb128(reinterpret_cast<Signed>(bytes)));
 #else
-  // Byte i of each half keeps its bit i; the product's highest byte is the sum of all.
-  static_assert(std::endian::native == std::endian::little);
   std::uint64_t halves[2];
   std::memcpy(halves, &bytes, sizeof halves);
-  const auto gather = [](std::uint64_t half) {
-    return static_cast<unsigned>((half & 0x8040201008040201U) * 0x0101010101010101U >> 56);
-  };
-  return gather(halves[0]) | gather(halves[1]) << 8;
+  return gather_bytes(halves[0]) | gather_bytes(halves[1]) << 8;
 #endif
 }
 
@@ -200,9 +202,7 @@ inline __attribute__((always_inline)) unsigned negative_lanes(const Lanes& lanes
   const EightBytes bytes = __builtin_convertvector(lanes >> 15, EightBytes);
   std::uint64_t eight;
   std::memcpy(&eight, &bytes, sizeof eight);
-  // Byte i keeps its bit i; the product's highest byte is the sum of all.
-  static_assert(std::endian::native == std::endian::little);
-  return static_cast<unsigned>((eight & 0x8040201008040201U) * 0x0101010101010101U >> 56);
+  return gather_bytes(eight);
 #endif
 }
 

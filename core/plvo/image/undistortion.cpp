@@ -62,12 +62,25 @@ inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const 
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
 }
 
-// Eight at once, each from its own column of the row `from` on: x and y in 2^-7 px, from 0 to below 2 px.
+// Eight at once, each from its own column of the row `from` on: x and y in 2^-7 px, from 0 to below 2 px; to
+// below 1 px where they are shifted.
+template <bool kIsShifted>
 inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, std::ptrdiff_t stride,
                                                       const Lanes& x, const Lanes& y, std::uint8_t* out) {
 #ifdef PLVO_LANE_LOOPS
   for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i] + i * kWeightOne, y[i]);
 #else
+  if constexpr (kIsShifted) {
+    const Lanes left = kWeightOne - x;
+    const auto along = [&](const std::uint8_t* row) {
+      Lanes a, b;
+      load_bytes(row, a);
+      load_bytes(row + 1, b);
+      return a * left + b * x;
+    };
+    blend_rows(along(from), along(from + stride), y, out);
+    return;
+  }
   // Nothing is fetched from a place of its own: of three pixels of each of three rows all are weighed, and
   // one has no weight.
   const Lanes beyond = x - kWeightOne;
@@ -84,23 +97,6 @@ inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, 
   const Lanes top = along(from), centre = along(from + stride), bottom = along(from + 2 * stride);
   const Lanes is_below = y >= kWeightOne;
   blend_rows(is_below ? centre : top, is_below ? bottom : centre, y & kWeightMask, out);
-#endif
-}
-
-// The same where all x, and all y, are below 1 px.
-inline __attribute__((always_inline)) void blend_shifted(const std::uint8_t* from, std::ptrdiff_t stride,
-                                                         const Lanes& x, const Lanes& y, std::uint8_t* out) {
-#ifdef PLVO_LANE_LOOPS
-  for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i] + i * kWeightOne, y[i]);
-#else
-  const Lanes left = kWeightOne - x;
-  const auto along = [&](const std::uint8_t* row) {
-    Lanes a, b;
-    load_bytes(row, a);
-    load_bytes(row + 1, b);
-    return a * left + b * x;
-  };
-  blend_rows(along(from), along(from + stride), y, out);
 #endif
 }
 
@@ -273,12 +269,7 @@ void UndistortionMap::undistort_near(const Cell& cell, int first, int last, Gray
     Lanes x, y;
     near.x.of_row(j, x);
     near.y.of_row(j, y);
-    const std::uint8_t* const row = from + j * raw.stride;
-    std::uint8_t* const to = out + (j - first) * out_stride;
-    if constexpr (kIsShifted)
-      blend_shifted(row, raw.stride, x, y, to);
-    else
-      blend_near(row, raw.stride, x, y, to);
+    blend_near<kIsShifted>(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
   };
   // Rows that are known when it is compiled: what their number is multiplied with is a constant.
   if (!kLaneLoops && first == 0 && last == kCell) {

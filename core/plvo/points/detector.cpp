@@ -21,10 +21,12 @@ struct Cell {
   int x0, y0, x1, y1;  // pixels of its level, half open
 };
 
+constexpr int kBytes = sizeof(Bytes);  // scores, or grey levels, side by side
+
 // All bits of byte i where column x + i is one of the cell's.
 Bytes columns_of(const Cell& cell, int x) {
   constexpr Bytes kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const auto columns = static_cast<std::uint8_t>(std::min<int>(cell.x1 - x, sizeof(Bytes)));
+  const auto columns = static_cast<std::uint8_t>(std::min(cell.x1 - x, kBytes));
   return kPlaces < columns ? ~Bytes{} : Bytes{};
 }
 
@@ -45,7 +47,6 @@ Bytes columns_of(const Cell& cell, int x) {
 // The same, sixteen columns at once. What lies beyond the cell is in the image, by the keypoints' margin.
 int contrast_threshold(GrayView image, const Cell& cell) {
   if constexpr (kLaneLoops) return contrast_threshold_each(image, cell);
-  constexpr int kBytes = sizeof(Bytes);
   static_assert(kKeypointMargin >= kBytes);
   constexpr Bytes kNever = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};
   Bytes low = ~Bytes{}, high = {};
@@ -113,7 +114,7 @@ class Band {
   }
 
   // So many pixels from x on, of a row, are looked at together.
-  static constexpr int kAtOnce = kLaneLoops ? sizeof(std::size_t) : sizeof(Bytes);
+  static constexpr int kAtOnce = kLaneLoops ? sizeof(std::size_t) : kBytes;
 
   // Bit i: the pixel (x + i, y) is in the cell, passes, and is a local maximum. Of equal neighbours the first
   // is the maximum: the suppression has a total order.
@@ -130,8 +131,6 @@ class Band {
   }
 
  private:
-  static constexpr int kBytes = sizeof(Bytes);
-
   const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
   // What lies beyond the cell is not looked at; there is still memory of the band's.

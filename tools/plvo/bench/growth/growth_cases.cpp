@@ -23,9 +23,7 @@ class Planner {
 
   void add_sizes() {
     StageSetting tiny, quarter, small;
-    tiny.tiny = true;
-    tiny.keypoints = Limits::tiny().keypoints;
-    tiny.segments = Limits::tiny().segments;
+    tiny.make_tiny();
     quarter.keypoints = Limits{}.keypoints / 4;
     quarter.segments = Limits{}.segments / 4;
     small.keypoints = Limits::qvga().keypoints;

@@ -22,6 +22,13 @@ struct StageSetting {
   bool tiny = false;                   // Config::tiny(), and what of Limits::tiny() is not below
   int keypoints = Limits{}.keypoints;  // room for so many
   int segments = Limits{}.segments;
+
+  // As plvo run --preset tiny.
+  void make_tiny() {
+    tiny = true;
+    keypoints = Limits::tiny().keypoints;
+    segments = Limits::tiny().segments;
+  }
 };
 
 struct StageTimes {

@@ -116,12 +116,7 @@ void add_stages(CLI::App& app, int& exit_code) {
       ->transform(CLI::CheckedTransformer(replacements).description(""))
       ->type_name("WHAT");
   command->add_flag_callback(
-      "--tiny",
-      [options] {
-        options->setting.tiny = true;
-        options->setting.keypoints = Limits::tiny().keypoints;
-        options->setting.segments = Limits::tiny().segments;
-      },
+      "--tiny", [options] { options->setting.make_tiny(); },
       "As plvo run --preset tiny, but for --keypoints and --segments where they are given");
   command
       ->add_option("--keypoints", options->setting.keypoints,
