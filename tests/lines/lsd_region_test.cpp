@@ -35,7 +35,7 @@ struct Field {
       : pixels(std::move(image)), memory(1 << 21), arena(memory), width(w), height(h) {
     field = carve_field(arena, w, h);
     storage = arena.take<Piece>("region", static_cast<std::size_t>(w * h));
-    compute_field({pixels.data(), w, h, w}, field, storage);
+    compute_field({pixels.data(), w, h, w}, field);
   }
   int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
   bool is_open(Piece pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }

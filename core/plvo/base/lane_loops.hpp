@@ -128,8 +128,8 @@ inline void store_bytes(const Lanes& lanes, std::uint8_t* to) {
   for (int i = 0; i < 8; ++i) to[i] = static_cast<std::uint8_t>(lanes[i]);
 }
 
-inline void scale_by_share(const Lanes& a, const Lanes& share, Lanes& scaled) {
-  for (int i = 0; i < 8; ++i) scaled[i] = static_cast<std::int16_t>((a[i] * share[i]) >> 8);
+inline void multiply_high(const Lanes& a, const Lanes& b, Lanes& high) {
+  for (int i = 0; i < 8; ++i) high[i] = static_cast<std::int16_t>((a[i] * b[i]) >> 16);
 }
 
 inline void add_halves(const Lanes& a, const Lanes& b, Lanes& sums) {

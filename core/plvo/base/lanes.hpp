@@ -135,13 +135,14 @@ inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t 
   lanes = lanes > most ? most : lanes;
 }
 
-// Lane by lane a · share / 2^8, rounded down; a share is 0 … 127.
-inline __attribute__((always_inline)) void scale_by_share(const Lanes& a, const Lanes& share, Lanes& scaled) {
+// Lane by lane a · b / 2^16, rounded down.
+inline __attribute__((always_inline)) void multiply_high(const Lanes& a, const Lanes& b, Lanes& high) {
 #ifdef __SSE2__
-  scaled = __builtin_ia32_pmulhw128(a, share << 8);
+  high = __builtin_ia32_pmulhw128(a, b);
 #else
-  // By the high and the low byte: the product has more than 16 bits.
-  scaled = (a >> 8) * share + (((a & 255) * share) >> 8);
+  using EightWide = std::int32_t __attribute__((vector_size(32)));
+  const EightWide products = __builtin_convertvector(a, EightWide) * __builtin_convertvector(b, EightWide);
+  high = __builtin_convertvector(products >> 16, Lanes);
 #endif
 }
 

@@ -5,9 +5,11 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
+#include "plvo/lines/lsd/angle_range.hpp"
 
 namespace plvo::lsd {
 namespace {
@@ -19,10 +21,8 @@ namespace {
 constexpr int kMinMagnitudeSquared = 55;
 
 // Bins of 3/8 grey level: 962 up to the greatest magnitude, 8 · 510 · √2. Bin 0 holds the strongest.
-constexpr std::size_t kBins = 1024;
-constexpr std::size_t bin_of(std::int16_t magnitude) {
-  return kBins - 1 - static_cast<std::uint16_t>(magnitude) / 6U;
-}
+constexpr std::int16_t kBins = 1024;
+constexpr std::int16_t kBinsPerUnit_q16 = 65536 / 6 + 1;  // a quotient below 2^15 is the same
 
 // atan(r) / r in angles for 0 ≤ r ≤ 1, a polynomial of r² whose greatest error is 0.12 of an angle (least
 // squares weighted until all its extremes are equal).
@@ -73,18 +73,37 @@ unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, Bl
   return negative_lanes(first) | negative_lanes(last) << 4;
 }
 
+// Calls with_bin(i, bin) for a block's pixels: those that have an angle, first to last. Where lanes are worth
+// it, for the others too, with bins from kBins on: no branch can foresee which they are.
+constexpr std::size_t kAllBins = kLaneLoops ? kBins : 2 * kBins;
+template <typename WithBin>
+void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_bin) {
+  if constexpr (kLaneLoops) {
+    for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      with_bin(i, static_cast<std::size_t>(kBins - 1 - (magnitudes[i] * kBinsPerUnit_q16 >> 16)));
+    }
+    return;
+  }
+  Lanes bins;
+  load(magnitudes, bins);
+  multiply_high(bins, Lanes{} + kBinsPerUnit_q16, bins);
+  // Where there is no angle, −1 + 1 is not 0.
+  bins = (chosen(bits) + std::int16_t{1}) * kBins + std::int16_t{kBins - 1} - bins;
+  for (int i = 0; i < kBlockPixels; ++i) with_bin(i, static_cast<std::uint16_t>(bins[i]));
+}
+
 }  // namespace
 
 PolarGradient polar_gradient(int gx, int gy) { return polar(gx, gy); }
 
-void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unordered) {
+void compute_field(GrayView image, LevelLineField& field) {
   std::fill(field.padded_open.begin(), field.padded_open.end(), std::uint8_t{0});
   std::uint8_t* const directed = field.directed.data();
   std::uint8_t* const open = field.open();
   Angle* const angles = field.angles();
   std::int16_t* const magnitudes = field.magnitude_and_releases.data();
-  std::array<std::uint32_t, kBins + 1> starts{};
-  std::size_t count = 0;
+  std::array<std::uint32_t, kAllBins> places{};  // how many, at first
   const int blocks = field.stride - 1;
   for (int y = 0; y < field.height; ++y) {
     const std::uint8_t* above = image.row(y);
@@ -116,21 +135,28 @@ void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unord
       // Side by side, those that have no angle too.
       if constexpr (!kLaneLoops)
         for (int i = 0; i < kBlockPixels; ++i) make_polar(i);
-      for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
-        const int i = std::countr_zero(rest);
-        if constexpr (kLaneLoops) make_polar(i);
-        ++starts[bin_of(magnitude[i]) + 1];
-        unordered[count++] = {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(block),
-                              static_cast<std::uint8_t>(1 << i)};
-      }
+      else
+        for (unsigned rest = bits; rest != 0; rest &= rest - 1) make_polar(std::countr_zero(rest));
+      for_each_bin(magnitude, bits, [&](int, std::size_t bin) { ++places[bin]; });
     }
     directed[field.index(blocks, y)] = 0;
   }
-  for (std::size_t bin = 0; bin < kBins; ++bin) starts[bin + 1] += starts[bin];
-  for (const Piece& piece : unordered.first(count)) {
-    field.seeds[starts[bin_of(magnitudes[field.pixel(first_x(piece), piece.row)])]++] = piece;
+  // Where each bin begins; once all are in their places, where it ends.
+  std::uint32_t before = 0;
+  for (std::uint32_t& of_bin : places) before += std::exchange(of_bin, before);
+  Piece* const seeds = field.seeds.data();
+  for (int y = 0; y < field.height; ++y) {
+    for (int block = 0; block < blocks; ++block) {
+      const std::ptrdiff_t at = field.index(block, y);
+      const unsigned bits = directed[at];
+      if (bits == 0) continue;
+      for_each_bin(magnitudes + at * kBlockPixels, bits, [&](int i, std::size_t bin) {
+        seeds[places[bin]++] = {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(block),
+                                static_cast<std::uint8_t>(1 << i)};
+      });
+    }
   }
-  field.seed_count = count;
+  field.seed_count = places[kBins - 1];
 }
 
 }  // namespace plvo::lsd

@@ -50,7 +50,7 @@ struct LevelLineField {
   std::span<std::uint8_t> padded_open;
   std::span<Angle> padded_angles;
   std::span<std::int16_t> magnitude_and_releases;
-  std::span<Piece> seeds;  // of one pixel each; capacity: width · height
+  std::span<Piece> seeds;  // of one pixel each; capacity: all pixels of all blocks
   std::size_t seed_count = 0;
 
   static constexpr int kReleaseBit = 13;
@@ -76,7 +76,7 @@ constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_h
   field.padded_open = memory.take<std::uint8_t>("lines/lsd", padded);
   field.padded_angles = memory.take<Angle>("lines/lsd", padded * kBlockPixels);
   field.magnitude_and_releases = memory.take<std::int16_t>("lines/lsd", stride * rows * kBlockPixels);
-  field.seeds = memory.take<Piece>("lines/lsd", static_cast<std::size_t>(field.width) * rows);
+  field.seeds = memory.take<Piece>("lines/lsd", (stride - 1) * rows * kBlockPixels);
   return field;
 }
 
@@ -97,7 +97,7 @@ struct PolarGradient {
 PolarGradient polar_gradient(int gx, int gy);
 
 // Fills the field from image, and its seeds: every pixel with an angle, strongest first in 1024 bins, in
-// raster order within a bin. unordered: scratch for width · height pixels, free again on return.
-void compute_field(GrayView image, LevelLineField& field, std::span<Piece> unordered);
+// raster order within a bin.
+void compute_field(GrayView image, LevelLineField& field);
 
 }  // namespace plvo::lsd

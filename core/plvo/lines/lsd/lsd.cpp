@@ -27,7 +27,7 @@ std::size_t cell_of(const Vector2& middle, int width, int height) {
 void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, SegmentCounts& counts) const {
   lsd::LevelLineField& field = scratch.field;
   field.height = band.height - 1;
-  lsd::compute_field(band, field, scratch.region);
+  lsd::compute_field(band, field);
   counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
   const auto min_size = static_cast<std::int32_t>(min_region(search_.width, search_.height));
   for (const lsd::Piece seed : field.seeds.first(field.seed_count)) {
