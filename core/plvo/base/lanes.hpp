@@ -68,13 +68,18 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes,
   widen_bytes(eight, lanes);
 }
 
+// Four bytes at each of four places, a lane each.
+inline __attribute__((always_inline)) void load_words(const std::uint8_t* const places[4], WideLanes& words) {
+  std::int32_t four[4];
+  for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
+  words = WideLanes{four[0], four[1], four[2], four[3]};
+}
+
 // Of four bytes at each of four places: of the first two, and of the others.
 inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const places[4], Lanes& first_two,
                                                       Lanes& others) {
-  using Words = std::uint32_t __attribute__((vector_size(16)));
-  std::uint32_t four[4];
-  for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
-  const Words words = {four[0], four[1], four[2], four[3]};
+  WideLanes words;
+  load_words(places, words);
   Bytes bytes;
   std::memcpy(&bytes, &words, sizeof bytes);
   const Bytes low =

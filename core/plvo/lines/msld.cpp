@@ -82,14 +82,14 @@ Region make_region(double scale, const Segment& segment) {
   return region;
 }
 
-// Are all samples, with the neighbours that a central difference needs, inside the image?
+// Are all samples, with the neighbours that are read along with them, inside the image?
 bool inside(const Region& region, GrayView image) {
   for (int corner = 0; corner < 4; ++corner) {
     const int c = corner % 2 == 0 ? 0 : region.columns - 1;
     const int r = corner / 2 == 0 ? 0 : static_cast<int>(kMsldRows) - 1;
     const int x = (region.x + c * region.ux + r * region.nx) >> kPositionBits;
     const int y = (region.y + c * region.uy + r * region.ny) >> kPositionBits;
-    if (x < 1 || y < 1 || x >= image.width - 1 || y >= image.height - 1) return false;
+    if (x < 1 || y < 1 || x >= image.width - 3 || y >= image.height - 1) return false;
   }
   return true;
 }
@@ -185,25 +185,24 @@ void repeat(Gradient g, Lanes& lanes) {
 template <bool kInside>
 class FourColumns {
  public:
-  FourColumns(GrayView image, const Region& region, int first, int columns)
-      : image_(image), region_(region), columns_(columns) {
+  FourColumns(GrayView image, const Region& region, int first, int columns) : image_(image), region_(region) {
     for (int c = 0; c < 4; ++c) {
       const int column = first + (c < columns ? c : 0);
       x_[c] = region.x + column * region.ux;
       y_[c] = region.y + column * region.uy;
+      counts_[2 * c] = counts_[2 * c + 1] = c < columns ? -1 : 0;
     }
   }
 
   void next(const RowAxes& axes, Parts& parts) {
-    Gradient gradients[4];
-    for (int c = 0; c < 4; ++c) {
-      gradients[c] = gradient<kInside>(image_, x_[c], y_[c]);
-      x_[c] += region_.nx;
-      y_[c] += region_.ny;
-    }
-    for (int c = columns_; c < 4; ++c) gradients[c] = {0, 0};
     Lanes four, axis, both;
-    load_halves(&gradients[0].x, &gradients[2].x, four);
+    if constexpr (kInside)
+      read(four);
+    else
+      read_each(four);
+    x_ += region_.nx;
+    y_ += region_.ny;
+    four = four & counts_;
     WideLanes across, along;
     repeat(axes.across, axis);
     dot_pairs(four, axis, across);
@@ -215,10 +214,49 @@ class FourColumns {
   }
 
  private:
+  void read_each(Lanes& four) const {
+    Gradient gradients[4];
+    for (int c = 0; c < 4; ++c) gradients[c] = gradient<kInside>(image_, x_[c], y_[c]);
+    load_halves(&gradients[0].x, &gradients[2].x, four);
+  }
+
+  // The same at once: a lane is a place's four bytes, of which the first is its left neighbour, or the one
+  // above or below it.
+  void read(Lanes& four) const {
+    constexpr int kLow = 0xffff, kByte = 0xff;
+    const auto stride = static_cast<std::int16_t>(image_.stride);
+    const WideLanes row_above_y = y_ - (1 << kPositionBits);
+    const WideLanes whole = (x_ >> kPositionBits & kLow) | (row_above_y & ~kLow);
+    static_assert(kPositionBits == 16);
+    Lanes places;
+    std::memcpy(&places, &whole, sizeof places);
+    WideLanes offsets;
+    dot_pairs(places, Lanes{1, stride, 1, stride, 1, stride, 1, stride}, offsets);
+    alignas(16) std::int32_t offset[4];
+    store(offsets, offset);
+    const std::uint8_t* row_above[4];
+    for (int c = 0; c < 4; ++c) row_above[c] = image_.data + offset[c];
+    const auto load_from = [&](std::ptrdiff_t behind, WideLanes& words) {
+      const std::uint8_t* const at[4] = {row_above[0] + behind, row_above[1] + behind, row_above[2] + behind,
+                                         row_above[3] + behind};
+      load_words(at, words);
+    };
+    WideLanes above, beside, below;
+    load_from(0, above);
+    load_from(image_.stride - 1, beside);
+    load_from(2 * image_.stride, below);
+    const WideLanes first = (beside & kByte) | (above & kByte) << 16;
+    const WideLanes last = (beside >> 16 & kByte) | (below & kByte) << 16;
+    Lanes from, to;
+    std::memcpy(&from, &first, sizeof from);
+    std::memcpy(&to, &last, sizeof to);
+    four = to - from;
+  }
+
   GrayView image_;
   const Region& region_;
-  int columns_;
-  std::int32_t x_[4], y_[4];
+  Lanes counts_{};
+  WideLanes x_{}, y_{};
 };
 
 // Σ V and Σ V² of one sign: of two pairs of columns across, then of two along.

@@ -5,6 +5,7 @@
 // machine.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -58,53 +59,46 @@ Rectangle fit_rectangle(const Region& region, const GradientMass& mass);
 bool is_dense(const Rectangle& rectangle, std::int32_t region_size);
 
 // Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle: from x = first
-// to x = last.
+// to x = last, those that along() and across() find between its ends.
 template <typename Visit>
 void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
-  // The corners bound the rows; each row is bounded by the two strips, with a little to spare, then its
-  // ends are tested exactly.
-  const double along_min = r.along_min / 256.0 - 0.01;
-  const double along_max = r.along_max / 256.0 + 0.01;
-  const double across_min = r.across_min / 256.0 - 0.01;
-  const double across_max = r.across_max / 256.0 + 0.01;
-  const double dx = r.dx / 16384.0;
-  const double dy = r.dy / 16384.0;
-  const double cx = r.x_q8 / 256.0;
-  const double cy = r.y_q8 / 256.0;
-  const double ya = dy >= 0 ? along_min * dy : along_max * dy;
-  const double yb = dy >= 0 ? along_max * dy : along_min * dy;
-  const double yc = dx >= 0 ? across_min * dx : across_max * dx;
-  const double yd = dx >= 0 ? across_max * dx : across_min * dx;
-  const double top = cy + ya + yc - 1;
-  const double bottom = cy + yb + yd + 1;
-  const int first_row = top < 0 ? 0 : static_cast<int>(top);
-  const int last_row = bottom > field.height - 1 ? field.height - 1 : static_cast<int>(bottom);
-  const double width = field.width;
-  constexpr double kFlat = 1e-3;
-  const double inverse_dx = dx > kFlat || dx < -kFlat ? 1 / dx : 0;
-  const double inverse_dy = dy > kFlat || dy < -kFlat ? 1 / dy : 0;
-  for (int y = first_row; y <= last_row; ++y) {
-    double left = 0;
-    double right = width - 1;
-    const auto cut = [&](double u, double v) {
-      const double lower = u < v ? u : v;
-      const double upper = u < v ? v : u;
-      if (cx + lower > left) left = cx + lower;
-      if (cx + upper < right) right = cx + upper;
-    };
-    const double v = y - cy;
-    if (inverse_dx != 0) cut((along_min - v * dy) * inverse_dx, (along_max - v * dy) * inverse_dx);
-    if (inverse_dy != 0) cut((v * dx - across_min) * inverse_dy, (v * dx - across_max) * inverse_dy);
-    if (left > right) continue;
-    int first = static_cast<int>(left);
-    int last = static_cast<int>(right);
-    const auto inside = [&](int x) {
-      const std::int32_t l = r.along(x, y);
-      const std::int32_t t = r.across(x, y);
-      return l >= r.along_min && l <= r.along_max && t >= r.across_min && t <= r.across_max;
-    };
-    while (first <= last && !inside(first)) ++first;
-    while (last > first && !inside(last)) --last;
+  // a · (256 x − x_q8) + b · (256 y − y_q8) is a whole number, from least to most inside. A row enters and
+  // leaves halfway before and behind these, so that no rounding decides.
+  struct Strip {
+    double enters, leaves, step;  // columns + 1, and by how much both change to the next row
+    Strip(const Rectangle& r, int row, std::int32_t a, std::int32_t b, std::int32_t min, std::int32_t max) {
+      // A row along the strip is in it or beyond, far to either side.
+      constexpr double kAlong = 1e-9;
+      const double inverse = 1 / (256 * (a != 0 ? a : kAlong));
+      const double of_row = static_cast<double>(std::int64_t{b} * (row * 256 - r.y_q8));
+      constexpr double kOne = 1 << Rectangle::kDirectionBits;
+      const double least = (min * kOne - 0.5 - of_row) * inverse;
+      const double most = (max * kOne + kOne - 0.5 - of_row) * inverse;
+      const double origin = r.x_q8 / 256.0 + 1;
+      enters = origin + (least < most ? least : most);
+      leaves = origin + (least < most ? most : least);
+      step = -256.0 * b * inverse;
+    }
+    void next() {
+      enters += step;
+      leaves += step;
+    }
+  };
+  // The corners bound the rows.
+  const double up = (r.dy >= 0 ? r.along_min : r.along_max) * (r.dy / 4194304.0) +
+                    (r.dx >= 0 ? r.across_min : r.across_max) * (r.dx / 4194304.0);
+  const double down = (r.dy >= 0 ? r.along_max : r.along_min) * (r.dy / 4194304.0) +
+                      (r.dx >= 0 ? r.across_max : r.across_min) * (r.dx / 4194304.0);
+  const int first_row = std::max(0, static_cast<int>(r.y_q8 / 256.0 + up - 1));
+  const int last_row = std::min(field.height - 1, static_cast<int>(r.y_q8 / 256.0 + down + 1));
+  Strip along(r, first_row, r.dx, r.dy, r.along_min, r.along_max);
+  Strip across(r, first_row, -r.dy, r.dx, r.across_min, r.across_max);
+  for (int y = first_row; y <= last_row; ++y, along.next(), across.next()) {
+    const double from = std::max(std::max(along.enters, across.enters), 0.0);
+    const double to = std::min(std::min(along.leaves, across.leaves), static_cast<double>(field.width));
+    if (from > to) continue;
+    const int first = static_cast<int>(from);
+    const int last = static_cast<int>(to) - 1;
     if (first <= last) visit(y, first, last);
   }
 }
