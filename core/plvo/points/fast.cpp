@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "plvo/base/build.hpp"
+#include "plvo/base/lanes.hpp"
 
 namespace plvo {
 namespace {
@@ -124,7 +125,8 @@ inline __attribute__((always_inline)) void score_pixels(const Byte* row, std::pt
 
 // At most so much: nine contiguous pixels hold one of the top and the bottom, and one of the left and the
 // right.
-void bound_pixels(const Byte* row, std::ptrdiff_t stride, int width, Byte* __restrict bounds) {
+inline __attribute__((always_inline)) void bound_pixels(const Byte* row, std::ptrdiff_t stride, int width,
+                                                        Byte* __restrict bounds) {
   const Byte* up3 = row - 3 * stride;
   const Byte* down3 = row + 3 * stride;
   for (int x = 0; x < width; ++x) {
@@ -134,25 +136,40 @@ void bound_pixels(const Byte* row, std::ptrdiff_t stride, int width, Byte* __res
   }
 }
 
+constexpr int kBlock = sizeof(Bytes);
+
+inline __attribute__((always_inline)) bool any_above(Byte floor, const Byte* scores, int size) {
+  if (kLaneLoops || size < kBlock) {
+    Byte highest = 0;
+    for (int i = 0; i < size; ++i) highest = most(highest, scores[i]);
+    return highest > floor;
+  }
+  Bytes block;
+  std::memcpy(&block, scores, sizeof block);
+  const Bytes above = block > Bytes{} + floor;
+  return set_bytes(above) != 0;
+}
+
+// Only where a pixel may pass, scores.
+inline __attribute__((always_inline)) void score_block(const Byte* row, std::ptrdiff_t stride, int size,
+                                                       Byte floor, Byte* __restrict scores) {
+  bound_pixels(row, stride, size, scores);
+  if (!any_above(floor, scores, size)) return;
+  if constexpr (kLaneLoops)
+    score_passing(row, stride, size, floor, scores);
+  else
+    score_pixels(row, stride, size, scores);
+}
+
 }  // namespace
 
 void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width, std::uint8_t floor,
                       std::uint8_t* __restrict scores) {
-  bound_pixels(row, stride, width, scores);
-  // Only blocks with a pixel that may pass are scored.
-  constexpr int kBlock = 16;
-  for (int x = 0; x < width; x += kBlock) {
-    const int size = std::min(kBlock, width - x);
-    Byte highest = 0;
-    for (int i = 0; i < size; ++i) highest = most(highest, scores[x + i]);
-    if (highest <= floor) continue;
-    if (kLaneLoops)
-      score_passing(row + x, stride, size, floor, scores + x);
-    else if (size == kBlock)
-      score_pixels(row + x, stride, kBlock, scores + x);
-    else
-      score_pixels(row + x, stride, size, scores + x);
-  }
+  int x = 0;
+  // What is compiled for a whole block's size is faster.
+  if constexpr (!kLaneLoops)
+    for (; x + kBlock <= width; x += kBlock) score_block(row + x, stride, kBlock, floor, scores + x);
+  for (; x < width; x += kBlock) score_block(row + x, stride, std::min(kBlock, width - x), floor, scores + x);
 }
 
 }  // namespace plvo
