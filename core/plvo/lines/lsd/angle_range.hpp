@@ -28,9 +28,17 @@ inline Lanes chosen(unsigned bits) {
 
 class AngleRange {
  public:
+  // tolerance: less than half a turn.
   AngleRange(Angle middle, Angle tolerance)
-      : least_(static_cast<Angle>(middle - tolerance)), most_(static_cast<std::uint16_t>(2 * tolerance)) {}
-  bool holds(Angle angle) const { return static_cast<std::uint16_t>(angle - least_) <= most_; }
+      : least_(static_cast<Angle>(middle - tolerance)),
+        beyond_(static_cast<std::uint16_t>(2 * tolerance + 1)) {
+#ifndef PLVO_LANE_LOOPS
+    // Lanes have a sign: there the range begins at the least number of 16 bits.
+    origins_ = Lanes{} + static_cast<Angle>(least_ - INT16_MIN);
+    ends_ = Lanes{} + static_cast<Angle>(INT16_MIN + beyond_);
+#endif
+  }
+  bool holds(Angle angle) const { return static_cast<std::uint16_t>(angle - least_) < beyond_; }
   // Bit i: the angle eight[i] is in it.
   unsigned holding(const Angle* eight) const {
 #ifdef PLVO_LANE_LOOPS
@@ -38,18 +46,20 @@ class AngleRange {
     for (int i = kBlockPixels - 1; i >= 0; --i) held = held << 1 | (holds(eight[i]) ? 1U : 0U);
     return held;
 #else
-    // Lanes have a sign: the range begins at the least number of 16 bits.
     Lanes angles;
     load(eight, angles);
-    const Lanes from_least = angles - static_cast<std::int16_t>(least_ - INT16_MIN);
-    const Lanes held = from_least <= static_cast<std::int16_t>(INT16_MIN + most_);
+    const Lanes from_least = angles - origins_;
+    const Lanes held = from_least < ends_;
     return negative_lanes(held);
 #endif
   }
 
  private:
   Angle least_;
-  std::uint16_t most_;
+  std::uint16_t beyond_;
+#ifndef PLVO_LANE_LOOPS
+  Lanes origins_, ends_;
+#endif
 };
 
 // Sums what pixels' angles are beyond one angle.

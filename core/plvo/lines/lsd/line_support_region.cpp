@@ -9,7 +9,8 @@ namespace plvo::lsd {
 
 namespace {
 
-// Of `fit`, a byte, what is in one row of ones with any of `seeds`, which is part of it.
+// Of `fit`, one byte or two with zeros between them, what is in one row of ones with any of `seeds`, which is
+// part of it.
 unsigned spread(unsigned seeds, unsigned fit) {
   // Upwards a sum carries through ones; downwards by steps of one, two and four.
   const unsigned up = fit & ~(fit + seeds);
@@ -55,6 +56,23 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
                            static_cast<std::uint8_t>(taken)};
     piece_count += taken != 0 ? 1 : 0;
   };
+  // The same of the blocks above and below one, together: one's bits, and from bit 16 on the other's.
+  const auto take_above_and_below = [&](std::ptrdiff_t at, Piece of, unsigned touching) {
+    const std::ptrdiff_t above = at - stride, below = at + stride;
+    const unsigned free = open[above] | unsigned{open[below]} << 16;
+    const unsigned fit = free & (range.holding(angles + above * kBlockPixels) |
+                                 range.holding(angles + below * kBlockPixels) << 16);
+    const unsigned taken = spread(fit & (touching | touching << 16), fit);
+    const unsigned left = free & ~taken;
+    open[above] = static_cast<std::uint8_t>(left);
+    open[below] = static_cast<std::uint8_t>(left >> 16);
+    pieces[piece_count] = {static_cast<std::uint16_t>(of.row - 1), of.block,
+                           static_cast<std::uint8_t>(taken)};
+    piece_count += (taken & 0xffU) != 0 ? 1 : 0;
+    pieces[piece_count] = {static_cast<std::uint16_t>(of.row + 1), of.block,
+                           static_cast<std::uint8_t>(taken >> 16)};
+    piece_count += taken >> 16 != 0 ? 1 : 0;
+  };
   // The seed is taken, whether it was open or has been given back too often.
   const std::ptrdiff_t at_seed = field.index(seed);
   open[at_seed] = static_cast<std::uint8_t>(open[at_seed] | seed.bits);
@@ -75,8 +93,12 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
       renew = count + count / 8 + 1;
     }
     const unsigned touching = (bits | bits << 1 | bits >> 1) & 0xffU;
-    take(at - stride, piece.row - 1, piece.block, touching);
-    take(at + stride, piece.row + 1, piece.block, touching);
+    if constexpr (kLaneLoops) {
+      take(at - stride, piece.row - 1, piece.block, touching);
+      take(at + stride, piece.row + 1, piece.block, touching);
+    } else {
+      take_above_and_below(at, piece, touching);
+    }
     // Beside a block hardly anything is open: there a branch pays.
     const auto take_beside = [&](int right, unsigned touching_there) {
       for (int down = -1; down <= 1; ++down) {
