@@ -14,4 +14,9 @@ constexpr int count_bits(std::uint64_t x) {
   return static_cast<int>((x * 0x0101010101010101ULL) >> 56);
 }
 
+// The place of the lowest bit that is set, and of the highest; x is not 0, which the functions of <bit> must
+// ask at every call.
+constexpr int lowest_bit(unsigned x) { return __builtin_ctz(x); }
+constexpr int highest_bit(unsigned x) { return static_cast<int>(8 * sizeof x) - 1 - __builtin_clz(x); }
+
 }  // namespace plvo

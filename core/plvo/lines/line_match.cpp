@@ -2,9 +2,9 @@
 #include "plvo/lines/line_match.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -125,7 +125,7 @@ void match_lines(std::span<const Segment> predicted, std::span<const LineDescrip
     };
     for (std::size_t four = 0; four < current.size(); four += 4)
       for (unsigned rest = angle.passing(scratch.directions.data() + 2 * four); rest != 0; rest &= rest - 1)
-        if (const std::size_t j = four + static_cast<std::size_t>(std::countr_zero(rest)); j < current.size())
+        if (const std::size_t j = four + static_cast<std::size_t>(lowest_bit(rest)); j < current.size())
           consider(j);
     scratch.best_of_reference[i] =
         clear_best(scratch.candidates.first(count), scratch.current, gates, config).index;

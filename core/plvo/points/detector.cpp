@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/heap_sort.hpp"
 #include "plvo/base/lanes.hpp"
@@ -266,7 +267,7 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int block = cell.x0; block < cell.x1; block += Band::kAtOnce) {
       for (unsigned maxima = band.maxima(cell, block, y, threshold); maxima != 0; maxima &= maxima - 1) {
-        const int x = block + std::countr_zero(maxima);
+        const int x = block + lowest_bit(maxima);
         const auto strength = static_cast<float>(corner_strength(image, x, y));
         if (strength < static_cast<float>(search.config.min_strength)) continue;
         ++search.found;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 
 #include "plvo/base/bits.hpp"
@@ -70,7 +69,7 @@ class AngleSum {
   void add(const Angle* eight, unsigned bits) {
     if constexpr (kLaneLoops) {
       for (unsigned rest = bits; rest != 0; rest &= rest - 1)
-        minus_[0] -= static_cast<Angle>(eight[std::countr_zero(rest)] - from_);
+        minus_[0] -= static_cast<Angle>(eight[lowest_bit(rest)] - from_);
       return;
     }
     Lanes angles;
@@ -92,7 +91,7 @@ inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits
   if constexpr (kLaneLoops) {
     std::int64_t sum = 0;
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
-      const auto beyond = static_cast<Angle>(eight[std::countr_zero(rest)] - from);
+      const auto beyond = static_cast<Angle>(eight[lowest_bit(rest)] - from);
       sum += std::int64_t{beyond} * beyond;
     }
     return sum;

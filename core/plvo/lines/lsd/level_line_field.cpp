@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <utility>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
@@ -80,7 +80,7 @@ template <typename WithBin>
 void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_bin) {
   if constexpr (kLaneLoops) {
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+      const int i = lowest_bit(rest);
       with_bin(i, static_cast<std::size_t>(kBins - 1 - (magnitudes[i] * kBinsPerUnit_q16 >> 16)));
     }
     return;
@@ -136,7 +136,7 @@ void compute_field(GrayView image, LevelLineField& field) {
       if constexpr (!kLaneLoops)
         for (int i = 0; i < kBlockPixels; ++i) make_polar(i);
       else
-        for (unsigned rest = bits; rest != 0; rest &= rest - 1) make_polar(std::countr_zero(rest));
+        for (unsigned rest = bits; rest != 0; rest &= rest - 1) make_polar(lowest_bit(rest));
       for_each_bin(magnitude, bits, [&](int, std::size_t bin) { ++places[bin]; });
     }
     directed[field.index(blocks, y)] = 0;

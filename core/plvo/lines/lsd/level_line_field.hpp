@@ -6,12 +6,12 @@
 // eight pixels, which are looked at together: what is true or false of each is one bit of the block's byte.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/base/bits.hpp"
 #include "plvo/image/image_view.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -81,12 +81,8 @@ constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_h
 }
 
 // Of its first pixel, and of its last one.
-inline int first_x(Piece piece) {
-  return piece.block * kBlockPixels + std::countr_zero(unsigned{piece.bits});
-}
-inline int last_x(Piece piece) {
-  return piece.block * kBlockPixels + static_cast<int>(std::bit_width(unsigned{piece.bits})) - 1;
-}
+inline int first_x(Piece piece) { return piece.block * kBlockPixels + lowest_bit(piece.bits); }
+inline int last_x(Piece piece) { return piece.block * kBlockPixels + highest_bit(piece.bits); }
 
 // Angle and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The angle is
 // off by at most 0.004°, the magnitude (1/16 grey level) by at most a half.

@@ -2,10 +2,10 @@
 #include "plvo/lines/lsd/line_rectangle.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <limits>
 
+#include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/lanes.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
@@ -27,7 +27,7 @@ PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   if constexpr (kLaneLoops) {
     PieceMass of{};
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
-      const int x = std::countr_zero(rest);
+      const int x = lowest_bit(rest);
       const int w = magnitudes[x] & kMagnitude;
       of.m += w;
       of.mx += w * x;
@@ -42,10 +42,10 @@ PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   dot_pairs(w, Lanes{1, 1, 1, 1, 1, 1, 1, 1}, m);
   dot_pairs(w, Lanes{0, 1, 2, 3, 4, 5, 6, 7}, mx);
   dot_pairs(w, Lanes{0, 1, 4, 9, 16, 25, 36, 49}, mxx);
-  WideLanes sums, more;
-  add_pairs(m, mx, sums);
-  add_pairs(mxx, mxx, more);
-  return {sums[0] + sums[1], sums[2] + sums[3], more[0] + more[1]};
+  WideLanes pairs, sums;
+  add_pairs(m, mx, pairs);
+  add_pairs(pairs, mxx, sums);
+  return {sums[0], sums[1], sums[2] + sums[3]};
 }
 
 struct Range {
