@@ -5,16 +5,19 @@
 
 #include "fingerprint.hpp"
 #include "result_fingerprint.hpp"
+#include "test_room.hpp"
 #include "text_line.hpp"
 
 namespace plvo {
 namespace {
 
+using test::kRoom;
+
 // One run of the odometry over the procedural sequence.
 struct GoldenCase {
   const char* name;
   Config config;
-  Limits limits = Limits::qvga();
+  Limits limits = kRoom;
   int frames = 6;
   // From this frame on there is nothing to see, for as many frames as given: being lost and going on belong
   // to the golden run.
@@ -110,8 +113,8 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
   ProceduralRenderer sequence;
   if (!print_input(memory, sequence, print)) return false;
   Config points, lines, keyframe, lost, window;
-  Limits surfaces = Limits::qvga();
-  Limits three = Limits::qvga();
+  Limits surfaces = kRoom;
+  Limits three = kRoom;
   surfaces.surfaces = 200;
   points.features = Features::kPoints;
   lines.features = Features::kLines;

@@ -25,7 +25,7 @@ struct MemoryUse {
 };
 
 // What each choice may take at most, in all.
-inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 1024 * 1024,
+inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 704 * 1024,
                              kTinyCeiling = 512 * 1024;
 
 // Tracks a few frames of the procedural sequence and reads the records.

@@ -8,6 +8,7 @@
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
+#include "test_room.hpp"
 
 namespace plvo {
 namespace {
@@ -20,9 +21,9 @@ TrackResult track_as_the_page(Odometry& odometry, ImuIntegrator& imu, const Rgbd
 
 TEST(PriorOfThePage, BridgesACoveredLensAndLearnsTheOffset) {
   ProceduralSequence sequence{320, 240};
-  std::vector<std::byte> memory(required_bytes(Limits::qvga()));
+  std::vector<std::byte> memory(required_bytes(test::kRoom));
   Odometry odometry;
-  ASSERT_TRUE(odometry.init(memory, sequence.camera(), {}, Limits::qvga()).ok());
+  ASSERT_TRUE(odometry.init(memory, sequence.camera(), {}, test::kRoom).ok());
   std::vector<ImuSample> gyro(8), accelerometer(8);
   ImuIntegrator imu;
   ASSERT_TRUE(imu.init(gyro, accelerometer).ok());

@@ -11,6 +11,7 @@
 #include "plvo/math/cholesky.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "simulator_support.hpp"
+#include "test_room.hpp"
 
 namespace plvo::test {
 
@@ -77,7 +78,7 @@ inline TrackedWalk track_walk(
   options.camera.height = 240;
   options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
   options.frames = frames;
-  TrackedWalk walk = track_walk(options, Limits::qvga(), config, stamp_sigma_s, stamp_error_ns);
+  TrackedWalk walk = track_walk(options, kRoom, config, stamp_sigma_s, stamp_error_ns);
   for (const TrackResult& result : walk.results)
     EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
   return walk;

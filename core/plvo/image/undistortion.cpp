@@ -58,7 +58,7 @@ std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p
 inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const Lanes& lower, const Lanes& fy,
                                                       std::uint8_t* out) {
   Lanes half;
-  multiply_high(lower - upper, fy << 8, half);
+  multiply_high(lower - upper, fy * std::int16_t{256}, half);
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
 }
 

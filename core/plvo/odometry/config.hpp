@@ -42,7 +42,9 @@ struct Limits {
   // Samples of surfaces per frame, 0 … 1000: what depth alone says of the motion. 0: none, and no memory.
   int surfaces = 200;
   static constexpr Limits vga() { return {}; }
-  static constexpr Limits qvga() { return {320, 240, 250, 128, 2, 1, 0, 1, 0}; }
+  // A quarter of VGA's pixels and of its features: more of them make a frame better, but of a processor that
+  // keeps up with no camera more frames make the motion better (docs/performance.md).
+  static constexpr Limits qvga() { return {320, 240, 100, 64, 2, 1, 0, 1, 0}; }
   // Within 512 KiB, with Config::tiny().
   static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1, 0}; }
   // kInvalidArgument, naming the entry and its range.

@@ -43,7 +43,8 @@ Status callgrind_command(const NamedFolder& sequence, const JobOptions& options,
       command.end(),
       {own_program(), "stages", "--without-table", folder, "--out", profile.parent_path().string(), "--image",
        std::to_string(static_cast<int>(setting.replacement)), "--frames", std::to_string(options.frames),
-       "--keypoints", std::to_string(setting.keypoints), "--segments", std::to_string(setting.segments)});
+       "--keypoints", std::to_string(setting.keypoints), "--segments", std::to_string(setting.segments),
+       "--surfaces", std::to_string(setting.surfaces)});
   if (setting.tiny) command.push_back("--tiny");
   if (!options.camera_model.empty()) command.insert(command.end(), {"--camera-model", options.camera_model});
   return {};

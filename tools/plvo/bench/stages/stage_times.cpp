@@ -54,6 +54,7 @@ Status measure_stages(const NamedFolder& sequence, const JobOptions& options, co
   limits.height = camera.model().height;
   limits.keypoints = setting.keypoints;
   limits.segments = setting.segments;
+  limits.surfaces = setting.surfaces;
   if (Status status = limits.validate(); !status.ok()) return status;
   Config config = setting.tiny ? Config::tiny() : Config();
   config.stage_clock = posix_thread_cpu_ns;

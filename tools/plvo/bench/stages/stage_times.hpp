@@ -22,12 +22,14 @@ struct StageSetting {
   bool tiny = false;                   // Config::tiny(), and what of Limits::tiny() is not below
   int keypoints = Limits{}.keypoints;  // room for so many
   int segments = Limits{}.segments;
+  int surfaces = Limits{}.surfaces;
 
   // As plvo run --preset tiny.
   void make_tiny() {
     tiny = true;
     keypoints = Limits::tiny().keypoints;
     segments = Limits::tiny().segments;
+    surfaces = Limits::tiny().surfaces;
   }
 };
 

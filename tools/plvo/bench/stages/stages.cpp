@@ -117,7 +117,7 @@ void add_stages(CLI::App& app, int& exit_code) {
       ->type_name("WHAT");
   command->add_flag_callback(
       "--tiny", [options] { options->setting.make_tiny(); },
-      "As plvo run --preset tiny, but for --keypoints and --segments where they are given");
+      "As plvo run --preset tiny, but for --keypoints, --segments and --surfaces where they are given");
   command
       ->add_option("--keypoints", options->setting.keypoints,
                    fmt::format("Room for so many (default {})", options->setting.keypoints))
@@ -125,6 +125,10 @@ void add_stages(CLI::App& app, int& exit_code) {
   command
       ->add_option("--segments", options->setting.segments,
                    fmt::format("Room for so many (default {})", options->setting.segments))
+      ->type_name("NUMBER");
+  command
+      ->add_option("--surfaces", options->setting.surfaces,
+                   fmt::format("So many samples a frame (default {})", options->setting.surfaces))
       ->type_name("NUMBER");
   command->add_flag("--without-table", options->without_table, "As callgrind runs it")->group("");
   add_measuring_options(*command, options->measuring);
