@@ -155,7 +155,7 @@ inline __attribute__((always_inline)) void score_block(const Byte* row, std::ptr
                                                        Byte floor, Byte* __restrict scores) {
   bound_pixels(row, stride, size, scores);
   if (!any_above(floor, scores, size)) return;
-  if constexpr (kLaneLoops)
+  if (kLaneLoops)
     score_passing(row, stride, size, floor, scores);
   else
     score_pixels(row, stride, size, scores);
