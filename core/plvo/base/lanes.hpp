@@ -18,6 +18,11 @@ namespace plvo {
 // Sixteen bytes side by side, for what has no loops in its place.
 using Bytes = std::uint8_t __attribute__((vector_size(16)));
 
+// The first eight bytes of both in turns.
+inline __attribute__((always_inline)) Bytes in_turns(const Bytes& a, const Bytes& b) {
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+}
+
 // Bit i: byte i of eight, all of whose bits are equal.
 inline __attribute__((always_inline)) unsigned gather_bytes(std::uint64_t eight) {
   // Byte i keeps its bit i; the product's highest byte is the sum of all.
@@ -56,8 +61,7 @@ inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Lane
   const Words words = {bytes, 0};
   Bytes eight;
   std::memcpy(&eight, &words, sizeof eight);
-  const Bytes wide =
-      __builtin_shufflevector(eight, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const Bytes wide = in_turns(eight, Bytes{});
   std::memcpy(&lanes, &wide, sizeof lanes);
 }
 
@@ -82,8 +86,7 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const 
   load_words(places, words);
   Bytes bytes;
   std::memcpy(&bytes, &words, sizeof bytes);
-  const Bytes low =
-      __builtin_shufflevector(bytes, Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const Bytes low = in_turns(bytes, Bytes{});
   const Bytes high =
       __builtin_shufflevector(bytes, Bytes{}, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
   std::memcpy(&first_two, &low, sizeof first_two);

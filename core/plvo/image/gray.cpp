@@ -19,11 +19,6 @@ constexpr LumaWeights kLumaWeights[] = {{77, 150, 29}, {29, 150, 77}};  // RGB, 
 
 using Sums = std::uint16_t __attribute__((vector_size(16)));
 
-// The first eight bytes of both in turns.
-Bytes in_turns(const Bytes& a, const Bytes& b) {
-  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-}
-
 Bytes from_eighth(const Bytes& a) {
   return __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15, 8, 9, 10, 11, 12, 13, 14, 15);
 }

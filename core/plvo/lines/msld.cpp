@@ -216,7 +216,7 @@ class FourColumns {
  private:
   void read_each(Lanes& four) const {
     Gradient gradients[4];
-    for (int c = 0; c < 4; ++c) gradients[c] = gradient<kInside>(image_, x_[c], y_[c]);
+    for (int c = 0; c < 4; ++c) gradients[c] = gradient<false>(image_, x_[c], y_[c]);
     load_halves(&gradients[0].x, &gradients[2].x, four);
   }
 

@@ -43,7 +43,6 @@ struct Rectangle {
   std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted
 };
 
-// region: at least one pixel.
 // The sums of a region's magnitudes, by themselves and times x, y, x², x y and y² from its seed: whole
 // numbers, so that pieces may come and go in any order.
 struct GradientMass {
@@ -53,6 +52,7 @@ struct GradientMass {
 };
 GradientMass weigh(const LevelLineField& field, const Region& region);
 
+// region: at least one pixel.
 Rectangle fit_rectangle(const Region& region, const GradientMass& mass);
 
 // Does the region fill at least 70 % of its rectangle?
@@ -85,10 +85,11 @@ void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit
     }
   };
   // The corners bound the rows.
-  const double up = (r.dy >= 0 ? r.along_min : r.along_max) * (r.dy / 4194304.0) +
-                    (r.dx >= 0 ? r.across_min : r.across_max) * (r.dx / 4194304.0);
-  const double down = (r.dy >= 0 ? r.along_max : r.along_min) * (r.dy / 4194304.0) +
-                      (r.dx >= 0 ? r.across_max : r.across_min) * (r.dx / 4194304.0);
+  constexpr double kPixel_q22 = 256 << Rectangle::kDirectionBits;
+  const double dx = r.dx / kPixel_q22, dy = r.dy / kPixel_q22;
+  const double up = (dy >= 0 ? r.along_min : r.along_max) * dy + (dx >= 0 ? r.across_min : r.across_max) * dx;
+  const double down =
+      (dy >= 0 ? r.along_max : r.along_min) * dy + (dx >= 0 ? r.across_max : r.across_min) * dx;
   const int first_row = std::max(0, static_cast<int>(r.y_q8 / 256.0 + up - 1));
   const int last_row = std::min(field.height - 1, static_cast<int>(r.y_q8 / 256.0 + down + 1));
   Strip along(r, first_row, r.dx, r.dy, r.along_min, r.along_max);

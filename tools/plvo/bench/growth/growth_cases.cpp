@@ -24,9 +24,7 @@ class Planner {
   void add_sizes() {
     StageSetting tiny, qvga;
     tiny.make_tiny();
-    qvga.keypoints = Limits::qvga().keypoints;
-    qvga.segments = Limits::qvga().segments;
-    qvga.surfaces = Limits::qvga().surfaces;
+    qvga.take_room(Limits::qvga());
     GrowthTable table{"Image size", "size", {}};
     table.rows.push_back({"320×240, tiny", add_case(0.5, tiny, options_.frames)});
     table.rows.push_back({"320×240, Limits::qvga", add_case(0.5, qvga, options_.frames)});

@@ -24,12 +24,15 @@ struct StageSetting {
   int segments = Limits{}.segments;
   int surfaces = Limits{}.surfaces;
 
+  void take_room(const Limits& limits) {
+    keypoints = limits.keypoints;
+    segments = limits.segments;
+    surfaces = limits.surfaces;
+  }
   // As plvo run --preset tiny.
   void make_tiny() {
     tiny = true;
-    keypoints = Limits::tiny().keypoints;
-    segments = Limits::tiny().segments;
-    surfaces = Limits::tiny().surfaces;
+    take_room(Limits::tiny());
   }
 };
 
