@@ -22,6 +22,16 @@ double radians(Angle angle) { return angle / kAnglePerRadian; }
 
 double angle_between(double a, double b) { return std::abs(std::remainder(a - b, 2 * kPi)); }
 
+// From a rectangle's centre along it, and across it, 2^-8 pixels.
+std::int32_t along(const Rectangle& r, int x, int y) {
+  const std::int64_t q22 = std::int64_t{x * 256 - r.x_q8} * r.dx + std::int64_t{y * 256 - r.y_q8} * r.dy;
+  return static_cast<std::int32_t>(q22 >> Rectangle::kDirectionBits);
+}
+std::int32_t across(const Rectangle& r, int x, int y) {
+  const std::int64_t q22 = std::int64_t{y * 256 - r.y_q8} * r.dx - std::int64_t{x * 256 - r.x_q8} * r.dy;
+  return static_cast<std::int32_t>(q22 >> Rectangle::kDirectionBits);
+}
+
 struct Field {
   std::vector<std::uint8_t> pixels;
   std::vector<std::byte> memory;
@@ -279,8 +289,8 @@ TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
       const double w = f.magnitude(x, y);
       centre += w * Eigen::Vector2d(x, y);
       mass += w;
-      EXPECT_TRUE(r.along(x, y) >= r.along_min && r.along(x, y) <= r.along_max);
-      EXPECT_TRUE(r.across(x, y) >= r.across_min && r.across(x, y) <= r.across_max);
+      EXPECT_TRUE(along(r, x, y) >= r.along_min && along(r, x, y) <= r.along_max);
+      EXPECT_TRUE(across(r, x, y) >= r.across_min && across(r, x, y) <= r.across_max);
     }
     centre /= mass;
     EXPECT_NEAR(r.x_q8 / 256.0, centre.x(), 0.003);
@@ -320,8 +330,8 @@ TEST(Rectangle, VisitsExactlyThePixelsInside) {
     std::vector<std::pair<int, int>> expected;
     for (int y = 0; y < f.field.height; ++y) {
       for (int x = 0; x < f.field.width; ++x) {
-        const std::int32_t l = r.along(x, y);
-        const std::int32_t t = r.across(x, y);
+        const std::int32_t l = along(r, x, y);
+        const std::int32_t t = across(r, x, y);
         if (l >= r.along_min && l <= r.along_max && t >= r.across_min && t <= r.across_max)
           expected.push_back({x, y});
       }
@@ -433,16 +443,16 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
     Rectangle r = fit_rectangle(region, weigh(f.field, region));
     if (region.size < 10 || !is_dense(r, region.size)) continue;
     const double found = meaningfulness(f.field, alarms, r);
-    const AngleRange across(
+    const AngleRange range(
         static_cast<Angle>(round_to<std::int32_t>(std::atan2(r.dx, -r.dy) * kAnglePerRadian)), kTau);
     int n = 0, k = 0;
     for (int y = 0; y < f.field.height; ++y) {
       for (int x = 0; x < f.field.width; ++x) {
-        const std::int32_t l = r.along(x, y);
-        const std::int32_t t = r.across(x, y);
+        const std::int32_t l = along(r, x, y);
+        const std::int32_t t = across(r, x, y);
         if (l < r.along_min || l > r.along_max || t < r.across_min || t > r.across_max) continue;
         ++n;
-        k += f.is_directed(x, y) && across.holds(f.angle(x, y)) ? 1 : 0;
+        k += f.is_directed(x, y) && range.holds(f.angle(x, y)) ? 1 : 0;
       }
     }
     EXPECT_EQ(found, alarms.meaningfulness(n, k));

@@ -31,14 +31,6 @@ struct Rectangle {
   // Standard deviation of the gradient's mass across it, 2^-8 pixels.
   std::int32_t across_sd = 0;
 
-  std::int32_t along(int x, int y) const {
-    const std::int64_t q22 = std::int64_t{x * 256 - x_q8} * dx + std::int64_t{y * 256 - y_q8} * dy;
-    return static_cast<std::int32_t>(q22 >> kDirectionBits);
-  }
-  std::int32_t across(int x, int y) const {
-    const std::int64_t q22 = std::int64_t{y * 256 - y_q8} * dx - std::int64_t{x * 256 - x_q8} * dy;
-    return static_cast<std::int32_t>(q22 >> kDirectionBits);
-  }
   std::int32_t length_q8() const { return along_max - along_min; }
   std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted
 };
@@ -59,7 +51,8 @@ Rectangle fit_rectangle(const Region& region, const GradientMass& mass);
 bool is_dense(const Rectangle& rectangle, std::int32_t region_size);
 
 // Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle: from x = first
-// to x = last, those that along() and across() find between its ends.
+// to x = last. Inside is what has (256 x − x_q8) dx + (256 y − y_q8) dy, rounded down to 2^-8 pixels, from
+// along_min to along_max, and alike across, by (−dy, dx).
 template <typename Visit>
 void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
   // a · (256 x − x_q8) + b · (256 y − y_q8) is a whole number, from least to most inside. A row enters and
