@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracks a sequence from several starts.
+#pragma once
+
+#include <vector>
+
+#include "baseline.hpp"
+#include "plvo/odometry/config.hpp"
+#include "sequences.hpp"
+
+namespace plvo::accuracy {
+
+// Six starts: the first three frames, each with two principal points a twentieth of a pixel apart.
+Status measure(const Sequence& sequence, const Config& config, std::vector<Figures>& starts);
+
+}  // namespace plvo::accuracy

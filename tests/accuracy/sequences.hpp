@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sequences of the accuracy gate, held in memory: each is tracked several times.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/eval/evaluation.hpp"
+#include "plvo/host/frame_copy.hpp"
+
+namespace plvo::accuracy {
+
+struct Sequence {
+  std::string name;
+  CameraModel camera;
+  std::vector<FrameCopy> frames;
+  eval::Trajectory truth;
+  eval::EvaluationOptions evaluation;  // how good the truth is
+};
+
+// A recorded one: a folder, and the name of a built-in calibration or nothing for the file beside the images.
+struct Recorded {
+  const char* folder;
+  const char* camera_model;
+  // Motion capture: each true pose errs by so much in each axis, and its frame is turned against the
+  // camera's. Zero: the truth is exact.
+  double truth_sigma_m, truth_sigma_deg;
+};
+const std::vector<Recorded>& recorded_sequences();
+Status load(const std::filesystem::path& data, const Recorded& recorded, Sequence& sequence);
+
+// The simulator's five scenes under both lights. Its default hand and sensor, 640x480.
+struct Rendered {
+  std::string scene, light;
+};
+std::vector<Rendered> rendered_sequences();
+Status render(const Rendered& rendered, Sequence& sequence);
+
+}  // namespace plvo::accuracy
