@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whom the live view answers and whom it hangs up on: the names in the Host header, and the rule by which
-// connections yield their places. Both as rules alone, and the names over real sockets too.
+// Whom the live view answers and whom it hangs up on: the names in the Host header, what a request looks
+// like, the rule by which connections yield their places, and how much anybody may ask for. As rules alone,
+// and names and requests over real sockets too.
 #include <gtest/gtest.h>
 #include <ifaddrs.h>
 
@@ -8,6 +9,7 @@
 
 #include "plvo/view/connection_table.hpp"
 #include "plvo/view/host_names.hpp"
+#include "plvo/view/rate_limit.hpp"
 #include "view_client.hpp"
 
 namespace plvo {
@@ -144,11 +146,58 @@ TEST(ConnectionTable, WhoTakesTooLongIsHungUpOnOnce) {
   t.table.hang_up_overdue(ConnectionTable::kRequest_ns + 1);
   t.table.hang_up_overdue(ConnectionTable::kRequest_ns + 2);
   EXPECT_EQ(t.hung_up, std::vector<int>{1});
+  EXPECT_TRUE(t.table.is_over(1));
+  EXPECT_FALSE(t.table.is_over(2));
   t.table.hang_up_overdue(ConnectionTable::kReply_ns + 1);
   EXPECT_EQ(t.hung_up, (std::vector<int>{1, 2}));
   t.table.closed(1);
   t.table.opened(1, "b", ConnectionTable::kReply_ns);  // the number is used again
   EXPECT_EQ(t.table.count(), 1u);
+  EXPECT_FALSE(t.table.is_over(1));
+}
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(RateLimit, SomeAtOnceThenSoManyASecond) {
+  RateLimit limit({kSecond / 10, 2 * kSecond}, {1, 1000 * kSecond});
+  int allowed = 0;
+  const auto ask = [&](std::int64_t now_ns) {
+    if (!limit.allows("a", now_ns)) return false;
+    limit.spend("a", 1, now_ns);
+    ++allowed;
+    return true;
+  };
+  while (ask(0)) continue;
+  EXPECT_EQ(allowed, 20);
+  for (std::int64_t ms = 1; ms <= 10'000; ++ms) ask(ms * 1'000'000);
+  EXPECT_EQ(allowed, 20 + 100);
+  EXPECT_TRUE(limit.allows("b", 10 * kSecond)) << "another address has a bucket of its own";
+  allowed = 0;
+  while (ask(10'000 * kSecond)) continue;
+  EXPECT_EQ(allowed, 20) << "a bucket does not grow beyond its depth";
+}
+
+TEST(RateLimit, ManyAddressesShareOneBucketAndAreForgotten) {
+  RateLimit limit({kSecond / 10, kSecond}, {kSecond / 40, kSecond});
+  int allowed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string address = std::to_string(i);
+    if (!limit.allows(address, 0)) continue;
+    limit.spend(address, 1, 0);
+    ++allowed;
+  }
+  EXPECT_EQ(allowed, 40);
+  EXPECT_EQ(limit.known_addresses(), 40u);
+  limit.spend("last", 1, kSecond);
+  EXPECT_EQ(limit.known_addresses(), 1u);
+}
+
+TEST(RateLimit, WhatWasTakenTooMuchIsPaidBack) {
+  RateLimit limit({1000, kSecond}, {1, 1000 * kSecond});
+  ASSERT_TRUE(limit.allows("a", 0));
+  limit.spend("a", 5'000'000, 0);  // five seconds' worth
+  EXPECT_FALSE(limit.allows("a", 4 * kSecond));
+  EXPECT_TRUE(limit.allows("a", 4 * kSecond + 1));
 }
 
 class ViewNames : public ::testing::Test {
@@ -175,6 +224,39 @@ TEST_F(ViewNames, APageFromElsewhereCannotLookThroughTheBrowser) {
   EXPECT_EQ(asking_as(host_header(port) + "Host: evil.example\r\n"), 403) << "which one is meant?";
   EXPECT_GE(asking_as(""), 400);
   EXPECT_NE(get(port, "/").find("frame-ancestors 'none'"), std::string::npos);
+}
+
+// What libmicrohttpd takes for another request than a proxy before it might.
+TEST_F(ViewNames, ARequestIsReadInOneWayOnly) {
+  ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
+  const int port = server_.port();
+  const std::string host = host_header(port), name = "localhost:" + std::to_string(port);
+  const std::string end = "Connection: close\r\n\r\n", line = "GET /update?after=9 HTTP/1.1\r\n";
+  using namespace std::string_literals;
+  for (const std::string& good :
+       {line + host + end, line + "Host:" + name + "\r\n" + end, line + "host: \t " + name + "\r\n" + end,
+        line + host + "X-Empty:\r\nX-Long: a b  c\r\n" + end, line + host + "Content-Length: 0\r\n" + end,
+        "GET /update?viewer=%00+x%2 HTTP/1.1\r\n" + host + end, "GET /update? HTTP/1.0\r\n" + host + end})
+    EXPECT_EQ(status_of(reply_to(port, good)), 200) << good;
+  for (const std::string& bad :
+       {line + "Host: " + name + "\0.evil\r\n"s + end, line + "Host: " + name + "\0\r\n"s + end,
+        line + "Host:" + name + "\0\r\n"s + end, line + host + "X: a\0b\r\n"s + end,
+        line + host + "X\0: a\r\n"s + end, line + host + "X: \x01\r\n" + end,
+        "GET /update\0.html HTTP/1.1\r\n"s + host + end, "GET\0X /update HTTP/1.1\r\n"s + host + end,
+        "GET /update HTTP/1.1\0\r\n"s + host + end, "GET  /update HTTP/1.1\r\n" + host + end,
+        line + host + "Host : evil.example\r\n" + end, line + host + "X: a\n" + end,
+        line + host + "X: a\rHost: evil.example\r\n" + end, line + host + " folded\r\n" + end,
+        line + host + "Content-Length: 0\r\nContent-Length: 0\r\n" + end,
+        line + host + "Content-Length: 0\r\nContent-Length: 5\r\n" + end,
+        line + host + "Content-Length: 0\r\nTransfer-Encoding: identity\r\n" + end,
+        line + host + "Content-Length: +0\r\n" + end})
+    EXPECT_EQ(status_of(reply_to(port, bad)), 400) << testing::PrintToString(bad);
+}
+
+TEST_F(ViewNames, AnEscapedPathIsNoPathOfOurs) {
+  ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
+  for (const char* path : {"/update%00.html", "/%75pdate", "/%00", "/update/", "//", "/update%3Fafter=9"})
+    EXPECT_EQ(status_of(get(server_.port(), path)), 404) << path;
 }
 
 TEST_F(ViewNames, OnEveryAddressNamesAreCheckedAsWell) {

@@ -97,13 +97,17 @@ inline std::string read_to_end(int fd) {
 inline std::string host_header(int port, const std::string& name = "localhost") {
   return "Host: " + name + ':' + std::to_string(port) + "\r\n";
 }
-// The whole reply, as text; headers: with their line ends.
-inline std::string request(int port, const std::string& first_line, const std::string& headers) {
+// The whole reply to these bytes, as text.
+inline std::string reply_to(int port, const std::string& bytes) {
   const int fd = connect_to(port);
-  send_text(fd, first_line + " HTTP/1.1\r\n" + headers + "Connection: close\r\n\r\n");
-  const std::string reply = read_to_end(fd);
+  send_text(fd, bytes);
+  std::string reply = read_to_end(fd);
   ::close(fd);
   return reply;
+}
+// headers: with their line ends.
+inline std::string request(int port, const std::string& first_line, const std::string& headers) {
+  return reply_to(port, first_line + " HTTP/1.1\r\n" + headers + "Connection: close\r\n\r\n");
 }
 inline std::string get(int port, const std::string& path) {
   return request(port, "GET " + path, host_header(port));

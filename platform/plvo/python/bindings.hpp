@@ -4,9 +4,11 @@
 
 #include <pybind11/pybind11.h>
 
-#include <optional>
+#include <cstddef>
 #include <string>
+#include <typeinfo>
 
+#include "plvo/python/arguments.hpp"
 #include "plvo/python/error.hpp"
 
 namespace plvo::python {
@@ -18,15 +20,18 @@ void bind_prior(py::module_& module);
 void bind_odometry(py::module_& module);
 void bind_sequence(py::module_& module);
 
-// None is no value.
-template <typename Value>
-std::optional<Value> optional(const py::object& object) {
-  return object.is_none() ? std::nullopt : std::optional<Value>(object.cast<Value>());
-}
-
-// Of a str, bytes or os.PathLike.
-inline std::string path_text(const py::object& path) {
-  return py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
+// A class of the package. An object that __new__ made and __init__ did not is refused wherever it is used:
+// pybind11 asks the type's `operator_new` for what such an object lacks, and by itself takes memory that
+// nobody has initialised.
+template <typename Class>
+py::class_<Class> bind_class(py::module_& module, const char* name) {
+  py::class_<Class> type(module, name);
+  py::detail::get_type_info(typeid(Class))->operator_new = [](std::size_t) -> void* {
+    const auto class_name = std::string(py::str(py::type::of<Class>().attr("__name__")));
+    throw py::type_error("this plvo." + class_name +
+                         " was not initialised: its __init__ has not been called");
+  };
+  return type;
 }
 
 // A type of named tuples that belongs to the package.

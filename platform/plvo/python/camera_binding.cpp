@@ -14,7 +14,7 @@ using namespace py::literals;
 namespace {
 
 Calibration make_camera(int width, int height, double fx, double fy, double cx, double cy,
-                        const py::sequence& distortion, double depth_units_per_metre, double readout_s,
+                        const py::iterable& distortion, double depth_units_per_metre, double readout_s,
                         const py::object& depth_delay_s, double depth_readout_s,
                         const std::string& distortion_model, double stamp_sigma_s) {
   Calibration camera;
@@ -23,7 +23,7 @@ Calibration make_camera(int width, int height, double fx, double fy, double cx, 
   camera.has_size = camera.depth_scale_given = camera.readout_given = true;
   camera.camera.pinhole = {fx, fy, cx, cy};
   std::vector<double> coefficients;
-  for (const py::handle& number : distortion) coefficients.push_back(number.cast<double>());
+  for (const py::handle& item : distortion) coefficients.push_back(number(item, "distortion"));
   if (const Status status = distortion_of(distortion_model, coefficients, camera.camera.distortion);
       !status.ok())
     throw py::value_error(status.message());
@@ -31,7 +31,7 @@ Calibration make_camera(int width, int height, double fx, double fy, double cx, 
   camera.camera.readout_s = readout_s;
   camera.camera.stamp_sigma_s = stamp_sigma_s;
   if (!depth_delay_s.is_none())
-    camera.camera.depth_timing = {true, depth_delay_s.cast<double>(), depth_readout_s};
+    camera.camera.depth_timing = {true, number(depth_delay_s, "depth_delay_s"), depth_readout_s};
   throw_unless_ok(camera.validate(width, height));
   return camera;
 }
@@ -44,7 +44,7 @@ Calibration builtin_camera(const std::string& name) {
 
 Calibration read_camera(const py::object& path) {
   Calibration camera;
-  throw_unless_ok(read_calibration(path_text(path), camera));
+  throw_unless_ok(read_calibration(path_bytes(path), camera));
   return camera;
 }
 
@@ -52,7 +52,7 @@ Calibration read_camera(const py::object& path) {
 
 void bind_camera(py::module_& module) {
   const CameraModel model;
-  py::class_<Calibration>(module, "Camera")
+  bind_class<Calibration>(module, "Camera")
       .def(py::init(&make_camera), "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a,
            "distortion"_a = py::tuple(), "depth_units_per_metre"_a = 1000.0, "readout_s"_a = model.readout_s,
            "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s,

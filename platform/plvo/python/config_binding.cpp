@@ -67,12 +67,13 @@ Settings make_settings(const std::string& preset, const std::optional<std::strin
 
 void bind_config(py::module_& module) {
   const BudgetConfig budget;
-  py::class_<Settings>(module, "Config")
+  bind_class<Settings>(module, "Config")
       .def(py::init([](const std::string& preset, const py::object& features, const py::object& reference,
                        const py::object& seed, std::int64_t frame_budget_ns, int budget_patience_frames,
                        double budget_spare_share, bool level_world) {
-             return make_settings(preset, optional<std::string>(features), optional<std::string>(reference),
-                                  optional<std::uint64_t>(seed),
+             return make_settings(preset, optional_text(features, "features"),
+                                  optional_text(reference, "reference"),
+                                  optional_integer<std::uint64_t>(seed, "seed"),
                                   {frame_budget_ns, budget_patience_frames, budget_spare_share}, level_world);
            }),
            py::kw_only(), "preset"_a = "default", "features"_a = py::none(), "reference"_a = py::none(),

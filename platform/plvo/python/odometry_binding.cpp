@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The odometry for Python, in a block of its own; other threads run while it tracks. The second of two cores
 // never meets the interpreter. There is no stage hook: see docs/python.md.
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "plvo/host/thread_pair.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/one_thread.hpp"
 #include "plvo/python/settings.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
 
@@ -25,11 +26,14 @@ struct OwnLimits {
   py::object keypoints, segments, references, line_bands, kept_keyframes, surfaces;
 
   void put_into(Limits& limits) const {
-    const std::pair<const py::object&, int&> pairs[] = {
-        {keypoints, limits.keypoints},           {segments, limits.segments},
-        {references, limits.references},         {line_bands, limits.line_bands},
-        {kept_keyframes, limits.kept_keyframes}, {surfaces, limits.surfaces}};
-    for (const auto& [own, entry] : pairs) entry = optional<int>(own).value_or(entry);
+    const std::tuple<const char*, const py::object&, int&> numbers[] = {
+        {"keypoints", keypoints, limits.keypoints},
+        {"segments", segments, limits.segments},
+        {"references", references, limits.references},
+        {"line_bands", line_bands, limits.line_bands},
+        {"kept_keyframes", kept_keyframes, limits.kept_keyframes},
+        {"surfaces", surfaces, limits.surfaces}};
+    for (const auto& [name, own, entry] : numbers) entry = optional_integer<int>(own, name).value_or(entry);
   }
 };
 
@@ -56,56 +60,48 @@ class Tracker {
                     const std::optional<std::int64_t>& depth_stamp_ns, bool bgr, const MotionPrior& prior) {
     const RgbdFrame frame{stamp_ns, depth_stamp_ns.value_or(stamp_ns), colour_view(colour, bgr),
                           depth_view(depth, metres_per_unit_)};
-    if (busy_.test_and_set())
-      throw std::runtime_error(
-          "this Odometry is tracking a frame in another thread; give each thread its own");
+    const OneThread::Use use(one_thread_);
     TrackResult result;
     {
       const py::gil_scoped_release others_may_run;
       result = odometry_.track(frame, prior);
     }
-    busy_.clear();
     if (result.status.code() == StatusCode::kInvalidArgument) throw_unless_ok(result.status);
     return result;
   }
 
   FeatureView features() {
-    refuse_if_busy();
+    const OneThread::Use use(one_thread_);
     return odometry_.features();
   }
   void frame_took(std::int64_t ns) {
-    refuse_if_busy();
+    const OneThread::Use use(one_thread_);
     odometry_.frame_took(ns);
   }
   void reset() {
-    refuse_if_busy();
+    const OneThread::Use use(one_thread_);
     odometry_.reset();
   }
   void set_pose(const py::object& T_world_camera, const py::object& covariance) {
-    refuse_if_busy();
     const Matrix4 T = matrix_of<4, 4>(T_world_camera, "T_world_camera");
     if (T.row(3) != Vector4(0, 0, 0, 1).transpose())
       refuse_array("T_world_camera", "the last row must be 0 0 0 1");
     const Matrix6 C = covariance.is_none() ? Matrix6::Zero() : matrix_of<6, 6>(covariance, "covariance");
+    const OneThread::Use use(one_thread_);
     throw_unless_ok(odometry_.set_pose({T.block<3, 3>(0, 0), T.block<3, 1>(0, 3)}, C));
   }
   std::size_t memory_bytes() const { return memory_.size(); }
 
  private:
-  void refuse_if_busy() {
-    if (busy_.test_and_set()) throw std::runtime_error("this Odometry is tracking a frame in another thread");
-    busy_.clear();
-  }
-
   std::vector<std::byte> memory_;
   std::unique_ptr<ThreadPair> pair_;
   Odometry odometry_;
   double metres_per_unit_;
-  std::atomic_flag busy_;
+  OneThread one_thread_{"Odometry"};
 };
 
 py::object features_of(const py::object& self, const py::object& type) {
-  const FeatureView v = self.cast<Tracker&>().features();
+  const FeatureView v = argument<Tracker&>(self, "self", "a plvo.Odometry").features();
   const auto two_pixels = [&](std::span<const SegmentView> segments) {
     return members_view(segments, &SegmentView::a_u, 4, self);
   };
@@ -125,12 +121,13 @@ void bind_odometry(py::module_& module) {
   const py::object features = namedtuple(module, "Features",
                                          "image keypoints segments segment_has_3d reference_segments "
                                          "point_tracks point_inliers line_tracks line_inliers");
-  py::class_<Tracker>(module, "Odometry")
+  bind_class<Tracker>(module, "Odometry")
       .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
                        const py::object& segments, const py::object& references, const py::object& line_bands,
                        const py::object& kept_keyframes, const py::object& surfaces, int cores) {
              return std::make_unique<Tracker>(
-                 camera, config.is_none() ? Settings() : config.cast<Settings>(),
+                 camera,
+                 config.is_none() ? Settings() : argument<const Settings&>(config, "config", "a plvo.Config"),
                  OwnLimits{keypoints, segments, references, line_bands, kept_keyframes, surfaces}, cores);
            }),
            "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
@@ -140,8 +137,11 @@ void bind_odometry(py::module_& module) {
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,
              const py::object& depth_stamp_ns, bool bgr, const py::object& prior) {
-            return tracker.track(colour, depth, stamp_ns, optional<std::int64_t>(depth_stamp_ns), bgr,
-                                 prior.is_none() ? MotionPrior() : prior.cast<MotionPrior>());
+            return tracker.track(colour, depth, stamp_ns,
+                                 optional_integer<std::int64_t>(depth_stamp_ns, "depth_stamp_ns"), bgr,
+                                 prior.is_none()
+                                     ? MotionPrior()
+                                     : argument<const MotionPrior&>(prior, "prior", "a plvo.MotionPrior"));
           },
           "colour"_a, "depth"_a, "stamp_ns"_a, "depth_stamp_ns"_a = py::none(), py::kw_only(),
           "bgr"_a = false, "prior"_a = py::none())

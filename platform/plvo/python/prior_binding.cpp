@@ -81,7 +81,7 @@ const Part* pointer(const std::optional<Part>& part) {
 
 void bind_prior(py::module_& module) {
   using Prior = const MotionPrior&;
-  py::class_<MotionPrior>(module, "MotionPrior")
+  bind_class<MotionPrior>(module, "MotionPrior")
       .def(py::init(&make_prior), py::kw_only(), "rotation"_a = py::none(), "translation"_a = py::none(),
            "gravity"_a = py::none(), "gravity_offset_sigma"_a = 0.0)
       .def_property_readonly(
@@ -102,7 +102,7 @@ void bind_prior(py::module_& module) {
         return copy_or_none(pointer(p.gravity), &GravityPrior::covariance);
       });
 
-  py::class_<Imu>(module, "Imu")
+  bind_class<Imu>(module, "Imu")
       .def(py::init([](const py::object& R_camera_imu, double gyro_noise, double gyro_offset_sigma,
                        double gyro_offset_walk, double gyro_scale_sigma, double accelerometer_noise,
                        double accelerometer_offset_sigma, double acceleration, double acceleration_s,
@@ -149,7 +149,7 @@ void bind_prior(py::module_& module) {
       .def_property_readonly("gyro_offset_variance",
                              [](Imu& imu) { return copy_of(imu.integrator().gyro_offset_variance()); });
 
-  py::class_<RecordedImu>(module, "RecordedImu")
+  bind_class<RecordedImu>(module, "RecordedImu")
       .def("prior", &RecordedImu::prior, "stamp_ns"_a)
       .def("learn", &RecordedImu::learn, "result"_a);
 }

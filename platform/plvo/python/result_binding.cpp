@@ -33,10 +33,14 @@ std::string describe(const TrackResult& result) {
   return text + ">";
 }
 
+const TrackResult& result_of(const py::object& self) {
+  return argument<const TrackResult&>(self, "self", "a plvo.Result");
+}
+
 }  // namespace
 
 void bind_result(py::module_& module) {
-  py::class_<FeatureCounts>(module, "Counts")
+  bind_class<FeatureCounts>(module, "Counts")
       .def_readonly("detected", &FeatureCounts::detected)
       .def_readonly("dropped", &FeatureCounts::dropped)
       .def_readonly("with_depth", &FeatureCounts::with_depth)
@@ -44,11 +48,10 @@ void bind_result(py::module_& module) {
       .def_readonly("inliers", &FeatureCounts::inliers);
 
   const auto covariance = [](Matrix6 TrackResult::*member) {
-    return py::cpp_function([member](const py::object& self) {
-      return matrix_view<6, 6>(self.cast<const TrackResult&>().*member, self);
-    });
+    return py::cpp_function(
+        [member](const py::object& self) { return matrix_view<6, 6>(result_of(self).*member, self); });
   };
-  py::class_<TrackResult>(module, "Result")
+  bind_class<TrackResult>(module, "Result")
       .def_property_readonly("state", [](const TrackResult& r) { return to_string(r.state); })
       .def_property_readonly("has_pose", &has_pose)
       .def_property_readonly("code", [](const TrackResult& r) { return to_string(r.status.code()); })
@@ -61,11 +64,9 @@ void bind_result(py::module_& module) {
                              [](const TrackResult& r) { return matrix_4x4(r.T_world_camera); })
       .def_property_readonly("T_camera_reference",
                              [](const TrackResult& r) { return matrix_4x4(r.T_camera_reference); })
-      .def_property_readonly("position",
-                             [](const py::object& self) {
-                               return matrix_view<3, 1>(self.cast<const TrackResult&>().T_world_camera.t,
-                                                        self);
-                             })
+      .def_property_readonly(
+          "position",
+          [](const py::object& self) { return matrix_view<3, 1>(result_of(self).T_world_camera.t, self); })
       .def_property_readonly("quaternion", [](const TrackResult& r) { return quaternion(r.T_world_camera); })
       .def_property_readonly("covariance", covariance(&TrackResult::pose_covariance))
       .def_property_readonly("motion_covariance", covariance(&TrackResult::motion_covariance))

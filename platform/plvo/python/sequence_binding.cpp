@@ -7,6 +7,7 @@
 
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/one_thread.hpp"
 #include "plvo/python/topics.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/recorded_imu.hpp"
@@ -18,24 +19,24 @@ using namespace py::literals;
 namespace {
 
 void warn(const std::string& text) {
-  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  if (PyErr_WarnFormat(PyExc_RuntimeWarning, 1, "%U", words(text).ptr()) != 0) throw py::error_already_set();
 }
 
 CalibrationChoice choice_of(const py::object& camera) {
   return [&camera](const OwnCalibration& own, Calibration& calibration) -> Status {
     if (camera.is_none()) return own(calibration);
     if (py::isinstance<Calibration>(camera)) {
-      calibration = camera.cast<Calibration>();
+      calibration = camera.cast<const Calibration&>();
       return {};
     }
-    return named_calibration(path_text(camera), calibration);
+    return named_calibration(path_bytes(camera), calibration);
   };
 }
 
 class Sequence {
  public:
   Sequence(const py::object& path, const py::object& camera, const py::object& topics) {
-    const std::filesystem::path recording = path_text(path);
+    const std::filesystem::path recording = path_bytes(path);
     RecordingOptions options;
     options.topics = bag_topics(topics);
     if (!topics.is_none() && !is_bag_file(recording))
@@ -51,6 +52,7 @@ class Sequence {
     for (;;) {
       Status status;
       {
+        const OneThread::Use use(one_thread_);
         const py::gil_scoped_release others_may_run;
         status = recording_.next(frame);
       }
@@ -62,10 +64,13 @@ class Sequence {
   }
   const Calibration& calibration() const { return recording_.calibration(); }
   std::unique_ptr<RecordedImu> imu(const py::object& R_camera_imu) {
-    ImuRecording samples;
-    throw_unless_ok(recording_.read_imu(samples));
     ImuConfig config;
     if (!R_camera_imu.is_none()) config.R_camera_imu = matrix_of<3, 3>(R_camera_imu, "R_camera_imu");
+    ImuRecording samples;
+    {
+      const OneThread::Use use(one_thread_);
+      throw_unless_ok(recording_.read_imu(samples));
+    }
     auto imu = std::make_unique<RecordedImu>();
     throw_unless_ok(imu->init(std::move(samples), config));
     return imu;
@@ -74,22 +79,23 @@ class Sequence {
 
  private:
   Recording recording_;
+  OneThread one_thread_{"Sequence"};
 };
 
 }  // namespace
 
 void bind_sequence(py::module_& module) {
   const py::object frame_type = namedtuple(module, "Frame", "colour depth stamp_ns depth_stamp_ns");
-  py::class_<Sequence>(module, "Sequence")
+  bind_class<Sequence>(module, "Sequence")
       .def(py::init<const py::object&, const py::object&, const py::object&>(), "recording"_a,
            "camera"_a = py::none(), py::kw_only(), "topics"_a = py::none())
       .def_property_readonly("camera", &Sequence::calibration)
       .def("imu", &Sequence::imu, py::kw_only(), "R_camera_imu"_a = py::none())
       .def("__len__", &Sequence::length)
-      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__iter__", [](Sequence& sequence) { return py::cast(&sequence); })
       .def("__next__", [frame_type](const py::object& self) {
         RgbdFrame frame;
-        if (!self.cast<Sequence&>().next(frame)) throw py::stop_iteration();
+        if (!argument<Sequence&>(self, "self", "a plvo.Sequence").next(frame)) throw py::stop_iteration();
         const ColourView& colour = frame.colour;
         const DepthView& depth = frame.depth;
         return frame_type(view(py::dtype::of<std::uint8_t>(), {colour.height, colour.width, 3},

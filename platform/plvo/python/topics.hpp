@@ -19,14 +19,15 @@ inline BagTopicNames bag_topics(const py::object& given) {
                                                         {"camera_info", &names.camera_info},
                                                         {"gyro", &names.gyro},
                                                         {"accelerometer", &names.accelerometer}};
-  for (const auto& [key, value] : given.cast<py::dict>()) {
+  for (const auto& [given_key, value] : argument<py::dict>(given, "topics", "a dict")) {
+    const std::string key = text(given_key, "topics");
     std::string* name = nullptr;
     for (const auto& [word, place] : known)
-      if (key.cast<std::string>() == word) name = place;
+      if (key == word) name = place;
     if (name == nullptr)
-      throw py::value_error("topics: '" + key.cast<std::string>() +
+      throw py::value_error("topics: '" + key +
                             "' is none of colour, depth, camera_info, gyro, accelerometer");
-    *name = value.cast<std::string>();
+    *name = text(value, "topics['" + key + "']");
   }
   return names;
 }

@@ -74,6 +74,12 @@ void ConnectionTable::hang_up_overdue(std::int64_t now_ns) {
   }
 }
 
+bool ConnectionTable::is_over(int descriptor) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(descriptor);
+  return found != entries_.end() && found->second.over;
+}
+
 std::size_t ConnectionTable::count() const {
   const std::lock_guard lock(mutex_);
   return static_cast<std::size_t>(

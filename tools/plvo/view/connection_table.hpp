@@ -36,6 +36,8 @@ class ConnectionTable {
   void closed(int descriptor);
   void hang_up_overdue(std::int64_t now_ns);
 
+  bool is_over(int descriptor) const;  // hung up on, and not yet closed
+
   std::size_t count() const;  // without those that were hung up on
 
  private:

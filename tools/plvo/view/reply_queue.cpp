@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/view/reply_queue.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "plvo/host/background.hpp"
 #include "plvo/host/posix_clock.hpp"
 
 namespace plvo {
@@ -13,7 +15,8 @@ constexpr int kTick_ms = 100;
 
 }  // namespace
 
-ReplyQueue::ReplyQueue(ViewHub& hub, std::function<void()> tick) : hub_(hub), tick_(std::move(tick)) {}
+ReplyQueue::ReplyQueue(ViewHub& hub, RateLimit& limit, std::function<void()> tick)
+    : hub_(hub), limit_(limit), tick_(std::move(tick)) {}
 
 void ReplyQueue::start() {
   stopped_ = false;
@@ -30,50 +33,65 @@ void ReplyQueue::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-bool ReplyQueue::add(const ViewHub::Ask& ask, std::function<void(std::string)> done) {
-  hub_.count_viewer(ask);
+bool ReplyQueue::add(Request request) {
+  if (request.ask) hub_.count_viewer(*request.ask);
   {
     const std::lock_guard lock(mutex_);
     if (stopped_) return false;
-    waiting_.push_back({ask, posix_monotonic_ns() + kPatience_ms * 1'000'000LL, std::move(done)});
+    waiting_.push_back({std::move(request), posix_monotonic_ns() + kPatience_ms * 1'000'000LL});
     woken_ = true;
   }
   work_.notify_one();
   return true;
 }
 
+// Without the mutex, for which the odometry might have to wait: if the queue's thread has just looked at
+// woken_ and is about to sleep, it misses this call, and the next frame or tick wakes it.
 void ReplyQueue::wake() {
-  {
-    const std::lock_guard lock(mutex_);
-    woken_ = true;
-  }
+  woken_ = true;
   work_.notify_one();
 }
 
-// Under mutex_: those for whom there is news, or who have waited long enough.
-std::vector<ReplyQueue::Waiting> ReplyQueue::take_ready() {
-  std::vector<Waiting> ready;
+// For news, or for the next tick; false once the queue is stopped.
+bool ReplyQueue::wait() {
+  std::unique_lock lock(mutex_);
+  work_.wait_for(lock, std::chrono::milliseconds(kTick_ms), [this] { return woken_ || stopped_; });
+  woken_ = false;
+  return !stopped_;
+}
+
+// The first of those whose reply is due and allowed, or for whom nobody is left.
+std::optional<ReplyQueue::Request> ReplyQueue::take_ready() {
+  const std::lock_guard lock(mutex_);
   const std::int64_t now = posix_monotonic_ns();
-  std::erase_if(waiting_, [&](Waiting& one) {
-    if (!stopped_ && now < one.until_ns && !hub_.has_news(one.ask)) return false;
-    ready.push_back(std::move(one));
-    return true;
+  const auto ready = std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& one) {
+    const Request& request = one.request;
+    if (stopped_ || request.is_over()) return true;
+    const bool due = !request.ask || now >= one.until_ns || hub_.has_news(*request.ask);
+    return due && limit_.allows(request.address, now);
   });
-  return ready;
+  if (ready == waiting_.end()) return std::nullopt;
+  Request request = std::move(ready->request);
+  waiting_.erase(ready);
+  return request;
+}
+
+std::string ReplyQueue::compose(const Request& request) {
+  if (request.is_over()) return {};
+  std::string reply = request.ask ? hub_.reply(*request.ask) : std::string();
+  limit_.spend(request.address, static_cast<std::int64_t>(reply.size()) + request.bytes + kReplyBytes,
+               posix_monotonic_ns());
+  return reply;
 }
 
 void ReplyQueue::run() {
-  bool more = true;
-  while (more) {
-    std::vector<Waiting> ready;
-    {
-      std::unique_lock lock(mutex_);
-      work_.wait_for(lock, std::chrono::milliseconds(kTick_ms), [this] { return woken_ || stopped_; });
-      woken_ = false;
-      more = !stopped_;
-      ready = take_ready();
+  run_in_background();
+  for (bool more = true; more;) {
+    more = wait();
+    while (std::optional<Request> request = take_ready()) {
+      request->done(more ? compose(*request) : std::string());
+      tick_();
     }
-    for (Waiting& one : ready) one.done(more ? hub_.reply(one.ask) : std::string());
     tick_();
   }
 }

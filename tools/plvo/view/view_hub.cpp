@@ -77,10 +77,10 @@ void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const
     ViewSnapshot& snapshot = snapshots_[static_cast<std::size_t>(back_)];
     snapshot.copy_images(frame, features, lens_is_straight);
     snapshot.copy_features(features);
-    last_image_ns_ = now;
   }
   {
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return;  // a viewer's thread has it, and may be kept from going on: the next frame is shown
     result_ = result;
     status_ = status;
     if (result.state != TrackState::kLost) path_.add(result.T_world_camera.t);
@@ -89,6 +89,7 @@ void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const
       std::swap(back_, middle_);
       middle_is_new_ = true;
       ++sequence_;
+      last_image_ns_ = now;
     }
   }
   if (with_image) on_news_();
@@ -158,8 +159,20 @@ std::shared_ptr<const ViewHub::Encoded> ViewHub::encoded() {
 std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const Encoded& image) {
   std::string out;
   const int watching = viewers();
-  const std::lock_guard lock(mutex_);
-  const TrackResult& r = result_;
+  TrackResult r;
+  ViewStatus status;
+  std::uint64_t path_epoch = 0;
+  std::size_t from = 0;
+  std::vector<Vector3> path;  // from `from` on
+  {
+    const std::lock_guard lock(mutex_);
+    r = result_;
+    status = status_;
+    path_epoch = path_.epoch();
+    const std::vector<Vector3>& points = path_.points();
+    if (ask.path_epoch == path_epoch && ask.path_points <= points.size()) from = ask.path_points;
+    path.assign(points.begin() + static_cast<std::ptrdiff_t>(from), points.end());
+  }
   const Quaternion q = to_quaternion(r.T_world_camera.R);
   const std::array<double, 4> orientation{q.x, q.y, q.z, q.w};
   fmt::format_to(
@@ -169,22 +182,19 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
       "\"frames\":{},"
       "\"lost\":{},\"dropped\":{},\"viewers\":{},\"brightness\":{:.1f}",
       sequence, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
-      json_string(r.status.message()), json_string(status_.camera), status_.silent, status_.camera_hz,
-      status_.odometry_hz, status_.latency_ms, status_.frames, status_.lost, status_.dropped, watching,
+      json_string(r.status.message()), json_string(status.camera), status.silent, status.camera_hz,
+      status.odometry_hz, status.latency_ms, status.frames, status.lost, status.dropped, watching,
       r.mean_brightness);
   put_array(out, "position", r.T_world_camera.t.data(), 3);
   put_array(out, "orientation", orientation.data(), 4);
   put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: by rows or by columns alike
   put_counts(out, "point_counts", r.points);
   put_counts(out, "line_counts", r.lines);
-  const auto& points = path_.points();
-  const bool known = ask.path_epoch == path_.epoch() && ask.path_points <= points.size();
-  const std::size_t from = known ? ask.path_points : 0;
-  fmt::format_to(std::back_inserter(out), ",\"path_epoch\":{},\"path_from\":{},\"path\":[", path_.epoch(),
-                 from);
-  for (std::size_t i = from; i < points.size(); ++i) {
-    fmt::format_to(std::back_inserter(out), "{}{:.4f},{:.4f},{:.4f}", i > from ? "," : "", points[i].x(),
-                   points[i].y(), points[i].z());
+  fmt::format_to(std::back_inserter(out), ",\"path_epoch\":{},\"path_from\":{},\"path\":[", path_epoch, from);
+  const char* comma = "";
+  for (const Vector3& point : path) {
+    fmt::format_to(std::back_inserter(out), "{}{:.4f},{:.4f},{:.4f}", comma, point.x(), point.y(), point.z());
+    comma = ",";
   }
   return out + "]," + image.features + "}";
 }

@@ -11,14 +11,18 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
+#include "plvo/host/background.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/stream/tcp_listener.hpp"
 #include "plvo/view/connection_table.hpp"
 #include "plvo/view/host_names.hpp"
 #include "plvo/view/page.hpp"
+#include "plvo/view/rate_limit.hpp"
 #include "plvo/view/reply_queue.hpp"
+#include "plvo/view/request_head.hpp"
 #endif
 
 namespace plvo {
@@ -31,6 +35,14 @@ constexpr int kBacklog = 128;
 // 431.
 constexpr std::size_t kConnectionBytes = 16 * 1024;
 constexpr unsigned kSilence_s = 5;
+// A browser needs a connection or two and keeps them; whoever makes more is refused before anything is read.
+// Of one address 10 a second, 32 at once; of all 40 a second, 64 at once.
+constexpr RateLimit::Bucket kConnections{100'000'000, 3'200'000'000};
+constexpr RateLimit::Bucket kAllConnections{25'000'000, 1'600'000'000};
+// Bytes of replies, each with ReplyQueue::kReplyBytes more: of one address 8 MB/s, of all 16 MB/s; a second's
+// worth at once.
+constexpr RateLimit::Bucket kBytes{125, 1'000'000'000};
+constexpr RateLimit::Bucket kAllBytes{62, 1'000'000'000};
 // The table hangs up before these are reached; the library's own limits stand behind it, with room for those
 // that were hung up on and are not closed yet.
 constexpr unsigned kLibraryConnections = 2 * ConnectionTable::kMaxConnections;
@@ -39,8 +51,14 @@ constexpr unsigned kLibraryPerAddress = 2 * ConnectionTable::kMaxPerAddress;
 // What is known of one request until its reply has gone.
 struct Request {
   MHD_Connection* connection = nullptr;
-  std::optional<std::string> reply;  // to /update, once it is composed
+  std::string target;  // as it came, with the query
+  bool judged = false;
+  std::optional<std::string> reply;  // once it may be answered: to /update the text
 };
+
+std::string machine_at(MHD_Connection* connection) {
+  return machine_of(*MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr);
+}
 
 int socket_of(MHD_Connection* connection) {
   return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
@@ -52,27 +70,6 @@ std::uint64_t number(MHD_Connection* connection, const char* name, std::uint64_t
   std::uint64_t value = otherwise;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && !text.empty() ? value : otherwise;
-}
-
-// The one header of this name; nothing when there is none, or more than one.
-std::optional<std::string_view> only_header(MHD_Connection* connection, const char* name) {
-  struct Search {
-    const char* name;
-    std::size_t count = 0;
-    std::string_view value;
-  } search{name, 0, {}};
-  MHD_get_connection_values(
-      connection, MHD_HEADER_KIND,
-      [](void* to, MHD_ValueKind, const char* key, const char* value) {
-        auto& s = *static_cast<Search*>(to);
-        if (::strcasecmp(key, s.name) == 0) {
-          ++s.count;
-          s.value = value != nullptr ? value : "";
-        }
-        return MHD_YES;
-      },
-      &search);
-  return search.count == 1 ? std::optional(search.value) : std::nullopt;
 }
 
 MHD_Result send(MHD_Connection* connection, unsigned code, const char* type, MHD_Response* response) {
@@ -112,78 +109,121 @@ MHD_Result send_update(MHD_Connection* connection, std::string text) {
 struct ViewServer::Impl {
   ViewHub hub;
   ConnectionTable table{[](int descriptor) { ::shutdown(descriptor, SHUT_RDWR); }};
-  ReplyQueue queue{hub, [this] { table.hang_up_overdue(posix_monotonic_ns()); }};
+  RateLimit connections{kConnections, kAllConnections};
+  RateLimit bytes{kBytes, kAllBytes};
+  ReplyQueue queue{hub, bytes, [this] { table.hang_up_overdue(posix_monotonic_ns()); }};
   std::optional<HostNames> names;
   MHD_Daemon* daemon = nullptr;
   int port = 0;
 
   bool start_daemon(int listener);
-  MHD_Result refuse_or_go_on(MHD_Connection* connection, const char* method);
+  bool lets_in(const sockaddr& peer);
+  MHD_Result refuse_or_go_on(Request& request, const char* method, const char* version);
+  MHD_Result refuse(MHD_Connection* connection, unsigned code, const char* text);
   MHD_Result answer(Request& request, std::string_view path);
-  void wait_for_update(Request& request);
+  void wait(Request& request, std::string_view path);
 };
 
+bool ViewServer::Impl::lets_in(const sockaddr& peer) {
+  const std::string machine = machine_of(peer);
+  const std::int64_t now_ns = posix_monotonic_ns();
+  if (!connections.allows(machine, now_ns)) return false;
+  connections.spend(machine, 1, now_ns);
+  return true;
+}
+
+// Whoever has had all that it may have is hung up on without a word.
+MHD_Result ViewServer::Impl::refuse(MHD_Connection* connection, unsigned code, const char* text) {
+  const std::string machine = machine_at(connection);
+  const std::int64_t now_ns = posix_monotonic_ns();
+  if (!bytes.allows(machine, now_ns)) return MHD_NO;
+  bytes.spend(machine, ReplyQueue::kReplyBytes, now_ns);
+  return send_constant(connection, code, "text/plain", text);
+}
+
 // What can be said once the headers are here: no names but ours, nothing but questions, and no luggage.
-MHD_Result ViewServer::Impl::refuse_or_go_on(MHD_Connection* connection, const char* method) {
+MHD_Result ViewServer::Impl::refuse_or_go_on(Request& request, const char* method, const char* version) {
+  MHD_Connection* connection = request.connection;
+  if (!is_well_formed(connection, method, request.target, version)) {
+    return refuse(connection, MHD_HTTP_BAD_REQUEST,
+                  "This request can be read in more than one way. HTTP/1.1 wants single spaces, CRLF at the "
+                  "end of each line, no control characters, and one length of a body.\n");
+  }
   const std::optional<std::string_view> host = only_header(connection, MHD_HTTP_HEADER_HOST);
   if (!host || !names->allows(*host)) {
-    return send_constant(connection, MHD_HTTP_FORBIDDEN, "text/plain",
-                         "This live view does not answer under this name. Use the address that plvo live "
-                         "printed, or start it with --view-host and the name (and port) in your browser.\n");
+    return refuse(
+        connection, MHD_HTTP_FORBIDDEN,
+        "This live view does not answer under this name. Use the address that plvo live printed, or "
+        "start it with --view-host and the name (and port) in your browser.\n");
   }
   if (std::strcmp(method, MHD_HTTP_METHOD_GET) != 0 && std::strcmp(method, MHD_HTTP_METHOD_HEAD) != 0) {
-    return send_constant(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "text/plain", "Only GET.\n");
+    return refuse(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "Only GET.\n");
   }
-  const char* length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Content-Length");
-  const char* coding = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Transfer-Encoding");
-  if (coding != nullptr || (length != nullptr && std::strcmp(length, "0") != 0)) {
-    return send_constant(connection, MHD_HTTP_BAD_REQUEST, "text/plain", "No body is wanted.\n");
-  }
+  if (has_body(connection)) return refuse(connection, MHD_HTTP_BAD_REQUEST, "No body is wanted.\n");
   return MHD_YES;
 }
 
-// The connection sleeps in the library until the reply is composed; it cannot go away meanwhile.
-void ViewServer::Impl::wait_for_update(Request& request) {
-  ViewHub::Ask ask;
-  ask.after = number(request.connection, "after", 0);
-  ask.image = number(request.connection, "image", 0);
-  ask.path_epoch = number(request.connection, "epoch", ~std::uint64_t{0});
-  ask.path_points = static_cast<std::size_t>(number(request.connection, "path", 0));
-  if (const char* viewer = MHD_lookup_connection_value(request.connection, MHD_GET_ARGUMENT_KIND, "viewer")) {
-    ask.viewer = viewer;
+// The connection sleeps in the library until it may be answered; it cannot go away meanwhile.
+void ViewServer::Impl::wait(Request& request, std::string_view path) {
+  MHD_Connection* connection = request.connection;
+  ReplyQueue::Request waiting;
+  waiting.address = machine_at(connection);
+  if (path == "/update") {
+    ViewHub::Ask& ask = waiting.ask.emplace();
+    ask.after = number(connection, "after", 0);
+    ask.image = number(connection, "image", 0);
+    ask.path_epoch = number(connection, "epoch", ~std::uint64_t{0});
+    ask.path_points = static_cast<std::size_t>(number(connection, "path", 0));
+    if (const char* viewer = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "viewer")) {
+      ask.viewer = viewer;
+    }
+  } else if (path == "/") {
+    waiting.bytes = static_cast<std::int64_t>(std::strlen(kViewPage));
   }
-  MHD_suspend_connection(request.connection);
-  const auto go_on = [&request](std::string reply) {
+  MHD_suspend_connection(connection);
+  waiting.is_over = [this, descriptor = socket_of(connection)] { return table.is_over(descriptor); };
+  waiting.done = [&request](std::string reply) {
     request.reply = std::move(reply);
     MHD_resume_connection(request.connection);
   };
-  if (!queue.add(ask, go_on)) go_on("");
+  if (!queue.add(waiting)) waiting.done("");
 }
 
 MHD_Result ViewServer::Impl::answer(Request& request, std::string_view path) {
   MHD_Connection* connection = request.connection;
+  if (!request.reply) {
+    wait(request, path);
+    return MHD_YES;
+  }
   if (path == "/") return send_constant(connection, MHD_HTTP_OK, "text/html; charset=utf-8", kViewPage);
   if (path == "/favicon.ico") return send_constant(connection, MHD_HTTP_NO_CONTENT, "", "");
-  if (path != "/update") {
-    return send_constant(connection, MHD_HTTP_NOT_FOUND, "text/plain", "There is only the page itself: /\n");
-  }
-  if (request.reply) return send_update(connection, std::move(*request.reply));
-  wait_for_update(request);
-  return MHD_YES;
+  if (path == "/update") return send_update(connection, std::move(*request.reply));
+  return send_constant(connection, MHD_HTTP_NOT_FOUND, "text/plain", "There is only the page itself: /\n");
 }
 
 bool ViewServer::Impl::start_daemon(int listener) {
+  const MHD_AcceptPolicyCallback on_newcomer = [](void* self, const sockaddr* peer, socklen_t) {
+    return static_cast<Impl*>(self)->lets_in(*peer) ? MHD_YES : MHD_NO;
+  };
+  using OnTarget = void* (*)(void*, const char*, MHD_Connection*);  // what it returns becomes `known` below
+  const OnTarget on_target = [](void*, const char* target, MHD_Connection* connection) -> void* {
+    return new Request{connection, target, false, {}};
+  };
+  // Nothing that is asked for has an escape in its name.
+  using Unescape = std::size_t (*)(void*, MHD_Connection*, char*);
+  const Unescape leave_as_it_is = [](void*, MHD_Connection*, char* text) { return std::strlen(text); };
   const MHD_AccessHandlerCallback on_request = [](void* self, MHD_Connection* connection, const char* path,
-                                                  const char* method, const char*, const char*,
+                                                  const char* method, const char* version, const char*,
                                                   std::size_t* body_bytes, void** known) {
     auto& impl = *static_cast<Impl*>(self);
-    if (*known == nullptr) {  // the headers are here
-      *known = new Request{connection, {}};
+    auto& request = *static_cast<Request*>(*known);
+    if (!request.judged) {  // the headers are here
+      request.judged = true;
       impl.table.asked(socket_of(connection), posix_monotonic_ns());
-      return impl.refuse_or_go_on(connection, method);
+      return impl.refuse_or_go_on(request, method, version);
     }
     if (*body_bytes != 0) return MHD_NO;
-    return impl.answer(*static_cast<Request*>(*known), path);
+    return impl.answer(request, path);
   };
   const MHD_RequestCompletedCallback on_answered = [](void* self, MHD_Connection* connection, void** known,
                                                       MHD_RequestTerminationCode) {
@@ -194,17 +234,20 @@ bool ViewServer::Impl::start_daemon(int listener) {
                                                         MHD_ConnectionNotificationCode what) {
     auto& impl = *static_cast<Impl*>(self);
     if (what == MHD_CONNECTION_NOTIFY_CLOSED) return impl.table.closed(socket_of(connection));
-    const sockaddr* peer =
-        MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
-    impl.table.opened(socket_of(connection), machine_of(*peer), posix_monotonic_ns());
+    impl.table.opened(socket_of(connection), machine_at(connection), posix_monotonic_ns());
   };
-  daemon = MHD_start_daemon(MHD_USE_POLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr, nullptr,
-                            on_request, this, MHD_OPTION_LISTEN_SOCKET, listener, MHD_OPTION_NOTIFY_COMPLETED,
-                            on_answered, this, MHD_OPTION_NOTIFY_CONNECTION, on_connection, this,
-                            MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes,
-                            MHD_OPTION_CONNECTION_TIMEOUT, kSilence_s, MHD_OPTION_CONNECTION_LIMIT,
-                            kLibraryConnections, MHD_OPTION_PER_IP_CONNECTION_LIMIT, kLibraryPerAddress,
-                            MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+  // The library's thread inherits the priority of the one that starts it.
+  std::thread([&] {
+    run_in_background();
+    daemon = MHD_start_daemon(
+        MHD_USE_POLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, on_newcomer, this, on_request, this,
+        MHD_OPTION_LISTEN_SOCKET, listener, MHD_OPTION_URI_LOG_CALLBACK, on_target, nullptr,
+        MHD_OPTION_UNESCAPE_CALLBACK, leave_as_it_is, nullptr, MHD_OPTION_NOTIFY_COMPLETED, on_answered, this,
+        MHD_OPTION_NOTIFY_CONNECTION, on_connection, this, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        kConnectionBytes, MHD_OPTION_CONNECTION_TIMEOUT, kSilence_s, MHD_OPTION_CONNECTION_LIMIT,
+        kLibraryConnections, MHD_OPTION_PER_IP_CONNECTION_LIMIT, kLibraryPerAddress,
+        MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+  }).join();
   return daemon != nullptr;
 }
 

@@ -38,7 +38,7 @@ def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02,
     a true pose is off, in each axis (m, rad); joins the covariances in the NEES. fit_truth: compare with the truth turned and
     its clock shifted as explains the estimate best."""
     if isinstance(estimate, (str, bytes, _os.PathLike)):
-        estimate = _os.fsdecode(estimate)
-    text = _evaluation.evaluate(_os.fsdecode(truth), estimate, sampling, max_difference_s, offset_s, list(rpe_deltas),
+        estimate = _os.fsencode(estimate)
+    text = _evaluation.evaluate(truth, estimate, sampling, max_difference_s, offset_s, list(rpe_deltas),
                                 tuple(truth_sigma), fit_truth)
     return _json.loads(text)

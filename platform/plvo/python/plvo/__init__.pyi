@@ -32,7 +32,7 @@ class Camera:
         fy: float,
         cx: float,
         cy: float,
-        distortion: _ListLike[float] = (),
+        distortion: Iterable[float] = (),
         depth_units_per_metre: float = 1000,
         readout_s: float = 0,
         depth_delay_s: float | None = None,

@@ -7,6 +7,7 @@
 
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/python/arguments.hpp"
 #include "plvo/python/error.hpp"
 #include "plvo/recording/recording.hpp"
 
@@ -14,6 +15,7 @@ namespace plvo::eval {
 namespace {
 
 namespace py = pybind11;
+using python::argument;
 using python::throw_unless_ok;
 
 struct Estimate {
@@ -25,7 +27,7 @@ struct Estimate {
 Estimate estimate_of(const py::iterable& results) {
   Estimate estimate;
   for (const py::handle item : results) {
-    const auto& result = item.cast<const TrackResult&>();
+    const auto& result = argument<const TrackResult&>(item, "estimate", "plvo.Result objects");
     if (!has_pose(result)) continue;
     const std::vector<StampedPose>& poses = estimate.trajectory.poses;
     if (!poses.empty() && result.stamp_ns <= poses.back().stamp_ns)
@@ -60,7 +62,7 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
   options.fit_truth = fit_truth;
   for (const py::handle item : deltas) {
     RpeDelta delta;
-    const auto text = item.cast<std::string>();
+    const std::string text = python::text(item, "rpe_deltas");
     if (!parse_rpe_delta(text, delta))
       throw py::value_error("rpe_deltas: expected frames, seconds or metres such as 1f, 0.5s or 2m, got '" +
                             text + "'");
@@ -69,25 +71,28 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
   return options;
 }
 
-std::string evaluate_json(const std::string& truth_path, const py::object& estimated,
-                          const std::string& sampling, double max_difference_s, double offset_s,
-                          const py::iterable& deltas, std::pair<double, double> truth_sigma, bool fit_truth) {
+// estimated: results, or bytes, which are the path of a file.
+std::string evaluate_json(const py::object& truth, const py::object& estimated, const std::string& sampling,
+                          double max_difference_s, double offset_s, const py::iterable& deltas,
+                          std::pair<double, double> truth_sigma, bool fit_truth) {
   const EvaluationOptions options = options_of(sampling, max_difference_s, offset_s, deltas,
                                                truth_sigma.first, truth_sigma.second, fit_truth);
-  Trajectory truth;
-  throw_unless_ok(is_recording(truth_path) ? read_true_poses(truth_path, {}, truth)
-                                           : read_trajectory({truth_path, {}, {}}, truth));
+  const std::string truth_path = python::path_bytes(truth);
+  Trajectory true_poses;
+  throw_unless_ok(is_recording(truth_path) ? read_true_poses(truth_path, {}, true_poses)
+                                           : read_trajectory({truth_path, {}, {}}, true_poses));
   Estimate estimate;
-  if (py::isinstance<py::str>(estimated))
-    throw_unless_ok(read_trajectory({estimated.cast<std::string>(), {}, {}}, estimate.trajectory));
+  if (py::isinstance<py::bytes>(estimated))
+    throw_unless_ok(read_trajectory({python::path_bytes(estimated), {}, {}}, estimate.trajectory));
   else
-    estimate = estimate_of(estimated.cast<py::iterable>());
+    estimate = estimate_of(
+        argument<py::iterable>(estimated, "estimate", "a file or an iterable of plvo.Result objects"));
   for (const StampedPose& pose : estimate.trajectory.poses)
     if (pose.stamp_ns <= INT64_MIN / 2 || pose.stamp_ns >= INT64_MAX / 2)
       throw py::value_error("the estimate has stamps beyond 146 years");
   Evaluation evaluation;
   throw_unless_ok(
-      evaluate(truth, estimate.trajectory, estimate.covariances, estimate.motions, options, evaluation));
+      evaluate(true_poses, estimate.trajectory, estimate.covariances, estimate.motions, options, evaluation));
   return to_json(evaluation).dump();
 }
 
