@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 import arrows
+import ran
 import rules
 
 LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
@@ -112,6 +113,59 @@ class Rules(unittest.TestCase):
 
     def test_a_path_of_one_machine_is_named(self):
         self.assertTrue(self.found("tools/plvo/cli/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
+
+
+def entry(name, status="run", output=""):
+    return f'<testcase name="{name}" status="{status}"><system-out>{output}</system-out></testcase>'
+
+
+SKIPPED = entry("a_test", "notrun", """[  SKIPPED ] A.Here (12 ms)
+[  PASSED  ] 3 tests.
+[  SKIPPED ] 2 tests, listed below:
+[  SKIPPED ] A.Here
+[  SKIPPED ] Kinds/A.There/0
+""")
+
+
+class Ran(unittest.TestCase):
+    def errors(self, entries, may_skip=(), names=()):
+        return list(ran.check(f"<testsuite>{''.join(entries)}</testsuite>", may_skip, names))
+
+    def test_what_ran_passes(self):
+        self.assertEqual(self.errors([entry("a_test"), entry("fuzz_bag", output="no test was skipped")], names=["fuzz_bag"]), [])
+
+    def test_what_was_not_built_is_named(self):
+        self.assertEqual(self.errors([entry("golden_test")], names=["golden_test", "fuzz_bag"]), ["fuzz_bag did not run"])
+
+    def test_what_was_skipped_did_not_run(self):
+        self.assertIn("a_test did not run", self.errors([entry("a_test", "notrun")], may_skip=["a_test"], names=["a_test"]))
+
+    def test_a_skip_that_the_list_does_not_name_is_named(self):
+        errors = self.errors([SKIPPED], may_skip=["A.Here", "a_test"])
+        self.assertEqual(len(errors), 1, errors)
+        self.assertTrue(errors[0].startswith("Kinds/A.There/0 was skipped (a_test)"), errors)
+        self.assertEqual(self.errors([SKIPPED], may_skip=["A.Here", "*/A.There/*"]), [])
+
+    def test_so_are_programs_without_googletest_and_python_tests(self):
+        for skipped in (entry("b_test", "notrun", "SKIPPED: no Chromium here"), entry("b_test", "disabled"),
+                        entry("b_test", output="sss  [100%]\n3 skipped in 0.01s"),
+                        entry("b_test", output="..s  [100%]\n2 passed, 1 skipped in 0.01s")):
+            self.assertEqual(len(self.errors([skipped])), 1, skipped)
+            self.assertEqual(self.errors([skipped], may_skip=["b_test"]), [])
+
+    def test_the_list_holds_where_it_says(self):
+        text = "# why\nalways A.A  # why\nasan *.B\nno-shared C.C\n"
+        self.assertEqual(ran.allowed(text, {"always", "release"}), {"A.A"})
+        self.assertEqual(ran.allowed(text, {"always", "asan", "no-shared"}), {"A.A", "*.B", "C.C"})
+
+    def test_every_row_of_the_list_is_a_test(self):
+        tests = pathlib.Path(__file__).parent.parent
+        text = "".join(path.read_text(encoding="utf-8") for path in tests.rglob("*") if path.suffix in (".cpp", ".txt")
+                       and path != ran.ALLOWED)
+        presets = ("asan", "tsan", "armhf", "armhf-neon", "no-shared", "no-root", "no-mount", "always")
+        for name in ran.allowed(ran.ALLOWED.read_text(encoding="utf-8"), presets):
+            suite, _, test = name.removeprefix("*/").partition(".")
+            self.assertRegex(text, rf"{suite}, {test}\)" if test not in ("", "*") else rf"\b{suite}\b", name)
 
 
 if __name__ == "__main__":
