@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 import arrows
+import figures
 import ran
 import rules
 
@@ -166,6 +167,51 @@ class Ran(unittest.TestCase):
         for name in ran.allowed(ran.ALLOWED.read_text(encoding="utf-8"), presets):
             suite, _, test = name.removeprefix("*/").partition(".")
             self.assertRegex(text, rf"{suite}, {test}\)" if test not in ("", "*") else rf"\b{suite}\b", name)
+
+
+README = """
+| sequence | system | mm per s | ° per s | mm per frame | ° per frame |
+|---|---|---:|---:|---:|---:|
+| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 |
+
+| site | light | path m | **plvo, both** |
+|---|---|---:|---:|
+| hall | constant | 3.7 | 7.2 |
+"""
+BENCH = """
+| site | light | path m | **plvo, both** | others |
+|---|---|---:|---:|---:|
+| hall | constant | 3.7 | 7.2 | 9 |
+
+| sequence | system | mm/frame | °/frame | mm/s | °/s |
+|---|---|---:|---:|---:|---:|
+| rpy | plvo-both | 2.8 | 0.26 | 7.5 | 0.89 |
+"""
+
+
+class Figures(unittest.TestCase):
+    def found(self, readme=README, bench=BENCH, **more):
+        files = {"README.md": readme, "docs/bench.md": bench}
+        with Tree({**files, **{f"docs/{name}.md": text for name, text in more.items()}}) as root:
+            return figures.check(root)
+
+    def test_equal_copies_and_a_page_that_refers_pass(self):
+        self.assertEqual(self.found(memory="`track` takes 24,516 bytes of stack", porting="a [stack](memory.md#stack)"), [])
+
+    def test_a_figure_on_another_page_is_named(self):
+        for text in ("3. a stack: on a Cortex-M7\n20.9 KiB for `track`", "118 kB of flash", "code size (121 kB)",
+                     "`Limits::tiny()` (489 KiB)", "0.4 of the\ninstructions", "a frame of 320×240 is 52 million instructions",
+                     "The covariance is honest about it"):
+            errors = self.found(porting="\n" + text + "\n")
+            self.assertEqual(len(errors), 1, (text, errors))
+            self.assertTrue(errors[0].startswith("docs/porting.md:2:"), errors)
+
+    def test_a_copy_that_differs_is_named(self):
+        for bench in (BENCH.replace("7.2", "7.3"), BENCH.replace("| 7.5", "| 7.6"), BENCH.replace("0.26 ", "0.27 ")):
+            self.assertEqual(len(self.found(bench=bench)), 1, bench)
+
+    def test_nothing_compared_is_a_failure(self):
+        self.assertTrue(self.found(readme="", bench=""))
 
 
 if __name__ == "__main__":
