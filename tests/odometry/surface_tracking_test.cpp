@@ -94,6 +94,7 @@ TEST(SurfaceTracking, FindsTheSurfacesWhereTheTrueMotionPutsThem) {
   double sum = 0;
   for (std::size_t i = 0; i < set.size(); ++i) sum += set.mahalanobis_squared(i, pair.truth, 1e9);
   const double mean = sum / static_cast<double>(set.size());
+  std::printf("mean %.4f of %zu\n", mean, set.size());
   // The variance is that of one reading; a plane through 49 of them errs by far less, which the odometry
   // learns.
   EXPECT_GT(mean, 0.005);
