@@ -78,14 +78,20 @@ TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
   const test::TrackedWalk told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
   test::expect_same_poses(told, not_told);
   const Means with = mean_nees(told), without = mean_nees(not_told);
-  std::printf("NEES told %.2f %.2f, not told %.2f %.2f\n", with.of_motion, with.of_pose, without.of_motion,
+  const Means with_half = mean_nees(walk_with_stamps(kSigma_s / 2));
+  std::printf("NEES of motions and poses: told %.2f %.2f, told half %.2f %.2f, not told %.2f %.2f\n",
+              with.of_motion, with.of_pose, with_half.of_motion, with_half.of_pose, without.of_motion,
               without.of_pose);
+  // Narrow enough to tell half of the stamps' error from all of it.
+  constexpr double kMost = 7;
   EXPECT_GT(without.of_motion, 60);
   EXPECT_GT(with.of_motion, 2);
-  EXPECT_LT(with.of_motion, 10);
+  EXPECT_LT(with.of_motion, kMost);
+  EXPECT_GT(with_half.of_motion, kMost);
   EXPECT_GT(without.of_pose, 60);
   EXPECT_GT(with.of_pose, 2);
-  EXPECT_LT(with.of_pose, 10);
+  EXPECT_LT(with.of_pose, kMost);
+  EXPECT_GT(with_half.of_pose, kMost);
 }
 
 TEST(StampError, StaysWithTheLastGoodPose) {
