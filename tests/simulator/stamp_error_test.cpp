@@ -3,6 +3,7 @@
 // stamps, so that the poses must stay as they are, and the covariances must hold what the camera moves
 // between the exposure and the stamp.
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <vector>
 
