@@ -20,7 +20,7 @@ compare() {
     }
     if [ -z "$first" ]; then
       first=$preset
-      [ -s "$work/$name.$preset.txt" ] || { echo "$name: $preset wrote no poses" >&2; exit 1; }
+      grep -q '^[0-9]' "$work/$name.$preset.txt" || { echo "$name: $preset wrote no poses" >&2; exit 1; }
     elif ! cmp "$work/$name.$first.txt" "$work/$name.$preset.txt" >&2; then
       echo "$name: $first and $preset differ" >&2
       exit 1

@@ -265,8 +265,8 @@ TEST(GravityHold, StopsTheDriftOfRollAndPitch) {
   EXPECT_GT(std::sqrt(free), 0.15);
   EXPECT_LT(std::sqrt(held), 0.05);
   EXPECT_GT(std::sqrt(heading), 0.08) << "gravity says nothing of the heading";
-  EXPECT_GT(nees, 0.5);
-  EXPECT_LT(nees, 2.0);
+  EXPECT_NEAR(nees, 1, 3 * std::sqrt(1.0 / kWalks))
+      << "three standard deviations of the mean of 2 · 30 squares";
 }
 
 }  // namespace

@@ -193,6 +193,7 @@ TEST(References, AWindowMovesAsOne) {
     for (int i = 0; i < kShownFrames; ++i) {
       const RgbdFrame frame = sequence.render(4 * i);
       const TrackResult a = odometry.track(frame), b = other.track(frame);
+      ASSERT_EQ(a.state, i == 0 ? TrackState::kInitialising : TrackState::kTracking) << i;
       ASSERT_EQ(b.state, a.state) << i;
       EXPECT_EQ(b.reference_stamp_ns, a.reference_stamp_ns) << i;
       EXPECT_EQ(b.points.matched, a.points.matched) << i;

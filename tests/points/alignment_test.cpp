@@ -223,6 +223,7 @@ TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
       ++textures;
     }
     std::printf("noise %.1f: spread / sigma_px = %.2f on average\n", noise, ratio_sum / textures);
+    EXPECT_NEAR(ratio_sum / textures, 1, 0.2) << "noise " << noise;
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A keyframe that is kept for long goes on erring alike: what is reported of the motion from it must not get
 // surer with every frame, and the estimate must stay what it is (repeated_error.hpp).
+#include <cstdio>
+
 #include "tracked_walk.hpp"
 
 namespace plvo {
@@ -21,13 +23,17 @@ double nees_of_old_keyframes(const test::TrackedWalk& walk) {
 TEST(KeptKeyframe, DoesNotMakeTheCovarianceSurerWithEveryFrame) {
   Config config, as_if_new;
   as_if_new.noise.repeated_share = 0;
-  const test::TrackedWalk walk = test::track_walk(SceneName::kBare, 60, config);
-  const test::TrackedWalk other = test::track_walk(SceneName::kBare, 60, as_if_new);
+  const test::TrackedWalk walk = test::track_walk(SceneName::kCorridor, 60, config);
+  const test::TrackedWalk other = test::track_walk(SceneName::kCorridor, 60, as_if_new);
   test::expect_same_poses(walk, other);
-  const double honest = nees_of_old_keyframes(walk), surer = nees_of_old_keyframes(other);
-  EXPECT_GT(surer, 1.5 * honest);
-  EXPECT_GT(honest, 0.5);
-  EXPECT_LT(honest, 12);
+  const double told = nees_of_old_keyframes(walk), surer = nees_of_old_keyframes(other);
+  std::printf("NEES of motions from old keyframes: %.2f, as if new %.2f\n", told, surer);
+  EXPECT_GT(surer, 1.5 * told);
+  // 6 if true: no surer than that, but for chance, and not twice as unsure. As if new it is surer.
+  constexpr double kLeast = 3, kMost = 6.5;
+  EXPECT_GT(told, kLeast);
+  EXPECT_LT(told, kMost);
+  EXPECT_GT(surer, kMost);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // stamps, so that the poses must stay as they are, and the covariances must hold what the camera moves
 // between the exposure and the stamp.
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <vector>
 
@@ -78,12 +79,20 @@ TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
   const test::TrackedWalk told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
   test::expect_same_poses(told, not_told);
   const Means with = mean_nees(told), without = mean_nees(not_told);
+  const Means with_half = mean_nees(walk_with_stamps(kSigma_s / 2));
+  std::printf("NEES of motions and poses: told %.2f %.2f, told half %.2f %.2f, not told %.2f %.2f\n",
+              with.of_motion, with.of_pose, with_half.of_motion, with_half.of_pose, without.of_motion,
+              without.of_pose);
+  // Narrow enough to tell half of the stamps' error from all of it.
+  constexpr double kMostOfMotions = 4, kMostOfPoses = 5.5;
   EXPECT_GT(without.of_motion, 60);
   EXPECT_GT(with.of_motion, 2);
-  EXPECT_LT(with.of_motion, 10);
+  EXPECT_LT(with.of_motion, kMostOfMotions);
+  EXPECT_GT(with_half.of_motion, kMostOfMotions);
   EXPECT_GT(without.of_pose, 60);
   EXPECT_GT(with.of_pose, 2);
-  EXPECT_LT(with.of_pose, 10);
+  EXPECT_LT(with.of_pose, kMostOfPoses);
+  EXPECT_GT(with_half.of_pose, kMostOfPoses);
 }
 
 TEST(StampError, StaysWithTheLastGoodPose) {

@@ -153,7 +153,9 @@ TEST_F(RecordedTrajectory, TakesTheRealOnes) {
       std::filesystem::path(shared != nullptr ? shared : "") / "data/tum_groundtruth";
   if (shared == nullptr || !std::filesystem::exists(folder))
     GTEST_SKIP() << "the recorded ground truth is not here: set PLVO_SHARED to the folder that holds data/";
+  int taken = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    ++taken;
     Trajectory trajectory;
     const Status status = Trajectory::from_tum(entry.path().string(), *scene_, trajectory);
     ASSERT_TRUE(status.ok()) << status.message();
@@ -164,6 +166,7 @@ TEST_F(RecordedTrajectory, TakesTheRealOnes) {
           << entry.path() << " " << t;
     }
   }
+  EXPECT_GT(taken, 0) << folder;
 }
 
 }  // namespace

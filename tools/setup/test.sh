@@ -24,28 +24,37 @@ build() {
   cmake --preset "$1" >&2
   cmake --build --preset "$1" --parallel "$(nproc)" "${@:2}" >&2
 }
+# suite PRESET TESTS OPTION…: passes what the options select, which must run each of TESTS, a list of words, and may skip only
+# what tests/allowed_skips.txt allows.
 suite() {
   say "[$((SECONDS - started)) s] $1: testing"
-  ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}"
+  ctest --preset "$1" --parallel "$(nproc)" --no-tests=error --output-junit ran.xml "${@:3}"
+  # shellcheck disable=SC2086  # a list of words
+  python3 tests/house/ran.py "build/$1/ran.xml" "$1" $2
 }
+# Of each fuzzer's and each Python test's file the entry of ctest that must have come of it.
+fuzzers() { basename --multiple --suffix=.cpp tests/fuzz/fuzz_*.cpp; }
+python_tests() { basename --multiple --suffix=.py tests/python/*_test.py | sed 's/^/python_/'; }
 
 # What the other presets have to show, and no more: their whole suites take `test.sh all`.
 briefly() {
   # An emulated board's run takes minutes in a single thread: it goes on beside what is built next.
-  local preset programs emulated=()
+  local preset programs tests emulated=()
   for preset in cortex-m7 aarch64 armhf; do
-    programs=(golden_test)
-    if [ "$preset" = cortex-m7 ]; then programs+=(footprint stack_program); fi
+    programs=(golden_test) tests="golden_test budget_text"
+    if [ "$preset" = cortex-m7 ]; then programs+=(footprint stack_program) tests+=" budget_stack"; fi
     build "$preset" --target "${programs[@]}"
-    suite "$preset" --tests-regex '^(golden_test|budget_(text|stack))$' >"build/$preset/golden.log" 2>&1 &
+    suite "$preset" "$tests" --tests-regex "^(${tests// /|})$" >"build/$preset/golden.log" 2>&1 &
     emulated+=("$!:$preset")
   done
   build clang --target golden_test fuzzers
-  suite clang --tests-regex '^(golden_test|fuzz_.*)$'
+  suite clang "golden_test $(fuzzers)" --tests-regex '^(golden_test|fuzz_.*)$'
   build asan --target core_and_reader_tests
-  suite asan --label-regex '^(core|golden|reader)$' --label-exclude '^calculation$'
+  suite asan "golden_test points_test lsd_test odometry_states_test replay_test rosbag_test c_api_test eval_test" \
+    --label-regex '^(core|golden|reader)$' --label-exclude '^calculation$'
   build tsan --target threaded_tests
-  suite tsan --label-regex '^threads$'
+  suite tsan "host_frame_ring_test host_pose_stream_test host_thread_pair_test live_view_test simulator_threads_test" \
+    --label-regex '^threads$'
   local run passed
   for run in "${emulated[@]}"; do
     passed=yes
@@ -63,9 +72,15 @@ last=${presets[-1]}
 unset 'presets[-1]'
 for preset in "${presets[@]}"; do
   build "$preset"
-  suite "$preset"
+  suite "$preset" golden_test
 done
+must_run=golden_test
+if [ "$last" = release ]; then
+  # With all libraries at hand none may be left out.
+  cmake --preset release -DPLVO_ALL_TESTS=ON >&2
+  must_run+=" $(python_tests) live_browser_test report_browser_test"
+fi
 build "$last"
 if [ ${#presets[@]} -gt 0 ]; then tests/golden/compare_presets.sh "${presets[@]}" "$last"; fi
 # Many of this suite's tests wait, for a camera that stalls or a client that is slow: more of them than processors.
-suite "$last" --parallel "$((2 * $(nproc)))"
+suite "$last" "$must_run" --parallel "$((2 * $(nproc)))"

@@ -18,7 +18,7 @@ namespace plvo::cli {
 
 class FrameRecording {
  public:
-  // Frames that wait for the disk, at most: 1.6 s at 30 Hz, 74 MiB in VGA.
+  // Frames that wait for the disk, at most: 1.6 s at 30 Hz, 74 MB in VGA.
   static constexpr std::size_t kSlots = 48;
 
   FrameRecording() = default;
