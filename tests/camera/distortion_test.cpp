@@ -235,6 +235,16 @@ TEST(CameraInfo, NumbersByTheModelsName) {
   }
   ASSERT_TRUE(distortion_of("plumb_bob", std::vector<double>{1, 2, 3, 4}, lens).ok());
   EXPECT_TRUE(lens.is_plumb_bob() && lens.p2 == 4 && lens.k3 == 0);
+  // As librealsense names it, and its other names where there is no lens to speak of.
+  ASSERT_TRUE(distortion_of("Brown Conrady", std::vector<double>{1, 2, 3, 4, 5}, lens).ok());
+  EXPECT_TRUE(lens.is_plumb_bob() && lens.p2 == 4 && lens.k3 == 5);
+  for (const char* name : {"Inverse Brown Conrady", "Modified Brown Conrady", "None"}) {
+    lens.k1 = 1;
+    ASSERT_TRUE(distortion_of(name, std::vector<double>(5), lens).ok()) << name;
+    EXPECT_TRUE(lens.is_zero());
+    EXPECT_EQ(distortion_of(name, std::vector<double>{0.1, 0, 0, 0, 0}, lens).code(),
+              StatusCode::kUnsupported);
+  }
   ASSERT_TRUE(distortion_of("", eight, lens).ok());
   EXPECT_EQ(lens.k6, 8);
   ASSERT_TRUE(distortion_of("plumb_bob", {}, lens).ok());

@@ -42,10 +42,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   std::vector<unsigned char> bytes;
-  for (const BagMessage& message : bag.messages()) {
-    fuzz::require(message.topic < bag.topics().size());
-    fuzz::require(bag.read(message, bytes).ok() && bytes.size() == message.bytes);
-    check_message(bytes);
+  std::size_t readings = 0;
+  for (std::size_t topic = 0; topic < bag.topics().size(); ++topic) {
+    readings += bag.topics()[topic].type == kImuType ? bag.topics()[topic].messages : 0;
+    for (const BagMessage& message : bag.messages(topic)) {
+      fuzz::require(bag.read(message, bytes).ok() && bytes.size() == message.bytes);
+      check_message(bytes);
+    }
   }
+  const Status visited = bag.visit(kImuType, [&](std::size_t topic, std::span<const unsigned char> reading) {
+    fuzz::require(topic < bag.topics().size());
+    check_message(reading);
+    --readings;
+    return Status();
+  });
+  fuzz::require(visited.ok() && readings == 0);
   return 0;
 }

@@ -76,7 +76,7 @@ def test_topics_by_name(walk, tmp_path):
     assert len(plvo.Sequence(front)) == 24, "the only ones of their kind"
     named = {"colour": "/front/camera/rgb/image_color", "depth": "/front/camera/depth/image", "gyro": "/front/imu"}
     assert_same(plvo.run(front, imu=True, topics=named), plvo.run(walk, imu=True))
-    with pytest.raises(plvo.Error, match="there are no images on /back; the bag has /front") as raised:
+    with pytest.raises(plvo.Error, match="there are no images on /back; images are on: /front") as raised:
         plvo.Sequence(front, topics={"depth": "/back"})
     assert raised.value.code == "not_found"
     with pytest.raises(plvo.Error, match="no readings of a gyro .* on /imu; they are on /front/imu"):

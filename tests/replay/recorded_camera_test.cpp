@@ -51,6 +51,23 @@ TEST(RecordedCamera, GivesBackWhatWasWritten) {
   EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
 }
 
+// What 16 bits hold at the most says that there is nothing, whatever the unit.
+TEST(RecordedCamera, SaturatedDepthIsNone) {
+  const TemporaryFolder folder;
+  TumWriter writer;
+  ASSERT_TRUE(writer.open(folder.path(), test::tiny_camera(), 5000).ok());
+  TinyFrame image(0);
+  image.depth[7] = 65535;
+  image.depth[8] = 65534;
+  ASSERT_TRUE(writer.write(image.frame).ok());
+  RecordedCamera camera;
+  ASSERT_TRUE(open(camera, folder.path()).ok());
+  RgbdFrame frame;
+  ASSERT_TRUE(camera.next(frame).ok());
+  EXPECT_EQ(frame.depth.data[7], 0);
+  EXPECT_EQ(frame.depth.data[8], 65534);
+}
+
 TEST(RecordedCamera, FrameRange) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 5).ok());

@@ -34,6 +34,14 @@ BagWriter small_bag(const std::string& compression) {
   return writer;
 }
 
+// Of the one topic of images; none where its connection is gone.
+std::vector<BagMessage> images_of(const BagFile& bag) {
+  std::vector<BagMessage> messages;
+  for (std::size_t i = 0; i < bag.topics().size(); ++i)
+    messages.insert(messages.end(), bag.messages(i).begin(), bag.messages(i).end());
+  return messages;
+}
+
 TEST(BagFile, GivesTheMessagesWhateverTheyArePackedIn) {
   const TemporaryFolder folder;
   for (const char* compression : {"none", "bz2", "lz4"}) {
@@ -47,11 +55,12 @@ TEST(BagFile, GivesTheMessagesWhateverTheyArePackedIn) {
     EXPECT_EQ(bag.topics()[0].type, "sensor_msgs/Image");
     EXPECT_EQ(bag.topics()[0].messages, 6u);
     EXPECT_EQ(bag.topics()[1].messages, 6u);
-    ASSERT_EQ(bag.messages().size(), 6u) << "the places of images alone";
+    ASSERT_EQ(bag.messages(0).size(), 6u);
+    EXPECT_TRUE(bag.messages(1).empty()) << "the places of images alone";
     std::vector<unsigned char> bytes;
     // Backwards, so that chunks are unpacked again.
     for (int i = 5; i >= 0; --i) {
-      const BagMessage& message = bag.messages()[static_cast<std::size_t>(i)];
+      const BagMessage& message = bag.messages(0)[static_cast<std::size_t>(i)];
       EXPECT_EQ(message.stamp_ns, i * 1'000'000'000LL) << "of the header";
       ASSERT_TRUE(bag.read(message, bytes).ok());
       EXPECT_EQ(std::string(bytes.begin(), bytes.end()), image_of(i)) << compression << i;
@@ -68,7 +77,7 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
     BagFile bag;
     ASSERT_TRUE(bag.open(folder / "a.bag").ok());
     EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short; what lies before byte ") ||
-                (bag.remark().empty() && bag.messages().size() == 6))
+                (bag.remark().empty() && images_of(bag).size() == 6))
         << size << bag.remark();
     // All whose last byte is still there, and no others.
     std::size_t expected = 0;
@@ -76,9 +85,9 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
       const std::size_t start = whole.find(image_of(i));
       expected += start + image_of(i).size() <= size ? 1 : 0;
     }
-    ASSERT_EQ(bag.messages().size(), expected) << size;
+    ASSERT_EQ(images_of(bag).size(), expected) << size;
     std::vector<unsigned char> bytes;
-    for (const BagMessage& message : bag.messages()) ASSERT_TRUE(bag.read(message, bytes).ok());
+    for (const BagMessage& message : images_of(bag)) ASSERT_TRUE(bag.read(message, bytes).ok());
     last = expected;
   }
   EXPECT_EQ(last, 6u);
@@ -88,7 +97,7 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
     write_file(folder / "a.bag", packed.substr(0, packed.rfind("compression=") + 100));
     BagFile bag;
     ASSERT_TRUE(bag.open(folder / "a.bag").ok());
-    EXPECT_EQ(bag.messages().size(), 4u) << compression;
+    EXPECT_EQ(images_of(bag).size(), 4u) << compression;
     EXPECT_NE(bag.remark(), "");
   }
 }
@@ -101,7 +110,7 @@ TEST(BagFile, ARecorderThatDiedLeavesWhatItWrote) {
   write_file(folder / "a.bag", writer.file(false));
   BagFile bag;
   ASSERT_TRUE(bag.open(folder / "a.bag").ok());
-  EXPECT_EQ(bag.messages().size(), 8u);
+  EXPECT_EQ(images_of(bag).size(), 8u);
   EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short")) << bag.remark();
 }
 
@@ -120,8 +129,8 @@ TEST(BagFile, DamageCostsWhatIsDamaged) {
         BagFile bag;
         ASSERT_TRUE(bag.open(folder / "a.bag").ok());
         std::vector<unsigned char> bytes;
-        for (const BagMessage& message : bag.messages()) ASSERT_TRUE(bag.read(message, bytes).ok());
-        most = std::max(most, bag.messages().size());
+        for (const BagMessage& message : images_of(bag)) ASSERT_TRUE(bag.read(message, bytes).ok());
+        most = std::max(most, images_of(bag).size());
       }
     }
     EXPECT_EQ(most, 6u);
@@ -137,7 +146,7 @@ TEST(BagFile, APieceThatDoesNotUnpackIsLeftOut) {
     write_file(folder / "a.bag", file);
     BagFile bag;
     ASSERT_TRUE(bag.open(folder / "a.bag").ok());
-    EXPECT_EQ(bag.messages().size(), 4u) << compression;
+    EXPECT_EQ(images_of(bag).size(), 4u) << compression;
     EXPECT_EQ(bag.remark(), "1 damaged pieces of a.bag are left out") << compression;
   }
 }
@@ -150,8 +159,55 @@ TEST(BagFile, AClaimIsNotBelieved) {
   write_file(folder / "a.bag", file);
   BagFile bag;
   ASSERT_TRUE(bag.open(folder / "a.bag").ok());
-  EXPECT_EQ(bag.messages().size(), 0u) << "the connections were in the first piece";
+  EXPECT_EQ(images_of(bag).size(), 0u) << "the connections were in the first piece";
   EXPECT_NE(bag.remark(), "");
+}
+
+// A reader that followed them would run out of stack.
+TEST(BagFile, ChunksWithinChunksAreRefused) {
+  const TemporaryFolder folder;
+  const auto expect_refused = [&](const std::string& file) {
+    write_file(folder / "a.bag", file);
+    BagFile bag;
+    const Status status = bag.open(folder / "a.bag");
+    EXPECT_EQ(status.code(), StatusCode::kDamaged);
+    EXPECT_TRUE(says(status, "a chunk lies within another")) << status.message();
+  };
+  for (const char* outer : {"none", "bz2", "lz4"})
+    for (const char* inner : {"none", "bz2", "lz4"}) {
+      BagWriter writer = small_bag(inner);
+      writer.put(small_bag("none").packed_chunk(inner));
+      writer.end_chunk(outer);
+      expect_refused(writer.file());
+    }
+  constexpr std::size_t kDepth = 14'000;
+  const std::size_t level = BagWriter::claim("none", 0, 0).size();
+  std::string deep = small_bag("none").file(), wild = deep;
+  for (std::size_t i = kDepth; i > 0; --i) {
+    deep += BagWriter::claim("none", 0, static_cast<std::uint32_t>(level * (i - 1)));
+    wild += BagWriter::claim("none", UINT32_MAX, UINT32_MAX);
+  }
+  expect_refused(deep);
+  // Whose lengths overrun the next are damaged, and cost themselves alone.
+  write_file(folder / "a.bag", wild);
+  BagFile bag;
+  ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+  EXPECT_EQ(images_of(bag).size(), 6u);
+  EXPECT_NE(bag.remark(), "");
+}
+
+// A length that is damaged takes nothing from the chunks after it.
+TEST(BagFile, AChunkThatOverrunsTheNextCostsItselfAtTheMost) {
+  const TemporaryFolder folder;
+  std::string file = small_bag("none").file();
+  const std::size_t second = file.find("compression=none", file.find("compression=none") + 1);
+  const std::size_t length = second + std::string("compression=none").size() + 4 + 5 + 4;
+  file[length + 3] = '\x7f';
+  write_file(folder / "a.bag", file);
+  BagFile bag;
+  ASSERT_TRUE(bag.open(folder / "a.bag").ok());
+  EXPECT_EQ(images_of(bag).size(), 6u);
+  EXPECT_EQ(bag.remark(), "1 damaged pieces of a.bag are left out");
 }
 
 TEST(BagFile, WhatIsNoBagIsRefusedInWords) {

@@ -108,8 +108,18 @@ class BagWriter {
   void message(std::uint32_t connection, std::int64_t received_ns, const std::string& data) {
     chunk_ += record({{"op", "\2"}, {"conn", wire_u32(connection)}, {"time", wire_time(received_ns)}}, data);
   }
+  // The beginning of a chunk that says how many bytes follow, and what they unpack to.
+  static std::string claim(const std::string& compression, std::uint32_t unpacked, std::uint32_t packed) {
+    const std::string chunk =
+        record({{"op", "\5"}, {"compression", compression}, {"size", wire_u32(unpacked)}}, "");
+    return chunk.substr(0, chunk.size() - 4) + wire_u32(packed);
+  }
+  // A record as it is.
+  void put(const std::string& record) { chunk_ += record; }
   // What came since the last one, by the name of its compression.
-  void end_chunk(const std::string& compression = "none") {
+  void end_chunk(const std::string& compression = "none") { put_chunks(packed_chunk(compression)); }
+  void put_chunks(const std::string& chunks) { body_ += chunks; }
+  std::string packed_chunk(const std::string& compression) {
     std::string packed = chunk_;
     if (compression == "bz2") {
       auto size = static_cast<unsigned>(chunk_.size() + chunk_.size() / 50 + 1000);
@@ -121,8 +131,9 @@ class BagWriter {
       packed.resize(LZ4F_compressFrameBound(chunk_.size(), nullptr));
       packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), chunk_.data(), chunk_.size(), nullptr));
     }
-    body_ += record({{"op", "\5"}, {"compression", compression}, {"size", wire_u32(chunk_.size())}}, packed);
+    const std::string size = wire_u32(chunk_.size());
     chunk_.clear();
+    return record({{"op", "\5"}, {"compression", compression}, {"size", size}}, packed);
   }
   // With what was written so far; left open, as a recorder that died leaves it: the last chunk has no length
   // yet.

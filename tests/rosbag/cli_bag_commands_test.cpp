@@ -131,7 +131,7 @@ TEST_F(CliBagCommands, WhatDoesNotApplyIsRefused) {
   expect_refused("calibrate " + walk().string() + " --depth-topic /x --out " + path("y"), 2,
                  "--depth-topic: is for a ROS bag");
   expect_refused("calibrate " + path("walk.bag") + " --depth-topic /x --out " + path("y"), 1,
-                 "there are no images on /x; the bag has");
+                 "there are no images on /x; images are on: ");
   expect_refused("calibrate " + path("walk.bag") + " --out " + path("walk.bag"), 2, "is an input");
   expect_refused("record " + path("x") + " --imu --gyro-topic /x" + device, 1,
                  "there are no readings of a gyro (sensor_msgs/Imu) on /x; they are on /imu");

@@ -3,6 +3,8 @@
 // wrong with it in words.
 #include <gtest/gtest.h>
 
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bag_of_folder.hpp"
@@ -112,16 +114,98 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
   write(messages);
   expect_refused(
       "", 1,
-      "several topics could be colour: choose with --colour-topic or topics.colour; the bag has /back/image, "
-      "/front/z, /front/image");
+      "several topics could be colour: choose with --colour-topic or topics.colour among /back/image (rgb8), "
+      "/front/image (rgb8)");
   expect_the_folders_bytes(
       "--colour-topic /front/image --depth-topic /front/z --info-topic /front/camera_info");
   expect_refused("--colour-topic /side/image", 1,
-                 "there are no images on /side/image; the bag has /back/image");
+                 "there are no images on /side/image; images are on: /back/image (rgb8), /front/z (32FC1)");
   expect_refused("--colour-topic /front/image --info-topic /x", 1,
-                 "there is no camera_info on /x; the bag has");
+                 "there is no camera_info on /x; topics of that type: /front/camera_info");
   // Colour that has none beside it, and no word on the calibration.
-  expect_refused("--colour-topic /back/image", 1, "no calibration: give --calibration FILE");
+  expect_refused(
+      "--colour-topic /back/image", 1,
+      "the bag has no /back/camera_info beside colour: give a calibration, or choose with --info-topic "
+      "or topics.camera_info: /front/camera_info");
+}
+
+TEST_F(CliBag, SeveralTopicsAreAllNamed) {
+  std::vector<RecordedMessage> messages = published(true);
+  std::string all;
+  for (int i = 10; i < 30; ++i) {
+    const std::string topic = fmt::format("/a_camera_with_a_long_name_{}/image", i);
+    messages.push_back({topic, "sensor_msgs/Image", test::image_message(1, 1, 1, "bgr8", 3, "abc"), 1});
+    all += topic + (i < 29 ? " (bgr8), " : " (bgr8)");
+  }
+  for (RecordedMessage& message : messages)
+    if (message.topic == test::kTumColour) message.topic = "/front/image";
+  messages.push_back({test::kNotRead, "tf2_msgs/TFMessage", "the end of the chunk", 1});
+  write(messages);
+  expect_refused("", 1, "several topics could be colour: choose with --colour-topic or topics.colour among ");
+  expect_refused("", 1, "the topics are /front/image (rgb8), " + all);
+}
+
+// As librealsense writes it; infrared images are grey, too, and depth where nothing else is.
+TEST_F(CliBag, DepthMayBeCalledMono16) {
+  run_folder();
+  std::vector<RecordedMessage> messages = published(false);
+  for (RecordedMessage& message : messages)
+    if (message.topic == test::kTumDepth) {
+      message.topic = "/depth/image";
+      const std::size_t encoding = message.data.find(test::wire_text("16UC1"));
+      message.data.replace(encoding, 9, test::wire_text("mono16"));
+    }
+  write(messages);
+  expect_the_folders_bytes("--depth-scale 5000");
+  messages = published(false);
+  for (RecordedMessage& message : messages)
+    if (message.topic == test::kTumDepth) message.topic = "/depth/image";
+  for (std::size_t i = 0, count = messages.size(); i < count; ++i)
+    if (messages[i].topic == "/depth/image") {
+      messages.insert(messages.begin(), messages[i]);
+      messages.front().topic = "/infrared/image";
+      messages.front().data.replace(messages.front().data.find(test::wire_text("16UC1")), 9,
+                                    test::wire_text("mono16"));
+      break;
+    }
+  write(messages);
+  expect_the_folders_bytes("--depth-scale 5000");
+}
+
+// What 16 bits hold at the most is no depth, as in the folder.
+TEST_F(CliBag, SaturatedDepthIsNone) {
+  run_folder();
+  std::vector<RecordedMessage> messages = published(false);
+  std::size_t holes = 0;
+  for (RecordedMessage& message : messages)
+    if (message.topic == test::kTumDepth)
+      for (std::size_t i = message.data.size() - std::size_t{160} * 120 * 2; i < message.data.size(); i += 2)
+        if (message.data[i] == 0 && message.data[i + 1] == 0) {
+          message.data[i] = message.data[i + 1] = '\xff';
+          ++holes;
+        }
+  EXPECT_GT(holes, 0u);
+  write(messages);
+  expect_the_folders_bytes("--depth-scale 5000");
+}
+
+TEST_F(CliBag, ADriverThatDoesNotStampIsSaid) {
+  for (const char* topic : {test::kTumColour, test::kTumDepth}) {
+    std::vector<RecordedMessage> messages = published(true);
+    for (RecordedMessage& message : messages)
+      if (message.topic == topic) message.data.replace(4, 8, 8, '\0');
+    write(messages);
+    expect_refused(
+        "", 1,
+        fmt::format("all 6 images on {} have the stamp 0 in their headers: the driver does not stamp "
+                    "them; give each its time of receipt (docs/formats.md)",
+                    topic));
+  }
+  std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", test::ImuContent::kBoth);
+  for (RecordedMessage& message : messages) message.data.replace(4, 8, 8, '\0');
+  for (const RecordedMessage& message : published(true)) messages.push_back(message);
+  write(messages);
+  expect_refused("--imu", 1, "readings on /imu have the stamp 0 in their headers");
 }
 
 TEST_F(CliBag, WhatCannotBeReadIsSaid) {
@@ -136,7 +220,15 @@ TEST_F(CliBag, WhatCannotBeReadIsSaid) {
       message.data =
           test::image_message(message.received_ns, 160, 120, "yuv422", 320, std::string(320 * 120, 'x'));
   write(messages);
-  expect_refused("", 1, "the encoding 'yuv422' is not read; rgb8, bgr8 and mono8 are");
+  expect_refused("", 1,
+                 "/camera/rgb/image_color: the encoding 'yuv422' is not read there; rgb8, bgr8, rgba8, "
+                 "bgra8, 8UC3 or mono8 is");
+  for (RecordedMessage& message : messages)
+    if (message.topic == test::kTumColour) message.topic = "/front/image";
+  write(messages);
+  expect_refused("", 1,
+                 "no topic has images of colour (rgb8, bgr8, rgba8, bgra8, 8UC3 or mono8); images are on: "
+                 "/camera/depth/image (32FC1), /front/image (yuv422)");
   messages = published(true);
   write(messages);
   expect_refused("--depth-scale 1000", 1, "the depth of this bag is in metres");

@@ -40,16 +40,38 @@ TEST(Messages, ImagesOfColour) {
   EXPECT_EQ(std::string(rgb.begin(), rgb.end()), "xxxyyyzzz");
 }
 
+TEST(Messages, ImagesOfColourWithAFourthChannelOrWithoutNames) {
+  for (const auto& [encoding, rows, expected] :
+       {std::tuple<const char*, const char*, const char*>{"rgba8", "abc.def.", "abcdef"},
+        {"bgra8", "abc.def.", "cbafed"},
+        {"8UC3", "abcdef", "cbafed"}}) {
+    const std::string pixels = rows;
+    const auto bytes = bytes_of(image_message(0, 2, 1, encoding, pixels.size(), pixels));
+    ImageMessage image;
+    std::vector<std::uint8_t> rgb(6);
+    ASSERT_TRUE(parse_image(bytes, image).ok());
+    EXPECT_TRUE(is_colour_encoding(encoding));
+    ASSERT_TRUE(colour_pixels(image, rgb).ok());
+    EXPECT_EQ(std::string(rgb.begin(), rgb.end()), expected) << encoding;
+    EXPECT_FALSE(
+        parse_image(bytes_of(image_message(0, 2, 1, encoding, pixels.size() - 1, pixels.substr(1))), image)
+            .ok())
+        << "a byte too few";
+  }
+}
+
 TEST(Messages, ImagesOfDepth) {
   ImageMessage image;
   std::vector<std::uint16_t> depth(2);
-  for (const bool big_endian : {false, true}) {
-    const auto whole = bytes_of(
-        image_message(0, 2, 1, "16UC1", 4, big_endian ? "\x12\x34\x56\x78" : "\x34\x12\x78\x56", big_endian));
-    ASSERT_TRUE(parse_image(whole, image).ok());
-    ASSERT_TRUE(depth_pixels(image, depth).ok());
-    EXPECT_EQ(depth, (std::vector<std::uint16_t>{0x1234, 0x5678}));
-  }
+  for (const bool big_endian : {false, true})
+    for (const char* encoding : {"16UC1", "mono16"}) {
+      const auto whole = bytes_of(image_message(
+          0, 2, 1, encoding, 4, big_endian ? "\x12\x34\x56\x78" : "\x34\x12\x78\x56", big_endian));
+      EXPECT_TRUE(is_depth_encoding(encoding));
+      ASSERT_TRUE(parse_image(whole, image).ok());
+      ASSERT_TRUE(depth_pixels(image, depth).ok());
+      EXPECT_EQ(depth, (std::vector<std::uint16_t>{0x1234, 0x5678}));
+    }
   std::string rows;
   for (const float metres : {1.2345F, 0.00012F, -1.0F, 13.2F, std::bit_cast<float>(0x7fc00000u),
                              std::bit_cast<float>(0x7f800000u), 13.107F, 0.0F})
@@ -68,8 +90,10 @@ TEST(Messages, OtherEncodingsAreNamed) {
   std::uint8_t rgb[3] = {};
   const auto bytes = bytes_of(image_message(0, 1, 1, "bayer_rggb8", 1, "x"));
   ASSERT_TRUE(parse_image(bytes, image).ok());
-  EXPECT_TRUE(says(colour_pixels(image, rgb), "'bayer_rggb8' is not read; rgb8, bgr8 and mono8 are"));
-  EXPECT_TRUE(says(depth_pixels(image, {&depth, 1}), "'bayer_rggb8' is not read; 16UC1 and 32FC1 are"));
+  EXPECT_TRUE(says(colour_pixels(image, rgb),
+                   "'bayer_rggb8' is not read there; rgb8, bgr8, rgba8, bgra8, 8UC3 or mono8 is"));
+  EXPECT_TRUE(
+      says(depth_pixels(image, {&depth, 1}), "'bayer_rggb8' is not read there; 16UC1, mono16 or 32FC1 is"));
 }
 
 TEST(Messages, SizesAreComparedWithWhatIsThere) {
@@ -101,6 +125,10 @@ TEST(Messages, CameraInfoIsACalibration) {
       parse_camera_info(bytes_of(camera_info_message(0, camera, "equidistant", {0.1, 0, 0, 0})), calibration);
   EXPECT_TRUE(status.ok());
   EXPECT_EQ(calibration.camera.distortion.model, LensModel::kEquidistant);
+  status = parse_camera_info(
+      bytes_of(camera_info_message(0, camera, "Brown Conrady", {0.1, -0.2, 0.001, 0.002, 0.3})), calibration);
+  EXPECT_TRUE(status.ok()) << status.message();
+  EXPECT_TRUE(calibration.camera.distortion.is_plumb_bob() && calibration.camera.distortion.k3 == 0.3);
   EXPECT_TRUE(says(parse_camera_info(bytes_of(camera_info_message(0, camera, "omni", {1, 2})), calibration),
                    "'omni' is not supported"));
   EXPECT_TRUE(

@@ -8,12 +8,24 @@ Status wrong_count(const char* words, std::size_t count) {
   return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::ptrdiff_t>(count));
 }
 
+// The names that librealsense gives to plumb_bob and to two lenses that are not its like, unless their
+// coefficients are 0.
+constexpr std::string_view kRealSensePlumbBob = "Brown Conrady";
+
+bool is_undistorted(std::string_view model, std::span<const double> coefficients) {
+  if (model != "None" && model != "Inverse Brown Conrady" && model != "Modified Brown Conrady") return false;
+  for (const double coefficient : coefficients)
+    if (coefficient != 0) return false;
+  return true;
+}
+
 }  // namespace
 
 Status lens_model_of(std::string_view name, LensModel& model) {
   if (name == "equidistant" || name == "fisheye") {
     model = LensModel::kEquidistant;
-  } else if (name.empty() || name == "plumb_bob" || name == "rational_polynomial") {
+  } else if (name.empty() || name == "plumb_bob" || name == "rational_polynomial" ||
+             name == kRealSensePlumbBob) {
     model = LensModel::kRational;
   } else {
     return Status(StatusCode::kUnsupported, "distortion model '")
@@ -33,6 +45,10 @@ const char* lens_model_name(const Distortion& lens) {
 Status distortion_of(std::string_view model, std::span<const double> coefficients, Distortion& lens) {
   const std::span<const double> D = coefficients;
   LensModel known = LensModel::kRational;
+  if (is_undistorted(model, D)) {
+    lens = {};
+    return {};
+  }
   if (const Status status = lens_model_of(model, known); !status.ok()) return status;
   if (known == LensModel::kEquidistant) {
     if (D.size() != 4)
@@ -40,7 +56,7 @@ Status distortion_of(std::string_view model, std::span<const double> coefficient
     lens = {.k1 = D[0], .k2 = D[1], .k3 = D[2], .k4 = D[3], .model = LensModel::kEquidistant};
     return {};
   }
-  if (model == "plumb_bob" && D.size() > 5)
+  if ((model == "plumb_bob" || model == kRealSensePlumbBob) && D.size() > 5)
     return wrong_count("plumb_bob has 4 or 5 distortion coefficients (8 are rational_polynomial's), not ",
                        D.size());
   if (D.size() != 0 && D.size() != 4 && D.size() != 5 && D.size() != 8 && D.size() != 12 && D.size() != 14)

@@ -13,6 +13,7 @@
 #include <memory>
 #include <thread>
 
+#include "plvo/host/files/reader_limits.hpp"
 #include "plvo/openni2/oni_messages.hpp"
 #include "plvo/openni2/oni_player.hpp"
 #include "plvo/openni2/openni2_device.hpp"
@@ -23,7 +24,6 @@ namespace {
 constexpr int kSocket = STDIN_FILENO;
 constexpr int kSlice_ms = 20;
 constexpr int kSilence_ms = 10000;  // OpenNI2 reads a file: where nothing comes for so long, nothing will
-constexpr rlim_t kMaxMemory = rlim_t{2} << 30;
 
 void limit(int resource, rlim_t most) {
   const rlimit value{most, most};
@@ -34,7 +34,7 @@ void limit_self() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which map terabytes
-  limit(RLIMIT_AS, kMaxMemory);
+  limit(RLIMIT_DATA, kMostReaderBytes);  // what it may write to, not what malloc keeps addresses for
 #endif
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
 }

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #ifdef PLVO_HAVE_ROSBAG
@@ -19,7 +20,7 @@ bool is_bag_file(const fs::path& path) { return path.extension() == ".bag"; }
 
 bool is_recording(const fs::path& path) {
   std::error_code error;
-  return fs::is_directory(path, error) || is_bag_file(path);
+  return fs::is_directory(path, error) || is_bag_file(path) || !refuse_foreign_format(path).ok();
 }
 
 fs::path bag_ground_truth_file(const fs::path& bag) {
@@ -29,6 +30,7 @@ fs::path bag_ground_truth_file(const fs::path& bag) {
 }
 
 Status read_true_poses(const fs::path& recording, const SequenceOptions& options, Trajectory& trajectory) {
+  if (Status status = refuse_foreign_format(recording); !status.ok()) return status;
   if (!is_bag_file(recording)) return read_ground_truth(recording, options, trajectory);
   const fs::path file = bag_ground_truth_file(recording);
   std::error_code error;
@@ -43,14 +45,17 @@ Status read_true_poses(const fs::path& recording, const SequenceOptions& options
 Status Recording::open(const fs::path& path, const CalibrationChoice& choose,
                        const RecordingOptions& options) {
   *this = Recording();
+  if (Status status = refuse_foreign_format(path); !status.ok()) return status;
   return is_bag_file(path) ? open_bag(path, choose, options) : open_folder(path, choose, options);
 }
 
 Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& choose,
                               const RecordingOptions& options) {
   // A folder that is no sequence should be told so before a missing calibration is.
-  SequenceIndex index;
-  if (Status status = read_sequence_index(folder, options.sequence, index); !status.ok()) return status;
+  {
+    SequenceIndex index;
+    if (Status status = read_sequence_index(folder, options.sequence, index); !status.ok()) return status;
+  }
   Calibration calibration;
   std::string guess;
   const auto own = [&](Calibration& found) { return sequence_calibration(folder, found, guess); };
@@ -61,6 +66,7 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
   if (!status.ok()) return status;
   calibration_ = camera->calibration();
   frame_count_ = camera->frame_count();
+  const SequenceIndex& index = camera->index();
   unpaired_colour_ = index.unpaired_colour;
   for (const std::string& sentence : {index.remark, guess, camera->remark()})
     if (!sentence.empty()) remarks_.push_back(sentence);
@@ -76,17 +82,19 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
 Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose,
                            const RecordingOptions& options) {
   auto camera = std::make_shared<BagCamera>();
-  if (Status status = camera->index(path, options.topics); !status.ok()) return status;
+  Status status = camera->index(path, options.topics);
   Calibration calibration;
   const auto own = [&camera](Calibration& found) { return camera->own_calibration(found); };
-  if (Status status = choose(own, calibration); !status.ok()) return status;
-  const Status status = camera->open(calibration, options.depth_units_per_metre, options.sequence);
-  whole_image_ = camera->whole_image();
+  if (status.ok()) status = choose(own, calibration);
+  if (status.ok()) {
+    status = camera->open(calibration, options.depth_units_per_metre, options.sequence);
+    whole_image_ = camera->whole_image();
+  }
+  remarks_ = camera->remarks();
   if (!status.ok()) return status;
   calibration_ = camera->calibration();
   frame_count_ = camera->frame_count();
   unpaired_colour_ = camera->unpaired_colour();
-  remarks_ = camera->remarks();
   std::error_code error;
   has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {

@@ -19,8 +19,9 @@
 
 namespace plvo {
 
-bool is_bag_file(const std::filesystem::path& path);   // by its name, .bag
-bool is_recording(const std::filesystem::path& path);  // a folder or a bag, and no file of another kind
+bool is_bag_file(const std::filesystem::path& path);  // by its name, .bag
+// A folder, a bag, or a recording that is not read (foreign_format.hpp); no file of another kind.
+bool is_recording(const std::filesystem::path& path);
 
 // The true poses of a bag, which are not read out of it: FILE-groundtruth.txt beside FILE.bag, as TUM
 // publishes the two.
@@ -42,7 +43,7 @@ using CalibrationChoice = std::function<Status(const OwnCalibration& own, Calibr
 class Recording final : public RgbdCamera {
  public:
   // All of what RecordedCamera or BagCamera returns, and what `choose` does. kUnsupported, with what to
-  // install, for a bag where they are left out.
+  // install, for a bag where they are left out, and for a recording that is not read (foreign_format.hpp).
   Status open(const std::filesystem::path& path, const CalibrationChoice& choose,
               const RecordingOptions& options = {});
 
@@ -55,7 +56,7 @@ class Recording final : public RgbdCamera {
   const Calibration& calibration() const { return calibration_; }  // in force, as of FrameFit
   const WholeImage& whole_image() const { return whole_image_; }   // of width 0 where that is not known
   bool has_ground_truth() const { return has_ground_truth_; }      // read_true_poses
-  // Sentences for whoever runs it, but for what the calibration assumes.
+  // Sentences for whoever runs it, but for what the calibration assumes; also where opening failed.
   const std::vector<std::string>& remarks() const { return remarks_; }
 
   // What a gyro and an accelerometer recorded beside the images: as read_imu_files, or as read_bag_imu.

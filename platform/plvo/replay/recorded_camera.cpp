@@ -9,8 +9,6 @@ namespace plvo {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint16_t kNoDepthInMillimetres = 65535;  // in 7-Scenes
-
 Status RecordedCamera::open(const fs::path& folder, const Calibration& calibration,
                             const SequenceOptions& options) {
   folder_ = folder;
@@ -104,8 +102,6 @@ Status RecordedCamera::next(RgbdFrame& frame) {
     status =
         decoder_.decode_depth(folder_ / pair.depth.file, depth_size_.width, depth_size_.height, fit_.depth());
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
-  if (index_.numbered)
-    std::replace(fit_.depth().begin(), fit_.depth().end(), kNoDepthInMillimetres, std::uint16_t{0});
   fit_.fit(frame);
   return {};
 }

@@ -6,12 +6,14 @@
 #include <algorithm>
 
 #include "plvo/replay/index/stamp_pairs.hpp"
+#include "plvo/rosbag/listing.hpp"
 #include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
 namespace {
 
 constexpr const char* kCompressedImage = "sensor_msgs/CompressedImage";
+constexpr std::size_t kMostOfEncoding = 40;  // letters; those that are known are shorter
 constexpr const char* kTumColour = "/camera/rgb/image_color";
 constexpr const char* kTumDepth = "/camera/depth/image";
 
@@ -25,26 +27,43 @@ Status compressed(const std::string& topic) {
 }  // namespace
 
 Status BagCamera::index(const std::filesystem::path& path, const BagTopicNames& names) {
+  topics_in_words_.clear();
   if (Status status = bag_.open(path); !status.ok()) return status;
+  find_encodings();
   if (Status status = choose_images(names.colour, false, colour_topic_); !status.ok()) return status;
   if (Status status = choose_images(names.depth, true, depth_topic_); !status.ok()) return status;
   return choose_info(names.camera_info);
 }
 
-std::string BagCamera::topics_in_words() const {
+Status BagCamera::refused(StatusCode code, const std::string& sentence,
+                          const std::vector<std::string>& names) {
+  constexpr std::size_t kAndMore = 20;  // letters
+  const std::string all = names.empty() ? "the bag has none" : listed(names);
+  if (sentence.size() + all.size() < Status::kCapacity) return {code, sentence + all};
+  topics_in_words_ = "the topics are " + all;
+  const std::size_t taken = std::min(sentence.size() + kAndMore, Status::kCapacity);
+  return {code, sentence + listed(names, Status::kCapacity - taken)};
+}
+
+std::vector<std::string> BagCamera::names_of(std::string_view type) const {
   std::vector<std::string> names;
-  for (const char* type : {kImageType, kCompressedImage, kCameraInfoType})
-    for (const BagTopic& topic : bag_.topics())
-      if (topic.type == type) names.push_back(topic.name);
-  if (names.empty()) return "the bag has no images";
-  constexpr std::size_t kMostLetters = 150;  // a status is short
-  std::string text = "the bag has";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (text.size() + names[i].size() > kMostLetters)
-      return text + fmt::format(" and {} more", names.size() - i);
-    text += (i == 0 ? " " : ", ") + names[i];
-  }
-  return text;
+  for (const BagTopic& topic : bag_.topics())
+    if (topic.type == type) names.push_back(topic.name);
+  return names;
+}
+
+std::vector<std::string> BagCamera::image_topics() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < bag_.topics().size(); ++i)
+    if (bag_.topics()[i].type == kImageType) names.push_back(with_encoding(i));
+  for (const std::string& name : names_of(kCompressedImage)) names.push_back(name + " (compressed)");
+  return names;
+}
+
+std::string BagCamera::with_encoding(std::size_t topic) const {
+  const std::string& encoding = encodings_[topic];
+  return fmt::format("{} ({})", bag_.topics()[topic].name,
+                     encoding.empty() ? "no image that can be read" : encoding);
 }
 
 Status BagCamera::read_image(const BagMessage& message, ImageMessage& image) {
@@ -52,105 +71,128 @@ Status BagCamera::read_image(const BagMessage& message, ImageMessage& image) {
   return status.ok() ? parse_image(bytes_, image) : status;
 }
 
-Status BagCamera::encoding_of(std::size_t topic, std::string& encoding) {
-  encoding.clear();
-  Status failure(StatusCode::kNotFound, "no message");
-  for (const BagMessage& message : bag_.messages()) {
-    if (message.topic != topic) continue;
-    ImageMessage image;
-    failure = read_image(message, image);
-    if (!failure.ok()) continue;
-    encoding = image.encoding;
-    return {};
+// Of each topic's first image that can be read.
+void BagCamera::find_encodings() {
+  encodings_.assign(bag_.topics().size(), {});
+  for (std::size_t i = 0; i < encodings_.size(); ++i)
+    for (const BagMessage& message : bag_.messages(i)) {
+      ImageMessage image;
+      if (bag_.topics()[i].type != kImageType) break;
+      if (!read_image(message, image).ok()) continue;
+      encodings_[i] = image.encoding.substr(0, kMostOfEncoding);
+      break;
+    }
+}
+
+std::vector<std::size_t> BagCamera::candidates(bool depth) const {
+  std::vector<std::size_t> topics, grey;
+  for (std::size_t i = 0; i < encodings_.size(); ++i) {
+    if (!(depth ? is_depth_encoding(encodings_[i]) : is_colour_encoding(encodings_[i]))) continue;
+    // Infrared is recorded as mono16, too: it is depth where nothing else is.
+    (encodings_[i] == "mono16" ? grey : topics).push_back(i);
   }
-  return failure;
+  return topics.empty() ? grey : topics;
 }
 
 Status BagCamera::choose_images(const std::string& wanted, bool depth, std::size_t& chosen) {
   const char* kind = depth ? "depth" : "colour";
   const std::string preferred = depth ? kTumDepth : kTumColour;
-  std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < bag_.topics().size(); ++i) {
     const BagTopic& topic = bag_.topics()[i];
     if (!wanted.empty() && topic.name == wanted && topic.type == kCompressedImage)
       return compressed(topic.name);
-    if (topic.type != kImageType) continue;
-    if (topic.name == (wanted.empty() ? preferred : wanted)) {
-      chosen = i;
-      return {};
-    }
-    std::string encoding;
-    if (wanted.empty() && encoding_of(i, encoding).ok() &&
-        (depth ? is_depth_encoding(encoding) : is_colour_encoding(encoding)))
-      candidates.push_back(i);
+    if (topic.type != kImageType || topic.name != (wanted.empty() ? preferred : wanted)) continue;
+    chosen = i;
+    return {};
   }
   if (!wanted.empty())
-    return {StatusCode::kNotFound, fmt::format("there are no images on {}; {}", wanted, topics_in_words())};
-  if (candidates.size() > 1)
-    return {StatusCode::kInvalidArgument,
-            fmt::format("several topics could be {0}: choose with --{0}-topic or topics.{0}; {1}", kind,
-                        topics_in_words())};
-  if (candidates.empty()) {
+    return refused(StatusCode::kNotFound, fmt::format("there are no images on {}; images are on: ", wanted),
+                   image_topics());
+  const std::vector<std::size_t> fitting = candidates(depth);
+  if (fitting.size() > 1) {
+    std::vector<std::string> names;
+    for (const std::size_t topic : fitting) names.push_back(with_encoding(topic));
+    return refused(
+        StatusCode::kInvalidArgument,
+        fmt::format("several topics could be {0}: choose with --{0}-topic or topics.{0} among ", kind),
+        names);
+  }
+  if (fitting.empty()) {
     for (const BagTopic& topic : bag_.topics())
       if (topic.type == kCompressedImage && (topic.name.find("depth") != std::string::npos) == depth)
         return compressed(topic.name);
-    return {StatusCode::kNotFound,
-            fmt::format("no topic has images of {} ({}); {}", kind,
-                        depth ? "16UC1 or 32FC1" : "rgb8, bgr8 or mono8", topics_in_words())};
+    return refused(StatusCode::kNotFound,
+                   fmt::format("no topic has images of {} ({}); images are on: ", kind,
+                               depth ? kDepthEncodings : kColourEncodings),
+                   image_topics());
   }
-  chosen = candidates.front();
+  chosen = fitting.front();
   return {};
 }
 
-Status BagCamera::choose_info(const std::string& wanted) {
+std::string BagCamera::info_beside_colour() const {
   const std::string& colour = bag_.topics()[colour_topic_].name;
-  const std::string beside = colour.substr(0, colour.rfind('/') + 1) + "camera_info";
+  return colour.substr(0, colour.rfind('/') + 1) + "camera_info";
+}
+
+Status BagCamera::choose_info(const std::string& wanted) {
   info_topic_.reset();
-  for (std::size_t i = 0; i < bag_.topics().size(); ++i) {
-    const BagTopic& topic = bag_.topics()[i];
-    if (topic.type == kCameraInfoType && topic.name == (wanted.empty() ? beside : wanted)) info_topic_ = i;
-  }
+  const std::string name = wanted.empty() ? info_beside_colour() : wanted;
+  for (std::size_t i = 0; i < bag_.topics().size(); ++i)
+    if (bag_.topics()[i].type == kCameraInfoType && bag_.topics()[i].name == name) info_topic_ = i;
   if (wanted.empty() || info_topic_) return {};
-  return {StatusCode::kNotFound, fmt::format("there is no camera_info on {}; {}", wanted, topics_in_words())};
+  return refused(StatusCode::kNotFound,
+                 fmt::format("there is no camera_info on {}; topics of that type: ", wanted),
+                 names_of(kCameraInfoType));
 }
 
 Status BagCamera::own_calibration(Calibration& calibration) {
-  Status failure(StatusCode::kNotFound, "the bag has no camera_info beside colour: give a calibration");
-  for (const BagMessage& message : bag_.messages()) {
-    if (!info_topic_ || message.topic != *info_topic_) continue;
-    failure = bag_.read(message, bytes_);
-    if (failure.ok()) failure = parse_camera_info(bytes_, calibration);
-    if (failure.ok()) return {};
-    return Status(failure.code(), bag_.topics()[*info_topic_].name.c_str())
-        .append(": ")
-        .append(failure.message());
+  if (!info_topic_ || bag_.messages(*info_topic_).empty()) {
+    const std::vector<std::string> others = names_of(kCameraInfoType);
+    if (others.empty()) return {StatusCode::kNotFound, "the bag has no camera_info: give a calibration"};
+    return refused(StatusCode::kInvalidArgument,
+                   fmt::format("the bag has no {} beside colour: give a calibration, or choose with "
+                               "--info-topic or topics.camera_info: ",
+                               info_beside_colour()),
+                   others);
   }
-  return failure;
+  Status status = bag_.read(bag_.messages(*info_topic_).front(), bytes_);
+  if (status.ok()) status = parse_camera_info(bytes_, calibration);
+  return status.ok() ? status : of_topic(*info_topic_, status);
 }
 
-BagCamera::Messages BagCamera::messages_of(std::size_t topic) {
-  Messages messages;
-  for (const BagMessage& message : bag_.messages())
-    if (message.topic == topic) messages.push_back(message);
+Status BagCamera::of_topic(std::size_t topic, const Status& status) const {
+  return Status(status.code(), bag_.topics()[topic].name).append(": ").append(status.message());
+}
+
+Status BagCamera::in_order(std::size_t topic, Messages& messages) {
+  messages = bag_.messages(topic);
   std::stable_sort(messages.begin(), messages.end(),
                    [](const BagMessage& a, const BagMessage& b) { return a.stamp_ns < b.stamp_ns; });
+  if (messages.size() > 1 && messages.front().stamp_ns == messages.back().stamp_ns)
+    return not_stamped("images", messages.size(), bag_.topics()[topic].name, messages.front().stamp_ns);
   const auto end =
       std::unique(messages.begin(), messages.end(),
                   [](const BagMessage& a, const BagMessage& b) { return a.stamp_ns == b.stamp_ns; });
   repeated_ += static_cast<std::size_t>(messages.end() - end);
   messages.erase(end, messages.end());
-  return messages;
+  return {};
 }
 
 Status BagCamera::pair_up(const SequenceOptions& options) {
   repeated_ = 0;
-  const Messages colour = messages_of(colour_topic_), depth = messages_of(depth_topic_);
+  Messages colour, depth;
+  Status status = in_order(colour_topic_, colour);
+  if (status.ok()) status = in_order(depth_topic_, depth);
+  if (!status.ok()) return status;
   const auto stamps = [](const Messages& messages) {
     std::vector<std::int64_t> result;
+    result.reserve(messages.size());
     for (const BagMessage& message : messages) result.push_back(message.stamp_ns);
     return result;
   };
   pairs_.clear();
+  pairs_.reserve(std::min(colour.size(), depth.size()));
   for (const auto& [c, d] : associate(stamps(colour), stamps(depth), options.tolerance_ns))
     pairs_.emplace_back(colour[c], depth[d]);
   unpaired_colour_ = colour.size() - pairs_.size();
@@ -177,9 +219,13 @@ Status BagCamera::find_sizes(ImageSize& colour, ImageSize& depth, bool& metres) 
     ImageMessage image;
     Status status = read_image(pair.first, image);
     if (status.ok() && !is_colour_encoding(image.encoding)) status = colour_pixels(image, {});
+    if (!status.ok()) status = of_topic(colour_topic_, status);
     colour = {image.width, image.height};
-    if (status.ok()) status = read_image(pair.second, image);
-    if (status.ok() && !is_depth_encoding(image.encoding)) status = depth_pixels(image, {});
+    if (status.ok()) {
+      status = read_image(pair.second, image);
+      if (status.ok() && !is_depth_encoding(image.encoding)) status = depth_pixels(image, {});
+      if (!status.ok()) status = of_topic(depth_topic_, status);
+    }
     depth = {image.width, image.height};
     if (status.ok()) {
       depth_encoding_ = image.encoding;
@@ -238,17 +284,14 @@ Status BagCamera::next(RgbdFrame& frame) {
     status = read_depth(depth);
     topic = depth_topic_;
   }
-  if (!status.ok())
-    return Status(StatusCode::kDamaged, bag_.topics()[topic].name.c_str())
-        .append(": ")
-        .append(status.message());
+  if (!status.ok()) return of_topic(topic, {StatusCode::kDamaged, status.message()});
   fit_.fit(frame);
   return {};
 }
 
 std::vector<std::string> BagCamera::remarks() const {
   std::vector<std::string> sentences;
-  for (const std::string& sentence : {bag_.remark(), fit_.remark()})
+  for (const std::string& sentence : {bag_.remark(), topics_in_words_, fit_.remark()})
     if (!sentence.empty()) sentences.push_back(sentence);
   if (repeated_ > 0)
     sentences.push_back(

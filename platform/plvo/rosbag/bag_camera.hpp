@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,10 +24,11 @@ class BagCamera final : public RgbdCamera {
  public:
   // Reads the bag once and chooses its topics. All of what BagFile::open returns; kNotFound for a topic that
   // is not there (and which are), kInvalidArgument where several could be meant, kUnsupported for compressed
-  // images and encodings that are not read.
+  // images.
   Status index(const std::filesystem::path& path, const BagTopicNames& names);
 
-  // Of the first camera_info. kNotFound where there is none; else as parse_camera_info.
+  // Of the first camera_info. kNotFound where there is none, kInvalidArgument where there are some on other
+  // topics than the one beside colour; else as parse_camera_info.
   Status own_calibration(Calibration& calibration);
 
   // As read_bag_imu, of which names has its own.
@@ -48,19 +50,27 @@ class BagCamera final : public RgbdCamera {
   std::size_t unpaired_colour() const { return unpaired_colour_; }
   const Calibration& calibration() const { return fit_.calibration(); }
   const WholeImage& whole_image() const { return fit_.whole_image(); }
-  // Sentences for whoever runs it.
+  // Sentences for whoever runs it, also where it failed: then on what the bag has.
   std::vector<std::string> remarks() const;
 
  private:
   using Messages = std::vector<BagMessage>;
 
+  void find_encodings();
+  // The topics whose images could be meant.
+  std::vector<std::size_t> candidates(bool depth) const;
   Status choose_images(const std::string& wanted, bool depth, std::size_t& topic);
+  std::string info_beside_colour() const;
   Status choose_info(const std::string& wanted);
   Status read_image(const BagMessage& message, ImageMessage& image);
-  Status encoding_of(std::size_t topic, std::string& encoding);
-  std::string topics_in_words() const;
+  // Ends in as many names as a status holds; all of them become a remark where it does not.
+  Status refused(StatusCode code, const std::string& sentence, const std::vector<std::string>& names);
+  Status of_topic(std::size_t topic, const Status& status) const;
+  std::vector<std::string> names_of(std::string_view type) const;
+  std::vector<std::string> image_topics() const;
+  std::string with_encoding(std::size_t topic) const;
   // By stamp; of equal ones the first.
-  Messages messages_of(std::size_t topic);
+  Status in_order(std::size_t topic, Messages& messages);
   Status pair_up(const SequenceOptions& options);
   Status find_sizes(ImageSize& colour, ImageSize& depth, bool& metres);
   Status read_colour(const BagMessage& message);
@@ -69,6 +79,8 @@ class BagCamera final : public RgbdCamera {
   BagFile bag_;
   std::size_t colour_topic_ = 0, depth_topic_ = 0;
   std::optional<std::size_t> info_topic_;
+  std::vector<std::string> encodings_;  // of each topic's images
+  std::string topics_in_words_;
   std::vector<std::pair<BagMessage, BagMessage>> pairs_;
   std::size_t unpaired_colour_ = 0, repeated_ = 0;
   FrameFit fit_;

@@ -13,11 +13,16 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plvo/rosbag/chunk.hpp"
 
 namespace plvo {
+
+// Of a message, and of a compressed chunk, packed and unpacked: an image of kMaxImageSide² with four bytes a
+// pixel, and what is around it.
+inline constexpr std::uint32_t kMaxPiece = 72u << 20;
 
 struct BagTopic {
   std::string name, type;  // "/camera/rgb/image_color", "sensor_msgs/Image"
@@ -25,27 +30,34 @@ struct BagTopic {
 };
 
 struct BagMessage {
-  std::size_t topic = 0;       // of topics()
+  static constexpr std::uint32_t kInFile = UINT32_MAX;
+
   std::int64_t stamp_ns = 0;   // of the message's header, not of its receipt
-  std::int64_t chunk = -1;     // -1: the position is one in the file
-  std::uint64_t position = 0;  // in the unpacked chunk
+  std::uint64_t position = 0;  // in the file, or in the unpacked chunk
   std::uint32_t bytes = 0;
+  std::uint32_t chunk = kInFile;  // which of the compressed ones
 };
 
 class BagFile {
  public:
-  // Reads all of it once. Kept are the places of images, camera_infos and IMU readings; others are counted.
-  // kNotFound, kInvalidArgument (not a regular file), kDamaged (not a bag), kUnsupported (another version,
-  // encryption).
+  // Reads all of it once. Kept are the places of images, kMostImages at the most, and of the first
+  // camera_info of each topic. kNotFound, kInvalidArgument (not a regular file; more images), kDamaged (not a
+  // bag; a chunk within a chunk), kUnsupported (another version, encryption).
   Status open(const std::filesystem::path& path);
 
   const std::vector<BagTopic>& topics() const { return topics_; }
-  const std::vector<BagMessage>& messages() const { return messages_; }  // in the file's order
+  // Those that are kept of one of topics(), in the file's order.
+  const std::vector<BagMessage>& messages(std::size_t topic) const { return messages_[topic]; }
   // What is wrong with the file, of which the rest can be used; empty where nothing is.
   const std::string& remark() const { return remark_; }
 
-  // The bytes of one. kDamaged, kIo.
+  // The bytes of one. kDamaged, also for one that is larger than kMaxPiece; kIo.
   Status read(const BagMessage& message, std::vector<unsigned char>& bytes);
+
+  // Reads all of the file once more: each message of the type goes to `visit`, in the file's order; the bytes
+  // of one that is larger than kMaxPiece are left out. What `visit` returns ends it. kIo.
+  using Visit = std::function<Status(std::size_t topic, std::span<const unsigned char> bytes)>;
+  Status visit(std::string_view type, const Visit& visit);
 
  private:
   struct Chunk {
@@ -53,37 +65,51 @@ class BagFile {
     std::uint64_t position = 0;
     std::uint32_t bytes = 0, unpacked = 0;
   };
+  struct Unpacked {
+    std::uint32_t chunk = BagMessage::kInFile;  // none
+    std::vector<unsigned char> bytes;
+  };
   struct Record;
-  using ReadAt = std::function<bool(std::uint64_t position, std::span<unsigned char> bytes)>;
-  enum class End : std::uint8_t { kWhole, kCut, kBroken };
+  // The bytes in which records stand: the file, or a chunk of it that was unpacked.
+  struct Source {
+    std::function<bool(std::uint64_t position, std::span<unsigned char> bytes)> read;
+    const Chunk* unpacked = nullptr;
+    std::uint32_t number = BagMessage::kInFile;  // of the chunk, once one of its messages is kept
+  };
+  enum class End : std::uint8_t { kWhole, kCut, kBroken, kOverrun };  // into the next chunk
 
   bool read_file(std::uint64_t position, std::span<unsigned char> bytes);
+  Status cannot_be_read_any_more() const;
   Status check_version();
-  // The records in [begin, end); chunk: in which they are.
-  End scan(const ReadAt& read_at, std::uint64_t begin, std::uint64_t end, std::int64_t chunk);
-  End scan_chunk(const Record& record, std::uint64_t end);
+  // From one end to the other; messages go to take_message_, whose failure ends it.
+  End scan_file();
+  End scan_chunk(Source& file, const Record& record);
+  // Connections and messages. A chunk among them ends it, so that nothing recurses on what a file says.
+  End scan_messages(Source& source, std::uint64_t begin, std::uint64_t end, const Record& outer);
+  End read_record(Source& source, std::uint64_t position, std::uint64_t end, Record& record);
+  void take_record(const Record& record, Source& source);
   void add_connection(const Record& record, std::span<const unsigned char> data);
-  void add_message(const Record& record, const ReadAt& read_at, std::int64_t chunk);
-  Status unpacked(std::int64_t chunk, const std::vector<unsigned char>*& bytes);
-  void remark_on(End end, bool closed);
+  Status keep_message(const Record& record, std::size_t topic, Source& source);
+  Unpacked& next_in_cache();
+  Status unpack(const Chunk& chunk, std::vector<unsigned char>& bytes);
+  void remark_on(End end);
 
   std::filesystem::path path_;
   std::ifstream file_;
   std::uint64_t file_bytes_ = 0;
-  std::uint64_t stopped_at_ = 0;
   std::uint64_t index_position_ = 0;
   std::vector<BagTopic> topics_;
   std::map<std::uint32_t, std::size_t> connections_;  // by the bag's number: whose topic it is
-  std::vector<BagMessage> messages_;
-  std::vector<Chunk> chunks_;
-  std::size_t broken_chunks_ = 0;
+  std::vector<std::vector<BagMessage>> messages_;     // of each topic
+  std::size_t images_ = 0;                            // that are kept
+  std::vector<Chunk> chunks_;                         // compressed ones that hold messages that are kept
   std::string remark_;
-  // The last two that were unpacked: one for colour, one for depth.
-  struct Unpacked {
-    std::int64_t chunk = -1;
-    std::vector<unsigned char> bytes;
-  };
-  std::array<Unpacked, 2> cache_;
+  // While it is read from one end to the other.
+  std::function<Status(const Record& record, std::size_t topic, Source& source)> take_message_;
+  Status failure_;
+  std::uint64_t stopped_at_ = 0;
+  std::size_t broken_chunks_ = 0, large_chunks_ = 0;
+  std::array<Unpacked, 2> cache_;  // the last two: one for colour, one for depth
   std::size_t next_in_cache_ = 0;
   std::vector<unsigned char> packed_;
 };

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "plvo/host/files/reader_limits.hpp"
+#include "plvo/rosbag/listing.hpp"
 #include "plvo/rosbag/messages.hpp"
 
 namespace plvo {
@@ -38,19 +41,23 @@ void drop_if_zero(Samples& samples) {
 Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
   for (std::size_t i = 0; i < bag.topics().size(); ++i)
     if (bag.topics()[i].type == kImuType) topics.push_back({i, {}, {}, 0});
-  std::vector<unsigned char> bytes;
-  for (const BagMessage& message : bag.messages()) {
-    const auto topic = std::find_if(topics.begin(), topics.end(),
-                                    [&](const ImuTopic& t) { return t.topic == message.topic; });
-    if (topic == topics.end()) continue;
+  std::size_t readings = 0;
+  const Status status = bag.visit(kImuType, [&](std::size_t number, std::span<const unsigned char> bytes) {
+    const auto topic =
+        std::find_if(topics.begin(), topics.end(), [number](const ImuTopic& t) { return t.topic == number; });
     ImuMessage imu;
-    Status status = bag.read(message, bytes);
-    if (status.code() == StatusCode::kIo) return status;
-    if (status.ok()) status = parse_imu(bytes, imu);
-    if (!status.ok()) ++topic->damaged;
+    if (!parse_imu(bytes, imu).ok()) ++topic->damaged;
+    readings += (imu.rate ? 1 : 0) + (imu.force ? 1 : 0);
+    if (readings > kMostReadings)
+      return Status(StatusCode::kInvalidArgument,
+                    fmt::format("the bag has more than {} readings of gyros and accelerometers, of which "
+                                "plvo takes no more; make a shorter one of it with rosbag filter",
+                                kMostReadings));
     if (imu.rate) topic->gyro.push_back({imu.stamp_ns, *imu.rate});
     if (imu.force) topic->accelerometer.push_back({imu.stamp_ns, *imu.force});
-  }
+    return Status();
+  });
+  if (!status.ok()) return status;
   for (ImuTopic& topic : topics) {
     drop_if_zero(topic.gyro);
     drop_if_zero(topic.accelerometer);
@@ -58,26 +65,21 @@ Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
   return {};
 }
 
-std::string in_words(const BagFile& bag, const std::vector<const ImuTopic*>& topics) {
-  constexpr std::size_t kMostLetters = 120;  // a status is short
-  std::string text;
-  for (std::size_t i = 0; i < topics.size(); ++i) {
-    const std::string& name = bag.topics()[topics[i]->topic].name;
-    if (text.size() + name.size() > kMostLetters)
-      return text + fmt::format(" and {} more", topics.size() - i);
-    text += (i == 0 ? "" : ", ") + name;
-  }
-  return text;
+std::string in_words(const BagFile& bag, const std::vector<ImuTopic*>& topics) {
+  constexpr std::size_t kMostLetters = 120;
+  std::vector<std::string> names;
+  for (const ImuTopic* topic : topics) names.push_back(bag.topics()[topic->topic].name);
+  return listed(names, kMostLetters);
 }
 
 // Stays nullptr where the bag has no such sensor and none was named.
-Status choose(const BagFile& bag, const std::vector<ImuTopic>& topics, const Sensor& sensor,
-              const std::string& wanted, const ImuTopic*& chosen) {
-  std::vector<const ImuTopic*> candidates;
-  for (const ImuTopic& topic : topics)
+Status choose(const BagFile& bag, std::vector<ImuTopic>& topics, const Sensor& sensor,
+              const std::string& wanted, ImuTopic*& chosen) {
+  std::vector<ImuTopic*> candidates;
+  for (ImuTopic& topic : topics)
     if (!(topic.*sensor.samples).empty()) candidates.push_back(&topic);
   chosen = nullptr;
-  for (const ImuTopic* topic : candidates)
+  for (ImuTopic* topic : candidates)
     if (!wanted.empty() && bag.topics()[topic->topic].name == wanted) chosen = topic;
   if (chosen != nullptr || (wanted.empty() && candidates.empty())) return {};
   const std::string have = candidates.empty() ? "no topic has" : "they are on " + in_words(bag, candidates);
@@ -92,16 +94,20 @@ Status choose(const BagFile& bag, const std::vector<ImuTopic>& topics, const Sen
   return {};
 }
 
-// Returns how many were left out.
-std::size_t take_in_order(const Samples& from, Samples& samples) {
-  std::copy_if(from.begin(), from.end(), std::back_inserter(samples),
-               [](const ImuSample& s) { return s.value.allFinite(); });
-  std::stable_sort(samples.begin(), samples.end(),
+// left_out: grows by as many as there are too many of one stamp or not finite.
+Status take_in_order(Samples& from, const std::string& topic, Samples& samples, std::size_t& left_out) {
+  const std::size_t all = from.size();
+  std::erase_if(from, [](const ImuSample& s) { return !s.value.allFinite(); });
+  std::stable_sort(from.begin(), from.end(),
                    [](const ImuSample& a, const ImuSample& b) { return a.stamp_ns < b.stamp_ns; });
-  samples.erase(std::unique(samples.begin(), samples.end(),
-                            [](const ImuSample& a, const ImuSample& b) { return a.stamp_ns == b.stamp_ns; }),
-                samples.end());
-  return from.size() - samples.size();
+  if (from.size() > 1 && from.front().stamp_ns == from.back().stamp_ns)
+    return not_stamped("readings", from.size(), topic, from.front().stamp_ns);
+  from.erase(std::unique(from.begin(), from.end(),
+                         [](const ImuSample& a, const ImuSample& b) { return a.stamp_ns == b.stamp_ns; }),
+             from.end());
+  left_out += all - from.size();
+  samples = std::move(from);
+  return {};
 }
 
 }  // namespace
@@ -110,18 +116,24 @@ Status read_bag_imu(BagFile& bag, const BagTopicNames& names, ImuRecording& reco
   recording = {};
   std::vector<ImuTopic> topics;
   if (Status status = read_topics(bag, topics); !status.ok()) return status;
-  const ImuTopic *gyro = nullptr, *accelerometer = nullptr;
+  ImuTopic *gyro = nullptr, *accelerometer = nullptr;
   Status status = choose(bag, topics, kGyro, names.gyro, gyro);
   if (status.ok()) status = choose(bag, topics, kAccelerometer, names.accelerometer, accelerometer);
   if (!status.ok()) return status;
   if (gyro == nullptr && accelerometer == nullptr)
     return {StatusCode::kNotFound,
             "the bag has no readings of a gyro or an accelerometer (sensor_msgs/Imu that is not zero)"};
-  if (gyro != nullptr) recording.ignored += gyro->damaged + take_in_order(gyro->gyro, recording.gyro);
-  if (accelerometer != nullptr)
-    recording.ignored += (accelerometer == gyro ? 0 : accelerometer->damaged) +
-                         take_in_order(accelerometer->accelerometer, recording.accelerometer);
-  return {};
+  const auto name = [&bag](const ImuTopic* topic) { return bag.topics()[topic->topic].name; };
+  if (gyro != nullptr) {
+    recording.ignored += gyro->damaged;
+    status = take_in_order(gyro->gyro, name(gyro), recording.gyro, recording.ignored);
+  }
+  if (status.ok() && accelerometer != nullptr) {
+    recording.ignored += accelerometer == gyro ? 0 : accelerometer->damaged;
+    status = take_in_order(accelerometer->accelerometer, name(accelerometer), recording.accelerometer,
+                           recording.ignored);
+  }
+  return status;
 }
 
 }  // namespace plvo

@@ -11,7 +11,8 @@ namespace plvo {
 
 // By stamp; messages that are damaged, readings that are not finite, and of those with one stamp all but the
 // first are left out and counted. kNotFound where there are no readings, or not on the topic that was named;
-// kInvalidArgument where several topics could be meant; both say which there are. kIo.
+// kInvalidArgument where several topics could be meant; both say which there are;
+// kInvalidArgument, too, where all readings have one stamp, or there are more than kMostReadings. kIo.
 Status read_bag_imu(BagFile& bag, const BagTopicNames& names, ImuRecording& recording);
 
 }  // namespace plvo

@@ -23,16 +23,32 @@ std::int64_t take_header(WireReader& wire) {
   return stamp_ns;
 }
 
+// How a pixel lies in memory: where its red, green and blue are.
+struct ColourLayout {
+  std::string_view encoding;
+  std::size_t bytes, red, green, blue;
+};
+constexpr ColourLayout kColourLayouts[] = {{"rgb8", 3, 0, 1, 2},  {"bgr8", 3, 2, 1, 0},
+                                           {"rgba8", 4, 0, 1, 2}, {"bgra8", 4, 2, 1, 0},
+                                           {"8UC3", 3, 2, 1, 0},  {"mono8", 1, 0, 0, 0}};
+
+// nullptr for an encoding that is not of colour.
+const ColourLayout* colour_layout(std::string_view encoding) {
+  for (const ColourLayout& layout : kColourLayouts)
+    if (layout.encoding == encoding) return &layout;
+  return nullptr;
+}
+
+// 0 for an encoding that is not read.
 std::size_t pixel_bytes(std::string_view encoding) {
-  if (encoding == "rgb8" || encoding == "bgr8") return 3;
-  if (encoding == "mono8") return 1;
-  if (encoding == "16UC1") return 2;
+  if (const ColourLayout* layout = colour_layout(encoding)) return layout->bytes;
+  if (encoding == "16UC1" || encoding == "mono16") return 2;
   return encoding == "32FC1" ? 4 : 0;
 }
 
 Status unknown_encoding(const ImageMessage& image, const char* known) {
   return {StatusCode::kUnsupported,
-          fmt::format("the encoding '{}' is not read; {} are", image.encoding, known)};
+          fmt::format("the encoding '{}' is not read there; {} is", image.encoding.substr(0, 40), known)};
 }
 
 std::uint16_t whole_units(float metres) {
@@ -42,11 +58,11 @@ std::uint16_t whole_units(float metres) {
 
 }  // namespace
 
-bool is_colour_encoding(std::string_view encoding) {
-  return encoding == "rgb8" || encoding == "bgr8" || encoding == "mono8";
-}
+bool is_colour_encoding(std::string_view encoding) { return colour_layout(encoding) != nullptr; }
 
-bool is_depth_encoding(std::string_view encoding) { return encoding == "16UC1" || encoding == "32FC1"; }
+bool is_depth_encoding(std::string_view encoding) {
+  return pixel_bytes(encoding) != 0 && !is_colour_encoding(encoding);
+}
 
 Status parse_image(std::span<const unsigned char> bytes, ImageMessage& image) {
   WireReader wire(bytes);
@@ -115,20 +131,22 @@ Status parse_imu(std::span<const unsigned char> bytes, ImuMessage& imu) {
 }
 
 Status colour_pixels(const ImageMessage& image, std::span<std::uint8_t> rgb) {
-  if (!is_colour_encoding(image.encoding)) return unknown_encoding(image, "rgb8, bgr8 and mono8");
-  const auto width = static_cast<std::size_t>(image.width);
-  const bool grey = image.encoding == "mono8", swapped = image.encoding == "bgr8";
+  const ColourLayout* layout = colour_layout(image.encoding);
+  if (layout == nullptr) return unknown_encoding(image, kColourEncodings);
   std::uint8_t* out = rgb.data();
   for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
     const unsigned char* in = image.data.data() + y * image.step;
-    for (std::size_t x = 0; x < width; ++x, out += 3)
-      for (std::size_t c = 0; c < 3; ++c) out[c] = grey ? in[x] : in[3 * x + (swapped ? 2 - c : c)];
+    for (int x = 0; x < image.width; ++x, in += layout->bytes) {
+      *out++ = in[layout->red];
+      *out++ = in[layout->green];
+      *out++ = in[layout->blue];
+    }
   }
   return {};
 }
 
 Status depth_pixels(const ImageMessage& image, std::span<std::uint16_t> depth) {
-  if (!is_depth_encoding(image.encoding)) return unknown_encoding(image, "16UC1 and 32FC1");
+  if (!is_depth_encoding(image.encoding)) return unknown_encoding(image, kDepthEncodings);
   const bool metres = image.encoding == "32FC1";
   const std::size_t bytes = metres ? 4 : 2;
   auto out = depth.begin();

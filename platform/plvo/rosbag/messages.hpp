@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // sensor_msgs/Image, CameraInfo and Imu of ROS 1, from the bytes of a message, and an image's pixels as plvo
-// has them: colour as RGB, depth in whole units (REP 118: 16UC1 is millimetres, 32FC1 metres).
+// has them: colour as RGB, depth in whole units (REP 118: 16UC1 is millimetres, 32FC1 metres; mono16 is
+// 16UC1, as librealsense writes it). 8UC3 says nothing of its channels: they are taken for BGR, as OpenCV has
+// them.
 #pragma once
 
 #include <cstdint>
@@ -45,8 +47,10 @@ struct ImuMessage {
 // kDamaged where the bytes end early.
 Status parse_imu(std::span<const unsigned char> bytes, ImuMessage& imu);
 
-bool is_colour_encoding(std::string_view encoding);  // rgb8, bgr8, mono8
-bool is_depth_encoding(std::string_view encoding);   // 16UC1, 32FC1
+inline constexpr const char* kColourEncodings = "rgb8, bgr8, rgba8, bgra8, 8UC3 or mono8";
+inline constexpr const char* kDepthEncodings = "16UC1, mono16 or 32FC1";
+bool is_colour_encoding(std::string_view encoding);
+bool is_depth_encoding(std::string_view encoding);
 
 // What metres are multiplied by to become whole units: as TUM's own PNGs of the same recordings have it.
 inline constexpr double kFloatDepthUnitsPerMetre = kTumDepthUnitsPerMetre;

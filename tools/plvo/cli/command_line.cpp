@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/command_line.hpp"
 
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <new>
 #include <sstream>
 
 #include "plvo/cli/common/exit_code.hpp"
@@ -11,6 +14,7 @@
 #include "plvo/cli/common/version.hpp"
 #include "plvo/cli/documentation/help_format.hpp"
 #include "plvo/cli/options/usage_error.hpp"
+#include "plvo/host/files/reader_limits.hpp"
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_camera.hpp"
 #endif
@@ -51,7 +55,12 @@ int run_command_line(int argc, const char* const* argv) {
     app.exit(error, help, help);
     const Status status = print(help.str());
     return status.ok() ? kExitSuccess : fail(status);
-  } catch (const std::exception& error) {  // out of memory, a library's exception
+  } catch (const std::bad_alloc&) {
+    return fail(
+        fmt::format("there is not enough memory: what is read of a file takes up to {} MiB, and more is "
+                    "not to be had (ulimit -v, docs/formats.md#limits)",
+                    kMostReaderBytes >> 20));
+  } catch (const std::exception& error) {  // a library's
     return fail(error.what());
   }
   return exit_code;

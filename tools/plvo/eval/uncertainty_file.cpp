@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kFull = 36;
 constexpr std::size_t kUpper = 21;
+constexpr std::size_t kMostMatrices = kMostRows / 4;  // up to four times as large as a pose
 
 // The covariance in the columns from `first` to the end of the row.
 Status parse_covariance(const std::filesystem::path& path, const TableRow& row, std::size_t first,
@@ -38,30 +39,36 @@ Status parse_covariance(const std::filesystem::path& path, const TableRow& row, 
 
 Status read_covariances(const std::filesystem::path& path, std::vector<StampedCovariance>& covariances) {
   covariances.clear();
-  const Status status = each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
-    StampedCovariance next;
-    if (!parse_stamp_ns(row.words[0], next.stamp_ns))
-      return row_error(path, row, "expected a stamp in seconds first");
-    if (Status parsed = parse_covariance(path, row, 1, next.covariance); !parsed.ok()) return parsed;
-    covariances.push_back(next);
-    return {};
-  });
+  const Status status = each_row(
+      path, kMaxTextBytes,
+      [&](const TableRow& row) -> Status {
+        StampedCovariance next;
+        if (!parse_stamp_ns(row.words[0], next.stamp_ns))
+          return row_error(path, row, "expected a stamp in seconds first");
+        if (Status parsed = parse_covariance(path, row, 1, next.covariance); !parsed.ok()) return parsed;
+        covariances.push_back(next);
+        return {};
+      },
+      kMostMatrices);
   sort_by_stamp(covariances);
   return status;
 }
 
 Status read_motions(const std::filesystem::path& path, std::vector<UncertainMotion>& motions) {
   motions.clear();
-  const Status status = each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
-    UncertainMotion next;
-    if (row.words.size() < 2 || !parse_stamp_ns(row.words[0], next.stamp_ns) ||
-        !parse_stamp_ns(row.words[1], next.reference_stamp_ns))
-      return row_error(path, row, "expected two stamps in seconds first");
-    if (Status parsed = parse_pose(path, row, 2, next.T_camera_reference); !parsed.ok()) return parsed;
-    if (Status parsed = parse_covariance(path, row, 9, next.covariance); !parsed.ok()) return parsed;
-    motions.push_back(next);
-    return {};
-  });
+  const Status status = each_row(
+      path, kMaxTextBytes,
+      [&](const TableRow& row) -> Status {
+        UncertainMotion next;
+        if (row.words.size() < 2 || !parse_stamp_ns(row.words[0], next.stamp_ns) ||
+            !parse_stamp_ns(row.words[1], next.reference_stamp_ns))
+          return row_error(path, row, "expected two stamps in seconds first");
+        if (Status parsed = parse_pose(path, row, 2, next.T_camera_reference); !parsed.ok()) return parsed;
+        if (Status parsed = parse_covariance(path, row, 9, next.covariance); !parsed.ok()) return parsed;
+        motions.push_back(next);
+        return {};
+      },
+      kMostMatrices);
   sort_by_stamp(motions);
   return status;
 }

@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The words of a line without its comment.
+// The words of a line without its comment, and one more than kMostColumns at the most.
 void split_line(std::string_view line, TableRow& row) {
   constexpr std::string_view kBetween = " \t\r,";
   row.words.clear();
   line = line.substr(0, line.find('#'));
   row.commas = line.find(',') != std::string_view::npos;
-  for (;;) {
+  while (row.words.size() <= kMostColumns) {
     line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
     if (line.empty()) return;
     row.words.emplace_back(line.substr(0, line.find_first_of(kBetween)));
@@ -36,17 +36,25 @@ Status row_error(const fs::path& path, const TableRow& row, const std::string& w
 }
 
 Status each_row(const fs::path& path, std::uintmax_t limit_bytes,
-                const std::function<Status(const TableRow&)>& take) {
+                const std::function<Status(const TableRow&)>& take, std::size_t most_rows) {
   std::string content;
   Status status = read_text_file(path, limit_bytes, content);
   std::string_view rest = content;
   TableRow row;
+  std::size_t rows = 0;
   while (status.ok() && !rest.empty()) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     ++row.line;
     split_line(line, row);
-    if (!row.words.empty()) status = take(row);
+    if (row.words.empty()) continue;
+    if (row.words.size() > kMostColumns)
+      return row_error(path, row, fmt::format("has more than {} columns", kMostColumns));
+    if (++rows > most_rows)
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} has more than {} rows, of which plvo reads no more; split it", path.string(),
+                          most_rows)};
+    status = take(row);
   }
   return status;
 }

@@ -3,6 +3,7 @@
 // without a byte order mark, lines ended as Unix or Windows ends them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "plvo/base/status.hpp"
+#include "plvo/host/files/reader_limits.hpp"
 
 namespace plvo {
 
@@ -19,10 +21,11 @@ struct TableRow {
   bool commas = false;
 };
 
-// Each row that has a word goes to `take`, whose first failure ends it and is returned. Else as
-// read_text_file. One row at a time: a file within its limit could otherwise become fifty times its size.
+// Each row that has a word goes to `take`, whose first failure ends it and is returned. More than most_rows
+// of them or kMostColumns in one are refused. Else as read_text_file. One row at a time: a file within its
+// limit could otherwise become fifty times its size.
 Status each_row(const std::filesystem::path& path, std::uintmax_t limit_bytes,
-                const std::function<Status(const TableRow&)>& take);
+                const std::function<Status(const TableRow&)>& take, std::size_t most_rows = kMostRows);
 
 // words[first … first+values.size()) as numbers. kDamaged, naming file and line, for what is not a number; a
 // NaN is one.

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace plvo {
 namespace {
 
@@ -66,6 +68,7 @@ Status FrameFit::choose_scale(const ImageSize& colour, int scale_down) {
 }
 
 void FrameFit::fit(RgbdFrame& frame) {
+  std::replace(depth().begin(), depth().end(), kDepthBeyondRange, std::uint16_t{0});
   const int width = calibration_.camera.width, height = calibration_.camera.height;
   if (whole_.factor > 1)
     reduce_rgb(whole_colour_.data(), whole_.width, whole_.factor, width, height, colour_.data());

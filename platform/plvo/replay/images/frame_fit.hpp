@@ -17,6 +17,10 @@
 
 namespace plvo {
 
+// What 16 bits hold at the most is no depth, in whatever unit and whoever recorded it: sensors and exporters
+// write it where they see nothing, and for what is further than they can say. It becomes 0.
+inline constexpr std::uint16_t kDepthBeyondRange = 65535;
+
 struct ImageSize {
   int width = 0, height = 0;  // px
 };

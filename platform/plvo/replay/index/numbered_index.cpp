@@ -11,6 +11,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "plvo/host/files/reader_limits.hpp"
+
 namespace plvo {
 namespace {
 
@@ -82,6 +84,10 @@ Status list_files(const fs::path& folder, const Kind& kind, Numbered& files) {
                       "and associations.txt has numbered frames",
                       file, kMaxDigits, *digits)};
     }
+    if (files.size() == kMostImages)
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} holds more than {} numbered frames, of which plvo reads no more; split it",
+                          (folder / kind.folder).string(), kMostImages)};
     const auto [there, added] = files.emplace(number, file);
     if (!added) {
       return {StatusCode::kDamaged,

@@ -2,23 +2,21 @@
 #include "plvo/replay/index/stamp_pairs.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <queue>
-#include <tuple>
+#include <utility>
 
 namespace plvo {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr std::uint32_t kNone = UINT32_MAX;
 
 // A stamp of either list in the common order of both, linked with its neighbours that are still without a
 // partner.
 struct Node {
   std::int64_t stamp_ns = 0;
-  std::size_t index = 0;
+  std::uint32_t index = 0;
+  std::uint32_t previous = kNone, next = kNone;
   bool is_second = false;
   bool paired = false;
-  std::size_t previous = kNone, next = kNone;
 };
 
 std::vector<Node> merge(const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second) {
@@ -28,37 +26,53 @@ std::vector<Node> merge(const std::vector<std::int64_t>& first, const std::vecto
   std::size_t j = 0;
   while (i < first.size() || j < second.size()) {
     const bool take_second = i == first.size() || (j < second.size() && second[j] < first[i]);
-    nodes.push_back(take_second ? Node{second[j], j, true} : Node{first[i], i, false});
+    Node node;
+    node.stamp_ns = take_second ? second[j] : first[i];
+    node.index = static_cast<std::uint32_t>(take_second ? j : i);
+    node.is_second = take_second;
+    nodes.push_back(node);
     ++(take_second ? j : i);
   }
-  for (std::size_t n = 1; n < nodes.size(); ++n) {
+  for (std::uint32_t n = 1; n < nodes.size(); ++n) {
     nodes[n].previous = n - 1;
     nodes[n - 1].next = n;
   }
   return nodes;
 }
 
-// Neighbours of different lists: their distance, the index in the first and in the second list, and the two
-// nodes. Stamps may lie further apart than an int64 can say.
-using Candidate = std::tuple<std::uint64_t, std::size_t, std::size_t, std::size_t, std::size_t>;
+// Neighbours of different lists. Stamps may lie further apart than an int64 can say.
+struct Candidate {
+  std::uint64_t distance = 0;
+  std::uint32_t left = 0, right = 0;  // nodes
+};
 
 class Pairing {
+  auto later() const {
+    return [this](const Candidate& a, const Candidate& b) {
+      if (a.distance != b.distance) return a.distance > b.distance;
+      return indices(a.left, a.right) > indices(b.left, b.right);
+    };
+  }
+
  public:
   Pairing(std::vector<Node> nodes, std::uint64_t tolerance)
       : nodes_(std::move(nodes)), tolerance_(tolerance) {
-    for (std::size_t n = 1; n < nodes_.size(); ++n) offer(n - 1, n);
+    candidates_.reserve(nodes_.size());
+    for (std::uint32_t n = 1; n < nodes_.size(); ++n) offer(n - 1, n);
   }
 
   std::vector<std::pair<std::size_t, std::size_t>> run() {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    pairs.reserve(nodes_.size() / 2);
     while (!candidates_.empty()) {
-      const auto [distance, i, j, left, right] = candidates_.top();
-      candidates_.pop();
+      std::pop_heap(candidates_.begin(), candidates_.end(), later());
+      const auto [distance, left, right] = candidates_.back();
+      candidates_.pop_back();
       if (nodes_[left].paired || nodes_[right].paired) continue;
-      pairs.emplace_back(i, j);
+      pairs.push_back(indices(left, right));
       nodes_[left].paired = nodes_[right].paired = true;
-      const std::size_t before = nodes_[left].previous;
-      const std::size_t after = nodes_[right].next;
+      const std::uint32_t before = nodes_[left].previous;
+      const std::uint32_t after = nodes_[right].next;
       if (before != kNone) nodes_[before].next = after;
       if (after != kNone) nodes_[after].previous = before;
       if (before != kNone && after != kNone) offer(before, after);
@@ -68,20 +82,27 @@ class Pairing {
   }
 
  private:
-  void offer(std::size_t left, std::size_t right) {
+  // In the first and in the second list.
+  std::pair<std::size_t, std::size_t> indices(std::uint32_t left, std::uint32_t right) const {
+    const Node &a = nodes_[left], &b = nodes_[right];
+    return a.is_second ? std::pair<std::size_t, std::size_t>(b.index, a.index)
+                       : std::pair<std::size_t, std::size_t>(a.index, b.index);
+  }
+
+  void offer(std::uint32_t left, std::uint32_t right) {
     const Node& a = nodes_[left];
     const Node& b = nodes_[right];
     if (a.is_second == b.is_second) return;
     const std::uint64_t distance =
         static_cast<std::uint64_t>(b.stamp_ns) - static_cast<std::uint64_t>(a.stamp_ns);
     if (distance > tolerance_) return;
-    candidates_.emplace(distance, a.is_second ? b.index : a.index, a.is_second ? a.index : b.index, left,
-                        right);
+    candidates_.push_back({distance, left, right});
+    std::push_heap(candidates_.begin(), candidates_.end(), later());
   }
 
   std::vector<Node> nodes_;
   std::uint64_t tolerance_;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates_;
+  std::vector<Candidate> candidates_;  // a heap, the nearest on top
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "plvo/host/files/input_file.hpp"
+#include "plvo/host/files/reader_limits.hpp"
 #include "plvo/host/files/stamp_text.hpp"
 #include "plvo/replay/index/stamp_pairs.hpp"
 
@@ -101,6 +102,12 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
       if (next.file.empty() || !is_stamp)
         return damaged(list, line,
                        columns == 1 ? "expected 'stamp file'" : "expected 'stamp rgb stamp depth'");
+      if (next.file.size() > kMostNameBytes)
+        return damaged(list, line, fmt::format("a name of more than {} bytes", kMostNameBytes));
+      if (lists[column].size() == kMostImages)
+        return {StatusCode::kInvalidArgument,
+                fmt::format("{} lists more than {} images, of which plvo reads no more; split the recording",
+                            list.string(), kMostImages)};
       if (Status status = check_order(list, line, next, lists[column]); !status.ok()) return status;
       lists[column].push_back(std::move(next));
     }
@@ -110,15 +117,18 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
   return {};
 }
 
-Status pair_up(const std::vector<StampedFile>& colour, const std::vector<StampedFile>& depth,
-               std::int64_t tolerance_ns, SequenceIndex& index) {
+// The files of pairs are moved out of the lists.
+Status pair_up(std::vector<StampedFile>& colour, std::vector<StampedFile>& depth, std::int64_t tolerance_ns,
+               SequenceIndex& index) {
   const auto stamps = [](const std::vector<StampedFile>& files) {
     std::vector<std::int64_t> result;
+    result.reserve(files.size());
     for (const StampedFile& file : files) result.push_back(file.stamp_ns);
     return result;
   };
+  index.pairs.reserve(std::min(colour.size(), depth.size()));
   for (const auto& [c, d] : associate(stamps(colour), stamps(depth), tolerance_ns))
-    index.pairs.push_back({colour[c], depth[d]});
+    index.pairs.push_back({std::move(colour[c]), std::move(depth[d])});
   index.unpaired_colour = colour.size() - index.pairs.size();
   index.unpaired_depth = depth.size() - index.pairs.size();
   if (index.pairs.empty()) {
@@ -145,7 +155,9 @@ Status read_tum_index(const fs::path& folder, const fs::path& associations, std:
   if (!joint.empty()) {
     if (Status status = read_lists(joint, 2, lists); !status.ok()) return status;
     if (depth_first(lists[0], lists[1])) std::swap(lists[0], lists[1]);
-    for (std::size_t i = 0; i < lists[0].size(); ++i) index.pairs.push_back({lists[0][i], lists[1][i]});
+    index.pairs.reserve(lists[0].size());
+    for (std::size_t i = 0; i < lists[0].size(); ++i)
+      index.pairs.push_back({std::move(lists[0][i]), std::move(lists[1][i])});
     return {};
   }
   if (Status status = read_lists(folder / "rgb.txt", 1, &lists[0]); !status.ok()) return status;

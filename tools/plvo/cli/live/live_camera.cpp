@@ -8,6 +8,7 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/live/bag_device.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/recording/foreign_format.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"
@@ -211,6 +212,7 @@ Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); 
 #endif
 
 Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
+  if (Status status = refuse_foreign_format(options.device); !status.ok()) return status;
   return is_bag_file(options.device) ? open_bag_device(options, log, camera)
                                      : open_sensor(options, log, camera);
 }

@@ -25,11 +25,11 @@ constexpr std::uint64_t kWarmFrames = 30;  // the libraries have taken their mem
 }  // namespace
 
 int LiveSession::run() {
-  catch_interrupt();
   ignore_broken_outputs();
   if (const Status status = prepare_outputs(); !status.ok()) return refused(status, kExitFailure);
   if (const Status status = open_live_camera(options_.camera, console_, camera_); !status.ok())
     return refused(status, exit_code_of_camera(status, options_.camera.device));
+  catch_interrupt();  // from here on there is something to keep whole
   if (const Status status = open(); !status.ok()) return refused(status, kExitFailure);
   loop();
   finish();

@@ -55,11 +55,12 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
     return find_calibration(options.calibration, own, calibration);
   };
   auto recording = std::make_shared<Recording>();
-  if (Status status = recording->open(options.sequence, choose, how); !status.ok()) {
+  const Status status = recording->open(options.sequence, choose, how);
+  for (const std::string& sentence : recording->remarks()) log.write(LogLevel::kWarning, sentence);
+  if (!status.ok()) {
     refuse_scale(options.scale, recording->whole_image(), status);
     return status;
   }
-  for (const std::string& sentence : recording->remarks()) log.write(LogLevel::kWarning, sentence);
   for (const std::string& sentence : recording->calibration().assumptions())
     log.write(LogLevel::kWarning, sentence);
   opened.frame_count = recording->frame_count();

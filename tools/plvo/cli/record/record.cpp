@@ -80,7 +80,6 @@ Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const I
 }
 
 int record_command(const RecordOptions& options) {
-  catch_interrupt();
   ignore_broken_outputs();
   Console console(options.quiet);
   if (Status status = check_outputs(options); !status.ok()) return fail(status);
@@ -96,6 +95,7 @@ int record_command(const RecordOptions& options) {
   FrameRecording recording;
   LiveAccelerometer accelerometer(console);
   Status begun = read_imu(options, *camera, readings);
+  catch_interrupt();  // from here on there is something to keep whole
   if (begun.ok())
     begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);
   if (begun.ok()) begun = begin_imu(options, *camera, readings, accelerometer);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What messages of errors about topics are made of.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "plvo/base/status.hpp"
+#include "plvo/host/files/stamp_text.hpp"
+
+namespace plvo {
+
+// "/a, /b and 3 more": as many as most_letters hold, for a status is short, and one at least.
+inline std::string listed(const std::vector<std::string>& names,
+                          std::size_t most_letters = static_cast<std::size_t>(-1)) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0 && text.size() + names[i].size() > most_letters)
+      return text + " and " + std::to_string(names.size() - i) + " more";
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return text;
+}
+
+// Where all headers on a topic have one stamp: there is no order in such messages.
+inline Status not_stamped(const char* what, std::size_t count, const std::string& topic,
+                          std::int64_t stamp_ns) {
+  return {StatusCode::kInvalidArgument,
+          fmt::format("all {} {} on {} have the stamp {} in their headers: the driver does not stamp them; "
+                      "give each its time of receipt (docs/formats.md)",
+                      count, what, topic, stamp_ns == 0 ? "0" : format_stamp(stamp_ns))};
+}
+
+}  // namespace plvo

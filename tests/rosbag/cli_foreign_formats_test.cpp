@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings that are not read are told by their names and by how they begin, wherever one may be named.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "command.hpp"
+#include "plvo_binary.hpp"
+#include "temporary_folder.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::kPlvo;
+using test::TemporaryFolder;
+using test::write_file;
+
+class CliForeignFormats : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void expect_told(const std::string& name, const std::string& what) const {
+    const std::string recording = path(name);
+    for (const std::string& command : {"run " + recording, "live --device " + recording,
+                                       "record " + path("made") + " --device " + recording,
+                                       "calibrate " + recording + " --out " + path("c.yaml"),
+                                       "eval --gt " + recording + " --est " + path("t.txt")}) {
+      const CommandResult r = test::run_command(kPlvo + ' ' + command);
+      EXPECT_EQ(r.exit_code, 1) << command << r.err;
+      EXPECT_NE(r.err.find(recording + " is " + what), std::string::npos) << command << '\n' << r.err;
+      EXPECT_NE(r.err.find("docs/formats.md"), std::string::npos) << "it says what to do: " << r.err;
+    }
+    EXPECT_FALSE(fs::exists(path("made")));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliForeignFormats, ByNameOrByBeginning) {
+  write_file(path("t.txt"), "1 0 0 0 0 0 0 1\n");
+  const std::string mcap("\x89MCAP0\r\n and so on");
+  const std::string sqlite("SQLite format 3\0 and so on", 26);
+  const std::string matroska("\x1a\x45\xdf\xa3 and so on");
+  for (const auto& [file, content, what] :
+       {std::tuple<const char*, std::string, const char*>{"a.mcap", "", "an MCAP file"},
+        {"b.data", mcap, "an MCAP file"},
+        {"b.bag", mcap, "an MCAP file"},
+        {"a.db3", "", "an SQLite file"},
+        {"c.data", sqlite, "an SQLite file"},
+        {"a.mkv", "", "a Matroska video"},
+        {"d.data", matroska, "a Matroska video"},
+        {"walk.bag.active", "#ROSBAG V2.0\n", "a ROS 1 bag, which is read under a name that ends in .bag"}}) {
+    write_file(path(file), content);
+    expect_told(file, what);
+  }
+  fs::create_directory(path("ros2"));
+  write_file(path("ros2/metadata.yaml"), "rosbag2_bagfile_information:\n  version: 5\n");
+  expect_told("ros2", "a folder of rosbag2 (ROS 2)");
+}
+
+TEST_F(CliForeignFormats, OthersAreNot) {
+  fs::create_directory(path("mine"));
+  write_file(path("mine/metadata.yaml"), "author: me\n");
+  const CommandResult r = test::run_command(kPlvo + " run " + path("mine"));
+  EXPECT_NE(r.err.find("rgb.txt"), std::string::npos) << r.err;
+}
+
+}  // namespace
+}  // namespace plvo
