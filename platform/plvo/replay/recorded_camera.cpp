@@ -9,8 +9,6 @@ namespace plvo {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint16_t kNoDepthInMillimetres = 65535;  // in 7-Scenes
-
 Status RecordedCamera::open(const fs::path& folder, const Calibration& calibration,
                             const SequenceOptions& options) {
   folder_ = folder;
@@ -23,8 +21,8 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
   depth_size_ = {depth.width, depth.height};
   Calibration known = calibration;
   if (index_.numbered && !calibration.depth_scale_given) {
-    known.depth_units_per_metre = 1000;
-    known.depth_scale_given = true;
+    known.depth_units_per_metre = kMillimetresPerMetre;
+    known.depth_scale_given = index_.in_millimetres;
   }
   if (Status status = fit_.init(known, {colour.width, colour.height}, depth_size_, options.scale_down);
       !status.ok())
@@ -60,13 +58,7 @@ Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
                         "'stamp rgb stamp depth'",
                         pair.colour.file, pair.depth.file)};
       }
-      if (depth.bits != 16 || !depth.grey) {
-        return {StatusCode::kInvalidArgument,
-                fmt::format(
-                    "{} has {} bits per channel{}; depth must be a 16-bit grey PNG (export it again without "
-                    "converting to 8 bits or to colour)",
-                    pair.depth.file, depth.bits, depth.grey ? "" : " and colour")};
-      }
+      if (Status kind = depth.check_is_depth(pair.depth.file); !kind.ok()) return kind;
       return {};
     }
     if (first_failure.ok()) first_failure = status;
@@ -104,8 +96,6 @@ Status RecordedCamera::next(RgbdFrame& frame) {
     status =
         decoder_.decode_depth(folder_ / pair.depth.file, depth_size_.width, depth_size_.height, fit_.depth());
   if (!status.ok()) return {StatusCode::kDamaged, status.message()};
-  if (index_.numbered)
-    std::replace(fit_.depth().begin(), fit_.depth().end(), kNoDepthInMillimetres, std::uint16_t{0});
   fit_.fit(frame);
   return {};
 }

@@ -13,6 +13,17 @@ namespace plvo {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// With capital letters, too; what is nothing else does not count.
+bool ends(std::string_view name, std::string_view extension) {
+  return name.size() > extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
+                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
+}  // namespace
+
 Status read_sequence_index(const fs::path& folder, const SequenceOptions& options, SequenceIndex& index) {
   index = {};
   std::error_code error;
@@ -48,12 +59,9 @@ Status read_ground_truth(const fs::path& folder, const SequenceOptions& options,
 }
 
 bool ends_as_image(std::string_view name) {
-  const auto ends = [name](std::string_view extension) {
-    return name.size() > extension.size() &&
-           std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-  };
-  return ends(".png") || ends(".jpg") || ends(".jpeg");
+  return ends(name, ".png") || ends_as_jpeg(name) || ends(name, ".ppm") || ends(name, ".pgm");
 }
+
+bool ends_as_jpeg(std::string_view name) { return ends(name, ".jpg") || ends(name, ".jpeg"); }
 
 }  // namespace plvo
