@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera calibrations from files and by name. Forms that are understood, told apart by their content (YAML by
 // the extensions .yaml, .yml and .json too):
-//   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; lines with keys may
-//   follow fx 0 cx  0 fy cy  0 0 1                                  the same of a matrix; also of four rows
-//   and
+//   fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]   numbers in this order; keys may follow
+//   fx 0 cx  0 fy cy  0 0 1                                  the same of a matrix; also of four rows and
 //                                                            columns, as ScanNet's are
-//   fx: 525  (or fx = 525, or fx 525), one a line            keys in any order: calibration_keys.hpp has them
+//   fx: 525  (or fx = 525, or fx 525), one a line            keys in any order, those of
+//                                                            calibration_keys.hpp
 //   YAML with the same keys
 //   ROS camera_info YAML                                     image_width, camera_matrix, the lens
 //                                                            (camera_info.hpp)

@@ -106,7 +106,8 @@ Status sequence_calibration(const fs::path& folder, Calibration& calibration, st
   if (const std::optional<fs::path> file = only_settings_in(folder)) {
     const Status status = read_calibration(*file, calibration);
     if (status.ok()) {
-      guess = fmt::format("the calibration is taken from {}", file->string());
+      guess = fmt::format("no file has a calibration's name; {}, the folder's only settings, is taken for it",
+                          file->string());
       return {};
     }
     why = fmt::format("; {}", status.message());
