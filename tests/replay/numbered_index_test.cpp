@@ -239,6 +239,7 @@ TEST_F(NumberedNames, AreThoseThatPeopleUse) {
                                                        {"color_%.png", "depth_%.png"},
                                                        {"rgb%.png", "depth%.png"},
                                                        {"RGB_%.png", "Depth_%.png"},
+                                                       {"RGB/%.png", "Depth/%.png"},
                                                        {"%-color.png", "%-depth.png"},
                                                        {"%.jpg", "%.png"},
                                                        {"frame%.jpeg", "frame%.pgm"}};

@@ -9,10 +9,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "plvo/camera/camera_info.hpp"
 #include "plvo/replay/calibration/yaml_nodes.hpp"
+#include "plvo/replay/small_letters.hpp"
 
 namespace plvo::calibration_form {
 namespace {
@@ -24,11 +24,9 @@ bool is_chain(const YAML::Node& root) {
                      [](const auto& entry) { return entry.second.IsMap() && entry.second["intrinsics"]; });
 }
 
-bool speaks_of_colour(std::string topic) {
-  std::transform(topic.begin(), topic.end(), topic.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return topic.find("rgb") != topic.npos || topic.find("color") != topic.npos ||
-         topic.find("colour") != topic.npos;
+bool speaks_of_colour(const std::string& topic) {
+  const std::string name = in_small_letters(topic);
+  return name.find("rgb") != name.npos || name.find("color") != name.npos || name.find("colour") != name.npos;
 }
 
 // The names by which Kalibr and EuRoC know the lenses of a camera_info.

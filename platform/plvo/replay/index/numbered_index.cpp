@@ -14,6 +14,8 @@
 #include <system_error>
 #include <utility>
 
+#include "plvo/replay/small_letters.hpp"
+
 namespace plvo {
 namespace {
 
@@ -127,8 +129,8 @@ std::optional<Layout> layout_of_one_folder(const fs::path& folder) {
   return {};
 }
 
-// The folder whose name begins with one of these, as long as one of them alone, or one folder alone, does;
-// `unclear` is told of several. Folders without numbered images do not count.
+// The folder whose name is one of these, else the only one whose name begins with one, in small letters or
+// not; `unclear` is told of several. Folders without numbered images do not count.
 std::optional<Kind> folder_of(const fs::path& folder, std::span<const std::string_view> names,
                               std::string& unclear) {
   std::map<std::string, Kind> found;
@@ -136,16 +138,18 @@ std::optional<Kind> folder_of(const fs::path& folder, std::span<const std::strin
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code ignored;
     const std::string name = entry->path().filename().string();
-    const bool fits = std::any_of(names.begin(), names.end(),
-                                  [&](std::string_view word) { return name.starts_with(word); });
+    const bool fits = std::any_of(names.begin(), names.end(), [lower = in_small_letters(name)](auto word) {
+      return lower.starts_with(word);
+    });
     if (!fits || !entry->is_directory(ignored)) continue;
     const Forms forms = forms_in(entry->path());
     if (forms.empty()) continue;
     const auto& [prefix, suffix] = forms.begin()->first;
     found[name] = {name, prefix, suffix};
   }
-  for (const std::string_view name : names)
-    if (const auto exact = found.find(std::string(name)); exact != found.end()) return exact->second;
+  for (const std::string_view word : names)
+    for (const auto& [name, kind] : found)
+      if (in_small_letters(name) == word) return kind;
   if (found.empty()) return {};
   if (found.size() > 1)
     unclear = fmt::format("{} and {} may both be meant; name the right one {}", found.begin()->first,

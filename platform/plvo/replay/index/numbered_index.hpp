@@ -3,9 +3,9 @@
 //   7-Scenes        frame-000000.color.png  frame-000000.depth.png  frame-000000.pose.txt
 //   ScanNet export  color/0.jpg             depth/0.png             pose/0.txt
 // and as people name them otherwise:
-//   two folders     whose names begin with color, colour, rgb, image or img, and with depth; in them names
-//   with
-//                   one number, the same in both
+//   two folders     one whose name begins with color, colour, rgb, image or img, one with depth (or in
+//                   capitals); in them names of one number, which is the same
+//                   in both
 //   one folder      names of one number and a word: color_0.png and depth_0.png, 0-rgb.png and 0-depth.png …
 //                   or without a word 0.jpg and 0.png
 // A pose file has the 4×4 matrix T_world_camera. There are no stamps: a frame's number divided by the rate of

@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <system_error>
 
 #include "plvo/replay/index/numbered_index.hpp"
 #include "plvo/replay/index/tum_index.hpp"
+#include "plvo/replay/small_letters.hpp"
 
 namespace plvo {
 
@@ -15,11 +15,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// With capital letters, too; what is nothing else does not count.
+// What is nothing else does not count.
 bool ends(std::string_view name, std::string_view extension) {
   return name.size() > extension.size() &&
-         std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
-                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+         in_small_letters(name.substr(name.size() - extension.size())) == extension;
 }
 
 }  // namespace
