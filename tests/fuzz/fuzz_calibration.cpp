@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a calibration, in each of its forms: read or refused with words, and what is accepted is
-// usable.
+// Any bytes as a calibration, in each of its forms and of other programs': read or refused with words, and
+// what is accepted is usable.
 #include <string>
 #include <string_view>
 
@@ -14,6 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Status status = read_calibration(fuzz::write_scratch(name, data, size), calibration);
     fuzz::require(status.ok() || !std::string_view(status.message()).empty());
     if (!status.ok() || !calibration.validate(640, 480).ok()) continue;
+    fuzz::require(!calibration.depth_camera.known || calibration.depth_camera.as_colour ||
+                  back_project(calibration.depth_camera.pinhole, 0, 0, 1).allFinite());
     // What was read is written so that it is read again, to the last bit.
     const std::string text = calibration_text(calibration);
     Calibration again;

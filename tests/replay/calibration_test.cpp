@@ -102,6 +102,7 @@ TEST(Calibration, TellsWhatItAssumes) {
     ASSERT_TRUE(builtin_calibration(name, c).ok());
     EXPECT_TRUE(c.readout_given) << name;
     EXPECT_EQ(c.depth_scale_given, name.starts_with("tum-") || name == "7scenes") << name;
+    EXPECT_EQ(c.guess.empty(), name != "7scenes") << name;
   }
 }
 
@@ -184,6 +185,18 @@ TEST(Calibration, ReadsAMatrix) {
   EXPECT_FALSE(c.depth_scale_given);
   ASSERT_TRUE(read_text(matrix + "depth_scale 1000\n", c).ok());
   EXPECT_EQ(c.depth_units_per_metre, 1000);
+  // Of three rows, as OpenCV and numpy have it, also as they print it.
+  for (const char* text :
+       {"577.87 0 319.5\n0 578.5 239.5\n0 0 1\n",
+        "[[577.87, 0., 319.5],\n [0., 578.5, 239.5],\n [0., 0., 1.]]\n",
+        "5.7787e+02 0.0e+00 3.195e+02\n0.0e+00 5.785e+02 2.395e+02\n0.0e+00 0.0e+00 1.0e+00\n"}) {
+    c = {};
+    const Status status = read_text(text, c);
+    ASSERT_TRUE(status.ok()) << status.message();
+    const Pinhole& k = c.camera.pinhole;
+    EXPECT_TRUE(k.fx == 577.87 && k.fy == 578.5 && k.cx == 319.5 && k.cy == 239.5) << text;
+  }
+  EXPECT_TRUE(says(read_text("577 2 319.5\n0 578.5 239.5\n0 0 1\n", c), "has 9 numbers; expected"));
   // A pose is no camera.
   EXPECT_TRUE(says(read_text("0.8 0 0.6 1.5\n0 1 0 -0.2\n-0.6 0 0.8 2\n0 0 0 1\n", c),
                    "has 16 numbers; expected 'fx fy cx cy [depth_scale"));
@@ -192,12 +205,48 @@ TEST(Calibration, ReadsAMatrix) {
 TEST(Calibration, RefusesNaN) {
   Calibration c;
   ASSERT_TRUE(read_text("nan 525 319.5 239.5 5000", c).ok());  // a number to the reader, not to the camera
-  EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be positive numbers"));
+  EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000"));
   ASSERT_TRUE(read_text("525 525 319.5 239.5 nan", c).ok());
   EXPECT_TRUE(says(c.validate(640, 480), "depth_scale must lie between 1 and 100000"));
   for (const char* scale : {"0", "-5000", "0.001", "1e300", "inf"}) {
     ASSERT_TRUE(read_text(std::string("525 525 319.5 239.5 ") + scale, c).ok());
     EXPECT_TRUE(says(c.validate(640, 480), "not metres per unit")) << scale;
+  }
+}
+
+TEST(Calibration, RefusesNumbersOutOfTheirRange) {
+  Calibration c;
+  for (const char* pinhole : {"1e308 525 319.5 239.5", "525 1e-300 319.5 239.5", "525 100001 319.5 239.5"}) {
+    ASSERT_TRUE(read_text(pinhole, c).ok());
+    EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000")) << pinhole;
+    std::string depth = std::string("525 525 319.5 239.5\n");
+    std::size_t i = 0;
+    for (const char* key : {"depth_fx", "depth_fy", "depth_cx", "depth_cy"}) {
+      const std::string rest(pinhole + i);
+      depth += std::string(key) + ' ' + rest.substr(0, rest.find(' ')) + '\n';
+      i += rest.find(' ') + 1;
+    }
+    ASSERT_TRUE(read_text(depth, c).ok()) << depth;
+    const Status status = c.validate(640, 480);
+    EXPECT_TRUE(
+        says(status, "depth_fx depth_fy depth_cx depth_cy, of the camera of depth images of 640x480: "))
+        << status.message();
+    EXPECT_TRUE(says(status, "fx and fy must be numbers from 1 to 100000")) << status.message();
+  }
+  ASSERT_TRUE(
+      read_text("525 525 319.5 239.5\ndepth_fx 260\ndepth_fy 260\ndepth_cx 330\ndepth_cy 120\n", c).ok());
+  EXPECT_TRUE(c.validate(640, 480).ok());
+  EXPECT_TRUE(says(c.validate(640, 480, 320, 240), "cx and cy must lie inside the image"));
+}
+
+// Before it is parsed: a YAML of 1 MB took seconds to refuse.
+TEST(Calibration, RefusesWhatIsTooLongForOne) {
+  Calibration c;
+  for (const char* name : {"calibration.txt", "calibration.yaml"}) {
+    std::string text = "fx: 525\nfy: 526\ncx: 319.5\ncy: 239.5\n";
+    text += '#' + std::string(kMaxCalibrationBytes - text.size() - 1, ' ');
+    EXPECT_TRUE(read_text(text, c, name).ok()) << name;
+    EXPECT_TRUE(says(read_text(text + ' ', c, name), "it has 65537 bytes, more than the 65536")) << name;
   }
 }
 
@@ -366,16 +415,33 @@ TEST(Calibration, ADepthCameraOfItsOwn) {
                   .ok());
   EXPECT_TRUE(c.depth_camera.known);
   EXPECT_TRUE(
-      says(read_text(colour + "depth_fx 360\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
-  EXPECT_TRUE(
-      says(read_text(colour + "depth_tx 0.1\n", c), "depth_fx, depth_fy, depth_cx and depth_cy must all"));
-  EXPECT_TRUE(says(read_text(colour + pinhole + "depth_tx 0.1\n", c), "go together"));
+      says(read_text(colour + "depth_fx 360\n", c), "depth_fx, depth_fy, depth_cx and depth_cy go together"));
+  EXPECT_TRUE(says(read_text(colour + "depth_qx 0.1\n", c), "depth_qy, depth_qz and depth_qw go together"));
+  ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 0.1\n", c).ok()) << "an offset needs one number";
+  EXPECT_TRUE(c.depth_camera.tx == 0.1 && c.depth_camera.ty == 0 && !c.depth_camera.as_colour);
   ASSERT_TRUE(read_text(colour + pinhole + "depth_qx 0\ndepth_qy 0\ndepth_qz 0\ndepth_qw 0.5\n", c).ok());
   EXPECT_TRUE(says(c.validate(640, 480), "depth_qw must have the length 1"));
   ASSERT_TRUE(read_text(colour + pinhole + "depth_tx 25\ndepth_ty 0\ndepth_tz 0\n", c).ok());
   EXPECT_TRUE(says(c.validate(640, 480), "are metres"));
   ASSERT_TRUE(read_text(colour + "depth_fx -1\ndepth_fy 1\ndepth_cx 1\ndepth_cy 1\n", c).ok());
-  EXPECT_TRUE(says(c.validate(640, 480), "depth_fx and depth_fy must be positive"));
+  EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000"));
+}
+
+// Two cameras of one kind beside each other.
+TEST(Calibration, AnOffsetOfDepthAlone) {
+  Calibration c;
+  ASSERT_TRUE(read_text("525 525 319.5 239.5 1000\ndepth_tx -0.025\n", c).ok());
+  EXPECT_TRUE(c.depth_camera.known && c.depth_camera.as_colour && c.depth_camera.tx == -0.025);
+  EXPECT_TRUE(c.validate(640, 480).ok());
+  for (const std::string& text : {calibration_text(c), calibration_lines(c)}) {
+    EXPECT_EQ(text.find("depth_fx"), std::string::npos) << text;
+    Calibration again;
+    ASSERT_TRUE(read_text(text, again).ok()) << text;
+    EXPECT_TRUE(again.depth_camera.as_colour && again.depth_camera.tx == -0.025);
+    EXPECT_EQ(calibration_text(again), calibration_text(c));
+  }
+  ASSERT_TRUE(read_text("525 525 319.5 239.5 1000\ndepth_tx -25\n", c).ok());
+  EXPECT_TRUE(says(c.validate(640, 480), "are metres, at most 1 m"));
 }
 
 TEST(Calibration, RefusesOtherDistortionModels) {
@@ -408,6 +474,17 @@ TEST(Calibration, BuiltinNames) {
   EXPECT_EQ(fr1.camera.pinhole.cy, 255.313989);
   EXPECT_EQ(fr1.camera.distortion.k2, -0.953104);
   EXPECT_TRUE(says(builtin_calibration("tum-fr9", fr1), "the names are tum-fr1 tum-fr2"));
+  // The page of 7-Scenes has depth's camera alone; colour's is a guess, which is said.
+  Calibration seven;
+  ASSERT_TRUE(builtin_calibration("7scenes", seven).ok());
+  EXPECT_EQ(seven.camera.pinhole.fx, 525);
+  EXPECT_TRUE(seven.depth_camera.known && seven.depth_camera.pinhole.fx == 585 &&
+              seven.depth_camera.tx == -0.025);
+  ASSERT_EQ(seven.assumptions().size(), 1u);
+  EXPECT_NE(seven.assumptions()[0].find("a guess, for its page gives depth's alone: 525 px"),
+            std::string::npos)
+      << seven.assumptions()[0];
+  EXPECT_NE(seven.assumptions()[0].find("25 mm beside"), std::string::npos) << seven.assumptions()[0];
 }
 
 TEST(Calibration, OneWordIsANameOrAFile) {

@@ -66,6 +66,59 @@ TEST(Image, ReadsJpegCloseToTheOriginal) {
             StatusCode::kDamaged);
 }
 
+TEST(Image, ReadsPgmAndPpm) {
+  const TemporaryFolder folder;
+  const auto file = [&](std::string_view content) {
+    test::write_file(folder / "image", content);
+    return folder / "image";
+  };
+  using namespace std::string_view_literals;
+  ImageDecoder decoder;
+  ImageInfo info;
+  std::vector<std::uint8_t> rgb(6);
+  std::vector<std::uint16_t> depth(2);
+  const auto rgb_of = [&](std::string_view content) {
+    const Status status = decoder.decode_rgb(file(content), 2, 1, rgb);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return rgb;
+  };
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(rgb_of("P6\n# by hand\n2 1\n255\n\1\2\3\4\5\6"sv), (Bytes{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(rgb_of("P6 2 1 65535 \1\0\2\0\3\0\4\0\xff\xff\0\x80"sv), (Bytes{1, 2, 3, 4, 255, 0}));
+  EXPECT_EQ(rgb_of("P5 2 1 255\n\7\x9"sv), (Bytes{7, 7, 7, 9, 9, 9}));
+  EXPECT_EQ(rgb_of("P5 2 1 100\n\x32\x65"sv), (Bytes{128, 128, 128, 255, 255, 255})) << "white is 100";
+  EXPECT_EQ(rgb_of("P5 2 1 255\n##"sv), (Bytes{'#', '#', '#', '#', '#', '#'})) << "no comment";
+  ASSERT_TRUE(decoder.read_header(file("P5 2 1 65535\n\x13\x88\xff\xff"sv), info).ok());
+  EXPECT_TRUE(info.width == 2 && info.height == 1 && info.bits == 16 && info.grey);
+  ASSERT_TRUE(decoder.decode_depth(folder / "image", 2, 1, depth).ok());
+  EXPECT_EQ(depth, (std::vector<std::uint16_t>{5000, 65535}));
+  ASSERT_TRUE(decoder.decode_depth(file("P5 2 1 10000\n\x13\x88\x27\x11"sv), 2, 1, depth).ok());
+  EXPECT_EQ(depth, (std::vector<std::uint16_t>{5000, 10001})) << "units, whatever white is";
+  EXPECT_TRUE(says(decoder.decode_depth(file("P5 2 1 255\n\1\2"sv), 2, 1, depth), "8 bits per channel;"));
+  EXPECT_TRUE(says(decoder.decode_depth(file("P6 2 1 65535\n123456123456"sv), 2, 1, depth),
+                   "16 bits per channel and colour"));
+  EXPECT_TRUE(
+      says(decoder.decode_rgb(file("P6 3 1 255\n123456789"sv), 2, 1, rgb), "is 3x1 where 2x1 is expected"));
+  for (const std::string_view cut :
+       {"P6 2 1 255\n12345"sv, "P6 2 1 256\n12345612345"sv, "P5 2 1 255\n1"sv, "P5 2 1 255\n"sv}) {
+    const Status status = decoder.decode_rgb(file(cut), 2, 1, rgb);
+    EXPECT_EQ(status.code(), StatusCode::kDamaged) << cut;
+    EXPECT_TRUE(says(status, "image: damaged or cut off")) << status.message();
+  }
+  EXPECT_EQ(decoder.decode_depth(file("P5 2 1 65535\n123"sv), 2, 1, depth).code(), StatusCode::kDamaged);
+  for (const std::string_view header : {"P5 "sv, "P5 2"sv, "P5 2 1"sv, "P5 2 1 255"sv, "P5 0 1 255\n1"sv,
+                                        "P5 2 -1 255\n12"sv, "P5 2 1 65536\n1234"sv, "P5 2 1 0\n12"sv,
+                                        "P5 99999999999 1 255\n1"sv, "P5 #\n"sv, "P5 2 1 255#\n12"sv})
+    EXPECT_TRUE(says(decoder.read_header(file(header), info), "the header of a PGM or PPM has")) << header;
+  EXPECT_TRUE(says(decoder.read_header(file("P5 5000 1 255\n"sv), info), "images of at most 4096x4096"));
+  for (const std::string_view other :
+       {"P2 2 1 255\n1 2"sv, "P3 1 1 255\n1 2 3"sv, "P4 8 1\n1"sv, "P7\nWIDTH 2\n"sv}) {
+    const Status status = decoder.read_header(file(other), info);
+    EXPECT_EQ(status.code(), StatusCode::kUnsupported) << other;
+    EXPECT_TRUE(says(status, "PGM and PPM in bytes are read (P5 and P6)")) << status.message();
+  }
+}
+
 TEST(Image, RefusesDamagedFiles) {
   const TemporaryFolder folder;
   const TinyFrame tiny(0);

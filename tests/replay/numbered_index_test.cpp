@@ -80,16 +80,23 @@ TEST(NumberedFolder, DepthIsInMillimetresAndTheCalibrationSaysMore) {
   ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
   EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
   EXPECT_EQ(camera.calibration().assumptions().size(), 1u);  // the shutter
+  fs::rename(sequence.scannet() / "color", sequence.scannet() / "rgb");
+  ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
+  EXPECT_EQ(camera.calibration().assumptions().size(), 2u) << "of nobody's layout the unit is a guess";
+  EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
+  fs::rename(sequence.scannet() / "rgb", sequence.scannet() / "color");
+  ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
   RgbdFrame frame;
   ASSERT_TRUE(camera.next(frame).ok());
   EXPECT_EQ(frame.depth.metres_per_unit, 1.0 / 1000);
   Calibration calibration;
   ASSERT_TRUE(builtin_calibration("7scenes", calibration).ok());
-  EXPECT_EQ(calibration.camera.pinhole.fx, 585);
-  EXPECT_EQ(calibration.camera.pinhole.cy, 240);
+  EXPECT_EQ(calibration.depth_camera.pinhole.fx, 585);
+  EXPECT_EQ(calibration.depth_camera.pinhole.cy, 240);
   EXPECT_EQ(calibration.depth_units_per_metre, 1000);
   // What a calibration says itself holds.
   calibration.has_size = false;
+  calibration.depth_camera = {};
   calibration.camera.pinhole = {290, 290, 160, 120};
   calibration.depth_units_per_metre = 5000;
   ASSERT_TRUE(camera.open(sequence.scannet(), calibration).ok());
@@ -219,6 +226,57 @@ TEST_F(NumberedNames, WithoutPairsAreRefused) {
   EXPECT_TRUE(says(read(), "no colour image has a depth image of the same number"));
   fs::remove_all(folder_ / "depth");
   EXPECT_TRUE(says(read(), "rgb.txt; a sequence needs rgb.txt")) << "half a layout is none";
+}
+
+// The names under which people keep colour and depth.
+TEST_F(NumberedNames, AreThoseThatPeopleUse) {
+  const std::pair<const char*, const char*> kinds[] = {{"rgb/%.png", "depth/%.png"},
+                                                       {"rgb_png/%.png", "depth_png/%.png"},
+                                                       {"image/%.jpg", "depth/%.png"},
+                                                       {"images/%.ppm", "depth/%.pgm"},
+                                                       {"color/color_%.jpg", "depth/depth_%.png"},
+                                                       {"rgb/frame%_rgb.png", "depth/frame%_depth.png"},
+                                                       {"color_%.png", "depth_%.png"},
+                                                       {"rgb%.png", "depth%.png"},
+                                                       {"RGB_%.png", "Depth_%.png"},
+                                                       {"RGB/%.png", "Depth/%.png"},
+                                                       {"%-color.png", "%-depth.png"},
+                                                       {"%.jpg", "%.png"},
+                                                       {"frame%.jpeg", "frame%.pgm"}};
+  const auto name = [](std::string form, int number) {
+    return form.replace(form.find('%'), 1, fmt::format("{:04}", number));
+  };
+  for (const auto& [colour, depth] : kinds) {
+    for (int number : {1, 2, 12}) touch(name(colour, number));
+    for (int number : {2, 12, 13}) touch(name(depth, number));
+    const Status status = read();
+    ASSERT_TRUE(status.ok()) << colour << ": " << status.message();
+    EXPECT_TRUE(index_.numbered && !index_.in_millimetres) << "the unit is a guess";
+    ASSERT_EQ(index_.pairs.size(), 2u) << colour;
+    EXPECT_EQ(index_.pairs[1].colour.file, name(colour, 12));
+    EXPECT_EQ(index_.pairs[1].depth.file, name(depth, 12));
+    EXPECT_EQ(index_.pairs[1].depth.stamp_ns, 400'000'000);
+    for (const auto& entry : fs::directory_iterator(folder_.path())) fs::remove_all(entry.path());
+  }
+  for (const char* file : {"color/1.png", "depth/1.png"}) touch(file);
+  ASSERT_TRUE(read().ok());
+  EXPECT_TRUE(index_.in_millimetres) << "ScanNet says so";
+}
+
+TEST_F(NumberedNames, ThatCouldMeanTwoThingsAreRefused) {
+  for (const char* name : {"rgb_left/1.png", "rgb_right/1.png", "depth/1.png"}) touch(name);
+  EXPECT_TRUE(says(read(), "rgb_left and rgb_right may both be meant; name the right one color"));
+  touch("rgb/1.png");
+  EXPECT_TRUE(read().ok()) << "one has the word alone";
+  EXPECT_EQ(index_.pairs[0].colour.file, "rgb/1.png");
+  // Folders without numbered images do not count; stamps are no numbers.
+  fs::remove_all(folder_ / "rgb");
+  fs::remove_all(folder_ / "rgb_right");
+  touch("rgb_notes/a.png");
+  EXPECT_TRUE(read().ok());
+  fs::remove_all(folder_ / "rgb_left");
+  touch("rgb/1305031102.175304.png");
+  EXPECT_TRUE(says(read(), "or numbered images, as rgb/0.png and depth/0.png, or rgb_0.png and depth_0.png"));
 }
 
 // Lists, and what the user names, come before names.

@@ -51,23 +51,6 @@ TEST(RecordedCamera, GivesBackWhatWasWritten) {
   EXPECT_EQ(camera.next(frame).code(), StatusCode::kEndOfStream);
 }
 
-// What 16 bits hold at the most says that there is nothing, whatever the unit.
-TEST(RecordedCamera, SaturatedDepthIsNone) {
-  const TemporaryFolder folder;
-  TumWriter writer;
-  ASSERT_TRUE(writer.open(folder.path(), test::tiny_camera(), 5000).ok());
-  TinyFrame image(0);
-  image.depth[7] = 65535;
-  image.depth[8] = 65534;
-  ASSERT_TRUE(writer.write(image.frame).ok());
-  RecordedCamera camera;
-  ASSERT_TRUE(open(camera, folder.path()).ok());
-  RgbdFrame frame;
-  ASSERT_TRUE(camera.next(frame).ok());
-  EXPECT_EQ(frame.depth.data[7], 0);
-  EXPECT_EQ(frame.depth.data[8], 65534);
-}
-
 TEST(RecordedCamera, FrameRange) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 5).ok());
@@ -233,6 +216,56 @@ TEST(RecordedCamera, ScaledDownWithADepthCameraOfItsOwn) {
   RgbdFrame frame;
   ASSERT_TRUE(camera.next(frame).ok());
   EXPECT_TRUE(std::equal(expected.depth.begin(), expected.depth.end(), frame.depth.data));
+}
+
+// Of 7-Scenes, and of what other programs write into folders of any layout.
+TEST(RecordedCamera, TheLargestValueIsNoDepth) {
+  for (const bool own_camera : {false, true}) {
+    const TemporaryFolder folder;
+    TinyFrame tiny(0);
+    tiny.depth[5] = 65535;
+    tiny.depth[6] = 65534;
+    TumWriter writer;
+    ASSERT_TRUE(writer.open(folder.path(), test::tiny_camera(), 5000).ok());
+    ASSERT_TRUE(writer.write(tiny.frame).ok());
+    Calibration calibration;
+    ASSERT_TRUE(read_calibration(folder / "calibration.txt", calibration).ok());
+    if (own_camera) calibration.depth_camera = {.known = true, .pinhole = calibration.camera.pinhole};
+    RecordedCamera camera;
+    ASSERT_TRUE(camera.open(folder.path(), calibration).ok());
+    RgbdFrame frame;
+    ASSERT_TRUE(camera.next(frame).ok());
+    EXPECT_EQ(frame.depth.data[5], 0);
+    EXPECT_EQ(frame.depth.data[6], 65534);
+    EXPECT_EQ(frame.depth.data[4], tiny.depth[4]);
+  }
+}
+
+// An offset of depth's camera alone: its pinhole is colour's.
+TEST(RecordedCamera, DepthBesideColour) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
+  const std::string numbers = test::read_file(folder / "calibration.txt");
+  const auto depth_of = [&](const std::string& keys) {
+    test::write_file(folder / "calibration.txt", numbers + keys);
+    RecordedCamera camera;
+    const Status status = open(camera, folder.path());
+    EXPECT_TRUE(status.ok()) << status.message();
+    RgbdFrame frame;
+    EXPECT_TRUE(camera.next(frame).ok());
+    return std::vector<std::uint16_t>(frame.depth.data, frame.depth.data + 96 * 64);
+  };
+  const std::vector<std::uint16_t> moved = depth_of("\ndepth_tx -0.025\n");
+  EXPECT_NE(moved, depth_of(""));
+  EXPECT_EQ(moved, depth_of("\ndepth_tx -0.025\ndepth_fx 80\ndepth_fy 80\ndepth_cx 47.5\ndepth_cy 31.5\n"));
+  // Images of another size have another pinhole.
+  const std::vector<std::uint16_t> half(48 * 32, 5000);
+  for (const auto& entry : fs::directory_iterator(folder / "depth"))
+    ASSERT_TRUE(write_png(entry.path(), DepthView{half.data(), 48, 32, 48, 0.0002}).ok());
+  test::write_file(folder / "calibration.txt", numbers + "\ndepth_tx -0.025\n");
+  RecordedCamera camera;
+  EXPECT_TRUE(says(open(camera, folder.path()),
+                   "colour is 96x64 but depth is 48x32; where they differ, say depth's own "));
 }
 
 // The names do not say it, the images do.

@@ -379,10 +379,14 @@ TEST_F(CliOutputs, AssumptionsAreSaidAtTheStart) {
   r = run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5");
   EXPECT_NE(r.err.find("5000 units per metre are assumed"), std::string::npos) << r.err;
   EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5 --readout 0 --depth-scale 5000").err, "");
-  // Without a calibration, the folder's name may tell the camera; that is said, too.
+  // Without a calibration, TUM's name of a recording tells the camera; one like it is a hint.
   fs::remove(folder_ / "walk/calibration.txt");
   fs::rename(folder_ / "walk", folder_ / "fr1_walk");
   r = run_command(kPlvo + " run " + path("fr1_walk") + " --quiet");
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("as its name may say: --camera-model tum-fr1"), std::string::npos) << r.err;
+  fs::rename(folder_ / "fr1_walk", folder_ / "rgbd_dataset_freiburg1_walk");
+  r = run_command(kPlvo + " run " + path("rgbd_dataset_freiburg1_walk") + " --quiet");
   EXPECT_NE(r.err.find("640x480"), std::string::npos) << "the guess does not fit these images: " << r.err;
 }
 

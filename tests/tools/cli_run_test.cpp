@@ -293,7 +293,7 @@ TEST_F(CliRun, AllZeroDepth) {
 
 TEST_F(CliRun, NaNInTheCalibration) {
   write_file(sequence_ / "calibration.txt", "525 nan 79.5 59.5 5000\n");
-  expect_refused(run(""), "fx and fy must be positive numbers");
+  expect_refused(run(""), "fx and fy must be numbers from 1 to 100000");
 }
 
 TEST_F(CliRun, NoCalibration) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/camera/focal_range.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -12,10 +13,14 @@ Status CameraModel::validate() const {
     return Status(StatusCode::kInvalidArgument, "camera calibration: ").append(what);
   };
   if (width < 32 || height < 32) return invalid("the image must be at least 32x32 pixels");
-  if (!is_finite(pinhole.fx) || !is_finite(pinhole.fy) || pinhole.fx <= 0 || pinhole.fy <= 0)
-    return invalid("fx and fy must be positive numbers (pixels)");
-  if (!is_finite(pinhole.cx) || !is_finite(pinhole.cy) || pinhole.cx < 0 || pinhole.cx >= width ||
-      pinhole.cy < 0 || pinhole.cy >= height)
+  const auto is_focal = [](double f) { return f >= kLeastFocal_px && f <= kMostFocal_px; };
+  if (!is_focal(pinhole.fx) || !is_focal(pinhole.fy))
+    return invalid("fx and fy must be numbers from ")
+        .append(std::ptrdiff_t{kLeastFocal_px})
+        .append(" to ")
+        .append(std::ptrdiff_t{kMostFocal_px})
+        .append(" (pixels)");
+  if (!(pinhole.cx >= 0 && pinhole.cx < width && pinhole.cy >= 0 && pinhole.cy < height))
     return invalid("cx and cy must lie inside the image (pixels)");
   // To the farthest corner of the ideal image, the one that is looked at.
   const Vector2 corner(std::max(pinhole.cx, width - 1 - pinhole.cx) / pinhole.fx,

@@ -40,9 +40,9 @@ struct CameraModel {
   // their covariance and that of the motions hold what the camera moves in this time.
   double stamp_sigma_s = 0;
 
-  // kInvalidArgument, naming the entry, for NaN, a focal length ≤ 0, a principal point outside the image, a
-  // readout or a deviation of the stamps that is negative or above 0.1 s, a depth delay beyond ±0.1 s, or a
-  // lens that folds back on itself inside the image.
+  // kInvalidArgument, naming the entry, for NaN, a focal length out of range (focal_range.hpp), a principal
+  // point outside the image, a readout or a deviation of the stamps that is negative or above 0.1 s, a depth
+  // delay beyond ±0.1 s, or a lens that folds back on itself inside the image.
   Status validate() const;
 };
 

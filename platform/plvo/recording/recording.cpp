@@ -68,7 +68,8 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
   frame_count_ = camera->frame_count();
   const SequenceIndex& index = camera->index();
   unpaired_colour_ = index.unpaired_colour;
-  for (const std::string& sentence : {index.remark, guess, camera->remark()})
+  for (const std::string& sentence :
+       {index.remark, guess, missing_of_tum(folder, calibration), camera->remark()})
     if (!sentence.empty()) remarks_.push_back(sentence);
   std::error_code error;
   has_ground_truth_ = fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty();
@@ -95,6 +96,8 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   calibration_ = camera->calibration();
   frame_count_ = camera->frame_count();
   unpaired_colour_ = camera->unpaired_colour();
+  if (std::string missing = missing_of_tum(path, calibration); !missing.empty())
+    remarks_.push_back(std::move(missing));
   std::error_code error;
   has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {

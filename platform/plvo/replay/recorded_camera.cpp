@@ -21,8 +21,8 @@ Status RecordedCamera::open(const fs::path& folder, const Calibration& calibrati
   depth_size_ = {depth.width, depth.height};
   Calibration known = calibration;
   if (index_.numbered && !calibration.depth_scale_given) {
-    known.depth_units_per_metre = 1000;
-    known.depth_scale_given = true;
+    known.depth_units_per_metre = kMillimetresPerMetre;
+    known.depth_scale_given = index_.in_millimetres;
   }
   if (Status status = fit_.init(known, {colour.width, colour.height}, depth_size_, options.scale_down);
       !status.ok())
@@ -58,13 +58,7 @@ Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
                         "'stamp rgb stamp depth'",
                         pair.colour.file, pair.depth.file)};
       }
-      if (depth.bits != 16 || !depth.grey) {
-        return {StatusCode::kInvalidArgument,
-                fmt::format(
-                    "{} has {} bits per channel{}; depth must be a 16-bit grey PNG (export it again without "
-                    "converting to 8 bits or to colour)",
-                    pair.depth.file, depth.bits, depth.grey ? "" : " and colour")};
-      }
+      if (Status kind = depth.check_is_depth(pair.depth.file); !kind.ok()) return kind;
       return {};
     }
     if (first_failure.ok()) first_failure = status;

@@ -19,11 +19,37 @@ constexpr std::array<std::string_view, 5> kBuiltinNames = {"tum-fr1", "tum-fr2",
 // TUM's computer stamped colour in steps of 4 ms (the 32 and 36 ms between two of fr1's), at random within
 // one.
 constexpr double kTumStampSigma_s = 0.0012;
-constexpr std::uintmax_t kMaxBytes = 1u << 20;  // of a calibration, whatever comments it has
+// A Kinect v1's colour camera, as ROS's driver (openni_camera) has it for those that were not calibrated.
+constexpr Pinhole kKinectColour = {525, 525, 319.5, 239.5};
+// Its colour camera sits to the right of the depth camera (kinect_frames.launch of openni_launch).
+constexpr double kKinectDepth_tx = -0.025;
+
+Status validate_depth_camera(const DepthCamera& depth, int width, int height) {
+  const auto invalid = [](std::string_view what) {
+    return Status(StatusCode::kInvalidArgument, "camera calibration: ").append(what);
+  };
+  if (!(depth.tx * depth.tx + depth.ty * depth.ty + depth.tz * depth.tz <= kMostOffset_m * kMostOffset_m))
+    return invalid(fmt::format("depth_tx depth_ty depth_tz are metres, at most {} m from the colour camera",
+                               kMostOffset_m));
+  const double length2 =
+      depth.qx * depth.qx + depth.qy * depth.qy + depth.qz * depth.qz + depth.qw * depth.qw;
+  if (!(length2 >= 0.98 && length2 <= 1.02))
+    return invalid("the quaternion depth_qx depth_qy depth_qz depth_qw must have the length 1");
+  if (depth.as_colour) return {};
+  CameraModel camera;
+  camera.width = width;
+  camera.height = height;
+  camera.pinhole = depth.pinhole;
+  const Status status = camera.validate();
+  return status.ok() ? status
+                     : Status(status.code(), fmt::format("depth_fx depth_fy depth_cx depth_cy, of the "
+                                                         "camera of depth images of {}x{}: {}",
+                                                         width, height, status.message()));
+}
 
 }  // namespace
 
-Status Calibration::validate(int width, int height) const {
+Status Calibration::validate(int width, int height, int depth_width, int depth_height) const {
   if (has_size && (camera.width != width || camera.height != height)) {
     return {
         StatusCode::kInvalidArgument,
@@ -31,31 +57,15 @@ Status Calibration::validate(int width, int height) const {
             "the calibration is for {}x{} images, these are {}x{}; use the calibration of this camera mode",
             camera.width, camera.height, width, height)};
   }
-  if (!(depth_units_per_metre >= 1 && depth_units_per_metre <= 100000)) {
+  if (!(depth_units_per_metre >= kLeastUnitsPerMetre && depth_units_per_metre <= kMostUnitsPerMetre)) {
     return {StatusCode::kInvalidArgument,
-            "camera calibration: depth_scale must lie between 1 and 100000 units per metre, not metres per "
-            "unit (5000 for TUM, 1000 for mm)"};
+            fmt::format("camera calibration: depth_scale must lie between {} and {} units per metre, not "
+                        "metres per unit (5000 for TUM, 1000 for mm)",
+                        kLeastUnitsPerMetre, kMostUnitsPerMetre)};
   }
-  if (depth_camera.known) {
-    const DepthCamera& depth = depth_camera;
-    const auto is_number = [](double x) { return x - x == 0; };
-    if (!is_number(depth.pinhole.fx) || !is_number(depth.pinhole.fy) || depth.pinhole.fx <= 0 ||
-        depth.pinhole.fy <= 0 || !is_number(depth.pinhole.cx) || !is_number(depth.pinhole.cy))
-      return {
-          StatusCode::kInvalidArgument,
-          "camera calibration: depth_fx and depth_fy must be positive, depth_cx and depth_cy numbers (pixels "
-          "of the depth image)"};
-    if (!(depth.tx * depth.tx + depth.ty * depth.ty + depth.tz * depth.tz <= 1))
-      return {
-          StatusCode::kInvalidArgument,
-          "camera calibration: depth_tx depth_ty depth_tz are metres, at most 1 m from the colour camera"};
-    const double length2 =
-        depth.qx * depth.qx + depth.qy * depth.qy + depth.qz * depth.qz + depth.qw * depth.qw;
-    if (!(length2 >= 0.98 && length2 <= 1.02))
-      return {
-          StatusCode::kInvalidArgument,
-          "camera calibration: the quaternion depth_qx depth_qy depth_qz depth_qw must have the length 1"};
-  }
+  if (depth_camera.known)
+    if (Status status = validate_depth_camera(depth_camera, depth_width, depth_height); !status.ok())
+      return status;
   CameraModel sized = camera;
   sized.width = width;
   sized.height = height;
@@ -64,11 +74,12 @@ Status Calibration::validate(int width, int height) const {
 
 std::vector<std::string> Calibration::assumptions() const {
   std::vector<std::string> sentences;
+  if (!guess.empty()) sentences.push_back(guess);
   if (!depth_scale_given) {
     sentences.push_back(fmt::format(
-        "the calibration does not say the unit of depth: {} units per metre are assumed; for millimetres "
-        "give depth_scale 1000 in it, or --depth-scale 1000",
-        depth_units_per_metre));
+        "the calibration does not say the unit of depth: {} units per metre are assumed; give depth_scale "
+        "in it, or --depth-scale: {} for millimetres, {} for TUM's",
+        depth_units_per_metre, kMillimetresPerMetre, kTumDepthUnitsPerMetre));
   }
   if (!readout_given) {
     sentences.push_back(
@@ -82,17 +93,43 @@ std::vector<std::string> Calibration::assumptions() const {
 
 Status read_calibration(const fs::path& path, Calibration& calibration) {
   std::string content;
-  if (Status status = read_text_file(path, kMaxBytes, content); !status.ok())
+  if (Status status = read_text_file(path, kMaxCalibrationBytes, content); !status.ok())
     return Status(status.code(), "calibration: ").append(status.message());
-  const bool yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+  const fs::path extension = path.extension();
+  const bool yaml = extension == ".yaml" || extension == ".yml" || extension == ".json" ||
+                    content.starts_with("%YAML") || content.starts_with('{');
   return yaml ? calibration_form::parse_yaml(path, content, calibration)
               : calibration_form::parse_text(path, content, calibration);
 }
 
 std::optional<fs::path> calibration_file_in(const fs::path& folder) {
+  constexpr auto kNames = std::to_array<const char*>({
+      "calibration.txt",
+      "calibration.yaml",
+      "camera.yaml",
+      "calibration.yml",
+      "camera.yml",
+      "camera_info.yaml",
+      "camera_intrinsic.json",  // Open3D
+      "camera_intrinsics.json",
+      "intrinsic.json",
+      "intrinsics.json",
+      "camchain.yaml",     // Kalibr
+      "sensor.yaml",       // EuRoC
+      "cam0/sensor.yaml",  // EuRoC
+      "camera-intrinsics.txt",
+      "camera_intrinsics.txt",
+      "camera_intrinsic.txt",
+      "intrinsics.txt",
+      "intrinsic.txt",
+      "cam_K.txt",
+      "K.txt",
+      "../camera-intrinsics.txt",  // 3DMatch: one for all sequences of a scene
+      "intrinsic/intrinsic_depth.txt",
+      "intrinsic/intrinsic_color.txt",
+  });
   std::error_code error;
-  for (const char* name : {"calibration.txt", "calibration.yaml", "camera.yaml",
-                           "intrinsic/intrinsic_depth.txt", "intrinsic/intrinsic_color.txt"})
+  for (const char* name : kNames)
     if (fs::exists(folder / name, error)) return folder / name;
   return {};
 }
@@ -119,11 +156,16 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   } else if (name == "tum-fr3") {
     camera.pinhole = {535.4, 539.2, 320.1, 247.6};
   } else if (name == "7scenes") {
-    camera.pinhole = {585, 585, 320, 240};
-    result.depth_units_per_metre = 1000;
+    camera.pinhole = kKinectColour;
+    result.depth_camera = {.known = true, .pinhole = {585, 585, 320, 240}, .tx = kKinectDepth_tx};
+    result.depth_units_per_metre = kMillimetresPerMetre;
     result.depth_scale_given = true;
+    result.guess = fmt::format(
+        "7scenes: colour's camera is a guess, for its page gives depth's alone: {} px, what ROS takes for a "
+        "Kinect v1 that nobody calibrated, {} mm beside depth's; a better one: --calibration FILE",
+        kKinectColour.fx, -1000 * kKinectDepth_tx);
   } else if (name == "kinect-v1-default") {
-    camera.pinhole = {525, 525, 319.5, 239.5};
+    camera.pinhole = kKinectColour;
   } else {
     std::string names;
     for (std::string_view known : kBuiltinNames) names += fmt::format(" {}", known);

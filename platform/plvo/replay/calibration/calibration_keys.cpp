@@ -36,21 +36,21 @@ constexpr auto kKeys = std::to_array<Key>({
     {"depth_readout_s", KeyKind::kSensor,
      [](N& n) -> double& { return n.calibration.camera.depth_timing.readout_s; }},
     {"stamp_sigma_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.stamp_sigma_s; }},
-    {"depth_fx", KeyKind::kDepthCamera,
+    {"depth_fx", KeyKind::kDepthPinhole,
      [](N& n) -> double& { return n.calibration.depth_camera.pinhole.fx; }},
-    {"depth_fy", KeyKind::kDepthCamera,
+    {"depth_fy", KeyKind::kDepthPinhole,
      [](N& n) -> double& { return n.calibration.depth_camera.pinhole.fy; }},
-    {"depth_cx", KeyKind::kDepthCamera,
+    {"depth_cx", KeyKind::kDepthPinhole,
      [](N& n) -> double& { return n.calibration.depth_camera.pinhole.cx; }},
-    {"depth_cy", KeyKind::kDepthCamera,
+    {"depth_cy", KeyKind::kDepthPinhole,
      [](N& n) -> double& { return n.calibration.depth_camera.pinhole.cy; }},
-    {"depth_tx", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.tx; }},
-    {"depth_ty", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.ty; }},
-    {"depth_tz", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.tz; }},
-    {"depth_qx", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qx; }},
-    {"depth_qy", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qy; }},
-    {"depth_qz", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qz; }},
-    {"depth_qw", KeyKind::kDepthCamera, [](N& n) -> double& { return n.calibration.depth_camera.qw; }},
+    {"depth_tx", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.tx; }},
+    {"depth_ty", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.ty; }},
+    {"depth_tz", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.tz; }},
+    {"depth_qx", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.qx; }},
+    {"depth_qy", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.qy; }},
+    {"depth_qz", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.qz; }},
+    {"depth_qw", KeyKind::kDepthPlace, [](N& n) -> double& { return n.calibration.depth_camera.qw; }},
     {"width", KeyKind::kSize, [](N& n) -> double& { return n.width; }},
     {"height", KeyKind::kSize, [](N& n) -> double& { return n.height; }},
 });
@@ -134,11 +134,10 @@ Status Collector::finish_depth_camera(DepthCamera& depth) const {
   const auto pinhole = count({"depth_fx", "depth_fy", "depth_cx", "depth_cy"});
   const auto place = count({"depth_tx", "depth_ty", "depth_tz"});
   const auto turn = count({"depth_qx", "depth_qy", "depth_qz", "depth_qw"});
-  depth.known = pinhole == 4;
-  if (pinhole != 4 && pinhole + place + turn > 0)
-    return damaged(path_, "depth_fx, depth_fy, depth_cx and depth_cy must all be given");
-  if (place % 3 != 0 || turn % 4 != 0)
-    return damaged(path_, "depth_tx depth_ty depth_tz, and depth_qx depth_qy depth_qz depth_qw, go together");
+  if (pinhole % 4 != 0) return damaged(path_, "depth_fx, depth_fy, depth_cx and depth_cy go together");
+  if (turn % 4 != 0) return damaged(path_, "depth_qx, depth_qy, depth_qz and depth_qw go together");
+  depth.known = pinhole + place + turn > 0;
+  depth.as_colour = depth.known && pinhole == 0;
   return {};
 }
 

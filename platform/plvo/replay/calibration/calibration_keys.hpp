@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "plvo/replay/calibration/calibration.hpp"
 
@@ -21,10 +22,11 @@ struct Numbers {
 };
 
 enum class KeyKind : std::uint8_t {
-  kLens,         // a camera_info says these in its own words
-  kSize,         // likewise
-  kSensor,       // what a camera_info does not know
-  kDepthCamera,  // likewise; all of it or nothing
+  kLens,          // a camera_info says these in its own words
+  kSize,          // likewise
+  kSensor,        // what a camera_info does not know
+  kDepthPinhole,  // likewise; all of it, or nothing where it is colour's
+  kDepthPlace,    // likewise: where the depth camera is, and how it is turned
 };
 
 struct Key {
@@ -51,8 +53,9 @@ class Collector {
   // a lens that is not known.
   Status set(std::string_view key, std::string_view value);
   void set_place(std::size_t place, double value);
-  // The camera_info's own words, which need no keys.
+  // Where other words than the keys say it.
   void set_lens(const Pinhole& pinhole, const Distortion& distortion);
+  void set_guess(std::string guess) { numbers_.calibration.guess = std::move(guess); }
   // The calibration, once fx, fy, cx and cy are all there.
   Status finish(Calibration& calibration);
 

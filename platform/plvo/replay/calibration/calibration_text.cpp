@@ -16,15 +16,24 @@ using namespace calibration_form;
 namespace fs = std::filesystem;
 
 constexpr std::string_view kForm =
-    "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]', or the 4x4 matrix fx 0 cx 0, 0 fy cy 0, 0 0 1 "
-    "0, 0 0 0 1";
+    "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]', or the matrix fx 0 cx, 0 fy cy, 0 0 1, also "
+    "of four rows and columns";
 
+// Row by row: of 3 rows and columns, or of 4, which are the identity's beside the camera's.
 bool is_camera_matrix(const std::vector<double>& m) {
-  if (m.size() != 16) return false;
-  constexpr std::size_t kZeros[] = {1, 3, 4, 7, 8, 9, 11, 12, 13, 14};
-  for (const std::size_t zero : kZeros)
-    if (m[zero] != 0) return false;
-  return m[10] == 1 && m[15] == 1;
+  if (m.size() != 9 && m.size() != 16) return false;
+  const std::size_t columns = m.size() == 9 ? 3 : 4;
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const std::size_t row = i / columns, column = i % columns;
+    const bool of_camera = row < 2 && (column == row || column == 2);
+    if (!of_camera && m[i] != (row == column ? 1 : 0)) return false;
+  }
+  return true;
+}
+
+bool is_of_depth_camera(const Key& key, const DepthCamera& depth) {
+  return depth.known &&
+         (key.kind == KeyKind::kDepthPlace || (key.kind == KeyKind::kDepthPinhole && !depth.as_colour));
 }
 
 // Written where depth's own time is known, as one.
@@ -32,14 +41,14 @@ bool is_depth_timing(const Key& key) {
   return key.kind == KeyKind::kSensor && key.name.starts_with("depth_") && key.name != "depth_scale";
 }
 
-// Words without comments; ':', '=', ',' count as white space.
+// Words without comments; ':', '=', ',' count as white space, and so do the brackets of a printed matrix.
 std::vector<std::string_view> words_of(std::string_view content) {
   std::vector<std::string_view> words;
   while (!content.empty()) {
     std::string_view line = content.substr(0, content.find('\n'));
     content.remove_prefix(std::min(content.size(), line.size() + 1));
     line = line.substr(0, line.find('#'));
-    constexpr std::string_view kSeparators = " \t\r:=,";
+    constexpr std::string_view kSeparators = " \t\r:=,[];";
     for (std::size_t begin = 0; (begin = line.find_first_not_of(kSeparators, begin)) != line.npos;) {
       const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
       words.push_back(line.substr(begin, end - begin));
@@ -65,7 +74,10 @@ Status parse_text(const fs::path& path, std::string_view content, Calibration& c
   if (numbers > 0 && numbers < words.size() && !known_word)
     return damaged(path, fmt::format("'{}' is not a number", words[numbers].substr(0, 40)));
   const bool matrix = is_camera_matrix(values);
-  if (matrix) values = {values[0], values[5], values[2], values[6]};
+  if (matrix) {
+    const std::size_t columns = numbers == 9 ? 3 : 4;
+    values = {values[0], values[columns + 1], values[2], values[columns + 2]};
+  }
   if (!matrix && numbers != 0 && numbers != 4 && numbers != 5 && numbers != 10 && numbers != kPlaces)
     return damaged(path, fmt::format("has {} numbers; expected {}", numbers, kForm));
   for (std::size_t place = 0; place < values.size(); ++place) collector.set_place(place, values[place]);
@@ -91,7 +103,7 @@ std::string calibration_text(const Calibration& calibration) {
     text += fmt::format("{}{}", i == 0 ? "" : " ", keys()[i].of(numbers));
   for (const Key& key : keys().subspan(kPlaces)) {
     const bool timed = is_depth_timing(key) && calibration.camera.depth_timing.known;
-    const bool of_depth = key.kind == KeyKind::kDepthCamera && calibration.depth_camera.known;
+    const bool of_depth = is_of_depth_camera(key, calibration.depth_camera);
     const bool others = key.kind == KeyKind::kSensor || key.kind == KeyKind::kLens;
     if (timed || of_depth || (others && !is_default(key)))
       text += fmt::format("\n{} {}", key.name, key.of(numbers));
@@ -110,7 +122,8 @@ std::string calibration_lines(const Calibration& calibration) {
   const bool timed = calibration.camera.depth_timing.known;
   const auto written = [&](const Key& key) {
     if (key.kind == KeyKind::kSize) return calibration.has_size;
-    if (key.kind == KeyKind::kDepthCamera) return calibration.depth_camera.known;
+    if (key.kind == KeyKind::kDepthPinhole || key.kind == KeyKind::kDepthPlace)
+      return is_of_depth_camera(key, calibration.depth_camera);
     if (is_depth_timing(key)) return timed;
     if (key.name == "stamp_sigma_s") return calibration.camera.stamp_sigma_s > 0;
     if (key.name == "readout_s") return calibration.readout_given;

@@ -21,9 +21,10 @@ namespace plvo {
 // Of the images that are not registered to colour: no lens.
 struct DepthCamera {
   bool known = false;
-  Pinhole pinhole = {0, 0, 0, 0};  // px of the depth image
+  Pinhole pinhole = {0, 0, 0, 0};  // px of the depth image; not looked at where it is colour's
   // T_camera_depth: from depth's optical frame to colour's, metres and a quaternion.
   double tx = 0, ty = 0, tz = 0, qx = 0, qy = 0, qz = 0, qw = 1;
+  bool as_colour = false;  // the pinhole is colour's, and so is the size of the images
 };
 
 class DepthRegistration {

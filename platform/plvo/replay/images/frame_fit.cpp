@@ -19,7 +19,13 @@ Status FrameFit::init(const Calibration& calibration, const ImageSize& colour, c
   whole_ = {};
   calibration_ = calibration;
   if (Status status = choose_registration(colour, depth); !status.ok()) return status;
-  if (Status status = calibration.validate(colour.width, colour.height); !status.ok()) return status;
+  if (Status status = calibration.validate(colour.width, colour.height, depth.width, depth.height);
+      !status.ok())
+    return status;
+  if (calibration.depth_camera.as_colour) {
+    calibration_.depth_camera.as_colour = false;
+    calibration_.depth_camera.pinhole = calibration.camera.pinhole;
+  }
   calibration_.camera.width = colour.width;
   calibration_.camera.height = colour.height;
   if (Status status = choose_scale(colour, scale_down); !status.ok()) return status;
@@ -39,8 +45,14 @@ Status FrameFit::init(const Calibration& calibration, const ImageSize& colour, c
 
 Status FrameFit::choose_registration(const ImageSize& colour, const ImageSize& depth) {
   const bool same_size = colour.width == depth.width && colour.height == depth.height;
-  registers_ = calibration_.depth_camera.known || !same_size;
-  if (same_size || calibration_.depth_camera.known) return {};
+  const DepthCamera& camera = calibration_.depth_camera;
+  registers_ = camera.known || !same_size;
+  if (same_size || (camera.known && !camera.as_colour)) return {};
+  if (camera.known)
+    return {StatusCode::kInvalidArgument,
+            fmt::format("colour is {}x{} but depth is {}x{}; where they differ, say depth's own camera: "
+                        "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
+                        colour.width, colour.height, depth.width, depth.height)};
   // The calibration must be known to be colour's: that of a smaller depth image would be read without a word.
   if (calibration_.has_size &&
       DepthRegistration::same_view(colour.width, colour.height, depth.width, depth.height))

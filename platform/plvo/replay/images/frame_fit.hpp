@@ -41,7 +41,8 @@ class FrameFit {
 
   std::span<std::uint8_t> colour() { return whole_.factor > 1 ? whole_colour_ : colour_; }  // RGB
   std::span<std::uint16_t> depth() { return registers_ ? raw_depth_ : depth_; }
-  // Of what stands in colour() and depth(); valid until they are written to. Stamps are left alone.
+  // Of what stands in colour() and depth(), where 65535 becomes 0, none; valid until they are written to.
+  // Stamps are left alone.
   void fit(RgbdFrame& frame);
 
  private:

@@ -54,7 +54,7 @@ Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
   spng_ihdr header{};
   if (const int error = spng_get_ihdr(png, &header); error != 0) {
     return image_error(StatusCode::kDamaged, path,
-                       fmt::format("not a readable PNG or JPEG image ({})", spng_strerror(error)));
+                       fmt::format("not a readable PNG, JPEG, PGM or PPM image ({})", spng_strerror(error)));
   }
   info = {static_cast<int>(header.width), static_cast<int>(header.height), header.bit_depth,
           header.color_type == SPNG_COLOR_TYPE_GRAYSCALE};
@@ -71,7 +71,20 @@ Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t
   return {};
 }
 
+Status with_name(const fs::path& path, const Status& status) {
+  return status.ok() ? status : image_error(status.code(), path, status.message());
+}
+
 }  // namespace
+
+Status ImageInfo::check_is_depth(const fs::path& path) const {
+  if (bits == 16 && grey) return {};
+  return image_error(
+      StatusCode::kInvalidArgument, path,
+      fmt::format("depth has {} bits per channel{}; depth must be a 16-bit grey PNG or PGM (export it again "
+                  "without converting to 8 bits or to colour)",
+                  bits, grey ? "" : " and colour"));
+}
 
 ImageDecoder::~ImageDecoder() {
   if (jpeg_ != nullptr) tjDestroy(jpeg_);
@@ -97,8 +110,15 @@ Status ImageDecoder::jpeg_header(const fs::path& path, ImageInfo& info) {
   return check_size(path, info);
 }
 
+Status ImageDecoder::netpbm_header(const fs::path& path, NetpbmHeader& header, ImageInfo& info) const {
+  if (Status status = read_netpbm_header(file_, header); !status.ok()) return with_name(path, status);
+  info = {header.width, header.height, header.most > 255 ? 16 : 8, header.grey};
+  return check_size(path, info);
+}
+
 Status ImageDecoder::read_header(const fs::path& path, ImageInfo& info) {
   if (Status status = load(path); !status.ok()) return status;
+  if (NetpbmHeader header; is_netpbm(file_)) return netpbm_header(path, header, info);
   if (is_jpeg()) return jpeg_header(path, info);
   return png_header(open_png(file_).get(), path, info);
 }
@@ -106,12 +126,18 @@ Status ImageDecoder::read_header(const fs::path& path, ImageInfo& info) {
 Status ImageDecoder::decode_rgb(const fs::path& path, int width, int height, std::span<std::uint8_t> rgb) {
   if (Status status = load(path); !status.ok()) return status;
   ImageInfo info;
+  NetpbmHeader header;
   const bool jpeg = is_jpeg();
+  const bool netpbm = is_netpbm(file_);
   const PngContext png = open_png(file_);
-  if (Status status = jpeg ? jpeg_header(path, info) : png_header(png.get(), path, info); !status.ok())
+  if (Status status = jpeg     ? jpeg_header(path, info)
+                      : netpbm ? netpbm_header(path, header, info)
+                               : png_header(png.get(), path, info);
+      !status.ok())
     return status;
   if (info.width != width || info.height != height)
     return wrong_size(path, info.width, info.height, width, height);
+  if (netpbm) return with_name(path, read_netpbm_rgb(file_, header, rgb));
   if (!jpeg) return png_pixels(png.get(), path, rgb.data(), rgb.size(), SPNG_FMT_RGB8);
   // A JPEG that ends early decodes to grey bars with a mere warning: it counts as damaged here.
   // A progressive one may go over its pixels as often as it likes: not more than 500 times here.
@@ -125,17 +151,15 @@ Status ImageDecoder::decode_depth(const fs::path& path, int width, int height,
                                   std::span<std::uint16_t> depth) {
   if (Status status = load(path); !status.ok()) return status;
   ImageInfo info;
+  NetpbmHeader header;
+  const bool netpbm = is_netpbm(file_);
   const PngContext png = open_png(file_);
-  if (Status status = png_header(png.get(), path, info); !status.ok()) return status;
-  if (info.bits != 16 || !info.grey) {
-    return image_error(
-        StatusCode::kInvalidArgument, path,
-        fmt::format("depth has {} bits per channel{}; depth must be a 16-bit grey PNG (export it "
-                    "again without converting to 8 bits or to colour)",
-                    info.bits, info.grey ? "" : " and colour"));
-  }
+  Status status = netpbm ? netpbm_header(path, header, info) : png_header(png.get(), path, info);
+  if (status.ok()) status = info.check_is_depth(path);
+  if (!status.ok()) return status;
   if (info.width != width || info.height != height)
     return wrong_size(path, info.width, info.height, width, height);
+  if (netpbm) return with_name(path, read_netpbm_depth(file_, header, depth));
   return png_pixels(png.get(), path, depth.data(), depth.size_bytes(),
                     SPNG_FMT_PNG);  // 16 bits in host order
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image files into the caller's pixels: PNG of any colour type (libspng) and JPEG (TurboJPEG) as RGB, 16-bit
-// grey PNG as depth. One file buffer is reused; after reserve() it does not grow. What a header claims is
-// compared with the limits below before anything of that size is allocated.
+// Image files into the caller's pixels: PNG of any colour type (libspng), JPEG (TurboJPEG), PGM and PPM
+// (netpbm.hpp) as RGB; grey PNG and PGM of 16 bits as depth. One file buffer is reused; after reserve() it
+// does not grow. What a header claims is compared with the limits below before anything of that size is
+// allocated.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +12,22 @@
 #include <vector>
 
 #include "plvo/base/status.hpp"
+#include "plvo/replay/images/netpbm.hpp"
 
 namespace plvo {
 
 inline constexpr int kMaxImageSide = 4096;  // px of a file; what the core cannot take is made smaller
-inline constexpr std::uintmax_t kMaxImageBytes = 64u << 20;  // of a file; no image of that size has as many
+inline constexpr std::uintmax_t kMaxImageBytes = 64u
+                                                 << 20;  // of a file; no 8-bit image of that size has as many
 
 struct ImageInfo {
   int width = 0;
   int height = 0;
   int bits = 0;  // per channel
   bool grey = false;
+
+  // kInvalidArgument, with what to do, for what cannot be depth. Of a file of this name.
+  Status check_is_depth(const std::filesystem::path& path) const;
 };
 
 class ImageDecoder {
@@ -48,6 +54,7 @@ class ImageDecoder {
  private:
   Status load(const std::filesystem::path& path);
   Status jpeg_header(const std::filesystem::path& path, ImageInfo& info);
+  Status netpbm_header(const std::filesystem::path& path, NetpbmHeader& header, ImageInfo& info) const;
   bool is_jpeg() const;
 
   std::vector<unsigned char> file_;

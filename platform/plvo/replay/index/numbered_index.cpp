@@ -4,12 +4,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
+#include <utility>
+
+#include "plvo/replay/small_letters.hpp"
 
 #include "plvo/host/files/reader_limits.hpp"
 
@@ -21,24 +26,29 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxDigits = 8;
 constexpr std::uintmax_t kMaxPoseBytes = 1u << 16;
 
+enum class Ending : std::uint8_t { kImage, kJpeg, kImageButJpeg, kText };
+
 // The names of one kind of file: folder/prefix NUMBER suffix .extension
 struct Kind {
-  const char* folder;
-  std::string_view prefix, suffix;
-  bool image;  // else text
+  std::string folder, prefix, suffix;
+  Ending ending = Ending::kImage;
 };
 struct Layout {
   Kind colour, depth, pose;
+  bool in_millimetres = false;  // depth, of who defined the layout; else most probably
+  std::string unclear;          // why it cannot be read; else empty
 };
-constexpr Layout kSevenScenes = {
-    {"", "frame-", ".color", true}, {"", "frame-", ".depth", true}, {"", "frame-", ".pose", false}};
-constexpr Layout kScanNet = {{"color", "", "", true}, {"depth", "", "", true}, {"pose", "", "", false}};
 
 using Numbered = std::map<std::uint32_t, std::string>;  // file relative to the sequence's folder
 
+bool has_ending(std::string_view name, Ending ending) {
+  if (ending == Ending::kText) return name.ends_with(".txt");
+  return ends_as_image(name) && (ending == Ending::kImage || ends_as_jpeg(name) == (ending == Ending::kJpeg));
+}
+
 // What stands between prefix and suffix; nothing for a name of another form, or one that begins with a dot.
 std::optional<std::string> middle(const std::string& name, const Kind& kind) {
-  if (name.starts_with('.') || !(kind.image ? ends_as_image(name) : name.ends_with(".txt"))) return {};
+  if (name.starts_with('.') || !has_ending(name, kind.ending)) return {};
   const std::string stem = fs::path(name).stem().string();
   if (stem.size() < kind.prefix.size() + kind.suffix.size() || !stem.starts_with(kind.prefix) ||
       !stem.ends_with(kind.suffix))
@@ -51,20 +61,127 @@ bool parse_frame_number(const std::string& text, std::uint32_t& number) {
   return error == std::errc() && end == text.data() + text.size() && text.size() <= kMaxDigits;
 }
 
-bool has_frames(const fs::path& folder, const Kind& kind) {
+// What stands before and after the only number in the names of images, and whether some are JPEG and some are
+// not.
+struct Endings {
+  bool jpeg = false, other = false;
+};
+using Forms = std::map<std::pair<std::string, std::string>, Endings>;
+
+Forms forms_in(const fs::path& folder) {
+  constexpr std::string_view kDigits = "0123456789";
+  Forms forms;
   std::error_code error;
-  for (fs::directory_iterator entry(folder / kind.folder, error), end; !error && entry != end;
-       entry.increment(error))
-    if (middle(entry->path().filename().string(), kind)) return true;
-  return false;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') || !ends_as_image(name)) continue;
+    const std::string stem = entry->path().stem().string();
+    const std::size_t first = stem.find_first_of(kDigits);
+    if (first == stem.npos) continue;
+    const std::size_t after = std::min(stem.find_first_not_of(kDigits, first), stem.size());
+    if (stem.find_first_of(kDigits, after) != stem.npos) continue;
+    Endings& endings = forms[{stem.substr(0, first), stem.substr(after)}];
+    (ends_as_jpeg(name) ? endings.jpeg : endings.other) = true;
+  }
+  return forms;
+}
+
+struct Words {
+  std::string_view colour, depth, pose;
+};
+constexpr auto kWords = std::to_array<Words>({{"color", "depth", "pose"},
+                                              {"colour", "depth", "pose"},
+                                              {"rgb", "depth", "pose"},
+                                              {"Color", "Depth", "Pose"},
+                                              {"Colour", "Depth", "Pose"},
+                                              {"RGB", "Depth", "Pose"}});
+
+std::string replaced(std::string text, std::size_t at, std::string_view word, std::string_view by) {
+  return text.replace(at, word.size(), by);
+}
+
+// Colour and depth side by side: names that differ in a word, or, without one, in what kind of image it is.
+std::optional<Layout> layout_of_one_folder(const fs::path& folder) {
+  const Forms forms = forms_in(folder);
+  for (const auto& [form, endings] : forms) {
+    const auto& [prefix, suffix] = form;
+    for (const Words& words : kWords) {
+      Kind depth, pose;
+      if (const std::size_t at = prefix.find(words.colour); at != prefix.npos) {
+        depth = {"", replaced(prefix, at, words.colour, words.depth), suffix};
+        pose = {"", replaced(prefix, at, words.colour, words.pose), suffix, Ending::kText};
+      } else if (const std::size_t in = suffix.find(words.colour); in != suffix.npos) {
+        depth = {"", prefix, replaced(suffix, in, words.colour, words.depth)};
+        pose = {"", prefix, replaced(suffix, in, words.colour, words.pose), Ending::kText};
+      } else {
+        continue;
+      }
+      if (!forms.contains({depth.prefix, depth.suffix})) continue;
+      const bool seven_scenes = prefix == "frame-" && suffix == ".color";
+      return Layout{{"", prefix, suffix}, depth, pose, seven_scenes, {}};
+    }
+  }
+  for (const auto& [form, endings] : forms)
+    if (endings.jpeg && endings.other)
+      return Layout{{"", form.first, form.second, Ending::kJpeg},
+                    {"", form.first, form.second, Ending::kImageButJpeg},
+                    {"pose", "", "", Ending::kText},
+                    false,
+                    {}};
+  return {};
+}
+
+// The folder whose name is one of these, else the only one whose name begins with one, in small letters or
+// not; `unclear` is told of several. Folders without numbered images do not count.
+std::optional<Kind> folder_of(const fs::path& folder, std::span<const std::string_view> names,
+                              std::string& unclear) {
+  std::map<std::string, Kind> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    const std::string name = entry->path().filename().string();
+    const bool fits = std::any_of(names.begin(), names.end(), [lower = in_small_letters(name)](auto word) {
+      return lower.starts_with(word);
+    });
+    if (!fits || !entry->is_directory(ignored)) continue;
+    const Forms forms = forms_in(entry->path());
+    if (forms.empty()) continue;
+    const auto& [prefix, suffix] = forms.begin()->first;
+    found[name] = {name, prefix, suffix};
+  }
+  for (const std::string_view word : names)
+    for (const auto& [name, kind] : found)
+      if (in_small_letters(name) == word) return kind;
+  if (found.empty()) return {};
+  if (found.size() > 1)
+    unclear = fmt::format("{} and {} may both be meant; name the right one {}", found.begin()->first,
+                          found.rbegin()->first, names.front());
+  return found.begin()->second;
+}
+
+// Colour and depth in folders of their own.
+std::optional<Layout> layout_of_two_folders(const fs::path& folder) {
+  constexpr auto kColour =
+      std::to_array<std::string_view>({"color", "colour", "rgb", "image", "images", "img"});
+  constexpr auto kDepth = std::to_array<std::string_view>({"depth"});
+  Layout layout;
+  const std::optional<Kind> colour = folder_of(folder, kColour, layout.unclear);
+  const std::optional<Kind> depth = folder_of(folder, kDepth, layout.unclear);
+  if (!colour || !depth) return {};
+  layout.colour = *colour;
+  layout.depth = *depth;
+  layout.pose = {"pose", "", "", Ending::kText};
+  const auto plain = [](const Kind& kind) { return kind.prefix.empty() && kind.suffix.empty(); };
+  layout.in_millimetres =
+      colour->folder == "color" && depth->folder == "depth" && plain(*colour) && plain(*depth);  // ScanNet
+  return layout;
 }
 
 std::optional<Layout> layout_of(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / "rgb.txt", error) || fs::exists(folder / "associations.txt", error)) return {};
-  for (const Layout& layout : {kScanNet, kSevenScenes})
-    if (has_frames(folder, layout.colour) && has_frames(folder, layout.depth)) return layout;
-  return {};
+  const std::optional<Layout> layout = layout_of_two_folders(folder);
+  return layout ? layout : layout_of_one_folder(folder);
 }
 
 // Without the folder there are none.
@@ -125,7 +242,10 @@ bool is_numbered_folder(const fs::path& folder) { return layout_of(folder).has_v
 Status read_numbered_index(const fs::path& folder, double frames_per_s, SequenceIndex& index) {
   index = {};
   index.numbered = true;
-  const Layout layout = layout_of(folder).value_or(kSevenScenes);
+  const Layout layout = layout_of(folder).value_or(Layout());
+  if (!layout.unclear.empty())
+    return {StatusCode::kInvalidArgument, fmt::format("{}: {}", folder.string(), layout.unclear)};
+  index.in_millimetres = layout.in_millimetres;
   Numbered colour, depth, poses;
   Status status = list_files(folder, layout.colour, colour);
   if (status.ok()) status = list_files(folder, layout.depth, depth);

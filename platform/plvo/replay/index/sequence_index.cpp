@@ -3,15 +3,25 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <system_error>
 
 #include "plvo/replay/index/numbered_index.hpp"
 #include "plvo/replay/index/tum_index.hpp"
+#include "plvo/replay/small_letters.hpp"
 
 namespace plvo {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// What is nothing else does not count.
+bool ends(std::string_view name, std::string_view extension) {
+  return name.size() > extension.size() &&
+         in_small_letters(name.substr(name.size() - extension.size())) == extension;
+}
+
+}  // namespace
 
 Status read_sequence_index(const fs::path& folder, const SequenceOptions& options, SequenceIndex& index) {
   index = {};
@@ -48,12 +58,9 @@ Status read_ground_truth(const fs::path& folder, const SequenceOptions& options,
 }
 
 bool ends_as_image(std::string_view name) {
-  const auto ends = [name](std::string_view extension) {
-    return name.size() > extension.size() &&
-           std::equal(extension.rbegin(), extension.rend(), name.rbegin(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-  };
-  return ends(".png") || ends(".jpg") || ends(".jpeg");
+  return ends(name, ".png") || ends_as_jpeg(name) || ends(name, ".ppm") || ends(name, ".pgm");
 }
+
+bool ends_as_jpeg(std::string_view name) { return ends(name, ".jpg") || ends(name, ".jpeg"); }
 
 }  // namespace plvo

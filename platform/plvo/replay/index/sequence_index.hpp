@@ -30,7 +30,8 @@ struct SequenceIndex {
   std::vector<ImagePair> pairs;  // colour stamps strictly increasing
   std::size_t unpaired_colour = 0;
   std::size_t unpaired_depth = 0;
-  bool numbered = false;           // numbered_index.hpp: depth in millimetres
+  bool numbered = false;           // numbered_index.hpp
+  bool in_millimetres = false;     // depth of numbered frames, for sure; else most probably
   std::vector<StampedFile> poses;  // of numbered frames
   std::string remark;              // what whoever runs the sequence should know; empty where there is nothing
 };
@@ -54,6 +55,7 @@ Status read_sequence_index(const std::filesystem::path& folder, const SequenceOp
 Status read_ground_truth(const std::filesystem::path& folder, const SequenceOptions& options,
                          Trajectory& trajectory);
 
-bool ends_as_image(std::string_view name);  // .png, .jpg or .jpeg
+bool ends_as_image(std::string_view name);  // .png, .jpg, .jpeg, .ppm or .pgm
+bool ends_as_jpeg(std::string_view name);
 
 }  // namespace plvo

@@ -84,10 +84,12 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
   std::string content;
   if (Status status = read_text_file(list, kMaxTextBytes, content); !status.ok()) {
     if (status.code() != StatusCode::kNotFound) return status;
-    return {StatusCode::kNotFound,
-            fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), an "
-                        "associations.txt, or numbered frames (docs/formats.md)",
-                        list.string())};
+    return {
+        StatusCode::kNotFound,
+        fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), "
+                    "associations.txt, or numbered images, as rgb/0.png and depth/0.png, or rgb_0.png and "
+                    "depth_0.png (docs/formats.md)",
+                    list.string())};
   }
   std::string_view rest = content;
   for (int line = 1; !rest.empty(); ++line) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a TUM folder offers: rgb.txt and depth.txt (`stamp file` per line, `#` comments), or one associations
 // file (`stamp rgb stamp depth`, or depth first where the names say so). The two lists become pairs by
-// nearest stamps: see stamp_pairs.hpp. A name may hold spaces if it ends as images do (.png, .jpg, .jpeg).
+// nearest stamps: see stamp_pairs.hpp. A name may hold spaces if it ends as images do (ends_as_image).
 #pragma once
 
 #include <cstdint>

@@ -155,7 +155,7 @@ Status calibrate(const CalibrationOptions& from, int width, int height, std::opt
     status = {
         StatusCode::kInvalidArgument,
         "depth_fx, depth_fy and what goes with them are for recordings; a live sensor registers its depth, "
-        "so leave them out of the calibration"};
+        "so leave them out of the calibration, or name a camera model without them"};
   // A file that is not there is no missing sensor.
   if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};
   calibration.camera.width = width;

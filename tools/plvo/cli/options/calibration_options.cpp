@@ -2,15 +2,16 @@
 #include <fmt/core.h>
 
 #include "plvo/camera/camera_info.hpp"
+#include "plvo/camera/focal_range.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/camera_options.hpp"
 
 namespace plvo::cli {
 namespace {
 
-constexpr NumberRange kFocal_px = {1, 100'000};
+constexpr NumberRange kFocal_px = {kLeastFocal_px, kMostFocal_px};
 constexpr NumberRange kCentre_px = {-100'000, 100'000};
-constexpr NumberRange kUnitsPerMetre = {1, 100'000};
+constexpr NumberRange kUnitsPerMetre = {kLeastUnitsPerMetre, kMostUnitsPerMetre};
 constexpr NumberRange kReadout_s = {0, 1};
 constexpr NumberRange kStampSigma_s = {0, 0.1};
 constexpr NumberRange kDistortion = {-1000, 1000};
@@ -27,8 +28,8 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
   OptionGroup group(command, kCalibrationGroup);
   group.path(
       "--calibration", options.file,
-      "Calibration file: 'fx fy cx cy depth_scale ...' or ROS camera_info YAML (docs/formats.md). Without it "
-      "and the options below: " +
+      "Calibration file: 'fx fy cx cy depth_scale ...', a matrix, or YAML or JSON of ROS, Kalibr, EuRoC, "
+      "ORB-SLAM or Open3D (docs/formats.md). Without it and the options below: " +
           fallback);
   Choices<std::string> models;
   for (const std::string& name : builtin_names()) models.emplace_back(name, name);
@@ -87,12 +88,13 @@ Status find_calibration(const CalibrationOptions& options, const std::function<S
       status = {
           StatusCode::kInvalidArgument,
           fmt::format(
-              "no calibration: give --calibration FILE, --camera-model NAME ({}), or --fx --fy --cx --cy",
-              any_of(builtin_names()))};
+              "no calibration: give --calibration FILE, --camera-model NAME ({}), or --fx --fy --cx --cy; {}",
+              any_of(builtin_names()), status.message())};
   }
   if (!status.ok()) return status;
   Pinhole& pinhole = calibration.camera.pinhole;
   if (any_pinhole) {
+    calibration.guess.clear();
     pinhole = {options.fx.value_or(pinhole.fx), options.fy.value_or(pinhole.fy),
                options.cx.value_or(pinhole.cx), options.cy.value_or(pinhole.cy)};
   }
