@@ -9,13 +9,14 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
@@ -81,7 +82,6 @@ Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const I
 
 int record_command(const RecordOptions& options) {
   catch_interrupt();
-  ignore_broken_outputs();
   Console console(options.quiet);
   if (Status status = check_outputs(options); !status.ok()) return fail(status);
   std::unique_ptr<LiveCamera> camera;
@@ -122,13 +122,15 @@ int record_command(const RecordOptions& options) {
   console.clear();
   const LiveCapture::State state = capture.state();
   if (!options.quiet) {
-    std::string text = fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), options.path,
-                                   seconds(), interrupted() ? ", ended by a signal" : "");
+    std::string text =
+        fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), printable(options.path), seconds(),
+                    interrupted() ? ", ended by a signal" : "");
     if (recording.dropped() > 0)
       text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
-    if (Status status = print(text + fmt::format("; next: plvo run {}\n", options.path)); !status.ok())
+    if (Status status = print(text + fmt::format("; next: plvo run {}\n", printable(options.path)));
+        !status.ok())
       return fail(status);
   }
   return judge(options, state, stopped);
