@@ -114,10 +114,16 @@ TEST_F(CliHostileNames, ACalibration) {
 }
 
 TEST_F(CliHostileNames, AReasonInTheStatistics) {
-  test::write_file(fs::directory_iterator(fs::path(walk_) / "rgb")->path(), "no image");
+  const fs::path list = fs::path(walk_) / "rgb.txt",
+                 image = fs::directory_iterator(list.parent_path() / "rgb")->path();
+  std::string text = read_file(list);
+  text.replace(text.find(image.filename().string()), image.filename().string().size(),
+               "x\x1b[31m\u009b\x9b.png");
+  test::write_file(list, text);
+  test::write_file(image.parent_path() / "x\x1b[31m\u009b\x9b.png", "no image");
   const CommandResult r = plvo("run " + quoted(walk_) + " --quiet --stats -");
   EXPECT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_NE(r.out.find(kShown), std::string::npos) << "the reason names the file: " << r.out;
+  EXPECT_NE(r.out.find("rgb/x\\x1b[31m\\u009b\\x9b.png"), std::string::npos) << "the reason: " << r.out;
   EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 1 + kFrames) << r.out;
   expect_one_line(r.err);
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,22 @@ bool same_lens(const CameraModel& a, const CameraModel& b) {
     return std::array{p.fx, p.fy, p.cx, p.cy, d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6};
   };
   return numbers(a) == numbers(b) && a.distortion.model == b.distortion.model;
+}
+
+// So many frames of each recording that all have at most `total`: as many of each as it has, or as of the
+// others.
+std::vector<std::size_t> share_out(std::size_t total, const std::vector<std::size_t>& counts) {
+  std::vector<std::size_t> by_count(counts.size());
+  std::iota(by_count.begin(), by_count.end(), std::size_t{0});
+  std::stable_sort(by_count.begin(), by_count.end(),
+                   [&](std::size_t a, std::size_t b) { return counts[a] < counts[b]; });
+  std::vector<std::size_t> shares(counts.size());
+  for (std::size_t i = 0; i < by_count.size(); ++i) {
+    std::size_t& share = shares[by_count[i]];
+    share = std::min(counts[by_count[i]], total / (by_count.size() - i));
+    total -= share;
+  }
+  return shares;
 }
 
 // The cameras are opened once for each pass; what they have to say is said once.
@@ -144,6 +162,7 @@ class Calibrate {
                                   "together, or give --calibration for all",
                                   recording, options_.recordings.front()));
       names_.push_back(opened.name);
+      frame_counts_.push_back(opened.frame_count.value_or(SIZE_MAX));
     }
     log_.end_of_pass();
     calibration_.has_size = true;
@@ -152,26 +171,25 @@ class Calibrate {
   }
 
   Status track(const calibrate::SensorTiming& timing, std::vector<calibrate::TrackedRecording>& recordings) {
-    std::size_t left = options_.frames;
+    const std::vector<std::size_t> shares = share_out(options_.frames, frame_counts_);
     for (std::size_t i = 0; i < options_.recordings.size(); ++i) {
       OpenedCamera opened;
       if (Status status = open(options_.recordings[i], opened); !status.ok()) return status;
       recordings.emplace_back();
-      // What a short recording leaves of its share goes to those after it.
-      const std::size_t share = std::max<std::size_t>(1, left / (options_.recordings.size() - i));
       std::size_t number = 0;
       const auto on_frame = [&] {
         ++number;
         if (console_.wants_line())
-          console_.show_line(fmt::format("{}: tracking frame {} of at most {}", opened.name, number, share));
+          console_.show_line(
+              fmt::format("{}: tracking frame {} of at most {}", opened.name, number, shares[i]));
         return !interrupted();
       };
       const CameraModel camera = calibrate::with_timing(calibration_.camera, timing);
       PrefetchedCamera prefetched(*opened.camera);
-      if (Status status = calibrate::track_recording(prefetched, camera, share, on_frame, recordings.back());
+      if (Status status =
+              calibrate::track_recording(prefetched, camera, shares[i], on_frame, recordings.back());
           !status.ok())
         return status;
-      left -= std::min(left, recordings.back().frames.size());
     }
     // Units a metre, as files say it; more digits than those are the division's.
     if (recordings.front().metres_per_unit > 0)
@@ -242,6 +260,7 @@ class Calibrate {
   FirstPassLog log_;
   Calibration calibration_;
   std::vector<std::string> names_;
+  std::vector<std::size_t> frame_counts_;  // SIZE_MAX where it is not known
   calibrate::TimingResult result_;
 };
 

@@ -208,7 +208,9 @@ int LiveSession::judge() {
     fail(capture.end);
     return exit_code_of_camera(capture.end, options_.camera.device);
   }
-  if (!outputs_.failure().ok() || !capture.recorder.ok() || !recorder_failure_.ok()) return kExitFailure;
+  for (const Status& told :
+       {outputs_.failure(), capture.recorder, recorder_failure_, accelerometer_.failure()})
+    if (!told.ok()) return kExitFailure;
   if (capture.frames == 0) {
     fail(fmt::format("no frame came from {}: {}; plvo doctor looks into it", summary_.camera_name,
                      capture.words));

@@ -48,13 +48,15 @@ void show_line(Console& console, const LiveCapture::State& state, const FrameRec
   console.show_line(line);
 }
 
-int judge(const RecordOptions& options, const LiveCapture::State& state, const Status& stopped) {
+int judge(const RecordOptions& options, const LiveCapture::State& state, const Status& stopped,
+          const LiveAccelerometer& accelerometer) {
   if (!state.end.ok()) {
     fail(state.end);
     return exit_code_of_camera(state.end, options.camera.device);
   }
   if (!state.recorder.ok()) return exit_code_of_camera(state.recorder, {});
   if (!stopped.ok()) return fail(stopped);
+  if (!accelerometer.failure().ok()) return kExitFailure;  // which was told
   if (state.frames > 0) return kExitSuccess;
   fail(fmt::format("no frame came: {}; plvo doctor looks into it", state.words));
   return kExitNoSensor;
@@ -133,7 +135,7 @@ int record_command(const RecordOptions& options) {
         !status.ok())
       return fail(status);
   }
-  return judge(options, state, stopped);
+  return judge(options, state, stopped, accelerometer);
 }
 
 void check(const CLI::App& command, const RecordOptions& options) {
