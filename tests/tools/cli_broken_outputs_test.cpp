@@ -156,9 +156,9 @@ TEST_F(CliBrokenOutputs, AReaderThatLeavesEndsNoCommandBySignal) {
 TEST_F(CliBrokenOutputs, TheOtherOutputsOfARunAreWritten) {
   // The limit is for the program: what goes through cat has none.
   const CommandResult r =
-      run_command("sh -c '{ prlimit --fsize=12000 " + kPlvo + " run " + walk() + " --motions " + path("rows") +
-                  " --json " + path("json") + " --report -; echo $? >" + path("code") + "; } | cat >" +
-                  path("page") + "'");
+      run_command("sh -c '{ prlimit --fsize=12000 " + kPlvo + " run " + walk() + " --motions " +
+                  path("rows") + " --json " + path("json") + " --report -; echo $? >" + path("code") +
+                  "; } | cat >" + path("page") + "'");
   EXPECT_EQ(read_file(folder_ / "code"), "1\n");
   EXPECT_NE(r.err.find("rows: File too large"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("(ended by an error)"), std::string::npos) << "the summary: " << r.err;
