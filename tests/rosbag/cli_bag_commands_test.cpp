@@ -55,12 +55,13 @@ class CliBagCommands : public ::testing::Test {
 };
 
 TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
-  std::vector<RecordedMessage> messages = test::published(walk(), true);
-  const std::vector<RecordedMessage> once = messages;
-  for (RecordedMessage message : once) {
-    message.topic += "/\x1b[31m\u009b\nx";
-    messages.push_back(message);
-  }
+  // Two of each kind, of which none has a name that is known: the message lists them.
+  std::vector<RecordedMessage> messages;
+  for (const char* camera : {"/1", "/2"})
+    for (RecordedMessage message : test::published(walk(), true)) {
+      message.topic = "/\x1b[31m\u009b\nx" + (camera + message.topic);
+      messages.push_back(message);
+    }
   write_file(folder_ / "two.bag", test::bag_of(messages, "none"));
   for (const std::string& words :
        {"run " + path("two.bag"), "run " + path("walk.bag") + " --depth-topic '/\x1b[31m'"}) {
