@@ -304,7 +304,7 @@ TEST_F(Bench, WhatCannotBeWrittenIsAnError) {
   }
   // Results, which are written in one go, are whole or not there.
   const fs::path limited = *folder_ / "limited";
-  const CommandResult r = run_command("prlimit --fsize=2000 " + kBench + " run " + walk("constant") +
+  const CommandResult r = run_command("prlimit --fsize=600 " + kBench + " run " + walk("constant") +
                                       " --systems plvo-points --out " + limited.string());
   EXPECT_EQ(r.exit_code, 1) << r.err;
   EXPECT_NE(r.err.find("plvo_bench: error: "), std::string::npos) << r.err;
