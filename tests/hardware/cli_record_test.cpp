@@ -127,6 +127,22 @@ TEST_F(CliRecord, AnAlmostFullDiskEndsAnOniFileThatPlays) {
   EXPECT_GE(playable(path("disk/walk.oni")), 2);
 }
 
+TEST_F(CliRecord, ALimitOnTheSizeOfFilesEndsItInWholeFiles) {
+  const auto record = [&](const std::string& limit, const std::string& words) {
+    return run_command("prlimit --fsize=" + limit + ' ' + kPlvo + " record " + words);
+  };
+  const CommandResult folder = record("3000", path("walk") + " --seconds 20");  // less than an image
+  EXPECT_EQ(folder.exit_code, 1);
+  EXPECT_TRUE(contains(folder.err, "File too large; raise the limit on the size of files (ulimit -f)"))
+      << folder.err;
+  EXPECT_EQ(listed(path("walk")), 0);
+  EXPECT_TRUE(std::filesystem::is_empty(path("walk/rgb")));
+  const CommandResult oni = record("80000000", path("walk.oni") + " --seconds 20");
+  EXPECT_EQ(oni.exit_code, 1);
+  EXPECT_TRUE(contains(oni.err, "the limit on the size of files is almost reached")) << oni.err;
+  EXPECT_GE(playable(path("walk.oni")), 2);
+}
+
 TEST_F(CliRecord, DoctorLooksAtWhatComes) {
   const auto examine = [&](const std::string& commands, int& code) {
     const CommandResult r = plvo("doctor --json - --seconds 1 --mode 320x240", device(commands));

@@ -4,6 +4,7 @@
 // that the bag was made of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bag_of_folder.hpp"
@@ -52,6 +53,25 @@ class CliBagCommands : public ::testing::Test {
 
   TemporaryFolder folder_;
 };
+
+TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
+  // Two of each kind, of which none has a name that is known: the message lists them.
+  std::vector<RecordedMessage> messages;
+  for (const char* camera : {"/1", "/2"})
+    for (RecordedMessage message : test::published(walk(), true)) {
+      message.topic = "/\x1b[31m\u009b\nx" + (camera + message.topic);
+      messages.push_back(message);
+    }
+  write_file(folder_ / "two.bag", test::bag_of(messages, "none"));
+  for (const std::string& words :
+       {"run " + path("two.bag"), "run " + path("walk.bag") + " --depth-topic '/\x1b[31m'"}) {
+    const CommandResult r = plvo(words);
+    EXPECT_NE(r.exit_code, 0);
+    EXPECT_NE(r.err.find("\\x1b[31m"), std::string::npos) << r.err;
+    EXPECT_EQ(r.err.find('\x1b'), std::string::npos) << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  }
+}
 
 TEST_F(CliBagCommands, TheTruthLiesBesideTheBag) {
   const std::string bag = path("walk.bag"), run = " --readout 0 --quiet --out " + path("t") + " --json ";

@@ -44,8 +44,10 @@ TEST(CliBagSignals, TerminationWhileABagIsOpened) {
   const std::string bag = fs::canonical(folder.path()) / "a.bag";
   test::write_file(bag, bag_that_takes_long());
   const std::string made = (folder / "made").string();
-  const std::vector<std::vector<std::string>> commands = {
-      {"run", bag}, {"live", "--device", bag}, {"record", made, "--device", bag}};
+  const std::vector<std::vector<std::string>> commands = {{"run", bag},
+                                                          {"live", "--device", bag},
+                                                          {"record", made, "--device", bag},
+                                                          {"calibrate", bag, "--out", made}};
   for (const std::vector<std::string>& command : commands)
     for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
       std::vector<std::string> words = command;

@@ -296,6 +296,36 @@ TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
   EXPECT_GT(by_descriptor, 0);
 }
 
+TEST_F(Bench, WhatCannotBeWrittenIsAnError) {
+  for (const std::string& words : {lighting(*folder_ / "listed") + " --list-jobs", kBench + " --help"}) {
+    const CommandResult r = run_command("sh -c '" + words + " >/dev/full'");
+    EXPECT_EQ(r.exit_code, 1) << r.err;
+    EXPECT_NE(r.err.find("plvo_bench: error: cannot write standard output"), std::string::npos) << r.err;
+  }
+  // Results, which are written in one go, are whole or not there.
+  const fs::path limited = *folder_ / "limited";
+  const CommandResult r = run_command("prlimit --fsize=600 " + kBench + " run " + walk("constant") +
+                                      " --systems plvo-points --out " + limited.string());
+  EXPECT_EQ(r.exit_code, 1) << r.err;
+  EXPECT_NE(r.err.find("plvo_bench: error: "), std::string::npos) << r.err;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(limited))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
+TEST_F(Bench, NamesDoNotCommandTheTerminal) {
+  const fs::path hostile = *folder_ / "walk\x1b[31m\nx";
+  fs::copy(walk("constant"), hostile, fs::copy_options::recursive);
+  const std::string run = kBench + " run '" + hostile.string() + "' --systems plvo-points --out ";
+  const CommandResult table = run_command(run + (*folder_ / "hostile").string());
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_EQ(rows_with(table.out, "walk\\x1b[31m\\nx | plvo-points").size(), 1U) << table.out;
+  const CommandResult list = run_command(run + (*folder_ / "not_yet").string() + " --list-jobs");
+  EXPECT_EQ(list.exit_code, 1);
+  EXPECT_NE(list.err.find("rename it"), std::string::npos) << list.err;
+  for (const std::string& said : {table.out, table.err, list.out, list.err})
+    EXPECT_EQ(said.find('\x1b'), std::string::npos) << said;
+}
+
 TEST_F(Bench, SaysWhatIsWrong) {
   const std::string out_option = " --out " + (*folder_ / "bad").string();
   const CommandResult system =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `plvo calibrate` as the user runs it.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -18,20 +19,26 @@ using test::kPlvo;
 using test::run_command;
 using test::TemporaryFolder;
 
+void record_turns(const TemporaryFolder& folder, const std::string& name, int seed, int frames) {
+  const std::string hand = (folder / ("hand_" + name)).string();
+  test::write_file(hand, test::turning_hand(0.2 + frames / 30.0));
+  const CommandResult made =
+      run_command(kPlvo + " simulate --quiet --size 320x240 --depth-delay 0.012 --frames " +
+                  std::to_string(frames) + " --scene desk --seed " + std::to_string(seed) + " --out " +
+                  (folder / name).string() + " --trajectory " + hand);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+}
+
+constexpr const char* kLens = " --fx 262.5 --fy 262.5 --cx 159.5 --cy 119.5 --depth-scale 5000 --readout 0";
+
 TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const TemporaryFolder folder;
   const std::string walk = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
-  test::write_file(folder / "hand.txt", test::turning_hand(2.2));
-  const CommandResult made = run_command(
-      kPlvo + " simulate --quiet --frames 60 --size 320x240 --scene desk --depth-delay 0.012 --out " + walk +
-      " --trajectory " + (folder / "hand.txt").string());
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  record_turns(folder, "walk", 1, 60);
   // The lens is known, and nothing of depth's time.
   const CommandResult r =
-      run_command(kPlvo + " calibrate " + walk +
-                  " --find delay --fx 262.5 --fy 262.5 --cx 159.5 --cy 119.5 --depth-scale 5000 "
-                  "--readout 0 --json - --report " +
-                  (folder / "page.html").string() + " --out " + yaml);
+      run_command(kPlvo + " calibrate " + walk + " --find delay --quiet --json - --report " +
+                  (folder / "page.html").string() + " --out " + yaml + kLens);
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.err, "");
   const auto json = nlohmann::json::parse(r.out);
@@ -55,11 +62,67 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   EXPECT_EQ(run.err, "");
 }
 
+TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
+  const TemporaryFolder folder;
+  record_turns(folder, "long", 1, 40);
+  record_turns(folder, "short", 2, 20);
+  const std::string first = (folder / "long").string(), second = (folder / "short").string();
+  const std::string rest = " --find delay --out " + (folder / "camera.yaml").string() + kLens;
+  // Alone each is too short.
+  const CommandResult alone = run_command(kPlvo + " calibrate --quiet " + first + rest);
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_NE(alone.err.find("of 40 frames could be tracked"), std::string::npos) << alone.err;
+  const CommandResult r =
+      run_command(kPlvo + " calibrate " + first + rest + " --json - " + second + " --frames 60");
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["frames"], 60);
+  EXPECT_NEAR(json["depth_delay_s"]["value"].get<double>(), 0.012, 0.001);
+  EXPECT_EQ(test::read_file(folder / "camera.yaml").rfind("# Made by plvo calibrate from long short\n", 0),
+            0u);
+  // What goes on is told without a terminal, too: what was tracked and what was found, pass by pass.
+  EXPECT_EQ(r.err.rfind("plvo: tracking at most 60 frames of long short, a few times over\n", 0), 0u)
+      << r.err;
+  std::size_t passes = 0;
+  for (const auto& pass : json["passes"]) {
+    const std::string begin = fmt::format("plvo: pass {}: ", ++passes);
+    EXPECT_NE(r.err.find(begin + "60 frames tracked, "), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find(fmt::format("{}delay {:+.1f} ms", begin, 1e3 * pass[0].get<double>())),
+              std::string::npos)
+        << r.err;
+  }
+  EXPECT_GE(passes, 2u);
+}
+
+TEST(CliCalibrate, ShowsHowFarItIsOnATerminal) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
+  const CommandResult r = run_command("script -qefc '" + kPlvo + " calibrate " + (folder / "walk").string() +
+                                      " --out /dev/null' /dev/null");
+  EXPECT_EQ(r.exit_code, 1) << r.out;
+  EXPECT_NE(r.out.find("walk: tracking frame 1 of at most 5"), std::string::npos) << r.out;
+}
+
+TEST(CliCalibrate, RecordingsOfTwoSensorsAreRefused) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "one", 2).ok());
+  ASSERT_TRUE(test::write_tiny_sequence(folder / "two", 2).ok());
+  test::write_file(folder / "two/calibration.txt", "81 80 47.5 31.5 5000\n");
+  const std::string both = (folder / "one").string() + ' ' + (folder / "two").string();
+  const CommandResult r = run_command(kPlvo + " calibrate " + both + " --out " + (folder / "c").string());
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("has another lens than"), std::string::npos) << r.err;
+  const CommandResult given = run_command(
+      kPlvo + " calibrate " + both + " --fx 80 --fy 80 --cx 47.5 --cy 31.5 --out " + (folder / "c").string());
+  EXPECT_NE(given.err.find("of 4 frames could be tracked"), std::string::npos) << given.err;
+}
+
 TEST(CliCalibrate, ARecordingThatIsTooShortIsRefusedInOneLine) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const std::string yaml = (folder / "camera.yaml").string();
-  const CommandResult r = run_command(kPlvo + " calibrate " + (folder / "walk").string() + " --out " + yaml);
+  const CommandResult r =
+      run_command(kPlvo + " calibrate --quiet " + (folder / "walk").string() + " --out " + yaml);
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_EQ(r.out, "");
   EXPECT_EQ(r.err.rfind("plvo: error: only ", 0), 0u) << r.err;

@@ -22,6 +22,9 @@ for (const kind of ["error", "warn"]) console[kind] = (...a) => problems.push(ki
 </script>
 """
 
+# The name of the folder: a browser that takes it for HTML shows a blank page.
+HOSTILE = "x<!--<script>y & z"
+
 PROBE = """<script>
 const wait = ms => new Promise(done => setTimeout(done, ms));
 function colours(canvas) {
@@ -70,6 +73,7 @@ async function probe() {
   choice.dispatchEvent(new Event("change"));
   found.truthMoved = print(turn) !== fitted;
   found.tiles = [...document.querySelectorAll(".tiles b")].map(b => b.textContent);
+  found.title = document.title;
   const result = document.createElement("pre");
   result.id = "probe";
   result.textContent = JSON.stringify(found);
@@ -125,7 +129,7 @@ def main():
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="plvo_report_") as folder:
         run_page, eval_page, estimate = (os.path.join(folder, n) for n in ("run.html", "eval.html", "estimate.txt"))
-        walk, covariance = os.path.join(folder, "walk"), os.path.join(folder, "covariance.txt")
+        walk, covariance = os.path.join(folder, HOSTILE), os.path.join(folder, "covariance.txt")
         subprocess.run([plvo, "simulate", "--scene", "bare", "--size", "320x240", "--frames", "8", "--out", walk, "--quiet"], check=True)
         subprocess.run([plvo, "run", walk, "--quiet", "--out", estimate, "--covariance", covariance, "--report", run_page], check=True)
         subprocess.run([plvo, "eval", "--gt", os.path.join(walk, "groundtruth.txt"), "--est", estimate, "--est-covariance",
@@ -133,6 +137,7 @@ def main():
         parts = ["Trajectory", "Errors against the ground truth", "Position error, x", "Orientation error, z"]
         for size in ("1280,900", "500,900"):  # a screen; the narrowest window that headless Chromium makes
             found = look(browser, run_page, folder, size)
+            check(found["title"] == HOSTILE, "the folder's name is another on the page", found)
             check_common(found, parts + ["Frames", "Run", "Points", "Lines", "CPU time by stage", "Brightness"])
             check(all(found["scrubbed"]), "the scrubber changes nothing", found)
             check(found["pictureColours"] > 50, "no image under the features", found)

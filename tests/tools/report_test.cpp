@@ -48,6 +48,23 @@ TEST(Report, HoldsItsDataWhateverTheNames) {
   EXPECT_NE(page.find("function chart("), std::string::npos);
 }
 
+// How a browser reads a script element: `<!--<script` makes it go on past `</script>`.
+TEST(Report, NoTextOfItsDataMeansAnythingToHtmlOrJavaScript) {
+  ReportInput input;
+  input.title = "x<!--<script>y & ]]> \u2028\u2029 \x1b[31m\u009b";
+  input.summary = {{"<!--<script>", "</script><script>alert(1)</script>"}};
+  const std::string page = make_report(input);
+  const nlohmann::json data = data_of(page);
+  EXPECT_EQ(data["title"], input.title);
+  EXPECT_EQ(data["summary"][0][1], input.summary[0].second);
+  const std::size_t begin = page.find("{\"title\"");
+  const std::string text = page.substr(begin, page.find("</script>", begin) - begin);
+  EXPECT_EQ(text.find_first_of("<>&"), std::string::npos) << text;
+  for (const char c : text) EXPECT_TRUE(c >= ' ' && c < 0x7f) << static_cast<int>(c);
+  EXPECT_NE(text.find("x\\u003c!--\\u003cscript\\u003ey \\u0026 ]]\\u003e \\u2028\\u2029"), std::string::npos)
+      << text;
+}
+
 TEST(Report, WriteFailureIsAStatus) { EXPECT_EQ(write_report("/dev/full", {}).code(), StatusCode::kIo); }
 
 TEST(Drawing, DepthIsBlackWhereThereIsNone) {

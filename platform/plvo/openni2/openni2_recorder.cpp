@@ -2,7 +2,9 @@
 #include "plvo/openni2/openni2_recorder.hpp"
 
 #include <OpenNI.h>
+#include <sys/resource.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -12,8 +14,24 @@
 namespace plvo {
 namespace {
 
+namespace fs = std::filesystem;
+
 // Enough for what OpenNI2 still holds in memory, and for the index that it writes last.
 constexpr std::uintmax_t kReserve_bytes = 64u << 20;
+
+// Bytes that may still be added to the file; the most there are where that is not known.
+std::uintmax_t room_on_disk(const fs::path& path) {
+  std::error_code error;
+  const fs::space_info space = fs::space(fs::absolute(path).parent_path(), error);
+  return error ? UINTMAX_MAX : space.available;
+}
+std::uintmax_t room_within_limit(const fs::path& path) {
+  rlimit limit{};
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error || ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return UINTMAX_MAX;
+  return limit.rlim_cur > size ? limit.rlim_cur - size : 0;
+}
 
 }  // namespace
 
@@ -64,16 +82,16 @@ Status OpenNi2Recorder::start(OpenNi2Camera& camera, const std::string& path) {
 
 Status OpenNi2Recorder::check() {
   if (impl_ == nullptr) return {};
-  std::error_code error;
-  const std::filesystem::space_info space =
-      std::filesystem::space(std::filesystem::absolute(impl_->path).parent_path(), error);
-  if (error || space.available >= kReserve_bytes) return {};
   const std::string path = impl_->path;
+  const char* problem = room_on_disk(path) < kReserve_bytes
+                            ? "the disk is almost full: free some space or choose another disk"
+                        : room_within_limit(path) < kReserve_bytes
+                            ? "the limit on the size of files is almost reached: raise it (ulimit -f)"
+                            : nullptr;
+  if (problem == nullptr) return {};
   stop();
-  return Status(StatusCode::kIo,
-                "the disk is almost full: free some space or choose another disk; the recording was ended "
-                "and is "
-                "complete so far: ")
+  return Status(StatusCode::kIo, problem)
+      .append("; the recording was ended and is complete so far: ")
       .append(path);
 }
 

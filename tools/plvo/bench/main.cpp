@@ -2,11 +2,13 @@
 // plvo_bench: plvo and its peers side by side. docs/bench.md.
 #include <fmt/core.h>
 
-#include <cstdio>
 #include <exception>
 #include <map>
+#include <sstream>
 
 #include "plvo/bench/commands.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 
@@ -50,15 +52,21 @@ Status make_out(const std::filesystem::path& out) {
   return {};
 }
 
+int fail(std::string_view message) {
+  print_to_stderr(fmt::format("plvo_bench: error: {}\n", printable(message)));
+  return 1;
+}
+
 int finish(const Status& status) {
   if (status.ok()) return 0;
-  fmt::print(stderr, "plvo_bench: error: {}\n", status.message());
-  return 1;
+  return fail(status.message());
 }
 
 }  // namespace plvo::bench
 
 int main(int argc, char** argv) {
+  plvo::ignore_broken_outputs();
+  plvo::hold_standard_streams();
   CLI::App app("plvo and its peers, side by side", "plvo_bench");
   app.require_subcommand(1);
   int exit_code = 0;
@@ -70,10 +78,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    std::ostringstream out, err;
+    const bool helped = app.exit(error, out, err) == 0;
+    plvo::print_to_stderr(err.str());
+    return helped ? plvo::bench::finish(plvo::print(out.str())) : 2;
   } catch (const std::exception& error) {  // OpenCV speaks through exceptions
-    fmt::print(stderr, "plvo_bench: error: {}\n", error.what());
-    return 1;
+    return plvo::bench::fail(error.what());
   }
   return exit_code;
 }

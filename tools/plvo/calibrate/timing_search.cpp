@@ -39,6 +39,11 @@ MatrixXd ways(bool readouts, bool global_shutter) {
   return steps.leftCols(!readouts ? 1 : global_shutter ? 2 : 3);
 }
 
+std::string words_of(const Vector3& x) {
+  return fmt::format("delay {:+.1f} ms, depth readout {:.1f} ms, readout {:.1f} ms", 1e3 * x.x(), 1e3 * x.y(),
+                     1e3 * x.z());
+}
+
 class Search {
  public:
   Search(const TimingSearch& task, TimingResult& result) : task_(task), result_(result) {}
@@ -48,11 +53,14 @@ class Search {
     for (int pass = 0; pass < kMostPasses && !result_.settled; ++pass) {
       pass_ = pass;
       if (Status status = look_again(); !status.ok()) return status;
+      task_.on_result(fmt::format("pass {}: {} frames tracked, {} pairs to compare", pass + 1, result_.frames,
+                                  result_.pairs));
       if (pass == 0) rough_search();
       const Vector3 before = x_;
       fine_search();
       if (stopped_) return {StatusCode::kEndOfStream, "interrupted"};
       result_.passes.push_back(timing_at(x_));
+      task_.on_result(fmt::format("pass {}: {}", pass + 1, words_of(x_)));
       result_.settled = pass > 0 && is_small(x_ - before);
     }
     result_.timing = timing_at(x_);
@@ -103,17 +111,22 @@ class Search {
     return {};
   }
 
+  // The next `places` costs are for `what`; for the line of progress.
+  void begin(const char* what, Eigen::Index places) {
+    what_ = what;
+    places_ = places;
+    place_ = 0;
+  }
   // The costs of each pair; empty once the search was stopped.
-  std::vector<double> costs_at(const Vector3& x, std::size_t step, const char* what) {
+  std::vector<double> costs_at(const Vector3& x, std::size_t step) {
     if (stopped_) return {};
     stopped_ = !task_.on_progress(
-        fmt::format("pass {}: {}, delay {:+.1f} ms, depth readout {:.1f} ms, readout {:.1f} ms", pass_ + 1,
-                    what, 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z()));
+        fmt::format("pass {}: {} {}/{}, {}", pass_ + 1, what_, ++place_, places_, words_of(x)));
     if (stopped_) return {};
     return disagreement(recordings_, timing_at(x), step, task_.threads);
   }
-  double cost_at(const Vector3& x, std::size_t step, const char* what) {
-    const std::vector<double> costs = costs_at(x, step, what);
+  double cost_at(const Vector3& x, std::size_t step) {
+    const std::vector<double> costs = costs_at(x, step);
     return std::accumulate(costs.begin(), costs.end(), 0.0);
   }
   std::size_t rough_step() const { return std::max<std::size_t>(1, result_.pairs / kRoughPairs); }
@@ -124,7 +137,7 @@ class Search {
     double least = std::numeric_limits<double>::infinity();
     for (int k = -reach; k <= reach && !stopped_; ++k) {
       const Vector3 x = bounded(centre + k * step);
-      const double cost = cost_at(x, rough_step(), "rough search");
+      const double cost = cost_at(x, rough_step());
       if (cost < least) {
         least = cost;
         x_ = x;
@@ -133,12 +146,17 @@ class Search {
   }
 
   void rough_search() {
-    rough_line(Vector3(0.010, 0, 0), 5);
-    if (task_.find_readouts) {
-      rough_line(Vector3(0, 0.008, 0.008), 4);
-      rough_line(Vector3(0, 0.010, 0), 3);
-    }
-    rough_line(Vector3(0.004, 0, 0), 3);
+    struct Line {
+      Vector3 step;
+      int reach;
+    };
+    std::vector<Line> lines = {{{0.010, 0, 0}, 5}};
+    if (task_.find_readouts) lines.insert(lines.end(), {{{0, 0.008, 0.008}, 4}, {{0, 0.010, 0}, 3}});
+    lines.push_back({{0.004, 0, 0}, 3});
+    Eigen::Index places = 0;
+    for (const Line& line : lines) places += 2 * line.reach + 1;
+    begin("rough search", places);
+    for (const Line& line : lines) rough_line(line.step, line.reach);
   }
 
   // Which second of which recording each pair belongs to, as a running number.
@@ -164,7 +182,9 @@ class Search {
     result_.global_shutter = false;
     if (!task_.find_readouts || x_.z() >= kLittle_s) return;
     const Vector3 none(x_.x(), x_.y(), 0), some(x_.x(), x_.y(), kLittle_s);
-    result_.global_shutter = cost_at(none, 1, "global shutter") < cost_at(some, 1, "rolling shutter");
+    begin("global shutter", 2);
+    const double cost_of_none = cost_at(none, 1), cost_of_some = cost_at(some, 1);
+    result_.global_shutter = cost_of_none < cost_of_some;
     if (result_.global_shutter) x_ = none;
   }
 
@@ -178,9 +198,9 @@ class Search {
     Vector3 centre = x_;
     centre.z() = std::max(centre.z(), steps.row(2).sum());
     MatrixXd costs = MatrixXd::Zero(piece.back() + 1, design.rows());
+    begin("fine search", design.rows());
     for (Eigen::Index place = 0; place < design.rows(); ++place) {
-      const std::vector<double> sums =
-          costs_at(centre + steps * design.row(place).transpose(), 1, "fine search");
+      const std::vector<double> sums = costs_at(centre + steps * design.row(place).transpose(), 1);
       if (stopped_) return;
       for (std::size_t i = 0; i < sums.size(); ++i) costs(piece[i], place) += sums[i];
     }
@@ -203,15 +223,19 @@ class Search {
     for (const TrackedRecording& recording : recordings_)
       for (const FramePair& pair : recording.pairs)
         if (number++ % rough_step() == 0) matches += pair.points.size() + pair.lines.size();
-    for (int i = 0; i < 3; ++i) {
-      for (int k = -kReach; k <= kReach && !stopped_; ++k) {
+    std::vector<std::pair<int, Vector3>> places;
+    for (int i = 0; i < 3; ++i)
+      for (int k = -kReach; k <= kReach; ++k) {
         Vector3 x = x_;
         x(i) += k * kStep_s;
-        if (bounded(x) != x) continue;
-        result_.curves[static_cast<std::size_t>(i)].push_back(
-            {x(i),
-             cost_at(x, rough_step(), "curves") / static_cast<double>(std::max<std::size_t>(1, matches))});
+        if (bounded(x) == x) places.emplace_back(i, x);
       }
+    begin("curves", static_cast<Eigen::Index>(places.size()));
+    for (const auto& [i, x] : places) {
+      const double cost = cost_at(x, rough_step());
+      if (stopped_) return;
+      result_.curves[static_cast<std::size_t>(i)].push_back(
+          {x(i), cost / static_cast<double>(std::max<std::size_t>(1, matches))});
     }
   }
 
@@ -220,6 +244,8 @@ class Search {
   std::vector<TrackedRecording> recordings_;
   Vector3 x_ = Vector3::Zero();
   int pass_ = 0;
+  const char* what_ = "";
+  Eigen::Index place_ = 0, places_ = 0;
   bool stopped_ = false;
 };
 

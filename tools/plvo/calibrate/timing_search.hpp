@@ -42,6 +42,8 @@ struct TimingSearch {
   std::function<Status(const SensorTiming&, std::vector<TrackedRecording>&)> track;
   // Called often, with what is being done; false ends the search (kEndOfStream).
   std::function<bool(const std::string&)> on_progress;
+  // Called twice in each pass: with what was tracked, and with what was found.
+  std::function<void(const std::string&)> on_result = [](const std::string&) {};
   SensorTiming start;
   bool find_readouts = true;  // false: the start's are kept
   int threads = 1;

@@ -9,19 +9,20 @@
 #include <sstream>
 
 #include "plvo/cli/common/exit_code.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/common/version.hpp"
 #include "plvo/cli/documentation/help_format.hpp"
 #include "plvo/cli/options/usage_error.hpp"
 #include "plvo/host/files/reader_limits.hpp"
 #ifdef PLVO_HAVE_OPENNI2
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/openni2/openni2_camera.hpp"
 #endif
 
 namespace plvo::cli {
 
 int run_command_line(int argc, const char* const* argv) {
+  ignore_broken_outputs();
 #ifdef PLVO_HAVE_OPENNI2
   if (const std::optional<int> played = play_oni_if_asked(argc, argv)) return *played;
 #endif

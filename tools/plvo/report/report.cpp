@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/report/report.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "plvo/host/files/line_file.hpp"
@@ -153,11 +154,19 @@ void fill(std::string& page, const std::string& mark, const std::string& text) {
   page.replace(at, mark.size(), text);
 }
 
-// "</script>" inside the data would end it; JSON may write any slash with a backslash before it.
-std::string safe_for_script(std::string json) {
-  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3)
-    json.replace(at, 2, "<\\/");
-  return json;
+// JSON that may stand in an HTML script element. Its text cannot end the element (`</script`), begin a
+// comment in it (`<!--`) or stand for another character (`&`): these are escaped, and with them all that is
+// not ASCII, U+2028 and U+2029 included, which end a line of JavaScript.
+std::string script_json(const Json& data) {
+  std::string safe;
+  for (const char c : data.dump(-1, ' ', true, Json::error_handler_t::replace)) {
+    if (c == '<' || c == '>' || c == '&') {
+      fmt::format_to(std::back_inserter(safe), "\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
 }
 
 }  // namespace
@@ -167,7 +176,7 @@ std::string make_report(const ReportInput& input) {
   fill(page, "@SCRIPT@", std::string(k_charts_js) + k_paths_js + k_frames_js + k_main_js);
   fill(page, "@STYLE@", k_style_css);
   const Json data = Writer(input).data();
-  fill(page, "@DATA@", safe_for_script(data.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  fill(page, "@DATA@", script_json(data));
   return page;
 }
 

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A text file that is valid at every moment: each line reaches the operating system whole before write()
-// returns, and a line that a full disk cuts short is taken back. The name "-" is standard output.
+// returns, and a line that a full disk cuts short is taken back (whole_write.hpp). The name "-" is standard
+// output.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "plvo/base/status.hpp"
+#include "plvo/host/files/whole_write.hpp"
 
 namespace plvo {
-
-// "-", /dev/stdout and its other names.
-bool is_standard_output(const std::filesystem::path& path);
 
 class LineFile {
  public:
@@ -38,13 +36,9 @@ class LineFile {
   static Status check(const std::filesystem::path& path);
 
  private:
-  void take_back_to(std::int64_t length) const;
-
   std::filesystem::path path_;
   std::string line_;
   int descriptor_ = -1;
-  bool ours_ = false;        // from its first byte on: only then may a cut line be taken back
-  std::int64_t length_ = 0;  // bytes of whole lines
 };
 
 }  // namespace plvo

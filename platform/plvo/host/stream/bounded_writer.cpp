@@ -3,6 +3,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,16 +11,31 @@
 #include <climits>
 #include <utility>
 
+#include "plvo/host/files/whole_write.hpp"
+
 namespace plvo {
+namespace {
+
+bool is_regular_file(int descriptor) {
+  struct stat facts {};
+  return ::fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode);
+}
+
+}  // namespace
 
 BoundedWriter::BoundedWriter(int descriptor, bool is_socket, bool owns, std::size_t capacity)
-    : descriptor_(descriptor), is_socket_(is_socket), owns_(owns), capacity_(capacity) {
+    : descriptor_(descriptor),
+      is_socket_(is_socket),
+      is_file_(!is_socket && is_regular_file(descriptor)),
+      owns_(owns),
+      capacity_(capacity) {
   buffer_.reserve(capacity);
 }
 
 BoundedWriter::BoundedWriter(BoundedWriter&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       is_socket_(other.is_socket_),
+      is_file_(other.is_file_),
       owns_(other.owns_),
       capacity_(other.capacity_),
       buffer_(std::move(other.buffer_)),
@@ -31,6 +47,7 @@ BoundedWriter& BoundedWriter::operator=(BoundedWriter&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(owns_, other.owns_);
   is_socket_ = other.is_socket_;
+  is_file_ = other.is_file_;
   capacity_ = other.capacity_;
   buffer_.swap(other.buffer_);
   gone_ = other.gone_;
@@ -70,6 +87,11 @@ void BoundedWriter::send_some() {
 }
 
 bool BoundedWriter::write(std::string_view line) {
+  if (is_file_) {
+    gone_ = gone_ || write_whole(descriptor_, line) != 0;
+    sent_bytes_ += gone_ ? 0 : line.size();
+    return !gone_;
+  }
   send_some();
   if (buffer_.size() + line.size() > capacity_) {
     ++dropped_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines to a reader that may be slow, stuck or gone, without ever waiting for it: a bounded buffer, whole
-// lines only. A line that finds no room is dropped and counted.
+// lines only. A line that finds no room is dropped and counted. A file on a disk is written line by line
+// instead (whole_write.hpp): it is no reader, and a full disk must not leave half a line.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +37,7 @@ class BoundedWriter {
 
   int descriptor_;
   bool is_socket_;
+  bool is_file_;
   bool owns_;
   std::size_t capacity_;
   std::vector<char> buffer_;

@@ -12,6 +12,8 @@
 #include <memory>
 #include <utility>
 
+#include "plvo/host/files/whole_write.hpp"
+
 namespace plvo {
 namespace {
 
@@ -22,13 +24,6 @@ namespace fs = std::filesystem;
 constexpr int kCompressionLevel = 1;
 constexpr int kColourFilter = SPNG_FILTER_CHOICE_SUB;
 constexpr int kDepthFilter = SPNG_FILTER_CHOICE_NONE;
-
-Status write_failed(const fs::path& path, int reason) {
-  const char* advice =
-      reason == ENOSPC ? "free some space or choose another disk" : "choose a path that can be written";
-  return {StatusCode::kIo,
-          fmt::format("cannot write {}: {}; {}", path.string(), std::strerror(reason), advice)};
-}
 
 // Rows without gaps, top to bottom, as libspng wants them.
 Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::uint8_t> pixels, int filter) {
@@ -46,14 +41,14 @@ Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::u
     return {StatusCode::kInvalidArgument,
             fmt::format("cannot encode {}: {}", path.string(), spng_strerror(error))};
   FILE* stream = std::fopen(path.c_str(), "wb");
-  if (stream == nullptr) return write_failed(path, errno);
+  if (stream == nullptr) return output_failed("write", path, errno);
   int reason = std::fwrite(file.get(), 1, bytes, stream) == bytes ? 0 : errno;
   if (std::fclose(stream) != 0 && reason == 0) reason = errno;
   if (reason == 0) return {};
   // What is not whole is taken away again: a cut image helps nobody, and its space does. A device stays.
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
-  return write_failed(path, reason);
+  return output_failed("write", path, reason);
 }
 
 spng_ihdr make_header(int width, int height, std::uint8_t bits, std::uint8_t colour_type) {

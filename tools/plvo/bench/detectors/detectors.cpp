@@ -11,6 +11,7 @@
 #include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/sequences/named_folder.hpp"
 #include "plvo/bench/table.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -55,7 +56,7 @@ Status compare_one(ViewSequence& sequence, const DetectorsArguments& arguments, 
   const DetectorComparison comparison = compare_detectors(sequence, rooms, arguments.score);
   add_rows(sequence.name, comparison.segments, sequence.views.size(), true, segments);
   add_rows(sequence.name, comparison.points, sequence.views.size(), false, points);
-  fmt::print(stderr, "{}: {} views\n", sequence.name, sequence.views.size());
+  print_to_stderr(fmt::format("{}: {} views\n", sequence.name, sequence.views.size()));
   return {};
 }
 
@@ -88,8 +89,8 @@ Status run_detectors(const DetectorsArguments& arguments) {
   }
   const std::string text =
       to_markdown(segments) + '\n' + to_markdown(points) + '\n' + describe_host().to_line() + '\n';
-  fmt::print("{}", text);
-  return write_text(arguments.out / "detectors.md", text);
+  if (Status status = write_text(arguments.out / "detectors.md", text); !status.ok()) return status;
+  return print(text);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "plvo/bench/jobs/host.hpp"
 #include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/sequences/named_folder.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -32,8 +33,8 @@ Status run_growth(const GrowthArguments& arguments) {
   std::vector<GrowthResult> results;
   if (Status status = measure_growth(plan, options, results); !status.ok()) return status;
   const std::string text = growth_report(plan, results) + '\n' + describe_host().to_line() + '\n';
-  fmt::print("{}", text);
-  return write_text(options.out / "growth.md", text);
+  if (Status status = write_text(options.out / "growth.md", text); !status.ok()) return status;
+  return print(text);
 }
 
 }  // namespace

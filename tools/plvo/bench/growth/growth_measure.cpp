@@ -6,6 +6,7 @@
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/sequences/rendered_walk.hpp"
 #include "plvo/bench/stages/callgrind_run.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -27,7 +28,7 @@ Status render(const GrowthPlan& plan) {
   for (const GrowthCase& one : plan.cases) {
     std::error_code error;
     if (!one.walk || fs::is_directory(one.sequence.folder, error)) continue;
-    fmt::print(stderr, "rendering {}\n", one.sequence.sequence);
+    print_to_stderr(fmt::format("rendering {}\n", one.sequence.sequence));
     if (Status status = render_walk(*one.walk, one.sequence.folder); !status.ok()) return status;
   }
   return {};
@@ -35,7 +36,7 @@ Status render(const GrowthPlan& plan) {
 
 Status measure_times(const GrowthPlan& plan, int repeats, std::vector<GrowthResult>& results) {
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    fmt::print(stderr, "CPU time, repeat {} of {}\n", repeat + 1, repeats);
+    print_to_stderr(fmt::format("CPU time, repeat {} of {}\n", repeat + 1, repeats));
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
       const GrowthCase& one = plan.cases[i];
       StageTimes times;
@@ -67,8 +68,8 @@ Status count(const GrowthPlan& plan, const GrowthOptions& options, std::vector<G
   }
   const std::size_t failed =
       run_commands(commands, options.jobs, [&](std::size_t i, bool success, std::size_t ended) {
-        fmt::print(stderr, "[{}/{}] instructions: {}{}\n", ended, commands.size(), describe(plan.cases[i]),
-                   success ? "" : ": FAILED");
+        print_to_stderr(fmt::format("[{}/{}] instructions: {}{}\n", ended, commands.size(),
+                                    describe(plan.cases[i]), success ? "" : ": FAILED"));
       });
   if (failed != 0) return {StatusCode::kIo, fmt::format("{} runs under valgrind failed", failed)};
   for (std::size_t i = 0; i < commands.size(); ++i) {

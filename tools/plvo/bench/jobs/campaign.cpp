@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/eval/statistics.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 
@@ -23,11 +24,24 @@ std::vector<Job> missing_jobs(const std::vector<Job>& jobs, const std::filesyste
   return missing;
 }
 
+Status print_jobs(const std::vector<std::vector<std::string>>& commands) {
+  std::string lines;
+  for (const std::vector<std::string>& command : commands) {
+    for (const std::string& word : command)
+      if (printable(word) != word)
+        return {StatusCode::kInvalidArgument,
+                fmt::format("'{}' has characters that a list of jobs cannot hold; rename it", word)};
+    lines += shell_line(command) + '\n';
+  }
+  return print(lines);
+}
+
 Status run_and_report(const std::vector<std::vector<std::string>>& commands,
                       const std::vector<std::string>& names, int at_a_time) {
   const std::size_t failed =
       run_commands(commands, at_a_time, [&](std::size_t index, bool success, std::size_t ended) {
-        fmt::print(stderr, "[{}/{}] {}{}\n", ended, commands.size(), names[index], success ? "" : ": FAILED");
+        print_to_stderr(
+            fmt::format("[{}/{}] {}{}\n", ended, commands.size(), names[index], success ? "" : ": FAILED"));
       });
   if (failed == 0) return {};
   return {StatusCode::kDamaged,
@@ -104,8 +118,7 @@ Status write_report(const Report& report, const std::vector<Result>& results, co
   if (Status status = write_text(file(".json"), json.dump(2) + '\n'); !status.ok()) return status;
   if (Status status = write_text(file(".html"), to_html(report.title, report.table, notes)); !status.ok())
     return status;
-  fmt::print("{}", markdown);
-  return {};
+  return print(markdown);
 }
 
 }  // namespace plvo::bench

@@ -16,6 +16,9 @@ namespace plvo::bench {
 
 std::vector<Job> missing_jobs(const std::vector<Job>& jobs, const std::filesystem::path& out);
 
+// For a shell, one a line on standard output. kInvalidArgument for a word that no line can hold as it is.
+Status print_jobs(const std::vector<std::vector<std::string>>& commands);
+
 // Says on standard error what has ended. kDamaged, with how many, when some failed.
 Status run_and_report(const std::vector<std::vector<std::string>>& commands,
                       const std::vector<std::string>& names, int at_a_time);

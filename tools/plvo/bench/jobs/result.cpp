@@ -112,8 +112,10 @@ Status write_text(const std::filesystem::path& file, const std::string& text) {
   stream.close();
   std::error_code error;
   if (stream) std::filesystem::rename(part, file, error);
-  if (!stream || error)
+  if (!stream || error) {
+    std::filesystem::remove(part, error);
     return {StatusCode::kIo, fmt::format("{}: cannot be written; is the disk full?", file.string())};
+  }
   return {};
 }
 

@@ -144,10 +144,7 @@ Status run_lighting(const LightingOptions& options) {
     commands.push_back(walk_command(walk, options));
     names.push_back(walk.sequence);
   }
-  if (common.list_jobs) {
-    for (const auto& command : commands) fmt::print("{}\n", shell_line(command));
-    return {};
-  }
+  if (common.list_jobs) return print_jobs(commands);
   const Host host = describe_host();
   const Status ran = run_and_report(commands, names, common.jobs);
   if (options.render_only) return ran;

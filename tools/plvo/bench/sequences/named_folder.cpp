@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "plvo/host/printable.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::bench {
@@ -20,7 +21,7 @@ Status name_folders(const std::vector<std::string>& folders, std::vector<NamedFo
     const std::string model = equals == std::string::npos ? "" : text.substr(equals + 1);
     fs::path folder = fs::absolute(text.substr(0, equals)).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
-    const std::string name = folder.filename().string();
+    const std::string name = printable(folder.filename().string());
     Calibration known;
     if (Status status = builtin_calibration(model, known); !model.empty() && !status.ok()) return status;
     if (!fs::is_directory(folder, error))

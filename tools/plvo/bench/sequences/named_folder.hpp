@@ -10,8 +10,8 @@
 
 namespace plvo::bench {
 
-// DIR, or DIR=MODEL. The last part of each path names the sequence: kInvalidArgument when two are alike or
-// the model is unknown, kNotFound when there is no such folder.
+// DIR, or DIR=MODEL. The last part of each path, made printable, names the sequence: kInvalidArgument when
+// two are alike or the model is unknown, kNotFound when there is no such folder.
 Status name_folders(const std::vector<std::string>& folders, std::vector<NamedFolder>& sequences);
 
 }  // namespace plvo::bench

@@ -186,10 +186,7 @@ Status run_sequences(const SequencesOptions& options) {
     commands.push_back(job.command(own_program(), fs::absolute(common.out)));
     names.push_back(fmt::format("{} {} repeat {}", job.sequence, job.system, job.repeat));
   }
-  if (common.list_jobs) {
-    for (const auto& command : commands) fmt::print("{}\n", shell_line(command));
-    return {};
-  }
+  if (common.list_jobs) return print_jobs(commands);
   const Host host = describe_host();
   const Status ran = run_and_report(commands, names, common.jobs);
   const std::vector<Result> results = read_results(jobs, common.out);

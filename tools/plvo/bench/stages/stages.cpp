@@ -17,6 +17,7 @@
 #include "plvo/bench/stages/stage_times.hpp"
 #include "plvo/bench/table.hpp"
 #include "plvo/eval/statistics.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -88,8 +89,8 @@ Status run_stages(const StagesOptions& options) {
     if (Status status = count_instructions(sequence, options, profile, costs); !status.ok()) return status;
     text += '\n' + to_markdown(instructions_table(costs, times.frame_ms.size()));
   }
-  fmt::print("{}", text);
-  return write_text(options.out / "stages.md", text);
+  if (Status status = write_text(options.out / "stages.md", text); !status.ok()) return status;
+  return print(text);
 }
 
 }  // namespace

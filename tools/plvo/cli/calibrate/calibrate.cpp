@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -15,7 +18,6 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/result_output.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/cli/options/arguments.hpp"
@@ -23,6 +25,8 @@
 #include "plvo/cli/options/camera_options.hpp"
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/host/prefetched_camera.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -31,10 +35,12 @@ constexpr const char* kHelp =
     "Record about half a minute by hand, turning the camera all the while: left and right, up and down,\n"
     "about its axis, 20 to 60 degrees per second, in a furnished room with light. No target is needed.\n"
     "The unit of depth is not found: depths that are all 1 % too long look like a room 1 % larger.\n"
+    "Several recordings of one sensor are fitted together and give one answer.\n"
     "Each of the frames that are used takes 0.6 MB at 640x480.\n"
     "\n"
     "Examples:\n"
     "  plvo record turns && plvo calibrate turns --out camera.yaml\n"
+    "  plvo calibrate desk hall --out camera.yaml           two recordings of one sensor\n"
     "  plvo run walk --calibration camera.yaml              and so for live and record\n";
 
 struct CalibrateOptions {
@@ -54,6 +60,31 @@ CameraOptions camera_options(const CalibrateOptions& options, const std::string&
   camera.topics = options.topics;
   camera.calibration = options.calibration;
   return camera;
+}
+
+bool same_lens(const CameraModel& a, const CameraModel& b) {
+  const auto numbers = [](const CameraModel& camera) {
+    const Pinhole& p = camera.pinhole;
+    const Distortion& d = camera.distortion;
+    return std::array{p.fx, p.fy, p.cx, p.cy, d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6};
+  };
+  return numbers(a) == numbers(b) && a.distortion.model == b.distortion.model;
+}
+
+// So many frames of each recording that all have at most `total`: as many of each as it has, or as of the
+// others.
+std::vector<std::size_t> share_out(std::size_t total, const std::vector<std::size_t>& counts) {
+  std::vector<std::size_t> by_count(counts.size());
+  std::iota(by_count.begin(), by_count.end(), std::size_t{0});
+  std::stable_sort(by_count.begin(), by_count.end(),
+                   [&](std::size_t a, std::size_t b) { return counts[a] < counts[b]; });
+  std::vector<std::size_t> shares(counts.size());
+  for (std::size_t i = 0; i < by_count.size(); ++i) {
+    std::size_t& share = shares[by_count[i]];
+    share = std::min(counts[by_count[i]], total / (by_count.size() - i));
+    total -= share;
+  }
+  return shares;
 }
 
 // The cameras are opened once for each pass; what they have to say is said once.
@@ -81,7 +112,6 @@ class Calibrate {
     for (const std::string& file : {options_.out, options_.report, options_.json})
       if (!file.empty())
         if (Status status = LineFile::check(file); !status.ok()) return fail(status);
-    catch_interrupt();
     if (Status status = find_start(); !status.ok()) return fail(status);
     calibrate::TimingSearch search;
     search.start = calibrate::timing_of(calibration_.camera);
@@ -89,12 +119,15 @@ class Calibrate {
     search.threads = options_.threads;
     search.on_progress = [this](const std::string& line) {
       if (console_.wants_line()) console_.show_line(line);
-      return !interrupted();
+      return true;
     };
+    search.on_result = [this](const std::string& line) { console_.write(LogLevel::kInfo, line); };
     search.track = [this](const calibrate::SensorTiming& timing,
                           std::vector<calibrate::TrackedRecording>& recordings) {
       return track(timing, recordings);
     };
+    console_.write(LogLevel::kInfo, fmt::format("tracking at most {} frames of{}, a few times over",
+                                                options_.frames, names()));
     const Status found = calibrate::find_timing(search, result_);
     console_.clear();
     if (!found.ok()) return fail(found);
@@ -122,7 +155,13 @@ class Calibrate {
         return Status(StatusCode::kInvalidArgument,
                       fmt::format("{} has images of another size than {}; calibrate them one by one",
                                   recording, options_.recordings.front()));
+      if (!same_lens(model, calibration_.camera))
+        return Status(StatusCode::kInvalidArgument,
+                      fmt::format("{} has another lens than {}; calibrate the recordings of one sensor "
+                                  "together, or give --calibration for all",
+                                  recording, options_.recordings.front()));
       names_.push_back(opened.name);
+      frame_counts_.push_back(opened.frame_count.value_or(SIZE_MAX));
     }
     log_.end_of_pass();
     calibration_.has_size = true;
@@ -131,30 +170,41 @@ class Calibrate {
   }
 
   Status track(const calibrate::SensorTiming& timing, std::vector<calibrate::TrackedRecording>& recordings) {
-    const std::size_t share = std::max<std::size_t>(1, options_.frames / options_.recordings.size());
-    for (const std::string& recording : options_.recordings) {
+    const std::vector<std::size_t> shares = share_out(options_.frames, frame_counts_);
+    for (std::size_t i = 0; i < options_.recordings.size(); ++i) {
       OpenedCamera opened;
-      if (Status status = open(recording, opened); !status.ok()) return status;
+      if (Status status = open(options_.recordings[i], opened); !status.ok()) return status;
       recordings.emplace_back();
       std::size_t number = 0;
       const auto on_frame = [&] {
+        ++number;
         if (console_.wants_line())
-          console_.show_line(fmt::format("{}: tracking frame {}", opened.name, ++number));
-        return !interrupted();
+          console_.show_line(
+              fmt::format("{}: tracking frame {} of at most {}", opened.name, number, shares[i]));
+        return true;
       };
       const CameraModel camera = calibrate::with_timing(calibration_.camera, timing);
       PrefetchedCamera prefetched(*opened.camera);
-      if (Status status = calibrate::track_recording(prefetched, camera, share, on_frame, recordings.back());
+      if (Status status =
+              calibrate::track_recording(prefetched, camera, shares[i], on_frame, recordings.back());
           !status.ok())
         return status;
-      // Units a metre, as files say it; more digits than those are the division's.
-      if (recordings.back().metres_per_unit > 0)
-        calibration_.depth_units_per_metre = std::round(1e6 / recordings.back().metres_per_unit) / 1e6;
     }
+    // Units a metre, as files say it; more digits than those are the division's.
+    if (recordings.front().metres_per_unit > 0)
+      calibration_.depth_units_per_metre = std::round(1e6 / recordings.front().metres_per_unit) / 1e6;
     return {};
   }
 
+  // Each after a space.
+  std::string names() const {
+    std::string text;
+    for (const std::string& name : names_) text += ' ' + printable(name);
+    return text;
+  }
+
   int finish() {
+    catch_interrupt();  // until here there is nothing to keep: a signal ends the program at once
     if (!calibrate::is_told(result_, 0))
       return fail(
           "these recordings do not tell when depth is exposed; record half a minute in a furnished room with "
@@ -168,21 +218,28 @@ class Calibrate {
     if (!result_.settled)
       console_.write(LogLevel::kWarning, "the last pass still changed the result; more frames help");
     calibration_.camera = calibrate::with_timing(calibration_.camera, timing);
-    Status status = write_calibration();
-    if (status.ok() && !options_.report.empty()) {
-      LineFile page;
-      status = page.open(options_.report, calibrate::to_html(result_, names_));
-    }
-    if (status.ok() && !(options_.quiet && options_.json.empty()))
-      status = write_result(options_.json, calibrate::to_json(result_),
-                            [this] { return options_.quiet ? std::string() : calibrate::to_text(result_); });
-    return status.ok() ? kExitSuccess : fail(status);
+    // An output that fails does not take the others with it.
+    int exit_code = kExitSuccess;
+    for (const Status& status : {write_calibration(), write_page(), write_summary()})
+      if (!status.ok()) exit_code = fail(status);
+    return exit_code;
+  }
+
+  Status write_page() {
+    LineFile page;
+    return options_.report.empty() ? Status()
+                                   : page.open(options_.report, calibrate::to_html(result_, names_));
+  }
+
+  Status write_summary() {
+    return write_result(
+        options_.json, calibrate::to_json(result_),
+        [this] { return options_.quiet ? std::string() : calibrate::to_text(result_); },
+        is_standard_output(options_.out) || is_standard_output(options_.report));
   }
 
   Status write_calibration() {
-    std::string text = "# Made by plvo calibrate from";
-    for (const std::string& name : names_) text += ' ' + name;
-    text += '\n';
+    std::string text = "# Made by plvo calibrate from" + names() + '\n';
     for (std::size_t i = 0; i < 3; ++i)
       if (calibrate::is_told(result_, i) && result_.sigma_s[i] > 0)
         text += fmt::format("# {}: SD {:.5f} s\n", calibrate::kTimingNames[i].key, result_.sigma_s[i]);
@@ -203,6 +260,7 @@ class Calibrate {
   FirstPassLog log_;
   Calibration calibration_;
   std::vector<std::string> names_;
+  std::vector<std::size_t> frame_counts_;  // SIZE_MAX where it is not known
   calibrate::TimingResult result_;
 };
 
@@ -238,7 +296,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
                                         return text.empty() ? "expected a path, not an empty word" : "";
                                       });
   require(recordings);
-  takes_values(recordings, 1, 64);
+  takes_words(recordings, 64);
   require(group.path("--out", options->out,
                      "The calibration with what was found, for --calibration; - is standard output"));
   group.path("--report", options->report, "A page with the curves: one HTML file, no network");

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/common/console.hpp"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
-#include <cstdio>
-
+#include "plvo/host/files/whole_write.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/printable.hpp"
 #include "plvo/host/stderr_log.hpp"
 
 namespace plvo::cli {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 100'000'000;
+const std::string kErase = "\r\033[K";  // the line of a terminal
 
 }  // namespace
 
@@ -37,8 +37,7 @@ bool Console::wants_line() {
 
 void Console::show_line(std::string_view line) {
   const std::lock_guard lock(mutex_);
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  write_whole(STDERR_FILENO, kErase + printable(line));
   shown_ = true;
 }
 
@@ -49,7 +48,7 @@ void Console::clear() {
 
 // Under mutex_.
 void Console::erase_line() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) write_whole(STDERR_FILENO, kErase);
   shown_ = false;
 }
 

@@ -30,9 +30,4 @@ void catch_interrupt() {
 
 bool interrupted() { return caught != 0; }
 
-void ignore_broken_outputs() {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-}
-
 }  // namespace plvo::cli

@@ -8,8 +8,4 @@ namespace plvo::cli {
 void catch_interrupt();
 bool interrupted();
 
-// From here on a reader that left and a file that may not grow are errors of write(), which say what
-// happened, and no longer the end of the program.
-void ignore_broken_outputs();
-
 }  // namespace plvo::cli

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::cli {
 
@@ -13,13 +13,22 @@ void add_json_option(CLI::App& command, std::string& file) {
   OptionGroup(command).path("--json", file, "The result as JSON; - prints it instead of the text");
 }
 
+Status write_json(const std::string& file, const nlohmann::ordered_json& json) {
+  LineFile out;
+  return out.open(file, json.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 Status write_result(const std::string& file, const nlohmann::ordered_json& json,
-                    const std::function<std::string()>& page) {
-  if (!file.empty()) {
-    LineFile out;
-    if (Status status = out.open(file, json.dump(2)); !status.ok()) return status;
+                    const std::function<std::string()>& page, bool aside) {
+  const Status written = file.empty() ? Status() : write_json(file, json);
+  if (is_standard_output(file)) return written;
+  Status printed;
+  if (aside) {
+    print_to_stderr(page());
+  } else {
+    printed = print(page());
   }
-  return is_standard_output(file) ? Status() : print(page());
+  return written.ok() ? printed : written;
 }
 
 }  // namespace plvo::cli

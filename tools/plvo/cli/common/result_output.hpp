@@ -14,8 +14,13 @@ namespace plvo::cli {
 
 void add_json_option(CLI::App& command, std::string& file);
 
-// page: called where it is printed.
+// Escapes all that is not ASCII: a reader gets the text back as it was, and no terminal obeys it. Bytes that
+// are not UTF-8 become U+FFFD. kIo as LineFile.
+Status write_json(const std::string& file, const nlohmann::ordered_json& json);
+
+// page: called where it is printed. aside: on standard error, for another output has standard output. Where
+// one of the two cannot be written, the other still is.
 Status write_result(const std::string& file, const nlohmann::ordered_json& json,
-                    const std::function<std::string()>& page);
+                    const std::function<std::string()>& page, bool aside = false);
 
 }  // namespace plvo::cli

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "plvo/host/printable.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
 
 namespace plvo::cli {
@@ -132,7 +133,7 @@ nlohmann::ordered_json TrackSummary::to_json() const {
 
 std::string to_text(const SummaryRows& rows) {
   std::string text;
-  for (const auto& [name, value] : rows) text += fmt::format("{:<22} {}\n", name, value);
+  for (const auto& [name, value] : rows) text += fmt::format("{:<22} {}\n", name, printable(value));
   return text;
 }
 

@@ -15,6 +15,7 @@
 #include "plvo/cli/doctor/doctor_page.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/stderr_log.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/usb/usb_bus.hpp"
 
@@ -65,7 +66,7 @@ int doctor_command(const DoctorOptions& options) {
   const bool something = !report.openni_devices.empty() || !options.camera.device.empty();
   if (!options.no_capture && something && listed.ok()) {
     if (!is_standard_output(options.json) && isatty(STDERR_FILENO) == 1)
-      fmt::print(stderr, "plvo: capturing for {:g} s\n", options.seconds);
+      StderrLog().write(LogLevel::kInfo, fmt::format("capturing for {:g} s", options.seconds));
     report.capture = capture(options.camera, options.seconds);
     report.capture_findings = judge(report.capture);
   }

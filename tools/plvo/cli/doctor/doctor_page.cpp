@@ -7,6 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "plvo/host/printable.hpp"
+
 namespace plvo::cli {
 namespace {
 
@@ -53,7 +55,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
 }
 
 void put_row(std::string& to, const std::string& name, const std::string& value) {
-  fmt::format_to(std::back_inserter(to), "  {:<18} {}\n", name, wrapped(value, 21));
+  fmt::format_to(std::back_inserter(to), "  {:<18} {}\n", printable(name), wrapped(printable(value), 21));
 }
 
 // Packages bring libX.so as a link beside libX.so.0, which is the one that counts.
@@ -124,8 +126,9 @@ void put_capture(std::string& to, const CaptureFacts& c) {
 }
 
 void put_finding(std::string& to, Severity severity, const std::string& what, const std::string& remedy) {
-  fmt::format_to(std::back_inserter(to), "  {:<8} {}\n", word(severity), wrapped(what, 11));
-  if (!remedy.empty()) fmt::format_to(std::back_inserter(to), "           -> {}\n", wrapped(remedy, 14));
+  fmt::format_to(std::back_inserter(to), "  {:<8} {}\n", word(severity), wrapped(printable(what), 11));
+  if (!remedy.empty())
+    fmt::format_to(std::back_inserter(to), "           -> {}\n", wrapped(printable(remedy), 14));
 }
 
 nlohmann::ordered_json json_of(const CaptureFacts& c) {

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "plvo/cli/common/exit_code.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/documentation/command_text.hpp"
 #include "plvo/cli/options/arguments.hpp"
+#include "plvo/host/standard_streams.hpp"
 
 namespace plvo::cli {
 namespace {

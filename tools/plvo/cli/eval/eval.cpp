@@ -103,11 +103,15 @@ int eval_command(EvalOptions options) {
                      (options.fit_truth ? ", turned and shifted to fit" : "");
     input.trajectory = estimate;
     input.evaluation = evaluation;
-    if (const Status written = report::write_report(options.report, input); !written.ok())
-      return fail(written);
+    status = report::write_report(options.report, input);
   }
-  status = write_result(options.json, to_json(evaluation), [&] { return to_text(evaluation); });
-  return status.ok() ? kExitSuccess : fail(status);
+  const Status result = write_result(
+      options.json, to_json(evaluation), [&] { return to_text(evaluation); },
+      is_standard_output(options.report));
+  int exit_code = kExitSuccess;
+  for (const Status& written : {status, result})
+    if (!written.ok()) exit_code = fail(written);
+  return exit_code;
 }
 
 void check(const CLI::App& command, const EvalOptions& options) {

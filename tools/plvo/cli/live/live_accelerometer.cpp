@@ -100,13 +100,12 @@ AccelerometerSummary LiveAccelerometer::summary() const { return {}; }
 
 void LiveAccelerometer::keep(const ImuSample& sample) {
   if (folder_.empty()) return;
-  Status status;
   if (!file_.is_open())
-    status = file_.open((std::filesystem::path(folder_) / kAccelerometerFile).string(),
-                        imu_header(kAccelerometerFile, ImuAxes::kKinect));
-  if (status.ok()) status = file_.write(imu_line(sample));
-  if (status.ok()) return;
-  console_.write(LogLevel::kError, status.message());
+    failure_ = file_.open((std::filesystem::path(folder_) / kAccelerometerFile).string(),
+                          imu_header(kAccelerometerFile, ImuAxes::kKinect));
+  if (failure_.ok()) failure_ = file_.write(imu_line(sample));
+  if (failure_.ok()) return;
+  console_.write(LogLevel::kError, failure_.message());
   folder_.clear();
 }
 

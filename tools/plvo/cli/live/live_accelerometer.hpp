@@ -40,8 +40,9 @@ class LiveAccelerometer {
   MotionPrior prior(std::int64_t stamp_ns, std::int64_t arrival_ns);
 
   // From here on readings go into accelerometer.txt in this folder as well, from the next frame on, when the
-  // folder is there. A full disk ends the file alone, in words.
+  // folder is there. A full disk ends the file alone, in words; failure() then says that it did.
   void keep_in(const std::string& folder) { folder_ = folder; }
+  const Status& failure() const { return failure_; }
 
   AccelerometerSummary summary() const;
 
@@ -55,6 +56,7 @@ class LiveAccelerometer {
   ImuIntegrator integrator_;
   std::string folder_;
   LineFile file_;
+  Status failure_;
 };
 
 }  // namespace plvo::cli

@@ -10,9 +10,10 @@
 
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
+#include "plvo/cli/common/result_output.hpp"
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
@@ -25,7 +26,6 @@ constexpr std::uint64_t kWarmFrames = 30;  // the libraries have taken their mem
 }  // namespace
 
 int LiveSession::run() {
-  ignore_broken_outputs();
   if (const Status status = prepare_outputs(); !status.ok()) return refused(status, kExitFailure);
   if (const Status status = open_live_camera(options_.camera, console_, camera_); !status.ok())
     return refused(status, exit_code_of_camera(status, options_.camera.device));
@@ -192,7 +192,7 @@ void LiveSession::finish() {
   paths.insert(paths.end(),
                {files.trajectory, files.covariance, files.motions, files.stats, options_.summary});
   if (takes_standard_output(paths)) {
-    fmt::print(stderr, "{}", summary_.to_text());
+    print_to_stderr(summary_.to_text());
   } else {
     summary_failure_ = print(summary_.to_text());
   }
@@ -200,9 +200,7 @@ void LiveSession::finish() {
 
 int LiveSession::judge() {
   if (!options_.summary.empty()) {
-    LineFile file;
-    if (Status status = file.open(options_.summary, summary_.to_json().dump(2)); !status.ok())
-      return fail(status);
+    if (Status status = write_json(options_.summary, summary_.to_json()); !status.ok()) return fail(status);
   }
   if (!summary_failure_.ok()) return fail(summary_failure_);
   const LiveCapture::State& capture = summary_.capture;
@@ -210,7 +208,9 @@ int LiveSession::judge() {
     fail(capture.end);
     return exit_code_of_camera(capture.end, options_.camera.device);
   }
-  if (!outputs_.failure().ok() || !capture.recorder.ok() || !recorder_failure_.ok()) return kExitFailure;
+  for (const Status& told :
+       {outputs_.failure(), capture.recorder, recorder_failure_, accelerometer_.failure()})
+    if (!told.ok()) return kExitFailure;
   if (capture.frames == 0) {
     fail(fmt::format("no frame came from {}: {}; plvo doctor looks into it", summary_.camera_name,
                      capture.words));

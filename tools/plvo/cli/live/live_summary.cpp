@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "plvo/host/printable.hpp"
+
 namespace plvo::cli {
 namespace {
 
@@ -61,7 +63,7 @@ std::string LiveSummary::to_text() const {
                                   accelerometer.late, accelerometer.failures));
   if (dropped_lines > 0)
     rows.emplace_back("stream", fmt::format("{} lines dropped for slow readers", dropped_lines));
-  return camera_name + '\n' + cli::to_text(rows) + stage_table();
+  return printable(camera_name) + '\n' + cli::to_text(rows) + stage_table();
 }
 
 nlohmann::ordered_json LiveSummary::to_json() const {

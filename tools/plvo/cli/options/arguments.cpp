@@ -40,8 +40,12 @@ std::string any_of(const std::vector<std::string>& words) {
 std::string type_of(const std::vector<std::string>& words) { return CLI::detail::join(words, "|"); }
 
 std::string expected(std::string_view what, std::string_view text) {
-  return fmt::format("expected {}, not '{}{}'", what, text.substr(0, kLongestQuote),
-                     text.size() > kLongestQuote ? "..." : "");
+  std::string_view quote = text.substr(0, kLongestQuote);
+  // Not within a character of UTF-8.
+  while (quote.size() < text.size() && (static_cast<unsigned char>(text[quote.size()]) & 0xc0U) == 0x80U &&
+         !quote.empty())
+    quote.remove_suffix(1);
+  return fmt::format("expected {}, not '{}{}'", what, quote, quote.size() < text.size() ? "..." : "");
 }
 
 std::string read_number(const std::string& text, const NumberRange& range, double& value) {
@@ -100,6 +104,7 @@ void repeatable(CLI::Option* option) {
   option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
 }
 void takes_values(CLI::Option* option, int least, int most) { option->expected(least, most); }
+void takes_words(CLI::Option* words, int most) { words->expected(1, most)->allow_extra_args(); }
 
 void refuse_command(const std::string& why) { throw CLI::RequiredError(why, CLI::ExitCodes::RequiredError); }
 

@@ -116,6 +116,7 @@ class OptionGroup {
 void require(CLI::Option* option);
 void repeatable(CLI::Option* option);                         // once for each value
 void takes_values(CLI::Option* option, int least, int most);  // after one another
+void takes_words(CLI::Option* words, int most);  // of an option without a name: one or more, anywhere
 
 // Wrong usage that no single value shows: ends the command with exit code 2. option: the one to blame.
 [[noreturn]] void refuse(const std::string& option, const std::string& why);

@@ -9,13 +9,14 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
 
 namespace plvo::cli {
@@ -47,13 +48,15 @@ void show_line(Console& console, const LiveCapture::State& state, const FrameRec
   console.show_line(line);
 }
 
-int judge(const RecordOptions& options, const LiveCapture::State& state, const Status& stopped) {
+int judge(const RecordOptions& options, const LiveCapture::State& state, const Status& stopped,
+          const LiveAccelerometer& accelerometer) {
   if (!state.end.ok()) {
     fail(state.end);
     return exit_code_of_camera(state.end, options.camera.device);
   }
   if (!state.recorder.ok()) return exit_code_of_camera(state.recorder, {});
   if (!stopped.ok()) return fail(stopped);
+  if (!accelerometer.failure().ok()) return kExitFailure;  // which was told
   if (state.frames > 0) return kExitSuccess;
   fail(fmt::format("no frame came: {}; plvo doctor looks into it", state.words));
   return kExitNoSensor;
@@ -80,7 +83,6 @@ Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const I
 }
 
 int record_command(const RecordOptions& options) {
-  ignore_broken_outputs();
   Console console(options.quiet);
   if (Status status = check_outputs(options); !status.ok()) return fail(status);
   std::unique_ptr<LiveCamera> camera;
@@ -122,16 +124,18 @@ int record_command(const RecordOptions& options) {
   console.clear();
   const LiveCapture::State state = capture.state();
   if (!options.quiet) {
-    std::string text = fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), options.path,
-                                   seconds(), interrupted() ? ", ended by a signal" : "");
+    std::string text =
+        fmt::format("{} frames in {} ({:.1f} s{})", recording.frames(), printable(options.path), seconds(),
+                    interrupted() ? ", ended by a signal" : "");
     if (recording.dropped() > 0)
       text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
-    if (Status status = print(text + fmt::format("; next: plvo run {}\n", options.path)); !status.ok())
+    if (Status status = print(text + fmt::format("; next: plvo run {}\n", printable(options.path)));
+        !status.ok())
       return fail(status);
   }
-  return judge(options, state, stopped);
+  return judge(options, state, stopped, accelerometer);
 }
 
 void check(const CLI::App& command, const RecordOptions& options) {

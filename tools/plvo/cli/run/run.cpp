@@ -11,7 +11,7 @@
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
+#include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/camera_options.hpp"
@@ -23,6 +23,7 @@
 #include "plvo/cli/run/run_summary.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/prefetched_camera.hpp"
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
@@ -64,13 +65,13 @@ class Run {
   int execute() {
     if (Status status = open(); !status.ok()) return fail(status);
     catch_interrupt();
-    const Status failure = replay();
+    summary_->failure = replay();
     console_.clear();
-    Status written = finish();
-    if (!failure.ok()) return fail(failure);
-    if (written.ok()) written = write_results();
-    if (!written.ok()) return fail(written);
-    if (!summary_->failed()) return kExitSuccess;
+    // An output that fails does not take the others with it.
+    int exit_code = summary_->failure.ok() ? kExitSuccess : fail(summary_->failure);
+    for (const Status& status : {finish(), write_report(), write_summary()})
+      if (!status.ok()) exit_code = fail(status);
+    if (exit_code != kExitSuccess || !summary_->failed()) return exit_code;
     fail(summary_->why_failed());
     return kExitNothingTracked;
   }
@@ -161,16 +162,15 @@ class Run {
     if (!takes_standard_output(
             {o.trajectory, o.covariance, o.motions, o.stats, options_.summary, options_.report}))
       return print(summary_->to_text());
-    fmt::print(stderr, "{}", summary_->to_text());
+    print_to_stderr(summary_->to_text());
     return {};
   }
 
-  Status write_results() {
-    if (!options_.report.empty())
-      if (Status status = history_->write_report(options_.report, *summary_); !status.ok()) return status;
-    if (options_.summary.empty()) return {};
-    LineFile file;
-    return file.open(options_.summary, summary_->to_json().dump(2));
+  Status write_report() {
+    return options_.report.empty() ? Status() : history_->write_report(options_.report, *summary_);
+  }
+  Status write_summary() {
+    return options_.summary.empty() ? Status() : write_json(options_.summary, summary_->to_json());
   }
 
   RunOptions options_;

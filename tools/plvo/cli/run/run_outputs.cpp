@@ -8,6 +8,7 @@
 
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/printable.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -80,10 +81,10 @@ std::string stats_header() {
 std::string stats_row(const FrameRecord& record) {
   const TrackResult& result = record.result;
   const Status& status = record.damaged() ? record.camera_status : result.status;
-  std::string row =
-      fmt::format("{},{},{},{},{},{:.2f}", record.number, format_stamp(result.stamp_ns),
-                  record.damaged() ? "damaged" : to_string(result.state), csv_quoted(status.message()),
-                  format_stamp(result.reference_stamp_ns), result.mean_brightness);
+  std::string row = fmt::format("{},{},{},{},{},{:.2f}", record.number, format_stamp(result.stamp_ns),
+                                record.damaged() ? "damaged" : to_string(result.state),
+                                csv_quoted(printable(status.message())),
+                                format_stamp(result.reference_stamp_ns), result.mean_brightness);
   append_counts(row, result.points);
   append_counts(row, result.lines);
   fmt::format_to(std::back_inserter(row), ",{},{}", result.ransac_iterations, result.lm_iterations);

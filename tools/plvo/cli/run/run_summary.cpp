@@ -5,10 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "plvo/host/printable.hpp"
+
 namespace plvo::cli {
 
 SummaryRows RunSummary::rows() const {
-  SummaryRows rows = {{"frames", fmt::format("{}{}", frames(), interrupted ? " (interrupted)" : "")}};
+  SummaryRows rows = {{"frames", fmt::format("{}{}", frames(),
+                                             interrupted    ? " (interrupted)"
+                                             : failure.ok() ? ""
+                                                            : " (ended by an error)")}};
   const auto add = [&rows](const SummaryRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
   const std::string scaled =
       image.scaled_down_by > 1 ? fmt::format(", scaled down by {}", image.scaled_down_by) : "";
@@ -21,7 +26,7 @@ SummaryRows RunSummary::rows() const {
 }
 
 std::string RunSummary::to_text() const {
-  std::string text = camera_name + '\n' + cli::to_text(rows()) + stage_table();
+  std::string text = printable(camera_name) + '\n' + cli::to_text(rows()) + stage_table();
   if (!evaluation) return text;
   text += "\nagainst the ground truth (plvo eval says more)\n";
   for (const eval::RpeResult& r : evaluation->rpe) {
@@ -40,6 +45,8 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["image"] = {
       {"width", image.width}, {"height", image.height}, {"scaled_down_by", image.scaled_down_by}};
   json["unpaired_images"] = unpaired_images;
+  json["failure"] = nullptr;
+  if (!failure.ok()) json["failure"] = failure.message();
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   return json;
 }

@@ -23,6 +23,7 @@ class RunSummary : public TrackSummary {
     int scaled_down_by = 1;
   } image;  // as it is tracked
   std::size_t unpaired_images = 0;
+  Status failure;                              // ended the run before its last frame
   std::optional<eval::Evaluation> evaluation;  // where there is ground truth
 };
 

@@ -10,10 +10,11 @@
 #include "plvo/cli/common/exit_code.hpp"
 #include "plvo/cli/common/file_roles.hpp"
 #include "plvo/cli/common/interrupt.hpp"
-#include "plvo/cli/common/standard_streams.hpp"
 #include "plvo/cli/common/subcommands.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/simulator_arguments.hpp"
+#include "plvo/host/printable.hpp"
+#include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"
@@ -49,8 +50,8 @@ int simulate_command(const SimulateOptions& options) {
   });
   console.clear();
   if (status.ok() && !options.quiet)
-    status = print(fmt::format("{} frames in {}{}; next: plvo run {}\n", written, options.folder,
-                               interrupted() ? " (interrupted)" : "", options.folder));
+    status = print(fmt::format("{0} frames in {1}{2}; next: plvo run {1}\n", written,
+                               printable(options.folder), interrupted() ? " (interrupted)" : ""));
   return status.ok() ? kExitSuccess : fail(status);
 }
 
