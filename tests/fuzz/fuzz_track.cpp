@@ -50,18 +50,20 @@ class Bytes {
   std::size_t size_;
 };
 
-// Images are as small as they may be: the most executions a second. Many references and kept keyframes, or
-// the least of everything.
-constexpr Limits kLimits[] = {{.width = 64,
-                               .height = 64,
-                               .keypoints = 60,
+// Images are as small as may be where tracking can start, for keypoints are 17 px from the border: the most
+// executions a second.
+constexpr int kMostSide = 96;
+// Many references and kept keyframes, or the least of everything.
+constexpr Limits kLimits[] = {{.width = kMostSide,
+                               .height = kMostSide,
+                               .keypoints = 80,
                                .segments = 30,
                                .references = 3,
                                .kept_keyframes = 2,
                                .surfaces = 20},
-                              {.width = 64,
-                               .height = 64,
-                               .keypoints = 40,
+                              {.width = kMostSide,
+                               .height = kMostSide,
+                               .keypoints = 50,
                                .segments = 16,
                                .references = 1,
                                .kept_keyframes = 0,
@@ -114,11 +116,11 @@ Config read_config(Bytes& bytes) {
 }
 
 CameraModel read_camera(Bytes& bytes) {
-  constexpr int kSizes[][2] = {{64, 48}, {48, 40}, {32, 32}, {64, 64}};
+  constexpr int kSizes[][2] = {{96, 72}, {80, 80}, {72, 64}, {64, 48}};
   const int* size = kSizes[bytes.below(4)];
   CameraModel camera{size[0],
                      size[1],
-                     {bytes.number(60, 30, 200), bytes.number(60, 30, 200), size[0] / 2.0, size[1] / 2.0},
+                     {bytes.number(80, 40, 200), bytes.number(80, 40, 200), size[0] / 2.0, size[1] / 2.0},
                      {}};
   if (bytes.below(2) == 0) return camera;
   Distortion& lens = camera.distortion;
@@ -164,7 +166,7 @@ class Picture {
         depth_.data() + depth_.size() - (camera.height - 1) * frame.depth.stride - camera.width;
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
-        const auto block = static_cast<std::uint32_t>((x + shift) / 7 * 31 + y / 6 * 17);
+        const auto block = static_cast<std::uint32_t>((x + shift) / 6 * 31 + y / 5 * 17);
         const std::uint32_t grey = kind % 4 == 2   ? 5
                                    : kind % 4 == 1 ? random.next()
                                                    : block * 2654435761U >> 13;
@@ -182,8 +184,8 @@ class Picture {
   }
 
  private:
-  std::vector<std::uint8_t> colour_ = std::vector<std::uint8_t>(64 * (64 * 3 + kMostPad));
-  std::vector<std::uint16_t> depth_ = std::vector<std::uint16_t>(64 * (64 + kMostPad));
+  std::vector<std::uint8_t> colour_ = std::vector<std::uint8_t>(kMostSide * (kMostSide * 3 + kMostPad));
+  std::vector<std::uint16_t> depth_ = std::vector<std::uint16_t>(kMostSide * (kMostSide + kMostPad));
 };
 
 Vector3 read_vector(Bytes& bytes, double most) {
