@@ -65,7 +65,7 @@ bool make_covariance(Matrix6& C) {
   if (is_covariance(C)) return true;
   if (!C.allFinite()) return false;
   repair(C);
-  return true;
+  return C.allFinite();
 }
 
 bool make_bounded_covariance(Matrix6& C, Vector6* scale) {

@@ -28,7 +28,7 @@ bool is_covariance(const Matrix6& C);
 
 // Unchanged, bit by bit, where it is a covariance. Otherwise it is made symmetric, what has no positive
 // variance becomes zero, and its correlations become the nearest semidefinite matrix (their negative
-// eigenvalues are set to zero). False, and unchanged, where it is not finite.
+// eigenvalues are set to zero). False where it is not finite.
 bool make_covariance(Matrix6& C);
 
 // The same of (position, orientation), and no variance is beyond its bound: a row and a column whose variance

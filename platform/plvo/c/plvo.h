@@ -106,7 +106,7 @@ enum {
   PLVO_REFERENCE_OF_PRESET = 0,
   PLVO_REFERENCE_PREVIOUS, /* the frame before */
   PLVO_REFERENCE_KEYFRAME,
-  PLVO_REFERENCE_BOTH,  /* the keyframe and a recent frame */
+  PLVO_REFERENCE_BOTH, /* the keyframe and a recent frame */
   PLVO_REFERENCE_WINDOW /* both and the keyframe before; needs plvo_limits.references = 3 */
 };
 
