@@ -39,7 +39,7 @@ class Bytes {
   double variance() {  // 1e-16 … 1e6
     double value = 1e-16;
     for (int n = take<std::uint8_t>() % 23; n > 0; --n) value *= 10;
-    return value;
+    return std::min(value, 1e6);
   }
   int below(int bound) { return take<std::uint8_t>() % bound; }
   bool one_in(int n) { return below(n) == n - 1; }
