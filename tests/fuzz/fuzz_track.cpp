@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a configuration and a few frames: every configuration is refused or works, no number that
-// leaves is NaN or infinite, whatever the pixels, the depth, the stamps and the scale of depth were.
+// Any bytes as a camera, a configuration, and some frames with their priors: every configuration is refused
+// or works, and every result is sound (tests/support/sound.hpp), whatever the pixels, the depth, the stamps,
+// the priors and the poses that are set were. Zeros are the usual: the default configuration, and a textured
+// wall that is tracked.
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
 #include "plvo/base/random.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "scratch_file.hpp"
+#include "sound.hpp"
 
 namespace {
 
@@ -25,12 +29,20 @@ class Bytes {
     size_ -= n;
     return value;
   }
-  // Mostly a sensible number, now and then any bit pattern at all.
-  double number(double low, double high) {
+  // The usual one, mostly a sensible number, now and then any bit pattern at all.
+  double number(double usual, double low, double high) {
     const auto how = take<std::uint8_t>();
+    if (how == 0) return usual;
     if (how == 255) return take<double>();
-    return low + (high - low) * how / 254.0;
+    return low + (high - low) * (how - 1) / 253.0;
   }
+  double variance() {  // 1e-16 … 1e6
+    double value = 1e-16;
+    for (int n = take<std::uint8_t>() % 23; n > 0; --n) value *= 10;
+    return std::min(value, 1e6);
+  }
+  int below(int bound) { return take<std::uint8_t>() % bound; }
+  bool one_in(int n) { return below(n) == n - 1; }
   bool empty() const { return size_ == 0; }
 
  private:
@@ -38,87 +50,216 @@ class Bytes {
   std::size_t size_;
 };
 
-// The smallest images that are taken: the most executions a second.
-constexpr Limits kLimits{
-    .width = 64, .height = 64, .keypoints = 60, .segments = 30, .references = 3, .surfaces = 20};
+// Images are as small as may be where tracking can start, for keypoints are 17 px from the border: the most
+// executions a second.
+constexpr int kMostSide = 96;
+// Many references and kept keyframes, or the least of everything.
+constexpr Limits kLimits[] = {{.width = kMostSide,
+                               .height = kMostSide,
+                               .keypoints = 80,
+                               .segments = 30,
+                               .references = 3,
+                               .kept_keyframes = 2,
+                               .surfaces = 20},
+                              {.width = kMostSide,
+                               .height = kMostSide,
+                               .keypoints = 50,
+                               .segments = 16,
+                               .references = 1,
+                               .kept_keyframes = 0,
+                               .surfaces = 0}};
+constexpr int kMostPad = 8;
 
 Config read_config(Bytes& bytes) {
   Config config;
-  config.features = static_cast<Features>(bytes.take<std::uint8_t>() % 4);
-  config.references.policy = static_cast<ReferencePolicy>(bytes.take<std::uint8_t>() % 3);
-  config.points.sigma_px = bytes.number(0.1, 2);
-  config.points.detector.levels = bytes.take<std::uint8_t>() % 6;
-  config.points.detector.cell_px = bytes.take<std::uint8_t>();
-  config.points.detector.noise_floor = bytes.take<std::uint8_t>();
-  config.points.detector.min_strength = bytes.number(0, 20);
-  config.points.match.radius_px = bytes.number(0, 100);
-  config.lines.guided_offset_px = bytes.number(0, 50);
-  config.lines.guided_angle_rad = bytes.number(0, 1);
-  config.motion.inlier_probability = bytes.number(0.5, 1);
-  config.motion.max_ransac_iterations = bytes.take<std::uint8_t>() * 4;
-  config.motion.min_inliers = bytes.take<std::uint8_t>() % 30;
-  config.motion.robust = bytes.take<std::uint8_t>() % 2 == 0;
-  config.depth_noise.c1 = bytes.number(0, 0.01);
+  if (bytes.below(2) == 0) return config;
+  const auto tune = [&bytes](double& entry, double low, double high) {
+    entry = bytes.number(entry, low, high);
+  };
+  config.features = static_cast<Features>((bytes.below(3) + 2) % 3);
+  config.surfaces = bytes.below(2) == 0;
+  config.level_world = bytes.one_in(2);
+  ReferenceConfig& references = config.references;
+  references.policy = static_cast<ReferencePolicy>((bytes.below(4) + 2) % 4);
+  references.recent_frames = 1 + bytes.below(4);
+  references.max_lost_frames = 1 + bytes.below(4);
+  references.look_back_frames = 1 + bytes.below(4);
+  tune(references.keyframe_inlier_ratio, 0, 1);
+  tune(references.window_inlier_ratio, 0, 1);
+  tune(references.older_inlier_ratio, 0, 1);
+  tune(references.unseen_m_per_s, 0, 100);
+  tune(references.unseen_rad_per_s, 0, 100);
+  config.points.registered = !bytes.one_in(4);
+  config.points.depth_reach_px = (bytes.below(4) + 2) % 4;
+  tune(config.points.sigma_px, 0.01, 2);
+  config.points.detector.levels = 1 + bytes.below(4);
+  config.points.detector.noise_floor = 1 + bytes.below(64);
+  tune(config.points.detector.min_strength, 0, 20);
+  tune(config.points.match.radius_px, 0, 100);
+  tune(config.motion.inlier_probability, 0.5, 1);
+  config.motion.max_ransac_iterations = 1 + bytes.below(256) * 4;
+  config.motion.min_inliers = 3 + bytes.below(16);
+  config.motion.robust = bytes.below(2) == 0;
+  tune(config.motion.max_sigma_m, 1e-6, 100);
+  tune(config.motion.max_sigma_rad, 1e-6, 10);
+  tune(config.noise.learning_rate, 0, 0.5);
+  tune(config.noise.repeated_share, 0, 1);
+  tune(config.noise.point_correlation, 0, 1);
+  tune(config.noise.shared_depth_m, 0, 1);
+  tune(config.noise.turning_rad_per_s, 0, 10);
+  tune(config.depth_noise.c1, 0, 0.01);
+  tune(config.depth_noise.floor_m, 1e-6, 0.1);
+  config.budget.frame_ns = bytes.below(2) * 1000;
+  config.budget.patience_frames = 1 + bytes.below(2);
   config.seed = bytes.take<std::uint8_t>();
   return config;
 }
 
-// A picture: blocks of random grey that move a little from frame to frame, or pure noise, or flat.
-void paint(Bytes& bytes, std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth) {
-  const auto kind = bytes.take<std::uint8_t>();
-  const int shift = kind / 8;
-  Random random(kind % 4 == 3 ? bytes.take<std::uint16_t>() : 5);
-  const auto base = bytes.take<std::uint16_t>();
-  const auto slope = bytes.take<std::uint8_t>();
-  for (int y = 0; y < kLimits.height; ++y)
-    for (int x = 0; x < kLimits.width; ++x) {
-      const auto k = static_cast<std::size_t>(y * kLimits.width + x);
-      const auto block = static_cast<std::uint32_t>((x + shift) / 9 * 31 + y / 7 * 17);
-      const std::uint32_t grey = kind % 4 == 0   ? 128
-                                 : kind % 4 == 1 ? random.next()
-                                                 : block * 2654435761U >> 13;
-      colour[k] = static_cast<std::uint8_t>(grey);
-      depth[k] =
-          static_cast<std::uint16_t>(base + slope * x + static_cast<int>(kind & 4 ? random.next() % 512 : 0));
-    }
+CameraModel read_camera(Bytes& bytes) {
+  constexpr int kSizes[][2] = {{96, 72}, {80, 80}, {72, 64}, {64, 48}};
+  const int* size = kSizes[bytes.below(4)];
+  CameraModel camera{size[0],
+                     size[1],
+                     {bytes.number(80, 40, 200), bytes.number(80, 40, 200), size[0] / 2.0, size[1] / 2.0},
+                     {}};
+  if (bytes.below(2) == 0) return camera;
+  Distortion& lens = camera.distortion;
+  if (bytes.one_in(3)) lens.model = LensModel::kEquidistant;
+  lens.k1 = bytes.number(0, -0.3, 0.3);
+  lens.k2 = bytes.number(0, -0.1, 0.1);
+  lens.k3 = bytes.number(0, -0.1, 0.1);
+  if (lens.model == LensModel::kRational) {
+    lens.p1 = bytes.number(0, -0.01, 0.01);
+    lens.p2 = bytes.number(0, -0.01, 0.01);
+  }
+  lens.k4 = bytes.number(0, -0.1, 0.1);
+  camera.readout_s = bytes.number(0, 0, 0.1);
+  camera.depth_timing = {bytes.one_in(2), bytes.number(0, -0.1, 0.1), bytes.number(0, 0, 0.1)};
+  camera.stamp_sigma_s = bytes.number(0, 0, 0.1);
+  return camera;
 }
 
-bool finite(const TrackResult& result) {
-  return result.T_world_camera.is_finite() && result.T_camera_reference.is_finite() &&
-         result.pose_covariance.allFinite() && result.motion_covariance.allFinite() &&
-         result.mean_brightness - result.mean_brightness == 0;
+// A frame of its own memory, which ends where the last row does.
+class Picture {
+ public:
+  // Blocks of grey that move a little from frame to frame before a wall, or noise, or flat.
+  RgbdFrame paint(const CameraModel& camera, Bytes& bytes) {
+    RgbdFrame frame;
+    const auto kind = bytes.take<std::uint8_t>();
+    const auto look = bytes.take<std::uint8_t>();
+    const int shift = look % 64;
+    const auto pad = [&bytes](bool padded) { return padded ? bytes.below(kMostPad) : 0; };
+    const bool padded = kind & 32;
+    frame.colour.format = static_cast<PixelFormat>((kind >> 6) % 3);
+    const int channels = frame.colour.format == PixelFormat::kGray8 ? 1 : 3;
+    frame.colour.width = frame.depth.width = camera.width;
+    frame.colour.height = frame.depth.height = camera.height;
+    frame.colour.stride_bytes = camera.width * channels + pad(padded);
+    frame.depth.stride = camera.width + pad(padded);
+    frame.depth.metres_per_unit = bytes.number(0.001, 1e-4, 1e-2);
+    Random random(kind % 4 == 3 ? bytes.take<std::uint16_t>() : 5);
+    const int base = kind & 8 ? bytes.take<std::uint16_t>() : 1500;
+    const int slope = kind & 16 ? bytes.take<std::uint8_t>() : 3;
+    std::uint8_t* const colour = colour_.data() + colour_.size() -
+                                 (camera.height - 1) * frame.colour.stride_bytes - camera.width * channels;
+    std::uint16_t* const depth =
+        depth_.data() + depth_.size() - (camera.height - 1) * frame.depth.stride - camera.width;
+    for (int y = 0; y < camera.height; ++y)
+      for (int x = 0; x < camera.width; ++x) {
+        const auto block = static_cast<std::uint32_t>((x + shift) / 6 * 31 + y / 5 * 17);
+        const std::uint32_t grey = kind % 4 == 2   ? 5
+                                   : kind % 4 == 1 ? random.next()
+                                                   : block * 2654435761U >> 13;
+        for (int c = 0; c < channels; ++c)
+          colour[y * frame.colour.stride_bytes + x * channels + c] = static_cast<std::uint8_t>(grey);
+        depth[y * frame.depth.stride + x] = static_cast<std::uint16_t>(
+            base + slope * (x + shift) % 700 + static_cast<int>(kind & 4 ? random.next() % 512 : 0));
+      }
+    frame.colour.data = colour;
+    frame.depth.data = depth;
+    if (look >= 252) frame.depth.data = nullptr;
+    if (look == 251) frame.colour.width -= 1;
+    if (look == 250) frame.depth.stride = 1;
+    return frame;
+  }
+
+ private:
+  std::vector<std::uint8_t> colour_ = std::vector<std::uint8_t>(kMostSide * (kMostSide * 3 + kMostPad));
+  std::vector<std::uint16_t> depth_ = std::vector<std::uint16_t>(kMostSide * (kMostSide + kMostPad));
+};
+
+Vector3 read_vector(Bytes& bytes, double most) {
+  Vector3 v;
+  for (int i = 0; i < 3; ++i) v[i] = bytes.number(0, -most, most);
+  return v;
+}
+
+// Of three axes that are turned against the camera's.
+Matrix3 read_covariance(Bytes& bytes) {
+  const Matrix3 R = rotation_exp(read_vector(bytes, 2));
+  Vector3 variances;
+  variances.setConstant(bytes.variance());
+  if (bytes.one_in(2)) variances[bytes.below(3)] = bytes.variance();
+  const Matrix3 C = R * variances.asDiagonal() * R.transpose();
+  return 0.5 * (C + Matrix3(C.transpose()));
+}
+
+MotionPrior read_prior(Bytes& bytes) {
+  MotionPrior prior;
+  const auto parts = bytes.take<std::uint8_t>();
+  if (parts & 1) prior.rotation = {rotation_exp(read_vector(bytes, 0.1)), read_covariance(bytes)};
+  if (parts & 2) prior.translation = {read_vector(bytes, parts & 64 ? 1000 : 0.1), read_covariance(bytes)};
+  if (parts & 4)
+    prior.gravity = {Vector3(0, 1, 0) + read_vector(bytes, 1), read_covariance(bytes), bytes.number(0, 0, 1)};
+  return prior;
+}
+
+// From a nanosecond to a century, and back.
+std::int64_t read_step(Bytes& bytes) {
+  constexpr std::int64_t kFrame_ns = 33'333'333;
+  const auto how = bytes.take<std::uint8_t>();
+  if (how < 160) return kFrame_ns + how * 100'000LL;
+  if (how < 223) return std::int64_t{1} << (how - 160);
+  return -(std::int64_t{1} << (how - 223));
+}
+
+// What a caller may do between two frames; mostly nothing.
+void act(Bytes& bytes, Odometry& odometry) {
+  const auto action = bytes.take<std::uint8_t>();
+  if (action < 200) return;
+  if (action < 210) return odometry.reset();
+  if (action < 220) return odometry.frame_took(bytes.below(2) * 2000);
+  Matrix6 covariance = Matrix6::Zero();
+  const auto kind = bytes.take<std::uint8_t>();
+  if (kind & 1) covariance.block<3, 3>(0, 0) = read_covariance(bytes);
+  if (kind & 2) covariance.block<3, 3>(3, 3) = read_covariance(bytes);
+  if (kind & 4) covariance(bytes.below(6), bytes.below(6)) += bytes.number(0, -1, 1);
+  const Se3 T{rotation_exp(read_vector(bytes, 3)), read_vector(bytes, kind & 8 ? 1e9 : 10)};
+  (void)odometry.set_pose(T, covariance);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
+  const Limits& limits = kLimits[bytes.below(2)];
+  const CameraModel camera = read_camera(bytes);
   const Config config = read_config(bytes);
-  CameraModel camera{kLimits.width,
-                     kLimits.height,
-                     {bytes.number(40, 200), bytes.number(40, 200), kLimits.width / 2, kLimits.height / 2},
-                     {}};
-  camera.distortion.k1 = bytes.number(-0.3, 0.3);
+  static std::vector<std::byte> memory(std::max(required_bytes(kLimits[0]), required_bytes(kLimits[1])));
+  static Odometry odometry;
+  if (!odometry.init(memory, camera, config, limits).ok()) return 0;
 
-  static std::vector<std::byte> memory(required_bytes(kLimits));
-  Odometry odometry;
-  if (!odometry.init(memory, camera, config, kLimits).ok()) return 0;
-
-  constexpr std::size_t kPixels = static_cast<std::size_t>(kLimits.width) * kLimits.height;
-  static std::vector<std::uint8_t> colour(kPixels);
-  static std::vector<std::uint16_t> depth(kPixels);
-  std::int64_t stamp_ns = 0;
-  for (int i = 0; i < 6 && !bytes.empty(); ++i) {
-    paint(bytes, colour, depth);
-    RgbdFrame frame;
-    stamp_ns += bytes.take<std::int8_t>() * 1'000'000LL + 30'000'000;
-    frame.stamp_ns = stamp_ns;
-    frame.depth_stamp_ns = stamp_ns;
-    frame.colour = {colour.data(), kLimits.width, kLimits.height, kLimits.width, PixelFormat::kGray8};
-    frame.depth = {depth.data(), kLimits.width, kLimits.height, kLimits.width, bytes.number(1e-4, 1e-2)};
-    if (bytes.take<std::uint8_t>() % 16 == 15) frame.depth.data = nullptr;
-    if (bytes.take<std::uint8_t>() % 16 == 15) frame.colour.width -= 1;
-    fuzz::require(finite(odometry.track(frame)));
+  static Picture picture;
+  // As an unsigned number, which wraps where stamps reach their end: such a frame is refused.
+  std::uint64_t stamp_ns = bytes.one_in(8) ? bytes.take<std::uint64_t>() : 0;
+  for (int i = 0; i < 10 && !bytes.empty(); ++i) {
+    RgbdFrame frame = picture.paint(camera, bytes);
+    stamp_ns += static_cast<std::uint64_t>(read_step(bytes));
+    frame.stamp_ns = static_cast<std::int64_t>(stamp_ns);
+    frame.depth_stamp_ns = static_cast<std::int64_t>(
+        stamp_ns + static_cast<std::uint64_t>(bytes.take<std::int8_t>() * 1'000'000LL));
+    act(bytes, odometry);
+    fuzz::require(test::is_sound(odometry.track(frame, read_prior(bytes))));
   }
   return 0;
 }

@@ -73,6 +73,29 @@ TEST(ImuIntegrator, TurnsAsFarAsAFineIntegrationDoes) {
   }
 }
 
+// What track() is given with a frame must not be refused: the frame would be, too.
+TEST(ImuIntegrator, WhateverTheGapsItsPriorsAreTaken) {
+  ImuConfig config;
+  config.longest_gap_s = 10;
+  config.gyro_offset_walk = 1;
+  config.acceleration = 100;
+  config.acceleration_s = 100;
+  Imu imu(config);
+  std::int64_t now_ns = 0;
+  for (const std::int64_t step_ns : {kSecond / 30, kSecond / 10'000, 9 * kSecond, std::int64_t{1},
+                                     2'000'000'000 * kSecond, kSecond / 30, 9 * kSecond}) {
+    for (int k = 0; k <= 3; ++k) {
+      const std::int64_t sample_ns = now_ns + k * step_ns / 3;
+      (void)imu.integrator.add_gyro({sample_ns, {0.1, 0.2, 0.3}});
+      (void)imu.integrator.add_acceleration({sample_ns, {0, -kGravity, 0}});
+    }
+    now_ns += step_ns;
+    const MotionPrior prior = imu.integrator.prior(now_ns);
+    EXPECT_TRUE(prior.validate().ok()) << step_ns << " ns: " << prior.validate().message();
+    EXPECT_LE(imu.integrator.gyro_offset_variance().maxCoeff(), 1);
+  }
+}
+
 TEST(ImuIntegrator, SaysHowSureItIs) {
   ImuConfig config;
   config.gyro_offset_sigma = 0.01;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "plvo/math/covariance.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -14,6 +15,11 @@ constexpr double kMostReading = 1e4;
 constexpr double kLeastSeconds = 1e-4;
 // Of the accelerometer, as a share of g.
 constexpr double kMostOffset = 0.5;
+// Two unit vectors are at most 2 apart: the mean square of each component of a direction's error is at
+// most 4.
+constexpr double kMostDirectionVariance = 4;
+// Of a gyro, (rad/s)²: what ImuConfig lets its offset start with. It does not wander farther.
+constexpr double kMostOffsetVariance = 1;
 // Differences of stamps within fit into 64 bits.
 constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
 bool is_stamp(std::int64_t ns) { return ns >= -kFarthest_ns && ns <= kFarthest_ns; }
@@ -133,7 +139,10 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   before_ns_ = before_ns;
   last_ns_ = stamp_ns;
   seconds_ = first ? 0 : seconds_between(before_ns, stamp_ns);
-  for (int i = 0; i < 3; ++i) variance_[i] += config_.gyro_offset_walk * config_.gyro_offset_walk * seconds_;
+  for (int i = 0; i < 3; ++i) {
+    const double wandered = config_.gyro_offset_walk * config_.gyro_offset_walk * seconds_;
+    variance_[i] += std::clamp(kMostOffsetVariance - variance_[i], 0.0, wandered);
+  }
   Vector3 angle;
   // Without a frame before, the samples of a moment before this one still say where down is.
   constexpr std::int64_t kMoment_ns = 100'000'000;
@@ -141,8 +150,9 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   const bool whole = integrate(from_ns, stamp_ns, angle);
   if (whole && !first && seconds_ > kLeastSeconds) {
     last_rotation_ = rotation(seconds_, angle);
-    prior.rotation = last_rotation_;
-    open_ = true;
+    // A rotation that may be any says nothing.
+    open_ = last_rotation_.covariance.diagonal().maxCoeff() <= kMostRotationVariance;
+    if (open_) prior.rotation = last_rotation_;
   }
   Vector3 force;
   int count = 0;
@@ -161,7 +171,7 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
                           (kStandardGravity * kStandardGravity);
   GravityPrior gravity;
   gravity.down = -(config_.R_camera_imu * force);
-  gravity.covariance = Matrix3::Identity() * std::max(variance, 1e-12);
+  gravity.covariance = Matrix3::Identity() * std::clamp(variance, 1e-12, kMostDirectionVariance);
   gravity.offset_sigma = std::min(config_.accelerometer_offset_sigma / kStandardGravity, kMostOffset);
   prior.gravity = gravity;
   return prior;
@@ -197,7 +207,7 @@ void ImuIntegrator::learn(const TrackResult& result) {
     const double gain = variance_[i] * seconds_ / C;
     const double bound = kMostSigmas * sqrt(C);
     offset_[i] += gain * std::clamp(e[i], -bound, bound);
-    variance_[i] -= gain * gain * (C - std::clamp(left(i, i), 0.0, C));
+    variance_[i] = std::max(0.0, variance_[i] - gain * gain * (C - std::clamp(left(i, i), 0.0, C)));
   }
 }
 

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/gravity_hold.hpp"
 
+#include <algorithm>
+
+#include "plvo/math/covariance.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
 namespace {
 
 constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
+// No accelerometer says where down is to better than a microradian. What is surer would cancel the variance
+// of a pose that may be turned anyhow (kMostRotationVariance) beyond a double's digits.
+constexpr double kLeastReadingVariance = 1e-12;
 
 // ∂δ_current / ∂δ_from of advance().
 Matrix6 carry(const HeldPose& from, const HeldPose& current) {
@@ -35,6 +41,16 @@ HeldPose advance(const HeldPose& from, const Se3& T_current_from, const Matrix6&
                                           inverse_covariance(T_current_from, motion_covariance));
   current.covariance_with_gravity = carry(from, current).lazyProduct(from.covariance_with_gravity);
   return current;
+}
+
+bool settle(HeldPose& pose) {
+  Vector6 scale;
+  if (!pose.T_world_camera.is_finite() || !pose.covariance_with_gravity.allFinite() ||
+      !make_bounded_covariance(pose.covariance, &scale))
+    return false;
+  for (int i = 0; i < 6; ++i)
+    if (scale[i] < 1) pose.covariance_with_gravity.row(i) *= scale[i];
+  return true;
 }
 
 // g = R (z − β − noise), R being off by ω: ε = −[g]× ω − R (β + noise).
@@ -104,9 +120,10 @@ void GravityHold::read(const GravityPrior& reading, HeldPose& from, HeldPose& cu
   const Matrix<6, 3> gravity_omega = current.covariance_with_gravity.block<3, 6>(3, 0).transpose();
   const Matrix<6, 2> P_gravity =
       gravity_omega.lazyProduct(J_omega.transpose()) + covariance_.lazyProduct(J_gravity.transpose());
-  const Matrix2 S =
-      symmetric<2>(J_omega.lazyProduct(P_current.block<3, 2>(3, 0)) + J_gravity.lazyProduct(P_gravity) +
-                   U.transpose().lazyProduct(reading.covariance).eval().lazyProduct(U));
+  Matrix2 noise = U.transpose().lazyProduct(reading.covariance).eval().lazyProduct(U);
+  for (int i = 0; i < 2; ++i) noise(i, i) = std::max(noise(i, i), kLeastReadingVariance);
+  const Matrix2 S = symmetric<2>(J_omega.lazyProduct(P_current.block<3, 2>(3, 0)) +
+                                 J_gravity.lazyProduct(P_gravity) + noise);
   const double determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(0, 1);
   if (!(determinant > 0)) return;
   Matrix2 S_inverse;
@@ -131,6 +148,7 @@ void GravityHold::read(const GravityPrior& reading, HeldPose& from, HeldPose& cu
   down_ /= sqrt(down_.squaredNorm());
   offset_ += correction.tail<3>();
   covariance_ = symmetric<6>(covariance_ - P_gravity.lazyProduct(gain_gravity));
+  if (!make_covariance(covariance_)) forget();
 }
 
 }  // namespace plvo

@@ -26,6 +26,10 @@ struct HeldPose {
 // `from` moved on by T_current_from of this covariance (of its ⊞-perturbation).
 HeldPose advance(const HeldPose& from, const Se3& T_current_from, const Matrix6& motion_covariance);
 
+// Brings its covariance within the bound and makes it one again (covariance.hpp); bit by bit the same where
+// nothing was wrong. False where the pose or the covariance is not finite.
+bool settle(HeldPose& pose);
+
 class GravityHold {
  public:
   // Whether a reading has said where down is in the world.

@@ -71,9 +71,26 @@ Status Odometry::check(const RgbdFrame& input) const {
 
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input) { return track(input, MotionPrior()); }
 
+// The one place where results leave: what is wrong with one is found here, whatever made it.
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
+  process(input, prior, result);
+  if (make_sound(result)) return result;
+  forget_world();
+  result.T_world_camera = result.T_camera_reference = Se3();
+  result.pose_covariance.setZero();
+  result.motion_covariance.setZero();
+  result.mean_brightness = 0;
+  result.returned = false;
+  result.state = TrackState::kLost;
+  result.status = {
+      StatusCode::kDegenerate,
+      "lost: the pose came out as numbers that are none; the next usable frame starts a new world"};
+  return result;
+}
+
+void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result) {
   const bool has_pose = last_ != kNobody;
   report(held(has_pose ? last_ : current_), has_pose ? frame(last_).velocity : Vector6::Zero(), result);
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
@@ -82,7 +99,7 @@ Status Odometry::check(const RgbdFrame& input) const {
   if (!status.ok()) {
     result.state = TrackState::kLost;
     result.status = status;
-    return result;
+    return;
   }
   sense(prior, input.stamp_ns);
   last_stamp_ns_ = input.stamp_ns;
@@ -118,7 +135,6 @@ Status Odometry::check(const RgbdFrame& input) const {
   segment_count_ = fill_segment_views(features.lines, rooms_.segment_views);
   points_found_ = result.points;
   points_found_.matched = points_found_.inliers = 0;
-  return result;
 }
 
 // Limits for one reference have memory for the features of two frames: the reference, and the current frame,

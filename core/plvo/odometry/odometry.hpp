@@ -106,7 +106,10 @@ class Odometry {
               const Limits& limits = Limits::vga());
 
   // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
-  // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
+  // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing. After a
+  // loss so long that the position may be anywhere (covariance.hpp) the first usable frame starts a new
+  // world, as the first one of all does: kInitialising, and the status is ok() with a message. What
+  // set_pose() said is forgotten with the world that was.
   TrackResult track(const RgbdFrame& input);
   // With what other sensors say of the frame. Their motion leads the search for features and joins the
   // estimate as one more constraint: what vision leaves open then has a large covariance and is no loss, and
@@ -119,8 +122,9 @@ class Odometry {
   void reset();
   // The pose of the last frame that has one, in a world of the caller's, with the covariance of its
   // ⊞-perturbation; before the first frame, that of the first usable one. Where down is, is learnt anew.
-  // kInvalidArgument, and nothing changes: before init, for a rotation that is none (to 1e-6), for a
-  // covariance that is not symmetric or has a negative eigenvalue, for numbers that are not finite.
+  // Variances beyond the bound of covariance.hpp are taken as the bound. kInvalidArgument, and nothing
+  // changes: before init, for a rotation that is none (to 1e-6), a position beyond 1e8 m, a covariance that
+  // is not symmetric or has a negative eigenvalue, numbers that are not finite.
   Status set_pose(const Se3& T_world_camera, const Matrix6& covariance);
 
   // For Config::budget: what the last call of track() took, by the caller's clock. How many features the next
@@ -158,6 +162,7 @@ class Odometry {
 
   // odometry.cpp: what is refused, and what a frame brings with it.
   Status check(const RgbdFrame& input) const;
+  void process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result);
   void take_feature_memory();
   bool wants_points() const;
   void find_points(const DepthSampler& depth, TrackResult& result);
@@ -180,6 +185,7 @@ class Odometry {
   void start_first(const MotionPrior& prior, TrackResult& result);
   void start_again(const MotionPrior& prior, TrackResult& result);
   void start_at(const HeldPose& pose, TrackResult& result);
+  void forget_world();
   void read_gravity(const MotionPrior& prior, HeldPose& pose);
   void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
   void accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
@@ -202,7 +208,7 @@ class Odometry {
 
   // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
   HeldPose held(int slot) const;
-  void hold(int slot, const HeldPose& pose);
+  void hold(int slot, HeldPose pose);
   void report(const HeldPose& pose, const Vector6& velocity, TrackResult& result) const;
   MotionReference from_keyframe(int slot) const;
   void move_keyframe(const HeldPose& pose);
@@ -254,7 +260,8 @@ class Odometry {
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
   bool has_stamp_ = false;
-  bool start_is_set_ = false;  // by set_pose()
+  bool start_is_set_ = false;   // by set_pose()
+  bool world_is_lost_ = false;  // and the next one has not started
   int lost_frames_ = 0;
   FeatureCounts points_found_;  // of the latest frame where points were looked for
   int view_slot_ = 0;           // whose keypoints features() shows

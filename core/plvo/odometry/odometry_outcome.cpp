@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of a frame: the first of a world, or of a new start after a loss; one with a motion; one
 // without. And which frame the next ones are matched with.
+#include <algorithm>
+
+#include "plvo/math/covariance.hpp"
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
@@ -69,10 +72,15 @@ void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
   else
     read_gravity(prior, pose);
   start_at(pose, result);
+  if (!world_is_lost_) return;
+  world_is_lost_ = false;
+  result.status = {StatusCode::kOk,
+                   "a new world starts: where the camera is in the one before is not known any more"};
 }
 
 // After a loss, and after the references were given up: what the priors make of the last good pose, or that
-// pose itself, whose covariance grows by all the time that nobody saw.
+// pose itself, whose covariance grows by all the time that nobody saw. Where that leaves a position that may
+// be anywhere, it is the first frame of another world.
 void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
   if (too_few_features(result)) {
     result.state = TrackState::kLost;
@@ -80,14 +88,38 @@ void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
     if (sensed_.known()) (void)predicted_pose(prior, result);
     return;
   }
-  if (sensed_.known()) {
-    start_at(predicted_pose(prior, result), result);
+  const bool sensed = sensed_.known();
+  HeldPose pose = sensed ? predicted_pose(prior, result) : held(last_);
+  if (!sensed) grow_unseen(result.stamp_ns, pose.covariance);
+  if (may_be_anywhere(pose.covariance)) {
+    forget_world();
+    report(HeldPose(), Vector6::Zero(), result);
+    result.T_camera_reference = Se3();
+    result.motion_covariance.setZero();
+    start_first(prior, result);
     return;
   }
-  HeldPose pose = held(last_);
-  grow_unseen(result.stamp_ns, pose.covariance);
-  read_gravity(prior, pose);
+  if (!sensed) read_gravity(prior, pose);
   start_at(pose, result);
+}
+
+// Poses, and what was said of them; what was learnt of the noise stays. The next usable frame is the first.
+void Odometry::forget_world() {
+  for (Frame& each : frames_) {
+    const FrameFeatures features = each.features;
+    each = Frame();
+    each.features = features;
+  }
+  keyframe_ = recent_ = last_ = older_ = kNobody;
+  recent_age_ = 0;
+  last_motion_ = recent_motion_ = {};
+  kept_.clear();
+  frames_since_look_back_ = 0;
+  start_is_set_ = false;
+  sensed_ = SensedMotion();
+  gravity_.forget();
+  lost_frames_ = 0;
+  world_is_lost_ = true;
 }
 
 // Of a camera that is not chained to an earlier pose.
@@ -99,8 +131,8 @@ void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
 // The current frame becomes the keyframe and the last good one, with no motion behind it.
 void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
   describe_points(result);
-  report(pose, Vector6::Zero(), result);
   hold(current_, pose);
+  report(held(current_), Vector6::Zero(), result);
   frame(current_).motion_ns = 0;
   last_motion_ = recent_motion_ = {};
   result.T_camera_reference = Se3();
@@ -122,7 +154,8 @@ void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
   const double sigma_rad = config().references.unseen_rad_per_s * seconds;
   for (int i = 0; i < 3; ++i) {
     covariance(i, i) += sigma_m * sigma_m;
-    covariance(3 + i, 3 + i) += sigma_rad * sigma_rad;
+    double& turned = covariance(3 + i, 3 + i);
+    turned += std::clamp(kMostRotationVariance - turned, 0.0, sigma_rad * sigma_rad);
   }
 }
 
@@ -150,7 +183,7 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
   hold(current_, pose);
   note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
   const Vector6& velocity = frame(current_).velocity;
-  report(pose, velocity, result);
+  report(held(current_), velocity, result);
   result.motion_covariance =
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
                                               camera().stamp_sigma_s);

@@ -11,6 +11,9 @@ namespace {
 // What a prior leaves out of the motion goes on as it did for so long, then stands still.
 constexpr std::int64_t kLongestCoast_ns = 300'000'000;
 
+// Beyond any place on Earth, in any system of coordinates; a double still tells 0.01 µm there.
+constexpr double kFarthestPose_m = 1e8;
+
 bool is_semidefinite_covariance(const Matrix6& C) {
   if (!C.allFinite()) return false;
   const double largest = C.cwiseAbs().maxCoeff();
@@ -22,32 +25,22 @@ bool is_semidefinite_covariance(const Matrix6& C) {
 
 void Odometry::reset() {
   if (!ready_) return;
-  for (Frame& each : frames_) {
-    const FrameFeatures features = each.features;
-    each = Frame();
-    each.features = features;
-  }
-  keyframe_ = recent_ = last_ = older_ = kNobody;
-  recent_age_ = 0;
-  last_motion_ = recent_motion_ = {};
+  forget_world();
+  world_is_lost_ = false;
   points_found_ = {};
-  kept_.clear();
-  frames_since_look_back_ = 0;
   current_ = view_slot_ = 0;
-  start_is_set_ = false;
-  sensed_ = SensedMotion();
-  gravity_.forget();
   noise_ = config().noise.initial;
   last_stamp_ns_ = 0;
   has_stamp_ = false;
-  lost_frames_ = 0;
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
 }
 
 Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) {
   if (!ready_) return {StatusCode::kInvalidArgument, "set_pose() before a successful init()"};
-  if (!T_world_camera.is_finite() || !is_rotation(T_world_camera.R))
-    return {StatusCode::kInvalidArgument, "set_pose: the pose must be finite, and its R a rotation matrix"};
+  if (!T_world_camera.is_finite() || !is_rotation(T_world_camera.R) ||
+      !(T_world_camera.t.cwiseAbs().maxCoeff() <= kFarthestPose_m))
+    return {StatusCode::kInvalidArgument,
+            "set_pose: the pose must be finite, its R a rotation matrix, its position within 1e8 m"};
   if (!is_semidefinite_covariance(covariance))
     return {StatusCode::kInvalidArgument,
             "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
@@ -56,6 +49,7 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   pose.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
   pose.covariance = covariance;
   start_is_set_ = true;
+  world_is_lost_ = false;
   kept_.clear();  // their poses are in the world that was
   if (last_ == kNobody) {
     hold(current_, pose);
@@ -74,7 +68,9 @@ HeldPose Odometry::held(int slot) const {
   return {frame(slot).T_world_camera, frame(slot).covariance, frame(slot).covariance_with_gravity};
 }
 
-void Odometry::hold(int slot, const HeldPose& pose) {
+// What is not finite is found where the result leaves.
+void Odometry::hold(int slot, HeldPose pose) {
+  (void)settle(pose);
   frame(slot).T_world_camera = pose.T_world_camera;
   frame(slot).covariance = pose.covariance;
   frame(slot).covariance_with_gravity = pose.covariance_with_gravity;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/sensed_motion.hpp"
 
+#include "plvo/math/covariance.hpp"
+
 namespace plvo {
 namespace {
 
@@ -41,6 +43,8 @@ void SensedMotion::extend(const MotionPrior& prior, const Vector6& velocity, dou
   covariance_ = compose_covariance(T_now_before, covariance, T_current_last_, covariance_);
   T_current_last_ = T_now_before * T_current_last_;
   T_current_last_.R = renormalise(T_current_last_.R);
+  whole_ =
+      !may_be_anywhere(covariance_) && make_bounded_covariance(covariance_) && T_current_last_.is_finite();
 }
 
 }  // namespace plvo

@@ -19,7 +19,8 @@ class SensedMotion {
   }
   // A frame `seconds` after the one before. velocity: (v, ω) per second of the scene in the axes of the last
   // good frame's camera, as of exposure.hpp, for what the prior does not tell. A prior that tells no motion
-  // ends what is known until the next restart().
+  // ends what is known until the next restart(), and so does a motion that may lead anywhere
+  // (covariance.hpp).
   void extend(const MotionPrior& prior, const Vector6& velocity, double seconds,
               const ReferenceConfig& unseen);
 

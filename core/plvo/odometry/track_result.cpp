@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/track_result.hpp"
 
+#include "plvo/math/covariance.hpp"
+
 namespace plvo {
 
 const char* to_string(TrackState state) {
@@ -22,6 +24,13 @@ const char* to_string(Stage stage) {
     case Stage::kMotion: return "motion";
   }
   return "unknown";
+}
+
+bool make_sound(TrackResult& result) {
+  for (const Se3* T : {&result.T_world_camera, &result.T_camera_reference})
+    if (!T->is_finite() || !is_rotation(T->R)) return false;
+  return make_bounded_covariance(result.pose_covariance) &&
+         make_bounded_covariance(result.motion_covariance) && is_finite(result.mean_brightness);
 }
 
 }  // namespace plvo

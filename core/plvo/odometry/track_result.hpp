@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What track() says about one frame. Every number in it is finite, whatever the frame was.
+// What track() says about one frame. Every number in it is finite, whatever the frame was; rotations are
+// rotations; covariances are symmetric and positive semidefinite to kCovarianceTolerance, and within the
+// bound of covariance.hpp.
 #pragma once
 
 #include <array>
@@ -11,10 +13,12 @@
 namespace plvo {
 
 enum class TrackState : std::uint8_t {
-  kInitialising,  // the first usable frame, from which tracking starts; or, where status says so, none yet
-  kTracking,      // the pose is new
-  kLost,          // status says why; the pose is the last good one; the next good frame goes on from there
-  kPredicted,     // nothing could be seen, status says why; the pose is new, from the priors alone
+  // The first usable frame, from which tracking starts; or, where the status is not ok(), none yet. Where it
+  // is ok() and has a message, a new world starts: see Odometry::track.
+  kInitialising,
+  kTracking,   // the pose is new
+  kLost,       // status says why; the pose is the last good one; the next good frame goes on from there
+  kPredicted,  // nothing could be seen, status says why; the pose is new, from the priors alone
 };
 const char* to_string(TrackState state);
 
@@ -62,5 +66,9 @@ struct TrackResult {
   double mean_brightness = 0;                        // of the grey image, 0 … 255
   std::array<std::int64_t, kStageCount> stage_ns{};  // zero without Config::stage_clock
 };
+
+// Looked at where a result leaves the library: makes its covariances what is said above, bit by bit the same
+// where they are. False where a number is not finite or a rotation is none: then nobody may have it.
+bool make_sound(TrackResult& result);
 
 }  // namespace plvo

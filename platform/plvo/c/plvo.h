@@ -55,7 +55,8 @@ enum {
   PLVO_NOT_CONVERGED
 };
 
-/* What went wrong and, in words a user can act on, what to do. The message of PLVO_OK is empty. */
+/* What went wrong and, in words a user can act on, what to do. The message of PLVO_OK is empty, but where a
+ * new world starts (plvo_result.state). */
 typedef struct plvo_status {
   int32_t code;
   char message[252];
@@ -186,7 +187,9 @@ typedef struct plvo_counts {
 /* Matrices are row-major: T is the 3×4 matrix [R t]; a covariance is 6×6, position before orientation. */
 typedef struct plvo_result {
   uint32_t struct_size;
-  int32_t state; /* PLVO_INITIALISING: the frame defines the world, or the first usable one is waited for */
+  /* PLVO_INITIALISING: the frame defines the world, or the first usable one is waited for. With PLVO_OK and a
+   * message it starts a new world, which has nothing to do with the poses so far. */
+  int32_t state;
   int64_t stamp_ns, reference_stamp_ns;
   /* Camera to world; the world is the camera of the first frame. While lost, the last good pose. The
    * covariance is that of the position and of the orientation in the axes of the world. */
@@ -257,7 +260,7 @@ PLVO_API plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_f
 PLVO_API plvo_status plvo_reset(plvo_odometry* odometry);
 
 /* The pose of the last frame that has one, in a world of the caller's, with the covariance of position and
- * orientation; before the first frame, that of the first usable one. T: 3×4, row-major. */
+ * orientation; before the first frame, that of the first usable one. T: 3×4, row-major, within 1e8 m. */
 PLVO_API plvo_status plvo_set_pose(plvo_odometry* odometry, const double T_world_camera[12],
                                    const double covariance[36]);
 

@@ -29,7 +29,7 @@ py::array quaternion(const Se3& T) {
 std::string describe(const TrackResult& result) {
   std::string text = std::string("<plvo.Result ") + to_string(result.state) + " at " +
                      std::to_string(result.stamp_ns) + " ns";
-  if (!result.status.ok()) text += std::string(": ") + result.status.message();
+  if (const std::string message = result.status.message(); !message.empty()) text += ": " + message;
   return text + ">";
 }
 

@@ -43,8 +43,9 @@ void TrackSummary::add(const FrameRecord& record) {
     last_loss_[kind] = result.status;
     return;
   }
-  // Where a pose is put right it jumps, and the camera does not.
-  if (has_pose_ && !result.returned) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
+  // Where a pose is put right, and where a new world starts, it jumps, and the camera does not.
+  const bool starts = result.state == TrackState::kInitialising && result.status.message()[0] != '\0';
+  if (has_pose_ && !result.returned && !starts) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
   has_pose_ = true;
   last_pose_ = result.T_world_camera;
   if (result.state == TrackState::kInitialising) {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/math/covariance.hpp"
+
+#include <algorithm>
+
+#include "plvo/math/cholesky.hpp"
+#include "plvo/math/symmetric_eigen.hpp"
+
+namespace plvo {
+namespace {
+
+// One over the standard deviations; 0 where there is none.
+Vector6 inverse_deviations(const Matrix6& C) {
+  Vector6 inverse;
+  for (int i = 0; i < 6; ++i) inverse[i] = C(i, i) > 0 ? 1 / sqrt(C(i, i)) : 0;
+  return inverse;
+}
+
+// Of what has no variance: 1 with itself, 0 with the rest.
+Matrix6 correlations(const Matrix6& C, const Vector6& inverse) {
+  Matrix6 unit;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      unit(i, j) =
+          i == j ? 1.0 : 0.5 * (C(i, j) * inverse[i] * inverse[j] + C(j, i) * inverse[i] * inverse[j]);
+  return unit;
+}
+
+// Apart, for its matrices would else be on the stack of those who find nothing to do.
+[[gnu::noinline]] void repair(Matrix6& C) {
+  const Vector6 inverse = inverse_deviations(C);
+  const Matrix6 unit = correlations(C, inverse);
+  // A unit diagonal bounds what may be: entries beyond ±1 come of a variance that is nothing but rounding.
+  const SymmetricEigen<6> eigen = symmetric_eigen<6>(unit.cwiseMax(-1).cwiseMin(1));
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0;
+      for (int k = 0; k < 6; ++k)
+        sum += std::max(eigen.values[k], 0.0) * eigen.vectors(i, k) * eigen.vectors(j, k);
+      const double entry = inverse[i] > 0 && inverse[j] > 0 ? sum / (inverse[i] * inverse[j]) : 0;
+      C(i, j) = C(j, i) = entry;
+    }
+}
+
+}  // namespace
+
+bool is_covariance(const Matrix6& C) {
+  if (!C.allFinite() || !(C.diagonal().minCoeff() >= 0)) return false;
+  const Vector6 inverse = inverse_deviations(C);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < i; ++j) {
+      const bool unsure = inverse[i] > 0 && inverse[j] > 0;
+      if (!unsure && (C(i, j) != 0 || C(j, i) != 0)) return false;
+      const double apart = C(i, j) - C(j, i);
+      if (unsure && !((apart < 0 ? -apart : apart) * inverse[i] * inverse[j] <= kCovarianceTolerance))
+        return false;
+    }
+  Matrix6 unit = correlations(C, inverse);
+  unit.diagonal().array() += kCovarianceTolerance;
+  Cholesky<6> cholesky;
+  return cholesky.factor(unit);
+}
+
+bool make_covariance(Matrix6& C) {
+  if (is_covariance(C)) return true;
+  if (!C.allFinite()) return false;
+  repair(C);
+  return C.allFinite();
+}
+
+bool make_bounded_covariance(Matrix6& C, Vector6* scale) {
+  if (!C.allFinite()) return false;
+  Vector6 factors = Vector6::Ones();
+  for (int i = 0; i < 6; ++i) {
+    const double most = i < 3 ? kMostPositionVariance : kMostRotationVariance;
+    if (!(C(i, i) > most)) continue;
+    factors[i] = sqrt(most / C(i, i));
+    C.row(i) *= factors[i];
+    C.col(i) *= factors[i];
+  }
+  if (scale != nullptr) *scale = factors;
+  return make_covariance(C);
+}
+
+}  // namespace plvo

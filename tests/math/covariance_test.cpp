@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/math/covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "plvo/base/random.hpp"
+#include "plvo/math/se3.hpp"
+#include "sound.hpp"
+
+namespace plvo {
+namespace {
+
+// Of this rank, with standard deviations over many orders of magnitude.
+Matrix6 random_covariance(Random& random, int rank) {
+  Matrix6 C = Matrix6::Zero();
+  Vector6 deviation;
+  for (int i = 0; i < 6; ++i) {
+    deviation[i] = 1e-9;
+    for (std::uint32_t n = random.below(10); n > 0; --n) deviation[i] *= 10;
+  }
+  for (int k = 0; k < rank; ++k) {
+    Vector6 v;
+    for (int i = 0; i < 6; ++i) v[i] = deviation[i] * (2 * random.uniform() - 1);
+    C += v * v.transpose();
+  }
+  return C;
+}
+
+TEST(Covariance, WhatIsOneStaysAsItIs) {
+  Random random(1);
+  for (int i = 0; i < 500; ++i) {
+    const Matrix6 before = random_covariance(random, i % 7);
+    Matrix6 C = before;
+    EXPECT_TRUE(is_covariance(C)) << C;
+    EXPECT_TRUE(make_bounded_covariance(C));
+    EXPECT_EQ(C, before);
+  }
+}
+
+TEST(Covariance, WhatIsNoneBecomesOneNearby) {
+  Random random(2);
+  for (int i = 0; i < 500; ++i) {
+    Matrix6 C = random_covariance(random, 6);
+    const int row = static_cast<int>(random.below(6)), column = static_cast<int>(random.below(6));
+    const double deviations = sqrt(C(row, row)) * sqrt(C(column, column));
+    C(row, column) -= (row == column ? 1.5 : 2.5) * deviations;
+    EXPECT_FALSE(is_covariance(C));
+    const Matrix6 before = C;
+    EXPECT_TRUE(make_covariance(C));
+    EXPECT_TRUE(is_covariance(C)) << C;
+    EXPECT_EQ(C, C.transpose().eval());
+    if (row == column) {
+      EXPECT_EQ(C(row, row), 0) << "a variance that came out negative";
+    }
+    for (int k = 0; k < 6; ++k)
+      if (k != row && k != column) {
+        EXPECT_NEAR(C(k, k), before(k, k), 3 * before(k, k));
+      }
+    // Once more changes nothing.
+    const Matrix6 once = C;
+    EXPECT_TRUE(make_covariance(C));
+    EXPECT_EQ(C, once);
+  }
+}
+
+TEST(Covariance, NoVarianceIsBeyondItsBoundAndCorrelationsStay) {
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    Matrix6 C = random_covariance(random, 6) * 1e12;
+    const Matrix6 before = C;
+    Vector6 scale;
+    EXPECT_TRUE(make_bounded_covariance(C, &scale));
+    EXPECT_TRUE(test::is_sound_covariance(C)) << C;
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b)
+        EXPECT_NEAR(C(a, b), before(a, b) * scale[a] * scale[b], 1e-12 * sqrt(C(a, a)) * sqrt(C(b, b)));
+  }
+}
+
+TEST(Covariance, WhatIsNotFiniteIsRefused) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Matrix6 C = Matrix6::Identity();
+    C(2, 4) = bad;
+    EXPECT_FALSE(is_covariance(C));
+    EXPECT_FALSE(make_covariance(C));
+    EXPECT_FALSE(make_bounded_covariance(C));
+    C = Matrix6::Identity();
+    C(0, 0) = bad;
+    EXPECT_TRUE(may_be_anywhere(C));
+  }
+}
+
+// A lever arm of a kilometre, taken and given back: the position's variance is all but cancelled.
+TEST(Covariance, ALeverArmThatIsTakenBackLeavesOne) {
+  Random random(4);
+  int spoilt = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Se3 far{rotation_exp({0.3, -0.2, 0.1}), 1000 * Vector3(random.uniform(), random.uniform(), 1)};
+    const Matrix6 before = random_covariance(random, 3);
+    const Matrix6 there = compose_covariance(Se3{}, before, far, Matrix6::Zero());
+    Matrix6 back = compose_covariance(Se3{}, there, {far.R, -far.t}, Matrix6::Zero());
+    spoilt += test::is_sound_covariance(back) ? 0 : 1;
+    EXPECT_TRUE(make_bounded_covariance(back));
+    EXPECT_TRUE(test::is_sound_covariance(back)) << back;
+  }
+  EXPECT_GT(spoilt, 0) << "else this tests nothing";
+}
+
+}  // namespace
+}  // namespace plvo
