@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plvo/replay/calibration/sequence_calibration.hpp"
+#include "plvo/replay/checks/calibration_check.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
@@ -64,11 +65,18 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
   unpaired_colour_ = index.unpaired_colour;
   for (const std::string& sentence : {index.remark, guess, camera->remark()})
     if (!sentence.empty()) remarks_.push_back(sentence);
+  add_doubts_about(calibration);
   std::error_code error;
   has_ground_truth_ = fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty();
   read_imu_ = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
   camera_ = std::move(camera);
   return {};
+}
+
+void Recording::add_doubts_about(const Calibration& calibration) {
+  for (const std::string& sentence :
+       doubts_about(calibration.camera, whole_image_.width, whole_image_.height))
+    remarks_.push_back(sentence);
 }
 
 #ifdef PLVO_HAVE_ROSBAG
@@ -87,6 +95,7 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   frame_count_ = camera->frame_count();
   unpaired_colour_ = camera->unpaired_colour();
   remarks_ = camera->remarks();
+  add_doubts_about(calibration);
   std::error_code error;
   has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {

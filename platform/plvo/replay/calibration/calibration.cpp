@@ -56,6 +56,13 @@ Status Calibration::validate(int width, int height) const {
           StatusCode::kInvalidArgument,
           "camera calibration: the quaternion depth_qx depth_qy depth_qz depth_qw must have the length 1"};
   }
+  const Pinhole& pinhole = camera.pinhole;
+  if (pinhole.cx >= width || pinhole.cy >= height)
+    return {StatusCode::kInvalidArgument,
+            fmt::format(
+                "the principal point ({:.1f}, {:.1f}) lies outside the {}x{} images: the calibration is of "
+                "another size, or cx and cy are exchanged; use the calibration of this camera mode",
+                pinhole.cx, pinhole.cy, width, height)};
   CameraModel sized = camera;
   sized.width = width;
   sized.height = height;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "plvo/host/posix_clock.hpp"
@@ -13,6 +14,7 @@ namespace plvo::cli {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 100'000'000;
+constexpr std::size_t kKeptWarnings = 100;  // a session may last for weeks
 
 }  // namespace
 
@@ -22,8 +24,21 @@ void Console::write(LogLevel level, std::string_view message) {
   const std::lock_guard lock(mutex_);
   if ((quiet_ && level == LogLevel::kInfo) || message == last_) return;
   last_ = message;
+  if (level != LogLevel::kInfo) keep(message);
   erase_line();
   StderrLog().write(level, message);
+}
+
+std::vector<std::string> Console::warnings() {
+  const std::lock_guard lock(mutex_);
+  return warnings_;
+}
+
+// Under mutex_.
+void Console::keep(std::string_view message) {
+  if (warnings_.size() < kKeptWarnings &&
+      std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end())
+    warnings_.emplace_back(message);
 }
 
 bool Console::wants_line() {

@@ -88,7 +88,9 @@ std::string evaluate_json(const std::string& truth_path, const py::object& estim
   Evaluation evaluation;
   throw_unless_ok(
       evaluate(truth, estimate.trajectory, estimate.covariances, estimate.motions, options, evaluation));
-  return to_json(evaluation).dump();
+  nlohmann::ordered_json json = to_json(evaluation);
+  json["warnings"] = doubts_about(evaluation);
+  return json.dump();
 }
 
 }  // namespace

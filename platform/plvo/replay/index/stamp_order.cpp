@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/replay/index/stamp_order.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/replay/index/stamp_pairs.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr std::size_t kMostClockSteps = 2;  // more descents than these, and the list is merely not sorted
+constexpr std::size_t kFewestBehind = 3;
+constexpr double kUsualSteps = 3;  // of the median, from one stamp to the next
+constexpr double kOffsetSteps = 1.5;
+constexpr double kSameSteps = 0.5;  // how far the two ends of the lists may disagree
+constexpr double kSameShare = 0.1;
+constexpr std::size_t kFewestForOffset = 5;
+
+// Stamps may lie further apart than an int64 can say.
+double seconds(std::int64_t later, std::int64_t earlier) {
+  return static_cast<double>((static_cast<long double>(later) - static_cast<long double>(earlier)) * 1e-9L);
+}
+
+bool is_clock_step(const std::vector<std::int64_t>& stamps, std::size_t at) {
+  std::size_t descents = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) descents += stamps[i] <= stamps[i - 1] ? 1 : 0;
+  std::size_t behind = 0;
+  for (std::size_t i = at; i < stamps.size() && stamps[i] < stamps[at - 1]; ++i) ++behind;
+  const double usual = kUsualSteps * static_cast<double>(median_step_ns(stamps)) * 1e-9;
+  return descents <= kMostClockSteps && behind >= kFewestBehind &&
+         (at < 2 || seconds(stamps[at - 1], stamps[at - 2]) <= usual);
+}
+
+}  // namespace
+
+std::optional<StampFault> find_stamp_fault(const std::vector<std::int64_t>& stamps) {
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] > stamps[i - 1]) continue;
+    if (stamps[i] == stamps[i - 1]) return StampFault{StampFault::Kind::kRepeated, i, 0};
+    if (!is_clock_step(stamps, i)) return StampFault{StampFault::Kind::kUnsorted, i, 0};
+    const double step_s =
+        seconds(stamps[i - 1], stamps[i]) + static_cast<double>(median_step_ns(stamps)) * 1e-9;
+    constexpr double kMost_s = 9e9;
+    return StampFault{StampFault::Kind::kClockStep, i, std::llround(std::min(step_s, kMost_s) * 1e9)};
+  }
+  return {};
+}
+
+std::string in_words(const StampFault& fault, const std::vector<std::int64_t>& stamps) {
+  const std::string stamp = format_stamp(stamps[fault.at]);
+  if (fault.kind == StampFault::Kind::kClockStep)
+    return fmt::format(
+        "the clock steps back by {:.3f} s, to {}; do not sort, which would mix before and after: from here "
+        "on, add the step to the stamps of both lists, or end the lists here",
+        static_cast<double>(fault.step_ns) * 1e-9, stamp);
+  return fmt::format("stamp {} {}; sort the list by stamp and keep each stamp once", stamp,
+                     fault.kind == StampFault::Kind::kRepeated ? "appears twice" : "runs backwards");
+}
+
+std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& first,
+                                            const std::vector<std::int64_t>& second) {
+  if (std::min(first.size(), second.size()) < kFewestForOffset) return {};
+  const std::int64_t step_ns = std::max(median_step_ns(first), median_step_ns(second));
+  const double step_s = static_cast<double>(step_ns) * 1e-9;
+  const double begin_s = seconds(second.front(), first.front()), end_s = seconds(second.back(), first.back());
+  const double least_s = std::min(std::abs(begin_s), std::abs(end_s));
+  if (least_s <= kOffsetSteps * step_s || std::signbit(begin_s) != std::signbit(end_s) ||
+      std::abs(begin_s - end_s) > std::max(kSameSteps * step_s, kSameShare * least_s))
+    return {};
+  // Frames may be missing at either end: the pairs say it to less than a step.
+  const auto rough = static_cast<long double>(begin_s + end_s) / 2 * 1e9L;
+  std::vector<std::int64_t> shifted;
+  for (const std::int64_t stamp : second) {
+    const long double moved = static_cast<long double>(stamp) - rough;
+    if (std::abs(moved) > 9e18L) return {};
+    shifted.push_back(std::llround(moved));
+  }
+  std::vector<double> rest;
+  for (const auto& [i, j] : associate(first, shifted, step_ns)) rest.push_back(seconds(shifted[j], first[i]));
+  if (rest.empty()) return {};
+  const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+  std::nth_element(rest.begin(), middle, rest.end());
+  return std::llround(rough + static_cast<long double>(*middle) * 1e9L);
+}
+
+}  // namespace plvo

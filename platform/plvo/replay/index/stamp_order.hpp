@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with the stamps of a list, or of two lists against each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace plvo {
+
+struct StampFault {
+  enum class Kind : std::uint8_t {
+    kRepeated,   // a stamp is there twice
+    kUnsorted,   // the list is not in the order of time
+    kClockStep,  // the list is, but its clock was set back: sorting would mix what came before and after
+  };
+  Kind kind = Kind::kUnsorted;
+  std::size_t at = 0;        // the first stamp that is not later than the one before
+  std::int64_t step_ns = 0;  // by so much a clock was set back
+};
+
+// Nothing where the stamps increase. A clock that was set back shows in a list that increases otherwise, and
+// in which at least three stamps in a row lie before the latest of all so far.
+std::optional<StampFault> find_stamp_fault(const std::vector<std::int64_t>& stamps_ns);
+
+// "stamp … runs backwards; …", with the remedy.
+std::string in_words(const StampFault& fault, const std::vector<std::int64_t>& stamps_ns);
+
+// By how much the clock of the second list is ahead of the first one's, where both ends of the lists say the
+// same: they begin and end equally far apart, by more than one and a half steps. Both strictly increasing.
+std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& first,
+                                            const std::vector<std::int64_t>& second);
+
+}  // namespace plvo
