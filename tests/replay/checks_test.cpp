@@ -135,6 +135,18 @@ TEST(FrameCheck, DepthInAnotherUnit) {
   EXPECT_TRUE(contains(findings(as_it_is, 25000), "no depth lies beyond 0.42 m"));
 }
 
+// Every second row and column is empty, whichever comes first.
+TEST(FrameCheck, ACombOfDepthIsNotEmpty) {
+  for (const int first : {0, 1})
+    EXPECT_EQ(findings([first](auto&, auto& depth) {
+                for (int y = 0; y < kHeight; ++y)
+                  for (int x = 0; x < kWidth; ++x)
+                    if (x % 2 == first || y % 2 == first) depth[static_cast<std::size_t>(y * kWidth + x)] = 0;
+              }),
+              "")
+        << first;
+}
+
 // Whatever is done to depth, and the words for it.
 TEST(FrameCheck, DepthThatLiesMirroredOverColour) {
   const auto flip = [](bool left_right, bool up_down) {

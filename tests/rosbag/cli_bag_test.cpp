@@ -66,6 +66,15 @@ TEST_F(CliBag, GivesTheBytesOfTheFolder) {
   expect_the_folders_bytes("--depth-scale 5000");  // whole units, of which ROS would have a thousand a metre
 }
 
+// Sorted by their stamps, images from before and after would alternate.
+TEST_F(CliBag, AClockThatStepsBackIsRefused) {
+  std::vector<RecordedMessage> messages = published(true);
+  const std::size_t half = messages.size() / 2 / 4 * 4;
+  std::rotate(messages.begin(), messages.begin() + static_cast<std::ptrdiff_t>(half), messages.end());
+  write(messages);
+  expect_refused("", 1, ": the clock steps back by ");
+}
+
 TEST_F(CliBag, OfRossOwnLibraryToo) {
 #ifdef PLVO_HAVE_LIBROSBAG
   run_folder();

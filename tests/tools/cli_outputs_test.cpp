@@ -424,13 +424,13 @@ TEST_F(CliOutputs, WhatIsWrongWithTheDataIsSaidOnce) {
   said("--cx 0 --cy 0", "a coordinate of 0 is mostly one that nobody filled in");
   said("--cx 59.5 --cy 79.5", "cx and cy look exchanged");
   said("--fx 131 --fy 90", "pixels are nearly always square");
-  said("--depth-scale 1000", "the estimate's lengths are 5");
+  said("--depth-scale 1000", "times the true ones");
   said("--depth-scale 40000", "no depth lies beyond");
   // A ground truth of another clock, or of another recording.
   const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
   write_file(folder_ / "walk/groundtruth.txt", "9000 0 0 0 0 0 0 1\n9001 0 0 0 0 0 0 1\n");
   said("", "no comparison: only 0 of ");
-  said("", "are they of one recording, with one clock?");
+  said("", "one recording, one clock?");
   write_file(folder_ / "walk/groundtruth.txt", truth);
   const std::vector<std::uint16_t> none(160 * 120, 0);
   for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth"))

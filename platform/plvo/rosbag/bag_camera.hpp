@@ -61,6 +61,7 @@ class BagCamera final : public RgbdCamera {
   std::string topics_in_words() const;
   // By stamp; of equal ones the first.
   Messages messages_of(std::size_t topic);
+  Status check_clock(std::size_t topic) const;
   Status pair_up(const SequenceOptions& options);
   Status find_sizes(ImageSize& colour, ImageSize& depth, bool& metres);
   Status read_colour(const BagMessage& message);
@@ -73,7 +74,7 @@ class BagCamera final : public RgbdCamera {
   std::size_t unpaired_colour_ = 0, repeated_ = 0;
   FrameFit fit_;
   ImageSize colour_size_, depth_size_;
-  std::string depth_encoding_;
+  std::string depth_encoding_, clock_remark_;
   std::vector<unsigned char> bytes_;
   std::size_t next_ = 0;
 };

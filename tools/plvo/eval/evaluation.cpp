@@ -78,8 +78,8 @@ std::string why_apart(const Trajectory& truth, const Trajectory& estimate,
       return fmt::format("the stamps of the {} look wrong, {}", who, doubt);
   const auto seconds = [](std::int64_t stamp_ns) { return static_cast<double>(stamp_ns) * 1e-9; };
   return fmt::format(
-      "the truth goes from {:.2f} to {:.2f} s, the estimate from {:.2f} to {:.2f}; are they of one "
-      "recording, with one clock? (plvo eval --offset {:.2f} lets both begin together)",
+      "the truth goes from {:.2f} to {:.2f} s, the estimate from {:.2f} to {:.2f}; one recording, one clock? "
+      "(--offset {:.2f} lets both begin together)",
       seconds(true_stamps.front()), seconds(true_stamps.back()), seconds(stamps.front()),
       seconds(stamps.back()), seconds(true_stamps.front()) - seconds(estimate.poses.front().stamp_ns));
 }

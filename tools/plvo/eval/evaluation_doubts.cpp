@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kUsualScale = 0.05;  // off by no more
 constexpr double kExplained = 0.5;    // of the ATE, at most, may be left after scaling
+constexpr double kFollowed = 0.25;    // and of that of a camera that never moves, or the path is another
 constexpr double kFarNees = 2;        // times as much as expected, or as little
 
 struct NamedNees {
@@ -42,7 +43,8 @@ std::string advice_for_large_nees(const Evaluation& e, double ratio) {
 std::string doubt_about_scale(const Evaluation& e) {
   const AbsoluteError& ate = e.ate;
   if (!(ate.scale > 0) || std::abs(ate.scale - 1) <= kUsualScale ||
-      ate.scaled_rmse_m > kExplained * ate.position_m.rmse)
+      ate.scaled_rmse_m > kExplained * ate.position_m.rmse ||
+      ate.scaled_rmse_m > kFollowed * e.ate_identity.rmse)
     return {};
   return fmt::format(
       "the estimate's lengths are {:.3g} times the true ones (scaled by {:.3g} the ATE is {:.1f} mm, not "

@@ -8,7 +8,7 @@
 namespace plvo {
 namespace {
 
-constexpr int kRowStep = 2;
+constexpr int kRowStep = 3;  // odd, for some sensors leave every second row empty
 constexpr int kMostHole_px = 16;   // between the two sides of a jump: shadows of the projector
 constexpr int kReach_px = 3;       // what registration may err
 constexpr int kMostContrast = 64;  // so that a few sharp edges do not outvote the rest

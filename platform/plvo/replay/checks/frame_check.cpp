@@ -9,7 +9,7 @@ namespace plvo {
 namespace {
 
 constexpr int kStep = 2;       // frames
-constexpr int kPixelStep = 4;  // columns and rows
+constexpr int kPixelStep = 3;  // columns and rows; odd, for some sensors leave every second one empty
 constexpr int kBlack = 20;     // grey levels: no brighter pixel is in black images
 constexpr int kBlank = 10;     // grey levels between the darkest and the brightest pixel
 constexpr double kEmpty = 0.005;

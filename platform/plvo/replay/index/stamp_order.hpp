@@ -33,4 +33,11 @@ std::string in_words(const StampFault& fault, const std::vector<std::int64_t>& s
 std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& first,
                                             const std::vector<std::int64_t>& second);
 
+// Why no two images are within the tolerance, as far as their stamps tell. Neither list is empty.
+std::string why_no_pair(const std::vector<std::int64_t>& colour, const std::vector<std::int64_t>& depth);
+
+// What looks wrong about lists that pair up: another unit than seconds, or two clocks; else empty.
+std::string doubt_about_clocks(const std::vector<std::int64_t>& colour,
+                               const std::vector<std::int64_t>& depth);
+
 }  // namespace plvo

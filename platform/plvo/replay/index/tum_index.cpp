@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
@@ -124,30 +123,6 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
   return {};
 }
 
-// Why nothing pairs up, as far as the stamps tell it.
-std::string why_no_pair(const std::vector<std::int64_t>& colour, const std::vector<std::int64_t>& depth) {
-  if (const std::string doubt = stamp_unit_doubt(colour); !doubt.empty())
-    return "the stamps are no seconds: " + doubt;
-  if (const std::optional<std::int64_t> offset = clock_offset_ns(colour, depth))
-    return fmt::format("the clock of depth is {:.3f} s {}: take that off the stamps in depth.txt",
-                       std::abs(static_cast<double>(*offset)) * 1e-9, *offset > 0 ? "ahead" : "behind");
-  return fmt::format("colour's stamps go from {} to {}, depth's from {} to {}", format_stamp(colour.front()),
-                     format_stamp(colour.back()), format_stamp(depth.front()), format_stamp(depth.back()));
-}
-
-// What is strange about the stamps of lists that pair up.
-std::string doubts_about(const std::vector<std::int64_t>& colour, const std::vector<std::int64_t>& depth) {
-  if (const std::string doubt = stamp_unit_doubt(colour); !doubt.empty())
-    return "the stamps look wrong: " + doubt;
-  const std::optional<std::int64_t> offset = clock_offset_ns(colour, depth);
-  if (!offset) return {};
-  return fmt::format(
-      "depth begins and ends {:.3f} s {} than colour: if its clock is {} by that, pairs are of different "
-      "moments, and the stamps in depth.txt must be moved by {:+.3f} s",
-      std::abs(static_cast<double>(*offset)) * 1e-9, *offset > 0 ? "later" : "earlier",
-      *offset > 0 ? "ahead" : "behind", -static_cast<double>(*offset) * 1e-9);
-}
-
 Status pair_up(const std::vector<StampedFile>& colour, const std::vector<StampedFile>& depth,
                std::int64_t tolerance_ns, SequenceIndex& index) {
   const std::vector<std::int64_t> colour_stamps = stamps_of(colour), depth_stamps = stamps_of(depth);
@@ -161,7 +136,7 @@ Status pair_up(const std::vector<StampedFile>& colour, const std::vector<Stamped
         fmt::format("no colour image has a depth image within {:.3f} s (a larger --tolerance pairs more); {}",
                     static_cast<double>(tolerance_ns) * 1e-9, why_no_pair(colour_stamps, depth_stamps))};
   }
-  index.remark = doubts_about(colour_stamps, depth_stamps);
+  index.remark = doubt_about_clocks(colour_stamps, depth_stamps);
   return {};
 }
 
