@@ -55,6 +55,9 @@ TEST_F(StampOrder, AClockThatStepsBackIsNamedWithItsStepAndLine) {
       << status.message();
   EXPECT_TRUE(says(status, "do not sort")) << status.message();
   EXPECT_TRUE(says(status, "or end the lists here")) << "the whole sentence: " << status.message();
+  // By more than was recorded before.
+  EXPECT_TRUE(
+      says(read(list("rgb", 3600) + list("rgb", 1), list("depth", 5)), "the clock steps back by 3600.000 s"));
   // In the list of depth and in a list of pairs as well.
   EXPECT_TRUE(
       says(read(list("rgb", 5), list("depth", 5) + after), "depth.txt line 32: the clock steps back"));

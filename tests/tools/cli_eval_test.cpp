@@ -274,7 +274,7 @@ TEST_F(CliEvalFiles, ANeesFarFromSixIsExplained) {
   r = eval(too_small + " --fit-truth --gt-sigma 0.0001 0.001");
   EXPECT_TRUE(says(r, "the covariance is too small, and its standard deviations should be ")) << r.err;
   EXPECT_TRUE(!says(r, "--gt-sigma") && !says(r, "--fit-truth")) << r.err;
-  EXPECT_EQ(eval(too_small + " --gt-sigma 0.003 0.18").err, "");
+  EXPECT_EQ(eval(too_small + " --gt-sigma 0.002 0.12").err, "");
   r = eval("--est-covariance " + (folder_ / "large.txt").string());
   EXPECT_TRUE(says(r, "the covariance is larger than the errors")) << r.err;
 }

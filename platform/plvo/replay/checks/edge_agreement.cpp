@@ -8,14 +8,14 @@
 namespace plvo {
 namespace {
 
-constexpr int kRowStep = 3;  // odd, for some sensors leave every second row empty
+constexpr int kRowStep = 3;        // odd, for some sensors leave every second row empty
 constexpr int kMostHole_px = 16;   // between the two sides of a jump: shadows of the projector
 constexpr int kReach_px = 3;       // what registration may err
 constexpr int kMostContrast = 64;  // so that a few sharp edges do not outvote the rest
 constexpr int kFewestRatio = 10;   // a jump is a tenth of the nearer depth or more
 constexpr std::uint64_t kFewestJumps = 20;
 constexpr int kFewestBlocks = 8;
-constexpr double kFewestErrors = 4;
+constexpr double kFewestErrors = 3;
 constexpr double kLeastGain = 1.3;
 
 int brightness(const ColourView& colour, int x, int y) {

@@ -18,9 +18,10 @@ class EdgeAgreement {
   void add(const RgbdFrame& frame);
 
   // "mirrored left to right", "upside down" or "turned by 180 degrees", where that fits significantly better
-  // than depth as it is: 1.3 times the contrast over all blocks, and the mean of the blocks' ratios is four
-  // of its standard errors above zero (over 8 blocks or more; a chance of 0.3 % where colour and depth have
-  // nothing in common, and far less where depth fits as it is). Empty otherwise.
+  // than depth as it is: 1.3 times the contrast over all blocks, and the mean of the blocks' ratios is three
+  // of its standard errors above zero, over 8 blocks or more. Where colour and depth have nothing in common
+  // the latter happens once in a hundred; where depth fits as it is, the mean lies below zero. Empty
+  // otherwise.
   std::string misfit() const;
 
  private:

@@ -8,7 +8,6 @@
 namespace plvo {
 namespace {
 
-constexpr int kStep = 2;       // frames
 constexpr int kPixelStep = 3;  // columns and rows; odd, for some sensors leave every second one empty
 constexpr int kBlack = 20;     // grey levels: no brighter pixel is in black images
 constexpr int kBlank = 10;     // grey levels between the darkest and the brightest pixel
@@ -22,12 +21,12 @@ constexpr double kNearFarthest_m = 1;
 
 std::vector<std::string> FrameCheck::add(const RgbdFrame& frame) {
   if (done_) return {};
-  if (frames_++ % kStep == 0) look(frame);
+  look(frame);
   return frames_ < kFrames ? std::vector<std::string>() : finish();
 }
 
 void FrameCheck::look(const RgbdFrame& frame) {
-  ++looks_;
+  ++frames_;
   const ColourView& colour = frame.colour;
   const DepthView& depth = frame.depth;
   const std::ptrdiff_t row_bytes =
@@ -95,7 +94,7 @@ std::string FrameCheck::finding_of_colour() const {
 
 std::vector<std::string> FrameCheck::finish() {
   std::vector<std::string> findings;
-  if (done_ || looks_ == 0) return findings;
+  if (done_ || frames_ == 0) return findings;
   done_ = true;
   if (const std::string colour = finding_of_colour(); !colour.empty()) findings.push_back(colour);
   const double share = static_cast<double>(depths_) / static_cast<double>(pixels_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks at the first frames of a camera, whatever it is, for what makes a run go wrong without an error:
 // black colour, empty depth, depth in another unit, depth that lies mirrored over colour. It changes nothing,
-// and costs some milliseconds in each of 20 frames.
+// and takes about a millisecond in each of them.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class FrameCheck {
   std::vector<std::string> finish();
 
  private:
-  static constexpr int kFrames = 40;  // of which every second one is looked at
+  static constexpr int kFrames = 40;
   static constexpr std::size_t kBins = 2000;
   static constexpr double kBin_m = 0.02;
 
@@ -32,7 +32,7 @@ class FrameCheck {
   std::string finding_of_colour() const;
   std::string finding_of_unit() const;
 
-  int frames_ = 0, looks_ = 0;
+  int frames_ = 0;
   bool done_ = false;
   int darkest_ = 255, brightest_ = 0;
   std::uint64_t pixels_ = 0, depths_ = 0;

@@ -12,9 +12,7 @@
 namespace plvo {
 namespace {
 
-constexpr std::size_t kMostClockSteps = 2;  // more descents than these, and the list is merely not sorted
-constexpr std::size_t kFewestBehind = 3;
-constexpr double kUsualSteps = 3;  // of the median, from one stamp to the next
+constexpr double kShortSteps = 0.75, kGapSteps = 3;  // of the median
 constexpr double kOffsetSteps = 1.5;
 constexpr double kSameSteps = 0.5;  // how far the two ends of the lists may disagree
 constexpr double kSameShare = 0.1;
@@ -25,14 +23,25 @@ double seconds(std::int64_t later, std::int64_t earlier) {
   return static_cast<double>((static_cast<long double>(later) - static_cast<long double>(earlier)) * 1e-9L);
 }
 
-bool is_clock_step(const std::vector<std::int64_t>& stamps, std::size_t at) {
-  std::size_t descents = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i) descents += stamps[i] <= stamps[i - 1] ? 1 : 0;
-  std::size_t behind = 0;
-  for (std::size_t i = at; i < stamps.size() && stamps[i] < stamps[at - 1]; ++i) ++behind;
-  const double usual = kUsualSteps * static_cast<double>(median_step_ns(stamps)) * 1e-9;
-  return descents <= kMostClockSteps && behind >= kFewestBehind &&
-         (at < 2 || seconds(stamps[at - 1], stamps[at - 2]) <= usual);
+// How uneven the steps forward of a list are: a gap counts for two steps that are too short.
+int unevenness(const std::vector<std::int64_t>& stamps, double median_s) {
+  int uneven = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] < stamps[i - 1]) continue;
+    const double step_s = seconds(stamps[i], stamps[i - 1]);
+    if (step_s < kShortSteps * median_s) ++uneven;
+    if (step_s > kGapSteps * median_s) uneven += 2;
+  }
+  return uneven;
+}
+
+// Sorting makes the list less even, not more.
+bool is_clock_step(const std::vector<std::int64_t>& stamps) {
+  const double median_s = static_cast<double>(median_step_ns(stamps)) * 1e-9;
+  if (median_s <= 0) return false;
+  std::vector<std::int64_t> sorted = stamps;
+  std::sort(sorted.begin(), sorted.end());
+  return unevenness(sorted, median_s) >= unevenness(stamps, median_s) + 2;
 }
 
 }  // namespace
@@ -41,7 +50,7 @@ std::optional<StampFault> find_stamp_fault(const std::vector<std::int64_t>& stam
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] > stamps[i - 1]) continue;
     if (stamps[i] == stamps[i - 1]) return StampFault{StampFault::Kind::kRepeated, i, 0};
-    if (!is_clock_step(stamps, i)) return StampFault{StampFault::Kind::kUnsorted, i, 0};
+    if (!is_clock_step(stamps)) return StampFault{StampFault::Kind::kUnsorted, i, 0};
     const double step_s =
         seconds(stamps[i - 1], stamps[i]) + static_cast<double>(median_step_ns(stamps)) * 1e-9;
     constexpr double kMost_s = 9e9;
@@ -67,9 +76,11 @@ std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& fir
   const std::int64_t step_ns = std::max(median_step_ns(first), median_step_ns(second));
   const double step_s = static_cast<double>(step_ns) * 1e-9;
   const double begin_s = seconds(second.front(), first.front()), end_s = seconds(second.back(), first.back());
+  const double shorter_s =
+      std::min(seconds(first.back(), first.front()), seconds(second.back(), second.front()));
   const double least_s = std::min(std::abs(begin_s), std::abs(end_s));
   if (least_s <= kOffsetSteps * step_s || std::signbit(begin_s) != std::signbit(end_s) ||
-      std::abs(begin_s - end_s) > std::max(kSameSteps * step_s, kSameShare * least_s))
+      std::abs(begin_s - end_s) > std::max(kSameSteps * step_s, kSameShare * std::min(least_s, shorter_s)))
     return {};
   // Frames may be missing at either end: the pairs say it to less than a step.
   const auto rough = static_cast<long double>(begin_s + end_s) / 2 * 1e9L;

@@ -21,8 +21,8 @@ struct StampFault {
   std::int64_t step_ns = 0;  // by so much a clock was set back
 };
 
-// Nothing where the stamps increase. A clock that was set back shows in a list that increases otherwise, and
-// in which at least three stamps in a row lie before the latest of all so far.
+// Nothing where the stamps increase. A clock was set back where the order of the list is the more even one:
+// sorted, steps would become shorter or gaps come up.
 std::optional<StampFault> find_stamp_fault(const std::vector<std::int64_t>& stamps_ns);
 
 // "stamp … runs backwards; …", with the remedy.
