@@ -70,15 +70,18 @@ std::vector<std::string> doubts_about(const Evaluation& e) {
     of = name;
   }
   if (of == nullptr) return sentences;
+  const bool only_poses = !e.motion_nees && !e.second_nees;
   constexpr int kDof = 6;
   const double ratio = mean / kDof;
+  const std::string advice =
+      ratio > 1 ? advice_for_large_nees(e, ratio)
+                : fmt::format(
+                      "the covariance is larger than the errors, by {:.1f} in its standard deviations; if "
+                      "--gt-sigma was given, it is too large",
+                      1 / std::sqrt(ratio));
   sentences.push_back(fmt::format(
-      "the NEES {} is {:.2f} in the mean, where a true covariance gives {}: {}", of, mean, kDof,
-      ratio > 1
-          ? advice_for_large_nees(e, ratio)
-          : fmt::format("the covariance is larger than the errors, by {:.1f} in its standard deviations; if "
-                        "--gt-sigma was given, it is too large",
-                        1 / std::sqrt(ratio))));
+      "the NEES {} is {:.2f} in the mean, where a true covariance gives {}: {}{}", of, mean, kDof, advice,
+      only_poses ? "; --est-motions judges more sharply, for neighbouring poses share their errors" : ""));
   return sentences;
 }
 
