@@ -74,8 +74,7 @@ std::string FrameCheck::finding_of_unit() const {
   }
   return fmt::format(
       "{}: is the unit of depth right? {:.0f} units per metre are in force; TUM recordings have 5000, "
-      "millimetres "
-      "are 1000 (depth_scale in a calibration, --depth-scale for recordings)",
+      "millimetres are 1000 (depth_scale in a calibration, --depth-scale for recordings)",
       what, units_per_metre_);
 }
 
@@ -101,8 +100,7 @@ std::vector<std::string> FrameCheck::finish() {
   if (share < kEmpty) {
     findings.push_back(
         fmt::format("the depth images are empty: of the first {} frames {:.2f} % of the pixels have depth; "
-                    "is anything within "
-                    "the sensor's range, and was depth recorded?",
+                    "is anything within the sensor's range, and was depth recorded?",
                     frames_, 100 * share));
     return findings;
   }
@@ -110,8 +108,7 @@ std::vector<std::string> FrameCheck::finish() {
   if (const std::string misfit = edges_.misfit(); !misfit.empty())
     findings.push_back(
         fmt::format("depth looks {0} against colour: its edges agree with those of colour {0}, not as it is; "
-                    "turn the images "
-                    "of one of the two round",
+                    "turn the images of one of the two round",
                     misfit));
   return findings;
 }

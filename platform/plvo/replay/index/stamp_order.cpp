@@ -12,6 +12,7 @@
 namespace plvo {
 namespace {
 
+constexpr long double kMost_ns = 9e18L;              // that an int64 surely holds
 constexpr double kShortSteps = 0.75, kGapSteps = 3;  // of the median
 constexpr double kOffsetSteps = 1.5;
 constexpr double kSameSteps = 0.5;  // how far the two ends of the lists may disagree
@@ -53,8 +54,8 @@ std::optional<StampFault> find_stamp_fault(const std::vector<std::int64_t>& stam
     if (!is_clock_step(stamps)) return StampFault{StampFault::Kind::kUnsorted, i, 0};
     const double step_s =
         seconds(stamps[i - 1], stamps[i]) + static_cast<double>(median_step_ns(stamps)) * 1e-9;
-    constexpr double kMost_s = 9e9;
-    return StampFault{StampFault::Kind::kClockStep, i, std::llround(std::min(step_s, kMost_s) * 1e9)};
+    const long double step_ns = std::min(static_cast<long double>(step_s) * 1e9L, kMost_ns);
+    return StampFault{StampFault::Kind::kClockStep, i, std::llround(step_ns)};
   }
   return {};
 }
@@ -87,7 +88,7 @@ std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& fir
   std::vector<std::int64_t> shifted;
   for (const std::int64_t stamp : second) {
     const long double moved = static_cast<long double>(stamp) - rough;
-    if (std::abs(moved) > 9e18L) return {};
+    if (std::abs(moved) > kMost_ns) return {};
     shifted.push_back(std::llround(moved));
   }
   std::vector<double> rest;
@@ -95,7 +96,9 @@ std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& fir
   if (rest.empty()) return {};
   const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
   std::nth_element(rest.begin(), middle, rest.end());
-  return std::llround(rough + static_cast<long double>(*middle) * 1e9L);
+  const long double offset = rough + static_cast<long double>(*middle) * 1e9L;
+  if (std::abs(offset) > kMost_ns) return {};
+  return std::llround(offset);
 }
 
 std::string why_no_pair(const std::vector<std::int64_t>& colour, const std::vector<std::int64_t>& depth) {
