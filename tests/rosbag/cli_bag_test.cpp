@@ -68,9 +68,10 @@ TEST_F(CliBag, GivesTheBytesOfTheFolder) {
 
 // Sorted by their stamps, images from before and after would alternate.
 TEST_F(CliBag, AClockThatStepsBackIsRefused) {
-  std::vector<RecordedMessage> messages = published(true);
-  const std::size_t half = messages.size() / 2 / 4 * 4;
-  std::rotate(messages.begin(), messages.begin() + static_cast<std::ptrdiff_t>(half), messages.end());
+  const std::vector<RecordedMessage> recorded = published(true);
+  std::vector<RecordedMessage> messages;
+  for (const std::ptrdiff_t frame : {0, 2, 4, 1, 3, 5})
+    messages.insert(messages.end(), recorded.begin() + 4 * frame, recorded.begin() + 4 * (frame + 1));
   write(messages);
   expect_refused("", 1, ": the clock steps back by ");
 }
