@@ -272,6 +272,19 @@ def test_images_above_the_limit_are_scaled_down(walk, tmp_path):
     assert np.array_equal(small.depth, frame.depth.repeat(4, 0).repeat(4, 1))
 
 
+def test_data_that_look_wrong_are_warned_of(walk, tmp_path):
+    copy = tmp_path / "walk"
+    subprocess.run(["cp", "-r", walk, copy], check=True)
+    for image in (copy / "depth").iterdir():
+        image.write_bytes(png(np.zeros((240, 320), np.uint16)))
+    with pytest.warns(RuntimeWarning, match="the depth images are empty: of the first 24 frames"):
+        assert len(list(plvo.Sequence(copy))) == 24
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(list(plvo.Sequence(walk))) == 24
+    assert plvo.evaluate(walk, plvo.run(walk))["scale"]["best_fit"] == pytest.approx(1, abs=0.05)
+
+
 def test_what_is_assumed_is_warned_of(walk, tmp_path):
     (tmp_path / "c.txt").write_text("277 277 159.5 119.5\n")
     with pytest.warns(RuntimeWarning, match="depth"):

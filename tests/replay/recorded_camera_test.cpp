@@ -282,6 +282,21 @@ TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
   EXPECT_TRUE(says(status, "the associations name depth first")) << status.message();
 }
 
+// Everything else agrees: the lists alone tell which is which.
+TEST(RecordedCamera, ExchangedListsAreNamed) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
+  fs::rename(folder / "rgb.txt", folder / "list");
+  fs::rename(folder / "depth.txt", folder / "rgb.txt");
+  fs::rename(folder / "list", folder / "depth.txt");
+  RecordedCamera camera;
+  Status status = open(camera, folder.path());
+  EXPECT_TRUE(says(status, "the two lists are exchanged: rename rgb.txt to depth.txt")) << status.message();
+  fs::copy_file(folder / "rgb.txt", folder / "depth.txt", fs::copy_options::overwrite_existing);
+  status = open(camera, folder.path());
+  EXPECT_TRUE(says(status, "is listed as colour and as depth")) << status.message();
+}
+
 TEST(RecordedCamera, CarriesEveryPropertyOfTheSensor) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
@@ -306,6 +321,10 @@ TEST(RecordedCamera, CalibrationMustFit) {
   ASSERT_TRUE(builtin_calibration("tum-fr1", calibration).ok());
   RecordedCamera camera;
   EXPECT_TRUE(says(camera.open(folder.path(), calibration), "is for 640x480 images, these are 96x64"));
+  calibration.has_size = false;
+  EXPECT_TRUE(says(camera.open(folder.path(), calibration),
+                   "the principal point (318.6, 255.3) lies outside the 96x64 images: the calibration is of "
+                   "another size"));
 }
 
 TEST(RecordedCamera, ReadsARealSequence) {

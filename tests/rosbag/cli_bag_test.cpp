@@ -68,6 +68,16 @@ TEST_F(CliBag, GivesTheBytesOfTheFolder) {
   expect_the_folders_bytes("--depth-scale 5000");  // whole units, of which ROS would have a thousand a metre
 }
 
+// Sorted by their stamps, images from before and after would alternate.
+TEST_F(CliBag, AClockThatStepsBackIsRefused) {
+  const std::vector<RecordedMessage> recorded = published(true);
+  std::vector<RecordedMessage> messages;
+  for (const std::ptrdiff_t frame : {0, 2, 4, 1, 3, 5})
+    messages.insert(messages.end(), recorded.begin() + 4 * frame, recorded.begin() + 4 * (frame + 1));
+  write(messages);
+  expect_refused("", 1, ": the clock steps back by ");
+}
+
 TEST_F(CliBag, OfRossOwnLibraryToo) {
 #ifdef PLVO_HAVE_LIBROSBAG
   run_folder();

@@ -236,11 +236,110 @@ TEST_F(CliEvalFiles, ATruthThatIsTurnedAndLateIsFitted) {
   EXPECT_NE(nearest.err.find("leave --gt-sampling nearest away"), std::string::npos) << nearest.err;
 }
 
+// What to type, while there is something left to type.
+TEST_F(CliEvalFiles, ANeesFarFromSixIsExplained) {
+  Random random(5);
+  std::string truth, estimate, small, large;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.033 * i;
+    const Se3 T{
+        rotation_exp(Vector3(0.3 * std::sin(2.1 * t), 0.4 * std::sin(1.7 * t), 0.3 * std::sin(2.9 * t))),
+        Vector3(std::sin(t), 0.2 * std::sin(2.3 * t), 0)};
+    Vector6 error;
+    for (double& e : error) e = 0.004 * (2 * random.uniform() - 1);
+    truth += trajectory_line(i * 33'000'000LL, T) + '\n';
+    estimate += trajectory_line(i * 33'000'000LL, boxplus(T, error)) + '\n';
+    small += covariance_line(i * 33'000'000LL, Matrix6::Identity() * 1e-6) + '\n';
+    large += covariance_line(i * 33'000'000LL, Matrix6::Identity()) + '\n';
+  }
+  write_file(folder_ / "gt.txt", truth);
+  write_file(folder_ / "est.txt", estimate);
+  write_file(folder_ / "small.txt", small);
+  write_file(folder_ / "large.txt", large);
+  const auto says = [](const CommandResult& r, const char* words) {
+    return r.err.find(words) != std::string::npos;
+  };
+  const std::string too_small = "--est-covariance " + (folder_ / "small.txt").string();
+  CommandResult r = eval(too_small + " --json -");
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_TRUE(says(r, "the NEES of the poses is ") && says(r, "where a true covariance gives 6")) << r.err;
+  EXPECT_TRUE(says(r, "--fit-truth finds both") && says(r, "--gt-sigma METRES DEGREES adds it")) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_TRUE(says(r, json["warnings"][0].get<std::string>().c_str()));
+  r = eval(too_small + " --fit-truth");
+  EXPECT_TRUE(says(r, "--gt-sigma") && !says(r, "--fit-truth")) << r.err;
+  r = eval(too_small + " --gt-sigma 0.0001 0.001");
+  EXPECT_TRUE(!says(r, "--gt-sigma") && says(r, "--fit-truth")) << r.err;
+  r = eval(too_small + " --fit-truth --gt-sigma 0.0001 0.001");
+  EXPECT_TRUE(says(r, "the covariance is too small, and its standard deviations should be ")) << r.err;
+  EXPECT_TRUE(!says(r, "--gt-sigma") && !says(r, "--fit-truth")) << r.err;
+  EXPECT_EQ(eval(too_small + " --gt-sigma 0.002 0.12").err, "");
+  r = eval("--est-covariance " + (folder_ / "large.txt").string());
+  EXPECT_TRUE(says(r, "the covariance is larger than the errors")) << r.err;
+}
+
+// Lengths five times too long are a unit of depth; a bad estimate is not, though a scale fits it a little
+// better.
+TEST_F(CliEvalFiles, AScaleThatIsOffIsSaid) {
+  Random random(6);
+  std::string truth, fivefold, slightly, bad;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 t(std::sin(0.04 * i), 0.2 * std::sin(0.1 * i), 0.01 * i);
+    const Vector3 off(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    const auto line = [i](const Vector3& p) {
+      return trajectory_line(i * 33'000'000LL, {Matrix3::Identity(), p}) + '\n';
+    };
+    truth += line(t);
+    fivefold += line(5 * t + 0.01 * off);
+    slightly += line(1.04 * t);
+    bad += line(t + 2 * off);
+  }
+  write_file(folder_ / "gt.txt", truth);
+  write_file(folder_ / "est.txt", fivefold);
+  const CommandResult r = eval("--json -");
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_NE(r.err.find("the estimate's lengths are 5 times the true ones"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("is the unit of depth right"), std::string::npos) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_NEAR(json["scale"]["best_fit"].get<double>(), 0.2, 1e-3);
+  EXPECT_LT(json["scale"]["ate_rmse_m"].get<double>(), 0.01);
+  EXPECT_GT(json["ate_m"]["rmse"].get<double>(), 1);
+  write_file(folder_ / "est.txt", slightly);
+  EXPECT_EQ(eval("").err, "");
+  write_file(folder_ / "est.txt", bad);
+  const CommandResult noisy = eval("--json -");
+  EXPECT_EQ(noisy.err, "");
+  EXPECT_LT(nlohmann::json::parse(noisy.out)["scale"]["best_fit"].get<double>(), 0.95);
+}
+
 TEST_F(CliEvalFiles, TooShortARecordingIsNotFitted) {
   const CommandResult r = eval("--fit-truth");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("the truth cannot be fitted"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("take a longer recording"), std::string::npos) << r.err;
+}
+
+TEST_F(CliEvalFiles, FilesOfTwoClocksAreNamedWithBoth) {
+  std::string late, milliseconds;
+  for (int i = 0; i < 50; ++i) {
+    late += trajectory_line(90'000'000'000LL + i * 33'000'000LL, Se3()) + '\n';
+    milliseconds += std::to_string(33 * i) + " 0 0 0 0 0 0 1\n";
+  }
+  write_file(folder_ / "est.txt", late);
+  CommandResult r = eval("");
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("the truth goes from 0.00 to 1.62 s, the estimate from 90.00 to 91.62"),
+            std::string::npos)
+      << r.err;
+  EXPECT_NE(r.err.find("--offset -90.00 lets both begin together)"), std::string::npos) << r.err;
+  EXPECT_EQ(eval("--offset -90").exit_code, 0);
+  write_file(folder_ / "est.txt", milliseconds);
+  r = eval("");
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_NE(r.err.find("the stamps of the estimate look wrong, they lie 33 s apart, as milliseconds would"),
+            std::string::npos)
+      << r.err;
 }
 
 TEST_F(CliEvalFiles, MissingAndDamagedFilesAreOneLine) {

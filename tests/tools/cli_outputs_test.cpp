@@ -409,6 +409,72 @@ TEST_F(CliOutputs, LossesAreCountedByKind) {
   EXPECT_EQ(json["lost_reasons"], (nlohmann::json{{"too_few_features", 4}})) << json;
 }
 
+// Each in words on standard error, and among the warnings of the summary.
+TEST_F(CliOutputs, WhatIsWrongWithTheDataIsSaidOnce) {
+  const auto said = [&](const std::string& options, const std::string& words) {
+    SCOPED_TRACE(words);
+    const CommandResult r = run("--quiet --json " + path("j") + ' ' + options);
+    EXPECT_NE(r.err.find("plvo: warning: "), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    EXPECT_EQ(r.err.find(words), r.err.rfind(words)) << r.err;
+    const auto warnings = nlohmann::json::parse(read_file(folder_ / "j"))["warnings"];
+    const auto has_words = [&words](const nlohmann::json& text) {
+      return text.get<std::string>().find(words) != std::string::npos;
+    };
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(), has_words), 1) << warnings;
+  };
+  EXPECT_EQ(run("--quiet --json " + path("j")).err, "");
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "j"))["warnings"], nlohmann::json::array());
+  said("--cx 0 --cy 0", "a coordinate of 0 is mostly one that nobody filled in");
+  said("--cx 59.5 --cy 79.5", "cx and cy look exchanged");
+  said("--fx 131 --fy 90", "pixels are nearly always square");
+  said("--depth-scale 1000", "times the true ones");
+  said("--depth-scale 40000", "no depth lies beyond");
+  // A ground truth of another clock, or of another recording.
+  const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
+  write_file(folder_ / "walk/groundtruth.txt", "9000 0 0 0 0 0 0 1\n9001 0 0 0 0 0 0 1\n");
+  said("", "no comparison: only 0 of ");
+  said("", "one recording, one clock?");
+  write_file(folder_ / "walk/groundtruth.txt", truth);
+  const std::vector<std::uint16_t> none(160 * 120, 0);
+  for (const auto& entry : fs::directory_iterator(folder_ / "walk/depth"))
+    ASSERT_TRUE(write_png(entry.path(), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
+  said("", "the depth images are empty");
+}
+
+TEST_F(CliOutputs, KittiRowsWithoutStampsMustBeAsMany) {
+  std::string truth, estimate, times, fewer_times;
+  for (int i = 0; i < 20; ++i) {
+    const std::string row = "1 0 0 " + std::to_string(0.1 * i * i) + " 0 1 0 0 0 0 1 0\n";
+    const std::string time = std::to_string(0.1 * i) + '\n';
+    truth += row;
+    times += time;
+    if (i == 3) continue;  // a frame that was lost
+    estimate += row;
+    fewer_times += time;
+  }
+  write_file(folder_ / "truth", truth);
+  write_file(folder_ / "estimate", estimate);
+  write_file(folder_ / "times", times);
+  write_file(folder_ / "fewer", fewer_times);
+  const std::string eval = kPlvo + " eval --gt " + path("truth") + " --est " + path("estimate");
+  const CommandResult refused = run_command(eval);
+  EXPECT_EQ(refused.exit_code, 1) << refused.out;
+  EXPECT_NE(refused.err.find("the truth has 20 rows and the estimate 19"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--kitti-times TRUTH ESTIMATE"), std::string::npos) << refused.err;
+  const CommandResult timed =
+      run_command(eval + " --json - --kitti-times " + path("times") + ' ' + path("fewer"));
+  ASSERT_EQ(timed.exit_code, 0) << timed.err;
+  EXPECT_LT(nlohmann::json::parse(timed.out)["ate_m"]["max"].get<double>(), 1e-6);
+  EXPECT_EQ(run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("truth")).exit_code, 0);
+  // Rows against stamps.
+  write_file(folder_ / "stamped", "50 0 0 0 0 0 0 1\n51 0 0 0 0 0 0 1\n");
+  const CommandResult mixed =
+      run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("stamped"));
+  EXPECT_EQ(mixed.exit_code, 1);
+  EXPECT_NE(mixed.err.find("the truth has no stamps"), std::string::npos) << mixed.err;
+}
+
 TEST_F(CliOutputs, KittiTimesFitTheirRows) {
   std::string rows, times;
   for (int i = 0; i < 10; ++i) {

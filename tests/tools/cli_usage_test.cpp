@@ -129,6 +129,8 @@ TEST(CliUsage, HowManyValuesAnOptionTakesIsSaidPlainly) {
   expect_usage("run x --frames 5 --frames 6", "run: --frames: may be given once, not 2 times (see");
   expect_usage("run x --out a --out b --out c", "--out: may be given once, not 3 times");
   expect_usage("run x --preset", "run: --preset: a value is missing: default, paper or tiny (see");
+  expect_usage("run x --fx 500", "--fx: pixels are square");
+  expect_usage("live --fy 500", "give --fx as well");
   expect_usage("run x --fx", "--fx: a value is missing: PIXELS");
   expect_usage("run x --out=", "--out: a value is missing: FILE");
   expect_usage("live --stream", "--stream: a value is missing: [ADDR:]PORT, unix:PATH or -");

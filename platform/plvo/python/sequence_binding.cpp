@@ -4,12 +4,14 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
 #include "plvo/python/one_thread.hpp"
 #include "plvo/python/topics.hpp"
 #include "plvo/recording/recording.hpp"
+#include "plvo/replay/checks/frame_check.hpp"
 #include "plvo/replay/recorded_imu.hpp"
 
 namespace plvo::python {
@@ -20,6 +22,10 @@ namespace {
 
 void warn(const std::string& text) {
   if (PyErr_WarnFormat(PyExc_RuntimeWarning, 1, "%U", words(text).ptr()) != 0) throw py::error_already_set();
+}
+
+void warn(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) warn(sentence);
 }
 
 CalibrationChoice choice_of(const py::object& camera) {
@@ -42,9 +48,8 @@ class Sequence {
     if (!topics.is_none() && !is_bag_file(recording))
       throw py::value_error("topics: they are for a ROS bag (FILE.bag)");
     throw_unless_ok(recording_.open(recording, choice_of(camera), options));
-    for (const std::string& sentence : recording_.remarks()) warn(sentence);
-    if (py::isinstance<Calibration>(camera)) return;
-    for (const std::string& sentence : calibration().assumptions()) warn(sentence);
+    warn(recording_.remarks());
+    if (!py::isinstance<Calibration>(camera)) warn(calibration().assumptions());
   }
 
   // False at the end. Damaged pairs of images are warned of, and left out.
@@ -56,8 +61,14 @@ class Sequence {
         const py::gil_scoped_release others_may_run;
         status = recording_.next(frame);
       }
-      if (status.ok()) return true;
-      if (status.code() == StatusCode::kEndOfStream) return false;
+      if (status.ok()) {
+        warn(check_.add(frame));
+        return true;
+      }
+      if (status.code() == StatusCode::kEndOfStream) {
+        warn(check_.finish());
+        return false;
+      }
       if (status.code() != StatusCode::kDamaged) throw_unless_ok(status);
       warn(status.message());
     }
@@ -80,6 +91,7 @@ class Sequence {
  private:
   Recording recording_;
   OneThread one_thread_{"Sequence"};
+  FrameCheck check_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
+#include "plvo/replay/checks/calibration_check.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
@@ -71,11 +72,18 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
   for (const std::string& sentence :
        {index.remark, guess, missing_of_tum(folder, calibration), camera->remark()})
     if (!sentence.empty()) remarks_.push_back(sentence);
+  add_doubts_about(calibration);
   std::error_code error;
   has_ground_truth_ = fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty();
   read_imu_ = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
   camera_ = std::move(camera);
   return {};
+}
+
+void Recording::add_doubts_about(const Calibration& calibration) {
+  for (const std::string& sentence :
+       doubts_about(calibration.camera, whole_image_.width, whole_image_.height))
+    remarks_.push_back(sentence);
 }
 
 #ifdef PLVO_HAVE_ROSBAG
@@ -98,6 +106,7 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   unpaired_colour_ = camera->unpaired_colour();
   if (std::string missing = missing_of_tum(path, calibration); !missing.empty())
     remarks_.push_back(std::move(missing));
+  add_doubts_about(calibration);
   std::error_code error;
   has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {

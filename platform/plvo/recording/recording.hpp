@@ -67,6 +67,8 @@ class Recording final : public RgbdCamera {
                      const RecordingOptions& options);
   Status open_bag(const std::filesystem::path& path, const CalibrationChoice& choose,
                   const RecordingOptions& options);
+  // calibration: of the images as recorded.
+  void add_doubts_about(const Calibration& calibration);
 
   std::shared_ptr<RgbdCamera> camera_;  // not unique: it deletes the class that it was made with
   std::function<Status(ImuRecording& recording)> read_imu_;

@@ -21,7 +21,7 @@ Status read_samples(const fs::path& path, std::vector<ImuSample>& samples, std::
   return each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     ImuSample sample;
     if (!parse_stamp_ns(row.words[0], sample.stamp_ns))
-      return row_error(path, row, fmt::format("'{}' is not a stamp", row.words[0]));
+      return row_error(path, row, stamp_error(row.words[0]));
     if (Status status = parse_numbers(path, row, 1, values); !status.ok()) return status;
     sample.value = Vector3(values[0], values[1], values[2]);
     const bool later = samples.empty() || sample.stamp_ns > samples.back().stamp_ns;

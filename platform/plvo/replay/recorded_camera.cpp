@@ -52,12 +52,20 @@ Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
     if (status.ok()) status = decoder_.read_header(folder_ / pair.depth.file, depth);
     if (status.ok()) {
       if (colour.bits == 16 && colour.grey && depth.bits == 8) {
-        return {
-            StatusCode::kInvalidArgument,
-            fmt::format("{} is depth and {} is colour: the associations name depth first; write each line as "
-                        "'stamp rgb stamp depth'",
-                        pair.colour.file, pair.depth.file)};
+        const char* remedy =
+            index_.joint_list
+                ? "the associations name depth first; write each line as 'stamp rgb stamp depth'"
+                : "the two lists are exchanged: rename rgb.txt to depth.txt, and depth.txt to "
+                  "rgb.txt";
+        return {StatusCode::kInvalidArgument,
+                fmt::format("{} is depth and {} is colour: {}", pair.colour.file, pair.depth.file, remedy)};
       }
+      if (pair.colour.file == pair.depth.file)
+        return {StatusCode::kInvalidArgument,
+                fmt::format(
+                    "{} is listed as colour and as depth; list the colour images in rgb.txt and the depth "
+                    "images in depth.txt",
+                    pair.colour.file)};
       if (Status kind = depth.check_is_depth(pair.depth.file); !kind.ok()) return kind;
       return {};
     }

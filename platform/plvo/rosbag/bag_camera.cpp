@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "plvo/host/files/stamp_text.hpp"
+#include "plvo/replay/index/stamp_order.hpp"
 #include "plvo/replay/index/stamp_pairs.hpp"
 #include "plvo/rosbag/listing.hpp"
 #include "plvo/rosbag/messages.hpp"
@@ -179,7 +181,26 @@ Status BagCamera::in_order(std::size_t topic, Messages& messages) {
   return {};
 }
 
+// A topic is in the order of its file unless its clock was set back; then sorting would mix what was seen
+// before and after.
+Status BagCamera::check_clock(std::size_t topic) const {
+  std::vector<std::int64_t> stamps;
+  for (const BagMessage& message : bag_.messages())
+    if (message.topic == topic && (stamps.empty() || message.stamp_ns != stamps.back()))
+      stamps.push_back(message.stamp_ns);
+  const std::optional<StampFault> fault = find_stamp_fault(stamps);
+  if (!fault || fault->kind != StampFault::Kind::kClockStep) return {};
+  return {
+      StatusCode::kDamaged,
+      fmt::format("{}: the clock steps back by {:.3f} s, to {}; split the bag there (rosbag filter), for the "
+                  "images before and after have the same stamps",
+                  bag_.topics()[topic].name, static_cast<double>(fault->step_ns) * 1e-9,
+                  format_stamp(stamps[fault->at]))};
+}
+
 Status BagCamera::pair_up(const SequenceOptions& options) {
+  for (const std::size_t topic : {colour_topic_, depth_topic_})
+    if (Status status = check_clock(topic); !status.ok()) return status;
   repeated_ = 0;
   Messages colour, depth;
   Status status = in_order(colour_topic_, colour);
@@ -193,16 +214,22 @@ Status BagCamera::pair_up(const SequenceOptions& options) {
   };
   pairs_.clear();
   pairs_.reserve(std::min(colour.size(), depth.size()));
-  for (const auto& [c, d] : associate(stamps(colour), stamps(depth), options.tolerance_ns))
+  clock_remark_.clear();
+  const std::vector<std::int64_t> colour_stamps = stamps(colour), depth_stamps = stamps(depth);
+  for (const auto& [c, d] : associate(colour_stamps, depth_stamps, options.tolerance_ns))
     pairs_.emplace_back(colour[c], depth[d]);
   unpaired_colour_ = colour.size() - pairs_.size();
-  if (pairs_.empty())
+  if (pairs_.empty()) {
+    std::string why;
+    if (!colour.empty() && !depth.empty()) why = "; " + why_no_pair(colour_stamps, depth_stamps);
     return {
         StatusCode::kInvalidArgument,
-        fmt::format("of {} images on {} and {} on {} no two are within {:.3f} s (a larger --tolerance pairs "
-                    "more)",
-                    colour.size(), bag_.topics()[colour_topic_].name, depth.size(),
-                    bag_.topics()[depth_topic_].name, static_cast<double>(options.tolerance_ns) * 1e-9)};
+        fmt::format(
+            "of {} images on {} and {} on {} no two are within {:.3f} s (a larger --tolerance pairs more){}",
+            colour.size(), bag_.topics()[colour_topic_].name, depth.size(), bag_.topics()[depth_topic_].name,
+            static_cast<double>(options.tolerance_ns) * 1e-9, why)};
+  }
+  clock_remark_ = doubt_about_clocks(colour_stamps, depth_stamps);
   const std::size_t end = std::min(options.end_frame, pairs_.size());
   if (options.first_frame >= end)
     return {StatusCode::kInvalidArgument,
@@ -291,7 +318,7 @@ Status BagCamera::next(RgbdFrame& frame) {
 
 std::vector<std::string> BagCamera::remarks() const {
   std::vector<std::string> sentences;
-  for (const std::string& sentence : {bag_.remark(), topics_in_words_, fit_.remark()})
+  for (const std::string& sentence : {bag_.remark(), topics_in_words_, clock_remark_, fit_.remark()})
     if (!sentence.empty()) sentences.push_back(sentence);
   if (repeated_ > 0)
     sentences.push_back(

@@ -71,6 +71,7 @@ class BagCamera final : public RgbdCamera {
   std::string with_encoding(std::size_t topic) const;
   // By stamp; of equal ones the first.
   Status in_order(std::size_t topic, Messages& messages);
+  Status check_clock(std::size_t topic) const;
   Status pair_up(const SequenceOptions& options);
   Status find_sizes(ImageSize& colour, ImageSize& depth, bool& metres);
   Status read_colour(const BagMessage& message);
@@ -85,7 +86,7 @@ class BagCamera final : public RgbdCamera {
   std::size_t unpaired_colour_ = 0, repeated_ = 0;
   FrameFit fit_;
   ImageSize colour_size_, depth_size_;
-  std::string depth_encoding_;
+  std::string depth_encoding_, clock_remark_;
   std::vector<unsigned char> bytes_;
   std::size_t next_ = 0;
 };

@@ -3,6 +3,8 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
 
 namespace plvo::eval {
 namespace {
@@ -17,6 +19,21 @@ std::vector<Vector3> positions(const std::vector<Se3>& poses) {
   std::vector<Vector3> result;
   for (const Se3& T : poses) result.push_back(T.t);
   return result;
+}
+
+// The rotation that is best without a scale is best with one, too.
+void fit_scale(const std::vector<Se3>& estimate, const std::vector<Se3>& truth, AbsoluteError& result) {
+  const Vector3 from = mean(positions(estimate)), to = mean(positions(truth));
+  double product = 0, from_squared = 0, to_squared = 0;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    const Vector3 a = result.T_truth_estimate.R * (estimate[i].t - from), b = truth[i].t - to;
+    product += a.dot(b);
+    from_squared += a.squaredNorm();
+    to_squared += b.squaredNorm();
+  }
+  if (from_squared > 0) result.scale = product / from_squared;
+  const double rest = to_squared - 2 * result.scale * product + result.scale * result.scale * from_squared;
+  result.scaled_rmse_m = std::sqrt(std::max(rest, 0.0) / static_cast<double>(estimate.size()));
 }
 
 }  // namespace
@@ -42,6 +59,7 @@ AbsoluteError absolute_trajectory_error(const std::vector<Se3>& estimate, const 
   for (std::size_t i = 0; i < estimate.size(); ++i)
     errors.push_back((result.T_truth_estimate * estimate[i].t - truth[i].t).norm());
   result.position_m = statistics(std::move(errors));
+  fit_scale(estimate, truth, result);
   return result;
 }
 

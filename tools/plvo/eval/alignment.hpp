@@ -16,6 +16,10 @@ Se3 align(const std::vector<Vector3>& from, const std::vector<Vector3>& to);
 struct AbsoluteError {
   Statistics position_m;
   Se3 T_truth_estimate;  // brings the estimate onto the truth
+  // What the estimate's lengths would have to be multiplied by to fit the truth best, and the RMSE then. 1
+  // where there is no length.
+  double scale = 1;
+  double scaled_rmse_m = 0;
 };
 AbsoluteError absolute_trajectory_error(const std::vector<Se3>& estimate, const std::vector<Se3>& truth);
 

@@ -4,6 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "plvo/host/files/stamp_text.hpp"
 
 namespace plvo::eval {
 namespace {
@@ -47,6 +50,40 @@ PairedPoses pair_poses(const Trajectory& estimate, const SampledPoses& truth) {
   return poses;
 }
 
+// Rows without stamps are compared one by one.
+Status check_rows(const Trajectory& truth, const Trajectory& estimate) {
+  const std::size_t rows = estimate.poses.size() + estimate.ignored_rows,
+                    true_rows = truth.poses.size() + truth.ignored_rows;
+  if (!truth.stamped_by_row || !estimate.stamped_by_row || rows == true_rows) return {};
+  return {StatusCode::kInvalidArgument,
+          fmt::format(
+              "the truth has {} rows and the estimate {}, and rows without stamps are compared one by one: a "
+              "frame that one of them leaves out shifts all that follow; give the stamps of both, "
+              "--kitti-times TRUTH ESTIMATE",
+              true_rows, rows)};
+}
+
+// Why hardly a pose has a true one, as far as the stamps tell it.
+std::string why_apart(const Trajectory& truth, const Trajectory& estimate,
+                      const std::vector<std::int64_t>& stamps) {
+  if (stamps.empty() || truth.poses.empty()) return "one of the files has no pose";
+  if (truth.stamped_by_row != estimate.stamped_by_row)
+    return fmt::format("the {} has no stamps and counts as 0.1 s apart from 0; give them, --kitti-times FILE",
+                       truth.stamped_by_row ? "truth" : "estimate");
+  std::vector<std::int64_t> true_stamps;
+  for (const StampedPose& pose : truth.poses) true_stamps.push_back(pose.stamp_ns);
+  for (const auto& [who, list] :
+       {std::pair("truth", &std::as_const(true_stamps)), std::pair("estimate", &stamps)})
+    if (const std::string doubt = stamp_unit_doubt(*list); !doubt.empty())
+      return fmt::format("the stamps of the {} look wrong, {}", who, doubt);
+  const auto seconds = [](std::int64_t stamp_ns) { return static_cast<double>(stamp_ns) * 1e-9; };
+  return fmt::format(
+      "the truth goes from {:.2f} to {:.2f} s, the estimate from {:.2f} to {:.2f}; one recording, one clock? "
+      "(--offset {:.2f} lets both begin together)",
+      seconds(true_stamps.front()), seconds(true_stamps.back()), seconds(stamps.front()),
+      seconds(stamps.back()), seconds(true_stamps.front()) - seconds(estimate.poses.front().stamp_ns));
+}
+
 }  // namespace
 
 Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
@@ -54,6 +91,7 @@ Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result) {
   result = {};
+  if (Status status = check_rows(measured_truth, estimate); !status.ok()) return status;
   result.sampling = options.sampling.method;
   result.truth_sigma = options.truth_sigma;
   result.estimate_poses = estimate.poses.size();
@@ -63,13 +101,10 @@ Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
   SampledPoses truth = sample(ground_truth, stamps, options.sampling);
   PairedPoses& poses = result.poses;
   poses = pair_poses(estimate, truth);
-  if (poses.truth.size() < 2) {
+  if (poses.truth.size() < 2)
     return {StatusCode::kInvalidArgument,
-            fmt::format(
-                "only {} of {} poses have ground truth at their stamp; are both files of the same recording, "
-                "with the same clock? (--offset shifts the estimate's stamps)",
-                poses.truth.size(), stamps.size())};
-  }
+            fmt::format("only {} of {} poses have ground truth at their stamp: {}", poses.truth.size(),
+                        stamps.size(), why_apart(measured_truth, estimate, stamps))};
   const RpeDelta second = {1, RpeDelta::Unit::kSeconds, "1s"};
   if (options.fit_truth) {
     result.second_before_fit = relative_pose_error(poses, second).estimate;

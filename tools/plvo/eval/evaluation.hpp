@@ -58,11 +58,19 @@ struct Evaluation {
   std::optional<Consistency> second_nees;  // of the motions over a second
 };
 
-// kInvalidArgument when fewer than two poses of the estimate have a true pose, and as fit_truth().
+// kInvalidArgument when fewer than two poses of the estimate have a true pose, when both are KITTI's without
+// stamps and have not the same number of rows, and as fit_truth().
 Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<StampedCovariance>& covariances,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result);
+
+// Words when the best-fit scale is off by more than 5 % and explains the absolute error: it takes at least
+// half of it away, and leaves at most a quarter of what a camera that never moves would score. Of a bad
+// estimate any scale fits a little better. Else empty.
+std::string doubt_about_scale(const Evaluation& evaluation);
+// That, and what a NEES far from what a true covariance gives most often is, with what to try.
+std::vector<std::string> doubts_about(const Evaluation& evaluation);
 
 std::string to_text(const Evaluation& evaluation);
 nlohmann::ordered_json to_json(const Evaluation& evaluation);

@@ -87,6 +87,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
   }
   json["ate_m"] = to_json(e.ate.position_m);
   json["ate_m"]["identity"] = to_json(e.ate_identity);
+  json["scale"] = {{"best_fit", e.ate.scale}, {"ate_rmse_m", e.ate.scaled_rmse_m}};
   json["end_drift"] = to_json(e.drift);
   json["end_drift"]["percent_of_path"] = e.path_m > 0 ? Json(100 * e.drift.translation_m / e.path_m) : Json();
   json["end_drift"]["identity"] = to_json(e.drift_identity);

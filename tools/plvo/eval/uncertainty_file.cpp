@@ -44,7 +44,7 @@ Status read_covariances(const std::filesystem::path& path, std::vector<StampedCo
       [&](const TableRow& row) -> Status {
         StampedCovariance next;
         if (!parse_stamp_ns(row.words[0], next.stamp_ns))
-          return row_error(path, row, "expected a stamp in seconds first");
+          return row_error(path, row, stamp_error(row.words[0]));
         if (Status parsed = parse_covariance(path, row, 1, next.covariance); !parsed.ok()) return parsed;
         covariances.push_back(next);
         return {};

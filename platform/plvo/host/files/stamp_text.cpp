@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -11,6 +12,14 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::int64_t kMaxSeconds = INT64_MAX / kNanosecondsPerSecond - 1;
+
+struct StampUnit {
+  const char* name;
+  int exponent;  // 10^exponent of them are a second
+};
+constexpr StampUnit kUnits[] = {{"milliseconds", 3}, {"microseconds", 6}, {"nanoseconds", 9}};
+constexpr std::size_t kDigitsOfSeconds = 10;  // since 1970, of any date from 2001 to 2286
+constexpr double kLongestStep_s = 3;          // nothing can be tracked from one image to the next over more
 
 bool parse_double(std::string_view text, std::int64_t& stamp_ns) {
   double seconds = 0;
@@ -49,6 +58,39 @@ bool parse_stamp_ns(std::string_view text, std::int64_t& stamp_ns) {
   stamp_ns = seconds * kNanosecondsPerSecond + nanoseconds;
   if (negative) stamp_ns = -stamp_ns;
   return true;
+}
+
+std::string stamp_error(std::string_view word) {
+  const bool number = !word.empty() && word.find_first_not_of("0123456789.") == std::string_view::npos;
+  const std::size_t digits = std::min(word.find('.'), word.size());
+  if (!number || digits <= kDigitsOfSeconds) return fmt::format("'{}' is not a stamp in seconds", word);
+  const StampUnit& unit = kUnits[std::min<std::size_t>((digits - kDigitsOfSeconds - 1) / 3, 2)];
+  return fmt::format("stamps are seconds, and {} looks like {}; divide the stamps by 1e{}", word, unit.name,
+                     unit.exponent);
+}
+
+std::string stamp_unit_doubt(const std::vector<std::int64_t>& stamps_ns) {
+  double step_s = static_cast<double>(median_step_ns(stamps_ns)) * 1e-9;
+  if (step_s <= kLongestStep_s) return {};
+  for (const StampUnit& unit : kUnits) {
+    if (const double scaled = step_s * std::pow(10, -unit.exponent); scaled <= kLongestStep_s)
+      return fmt::format(
+          "they lie {:.4g} s apart, as {} would ({:.4g} s); stamps are seconds: divide by 1e{}", step_s,
+          unit.name, scaled, unit.exponent);
+  }
+  return {};
+}
+
+std::int64_t median_step_ns(const std::vector<std::int64_t>& stamps_ns) {
+  std::vector<std::uint64_t> steps;  // two stamps may lie further apart than an int64 can say
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i)
+    if (stamps_ns[i] > stamps_ns[i - 1])
+      steps.push_back(static_cast<std::uint64_t>(stamps_ns[i]) -
+                      static_cast<std::uint64_t>(stamps_ns[i - 1]));
+  if (steps.empty()) return 0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return static_cast<std::int64_t>(std::min<std::uint64_t>(*middle, INT64_MAX));
 }
 
 std::string format_stamp(std::int64_t stamp_ns) {

@@ -57,7 +57,7 @@ Status quaternion_pose(const std::filesystem::path& path, const TableRow& row, c
 Status read_kitti_times(const std::filesystem::path& path, std::vector<std::int64_t>& stamps) {
   return each_row(path, kMaxTextBytes, [&](const TableRow& row) -> Status {
     std::int64_t stamp = 0;
-    if (!parse_stamp_ns(row.words[0], stamp)) return row_error(path, row, "expected a stamp in seconds");
+    if (!parse_stamp_ns(row.words[0], stamp)) return row_error(path, row, stamp_error(row.words[0]));
     stamps.push_back(stamp);
     return {};
   });
@@ -86,8 +86,7 @@ class Rows {
     if (count_ == 0)
       if (Status status = begin(row); !status.ok()) return status;
     StampedPose pose;
-    if (!parse_stamp(row, pose.stamp_ns))
-      return row_error(source_.path, row, fmt::format("'{}' is not a stamp", row.words[0]));
+    if (!parse_stamp(row, pose.stamp_ns)) return row_error(source_.path, row, stamp_error(row.words[0]));
     ++count_;
     bool usable = false;
     Status status = row_pose(source_.path, row, trajectory_.format, pose.T_world_camera, usable);
@@ -114,7 +113,9 @@ class Rows {
  private:
   Status begin(const TableRow& first) {
     trajectory_.format = source_.format == TrajectoryFormat::kAuto ? detect(first) : source_.format;
-    timed_ = trajectory_.format == TrajectoryFormat::kKitti && !source_.kitti_times.empty();
+    const bool kitti = trajectory_.format == TrajectoryFormat::kKitti;
+    timed_ = kitti && !source_.kitti_times.empty();
+    trajectory_.stamped_by_row = kitti && !timed_;
     return timed_ ? read_kitti_times(source_.kitti_times, times_) : Status();
   }
 

@@ -28,6 +28,7 @@ struct Trajectory {
   std::vector<StampedPose> poses;                     // stamps strictly increasing
   std::size_t ignored_rows = 0;                       // with a NaN, or a stamp that was there already
   TrajectoryFormat format = TrajectoryFormat::kAuto;  // of the file that it was read from
+  bool stamped_by_row = false;                        // KITTI without kitti_times
 };
 
 struct TrajectorySource {

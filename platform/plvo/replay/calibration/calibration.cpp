@@ -66,6 +66,13 @@ Status Calibration::validate(int width, int height, int depth_width, int depth_h
   if (depth_camera.known)
     if (Status status = validate_depth_camera(depth_camera, depth_width, depth_height); !status.ok())
       return status;
+  const Pinhole& pinhole = camera.pinhole;
+  if (pinhole.cx >= width || pinhole.cy >= height)
+    return {StatusCode::kInvalidArgument,
+            fmt::format(
+                "the principal point ({:.1f}, {:.1f}) lies outside the {}x{} images: the calibration is of "
+                "another size, or cx and cy are exchanged; use the calibration of this camera mode",
+                pinhole.cx, pinhole.cy, width, height)};
   CameraModel sized = camera;
   sized.width = width;
   sized.height = height;

@@ -30,6 +30,7 @@ struct SequenceIndex {
   std::vector<ImagePair> pairs;  // colour stamps strictly increasing
   std::size_t unpaired_colour = 0;
   std::size_t unpaired_depth = 0;
+  bool joint_list = false;         // one list names the pairs, not rgb.txt and depth.txt
   bool numbered = false;           // numbered_index.hpp
   bool in_millimetres = false;     // depth of numbered frames, for sure; else most probably
   std::vector<StampedFile> poses;  // of numbered frames

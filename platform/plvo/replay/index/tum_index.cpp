@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "plvo/host/files/input_file.hpp"
 #include "plvo/host/files/reader_limits.hpp"
 #include "plvo/host/files/stamp_text.hpp"
+#include "plvo/replay/index/stamp_order.hpp"
 #include "plvo/replay/index/stamp_pairs.hpp"
 
 namespace plvo {
@@ -22,15 +24,20 @@ Status damaged(const fs::path& list, int line, std::string_view what) {
   return {StatusCode::kDamaged, fmt::format("{} line {}: {}", list.filename().string(), line, what)};
 }
 
+std::vector<std::int64_t> stamps_of(const std::vector<StampedFile>& files) {
+  std::vector<std::int64_t> stamps;
+  stamps.reserve(files.size());
+  for (const StampedFile& file : files) stamps.push_back(file.stamp_ns);
+  return stamps;
+}
+
 // Stamps that run backwards or repeat are refused, not repaired: which of the two images is right, nobody can
-// know.
-Status check_order(const fs::path& list, int line, const StampedFile& next,
-                   const std::vector<StampedFile>& files) {
-  if (files.empty() || next.stamp_ns > files.back().stamp_ns) return {};
-  const bool doubled = next.stamp_ns == files.back().stamp_ns;
-  return damaged(list, line,
-                 fmt::format("stamp {} {}; sort the list by stamp and keep each stamp once",
-                             format_stamp(next.stamp_ns), doubled ? "appears twice" : "runs backwards"));
+// know. lines: where in the list each of the files is.
+Status check_order(const fs::path& list, const std::vector<StampedFile>& files,
+                   const std::vector<int>& lines) {
+  const std::vector<std::int64_t> stamps = stamps_of(files);
+  const std::optional<StampFault> fault = find_stamp_fault(stamps);
+  return fault ? damaged(list, lines[fault->at], in_words(*fault, stamps)) : Status();
 }
 
 constexpr std::string_view kBlank = " \t\r";
@@ -91,6 +98,7 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
                     "depth_0.png (docs/formats.md)",
                     list.string())};
   }
+  std::vector<int> lines;
   std::string_view rest = content;
   for (int line = 1; !rest.empty(); ++line) {
     std::string_view text = rest.substr(0, rest.find('\n'));
@@ -99,21 +107,26 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
     if (text.empty() || text.front() == '#') continue;
     for (int column = 0; column < columns; ++column) {
       StampedFile next;
-      const bool is_stamp = parse_stamp_ns(take_word(text), next.stamp_ns);
+      const std::string_view stamp = take_word(text);
+      const bool is_stamp = parse_stamp_ns(stamp, next.stamp_ns);
       next.file = take_name(text);
-      if (next.file.empty() || !is_stamp)
-        return damaged(list, line,
-                       columns == 1 ? "expected 'stamp file'" : "expected 'stamp rgb stamp depth'");
+      if (next.file.empty() || !is_stamp) {
+        std::string what = columns == 1 ? "expected 'stamp file'" : "expected 'stamp rgb stamp depth'";
+        if (!is_stamp && !stamp.empty()) what += "; " + stamp_error(stamp);
+        return damaged(list, line, what);
+      }
       if (next.file.size() > kMostNameBytes)
         return damaged(list, line, fmt::format("a name of more than {} bytes", kMostNameBytes));
       if (lists[column].size() == kMostImages)
         return {StatusCode::kInvalidArgument,
                 fmt::format("{} lists more than {} images, of which plvo reads no more; split the recording",
                             list.string(), kMostImages)};
-      if (Status status = check_order(list, line, next, lists[column]); !status.ok()) return status;
       lists[column].push_back(std::move(next));
     }
+    lines.push_back(line);
   }
+  for (int column = 0; column < columns; ++column)
+    if (Status status = check_order(list, lists[column], lines); !status.ok()) return status;
   if (lists[0].empty())
     return {StatusCode::kInvalidArgument, fmt::format("{} lists no image", list.string())};
   return {};
@@ -122,24 +135,19 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
 // The files of pairs are moved out of the lists.
 Status pair_up(std::vector<StampedFile>& colour, std::vector<StampedFile>& depth, std::int64_t tolerance_ns,
                SequenceIndex& index) {
-  const auto stamps = [](const std::vector<StampedFile>& files) {
-    std::vector<std::int64_t> result;
-    result.reserve(files.size());
-    for (const StampedFile& file : files) result.push_back(file.stamp_ns);
-    return result;
-  };
+  const std::vector<std::int64_t> colour_stamps = stamps_of(colour), depth_stamps = stamps_of(depth);
   index.pairs.reserve(std::min(colour.size(), depth.size()));
-  for (const auto& [c, d] : associate(stamps(colour), stamps(depth), tolerance_ns))
+  for (const auto& [c, d] : associate(colour_stamps, depth_stamps, tolerance_ns))
     index.pairs.push_back({std::move(colour[c]), std::move(depth[d])});
   index.unpaired_colour = colour.size() - index.pairs.size();
   index.unpaired_depth = depth.size() - index.pairs.size();
   if (index.pairs.empty()) {
-    return {StatusCode::kInvalidArgument,
-            fmt::format(
-                "no colour image has a depth image within {:.3f} s; are both lists of the same recording? "
-                "(a larger --tolerance pairs more)",
-                static_cast<double>(tolerance_ns) * 1e-9)};
+    return {
+        StatusCode::kInvalidArgument,
+        fmt::format("no colour image has a depth image within {:.3f} s (a larger --tolerance pairs more); {}",
+                    static_cast<double>(tolerance_ns) * 1e-9, why_no_pair(colour_stamps, depth_stamps))};
   }
+  index.remark = doubt_about_clocks(colour_stamps, depth_stamps);
   return {};
 }
 
@@ -157,6 +165,9 @@ Status read_tum_index(const fs::path& folder, const fs::path& associations, std:
   if (!joint.empty()) {
     if (Status status = read_lists(joint, 2, lists); !status.ok()) return status;
     if (depth_first(lists[0], lists[1])) std::swap(lists[0], lists[1]);
+    index.joint_list = true;
+    if (const std::string doubt = stamp_unit_doubt(stamps_of(lists[0])); !doubt.empty())
+      index.remark = "the stamps look wrong: " + doubt;
     index.pairs.reserve(lists[0].size());
     for (std::size_t i = 0; i < lists[0].size(); ++i)
       index.pairs.push_back({std::move(lists[0][i]), std::move(lists[1][i])});

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "plvo/host/files/whole_write.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/printable.hpp"
@@ -12,7 +14,8 @@ namespace plvo::cli {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 100'000'000;
-const std::string kErase = "\r\033[K";  // the line of a terminal
+const std::string kErase = "\r\033[K";      // the line of a terminal
+constexpr std::size_t kKeptWarnings = 100;  // a session may last for weeks
 
 }  // namespace
 
@@ -22,8 +25,21 @@ void Console::write(LogLevel level, std::string_view message) {
   const std::lock_guard lock(mutex_);
   if ((quiet_ && level == LogLevel::kInfo) || message == last_) return;
   last_ = message;
+  if (level != LogLevel::kInfo) keep(message);
   erase_line();
   StderrLog().write(level, message);
+}
+
+std::vector<std::string> Console::warnings() {
+  const std::lock_guard lock(mutex_);
+  return warnings_;
+}
+
+// Under mutex_.
+void Console::keep(std::string_view message) {
+  if (warnings_.size() < kKeptWarnings &&
+      std::find(warnings_.begin(), warnings_.end(), message) == warnings_.end())
+    warnings_.emplace_back(message);
 }
 
 bool Console::wants_line() {

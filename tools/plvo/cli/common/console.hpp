@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "plvo/hal/log.hpp"
 
@@ -21,6 +23,8 @@ class Console final : public Log {
   Console& operator=(const Console&) = delete;
 
   void write(LogLevel level, std::string_view message) override;
+  // The warnings and errors so far, each once; of very many the first.
+  std::vector<std::string> warnings();
   // True when a line would be shown now: ten times a second at most, so that nobody builds it in vain.
   bool wants_line();
   void show_line(std::string_view line);
@@ -28,6 +32,7 @@ class Console final : public Log {
 
  private:
   void erase_line();
+  void keep(std::string_view message);
 
   std::mutex mutex_;
   const bool quiet_;
@@ -35,6 +40,7 @@ class Console final : public Log {
   bool shown_ = false;
   std::int64_t next_ns_ = 0;
   std::string last_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace plvo::cli

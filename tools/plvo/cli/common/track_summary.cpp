@@ -129,6 +129,7 @@ nlohmann::ordered_json TrackSummary::to_json() const {
                           {"resident_at_end", resident_end.total},
                           {"anonymous_after_start", resident_start.anonymous},
                           {"anonymous_at_end", resident_end.anonymous}};
+  json["warnings"] = warnings;
   return json;
 }
 

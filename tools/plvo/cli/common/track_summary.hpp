@@ -35,6 +35,7 @@ class TrackSummary {
   // Set by the command.
   std::string camera_name;
   bool interrupted = false;
+  std::vector<std::string> warnings;  // what was said on standard error
   std::size_t arena_bytes = 0, arena_peak = 0;
   ResidentMemory resident_start, resident_end;
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plvo/cli/common/exit_code.hpp"
@@ -34,7 +35,8 @@ constexpr const char* kEvalHelp =
 
 struct EvalOptions {
   eval::TrajectorySource ground_truth, estimate;
-  std::string kitti_times, covariance, motions, report;
+  std::string covariance, motions, report;
+  std::vector<std::string> kitti_times;  // one for both, or of the truth and of the estimate
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
   std::vector<double> sigma;  // of a true pose: m, degrees
@@ -80,7 +82,10 @@ int eval_command(EvalOptions options) {
   settings.deltas = options.deltas;
   if (!options.sigma.empty()) settings.truth_sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
   settings.fit_truth = options.fit_truth;
-  options.ground_truth.kitti_times = options.estimate.kitti_times = options.kitti_times;
+  if (!options.kitti_times.empty()) {
+    options.ground_truth.kitti_times = options.kitti_times.front();
+    options.estimate.kitti_times = options.kitti_times.back();
+  }
 
   eval::Trajectory ground_truth, estimate;
   std::vector<eval::StampedCovariance> covariances;
@@ -91,11 +96,14 @@ int eval_command(EvalOptions options) {
     if (status.ok() && !file.empty()) status = LineFile::check(file);
   if (status.ok()) status = evaluate(ground_truth, estimate, covariances, motions, settings, evaluation);
   if (!status.ok()) return fail(status);
+  std::vector<std::string> warnings;
   for (const auto& [trajectory, source] :
        {std::pair(&ground_truth, &options.ground_truth), std::pair(&estimate, &options.estimate)})
     if (trajectory->ignored_rows > 0)
-      warn(fmt::format("{}: {} poses with a NaN, an infinity or a repeated stamp were ignored",
-                       source->path.string(), trajectory->ignored_rows));
+      warnings.push_back(fmt::format("{}: {} poses with a NaN, an infinity or a repeated stamp were ignored",
+                                     source->path.string(), trajectory->ignored_rows));
+  for (std::string& sentence : doubts_about(evaluation)) warnings.push_back(std::move(sentence));
+  for (const std::string& sentence : warnings) warn(sentence);
   if (!options.report.empty()) {
     report::ReportInput input;
     input.title = options.estimate.path.filename().string();
@@ -105,9 +113,10 @@ int eval_command(EvalOptions options) {
     input.evaluation = evaluation;
     status = report::write_report(options.report, input);
   }
+  nlohmann::ordered_json json = to_json(evaluation);
+  json["warnings"] = warnings;
   const Status result = write_result(
-      options.json, to_json(evaluation), [&] { return to_text(evaluation); },
-      is_standard_output(options.report));
+      options.json, json, [&] { return to_text(evaluation); }, is_standard_output(options.report));
   int exit_code = kExitSuccess;
   for (const Status& written : {status, result})
     if (!written.ok()) exit_code = fail(written);
@@ -136,9 +145,10 @@ void check(const CLI::App& command, const EvalOptions& options) {
   if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
     for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);
   for (const std::filesystem::path& path :
-       {options.ground_truth.path, options.estimate.path, std::filesystem::path(options.kitti_times),
-        std::filesystem::path(options.covariance), std::filesystem::path(options.motions)})
+       {options.ground_truth.path, options.estimate.path, std::filesystem::path(options.covariance),
+        std::filesystem::path(options.motions)})
     files.reads(path);
+  for (const std::string& path : options.kitti_times) files.reads(path);
   files.check();
 }
 
@@ -162,8 +172,15 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
   group.choice("--gt-format", options.ground_truth.format, formats, "auto: told by the content (default)");
   group.choice("--est-format", options.estimate.format, formats, "auto: told by the content (default)");
   add_rate_option(group, options.folder.frames_per_s);
-  file("--kitti-times", options.kitti_times,
-       "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart)");
+  takes_values(
+      group.add("--kitti-times", "FILE",
+                "Stamps of KITTI rows, one in seconds a line (default: 0.1 s apart); two files where truth "
+                "and estimate have not the same",
+                [&options](const std::string& text) -> std::string {
+                  options.kitti_times.push_back(text);
+                  return text.empty() ? "expected a path, not an empty word" : "";
+                }),
+      1, 2);
   file("--est-covariance", options.covariance,
        "Covariances of the estimate's poses (plvo run --covariance): adds their NEES");
   file("--est-motions", options.motions,

@@ -9,6 +9,7 @@
 #include "plvo/cli/live/bag_device.hpp"
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/recording/foreign_format.hpp"
+#include "plvo/replay/checks/calibration_check.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"
@@ -183,6 +184,9 @@ Status open_sensor(const LiveCameraOptions& options, Log& log, std::unique_ptr<L
   settings.fps = mode.fps;
   settings.readout_s = options.calibration.readout_s;
   Status status = calibrate(options.calibration, mode.width, mode.height, settings.model);
+  if (status.ok() && settings.model)
+    for (const std::string& sentence : doubts_about(*settings.model, mode.width, mode.height))
+      log.write(LogLevel::kWarning, sentence);
   if (status.ok()) status = opened->open(settings);
   if (status.ok()) camera = std::move(opened);
   return status;

@@ -50,6 +50,7 @@ void LiveCapture::run() {
     poll_recording();
     if (!goes_on_after(status.code())) break;
   }
+  tell(check_.finish());
   const OpenNi2Counters counters = camera_.counters();
   {
     const std::lock_guard lock(mutex_);
@@ -79,6 +80,11 @@ void LiveCapture::on_frame(const RgbdFrame& frame) {
                    fmt::format("frames come again, after {:.1f} s", static_cast<double>(trouble_ns) * 1e-9));
   recording_.push(frame);
   ring_.push(frame, now);
+  tell(check_.add(frame));
+}
+
+void LiveCapture::tell(const std::vector<std::string>& findings) {
+  for (const std::string& sentence : findings) console_.write(LogLevel::kWarning, sentence);
 }
 
 void LiveCapture::on_trouble(const Status& status) {

@@ -9,12 +9,14 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/cli/live/rate_meter.hpp"
 #include "plvo/cli/record/frame_recording.hpp"
 #include "plvo/host/frame_ring.hpp"
+#include "plvo/replay/checks/frame_check.hpp"
 
 namespace plvo::cli {
 
@@ -52,11 +54,13 @@ class LiveCapture {
   void on_frame(const RgbdFrame& frame);
   void on_trouble(const Status& status);
   void poll_recording();
+  void tell(const std::vector<std::string>& findings);
 
   LiveCamera& camera_;
   FrameRing& ring_;
   FrameRecording& recording_;
   Console& console_;
+  FrameCheck check_;  // of the thread
   std::thread thread_;
   std::atomic<bool> stop_{false};
 

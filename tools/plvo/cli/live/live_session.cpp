@@ -178,6 +178,7 @@ void LiveSession::finish() {
   summary_.resident_end = resident_memory();
   summary_.seconds = static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9;
   summary_.interrupted = interrupted();
+  summary_.warnings = console_.warnings();
   summary_.capture = capture_->state();
   summary_.accelerometer = accelerometer_.summary();
   summary_.dropped = ring_->counters().dropped;

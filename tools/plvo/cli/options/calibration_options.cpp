@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <utility>
+
 #include "plvo/camera/camera_info.hpp"
 #include "plvo/camera/focal_range.hpp"
 #include "plvo/cli/options/arguments.hpp"
@@ -67,6 +69,12 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
 void check_calibration_options(const CLI::App& command) {
   if (given(command, "--calibration"))
     refuse_options(command, {"--camera-model"}, "cannot be combined with --calibration; give one of them");
+  for (const auto& [one, other] : {std::pair("--fx", "--fy"), std::pair("--fy", "--fx")})
+    if (given(command, one) && !given(command, other))
+      refuse(one,
+             fmt::format("pixels are square, so that one focal length alone changes the picture's shape; "
+                         "give {} as well",
+                         other));
   if (given(command, "--distortion") + given(command, "--distortion-rational") +
           given(command, "--distortion-equidistant") >
       1)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
@@ -24,6 +25,7 @@
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/prefetched_camera.hpp"
 #include "plvo/host/standard_streams.hpp"
+#include "plvo/replay/checks/frame_check.hpp"
 #include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
@@ -127,6 +129,7 @@ class Run {
           console_.write(LogLevel::kWarning,
                          fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
+        tell(check_.add(frame));
         const MotionPrior prior = imu_ ? imu_->prior(frame.stamp_ns) : MotionPrior();
         block_.track(frame, prior, record);
         if (imu_) imu_->learn(record.result);
@@ -139,6 +142,10 @@ class Run {
       if (console_.wants_line()) show_line(record);
     }
     return {};
+  }
+
+  void tell(const std::vector<std::string>& findings) {
+    for (const std::string& sentence : findings) console_.write(LogLevel::kWarning, sentence);
   }
 
   void show_line(const FrameRecord& record) {
@@ -154,9 +161,14 @@ class Run {
     summary_->interrupted = interrupted();
     summary_->arena_bytes = block_.odometry().memory_used();
     summary_->arena_peak = block_.odometry().memory_peak();
+    tell(check_.finish());
     if (const Status status = history_->evaluate(opened_); !status.ok())
       console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
+    if (summary_->evaluation)
+      if (const std::string doubt = eval::doubt_about_scale(*summary_->evaluation); !doubt.empty())
+        console_.write(LogLevel::kWarning, doubt);
+    summary_->warnings = console_.warnings();
     if (options_.quiet) return {};
     const OutputOptions& o = options_.outputs;
     if (!takes_standard_output(
@@ -178,6 +190,7 @@ class Run {
   OpenedCamera opened_;
   OdometryBlock block_;
   std::optional<RecordedImu> imu_;
+  FrameCheck check_;
   RunOutputs outputs_;
   Overlay overlay_;
   std::unique_ptr<RunSummary> summary_;

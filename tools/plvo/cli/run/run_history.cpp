@@ -38,14 +38,16 @@ void RunHistory::add(const FrameRecord& record, const RgbdFrame* frame, const Od
 }
 
 Status RunHistory::evaluate(const OpenedCamera& camera) {
-  if (!camera.ground_truth) return {};
+  const std::size_t poses = report_.trajectory.poses.size();
+  if (!camera.ground_truth || poses < 2) return {};
   std::vector<std::int64_t> stamps;
   for (const eval::StampedPose& pose : report_.trajectory.poses) stamps.push_back(pose.stamp_ns);
   eval::Trajectory truth;
   if (Status status = camera.ground_truth(stamps, truth); !status.ok()) return status;
   eval::Evaluation evaluation;
   const Status compared = eval::evaluate(truth, report_.trajectory, covariances_, motions_, {}, evaluation);
-  if (compared.ok()) report_.evaluation = std::move(evaluation);
+  if (!compared.ok()) return Status(compared.code(), "no comparison: ").append(compared.message());
+  report_.evaluation = std::move(evaluation);
   return {};
 }
 

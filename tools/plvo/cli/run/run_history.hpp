@@ -23,7 +23,8 @@ class RunHistory {
   // frame: null for a damaged one.
   void add(const FrameRecord& record, const RgbdFrame* frame, const Odometry& odometry);
 
-  // Compares with the truth. Not ok when the truth cannot be read; no evaluation when the two hardly overlap.
+  // Compares with the truth, where there is one and two poses or more. Not ok, and no evaluation, when the
+  // truth cannot be read, or as eval::evaluate().
   Status evaluate(const OpenedCamera& camera);
   const std::optional<eval::Evaluation>& evaluation() const { return report_.evaluation; }
 

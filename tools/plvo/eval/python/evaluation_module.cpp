@@ -93,7 +93,9 @@ std::string evaluate_json(const py::object& truth, const py::object& estimated, 
   Evaluation evaluation;
   throw_unless_ok(
       evaluate(true_poses, estimate.trajectory, estimate.covariances, estimate.motions, options, evaluation));
-  return to_json(evaluation).dump();
+  nlohmann::ordered_json json = to_json(evaluation);
+  json["warnings"] = doubts_about(evaluation);
+  return json.dump();
 }
 
 }  // namespace

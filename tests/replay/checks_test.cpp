@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Data that can be read but is wrong: each fault is found, and recordings without one are silent.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "plvo/base/random.hpp"
+#include "plvo/replay/calibration/sequence_calibration.hpp"
+#include "plvo/replay/checks/calibration_check.hpp"
+#include "plvo/replay/checks/frame_check.hpp"
+#include "plvo/replay/recorded_camera.hpp"
+
+namespace plvo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 320, kHeight = 240;
+
+std::string doubts(double fx, double fy, double cx, double cy, int width = 640, int height = 480) {
+  CameraModel camera;
+  camera.pinhole = {fx, fy, cx, cy};
+  std::string text;
+  for (const std::string& sentence : doubts_about(camera, width, height)) text += sentence + '\n';
+  return text;
+}
+
+bool contains(const std::string& text, std::string_view words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(CalibrationCheck, PlausibleCamerasAreSilent) {
+  EXPECT_EQ(doubts(525, 525, 319.5, 239.5), "");
+  EXPECT_EQ(doubts(615.2, 615.2, 298.4, 247.5), "") << "a RealSense's";
+  EXPECT_EQ(doubts(505, 505, 320, 288, 640, 576), "") << "an Azure Kinect's";
+  EXPECT_EQ(doubts(131, 131, 79.5, 59.5, 160, 120), "");
+  for (const std::string_view name : builtin_calibration_names()) {
+    Calibration calibration;
+    ASSERT_TRUE(builtin_calibration(name, calibration).ok());
+    EXPECT_TRUE(doubts_about(calibration.camera, 640, 480).empty()) << name;
+  }
+}
+
+TEST(CalibrationCheck, GeometryThatCannotBeIsNamed) {
+  EXPECT_TRUE(contains(doubts(525, 525, 0, 0), "a coordinate of 0 is mostly one that nobody filled in"));
+  EXPECT_TRUE(contains(doubts(525, 525, 319.5, 0), "(319.5, 0.0) is far from the middle of 640x480 images"));
+  EXPECT_TRUE(contains(doubts(525, 525, 239.5, 319.5), "cx and cy look exchanged"));
+  EXPECT_TRUE(
+      contains(doubts(525, 525, 319.5, 239.5, 1280, 720), "it is the middle of images of about 640x480"));
+  EXPECT_TRUE(contains(doubts(525, 525, 319.5, 239.5, 848, 480), "of another size"));
+  EXPECT_TRUE(contains(doubts(500, 277, 319.5, 239.5), "fx 500.0 and fy 277.0 differ by 81 %"));
+  EXPECT_TRUE(contains(doubts(0.82, 0.82, 319.5, 239.5), "are fx and fy in pixels"));
+  EXPECT_TRUE(contains(doubts(5250, 5250, 319.5, 239.5), "shows 7.0 degrees"));
+}
+
+// Boxes before a wall: each is nearer than what it hides and has a brightness of its own.
+struct BoxScene {
+  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(kWidth * kHeight, 120);
+  std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(kWidth * kHeight, 10000);  // 2 m
+
+  explicit BoxScene(std::uint64_t seed) {
+    Random random(seed);
+    const auto up_to = [&random](int n) { return static_cast<int>(random.uniform() * n); };
+    for (int k = 0; k < 40; ++k) {
+      const int x0 = up_to(kWidth - 40), y0 = up_to(kHeight - 40), w = 10 + up_to(30), h = 10 + up_to(30);
+      const auto value = static_cast<std::uint8_t>(up_to(256));
+      const auto units = static_cast<std::uint16_t>(9000 - 150 * k);
+      for (int y = y0; y < y0 + h; ++y)
+        for (int x = x0; x < x0 + w; ++x) {
+          grey[static_cast<std::size_t>(y * kWidth + x)] = value;
+          depth[static_cast<std::size_t>(y * kWidth + x)] = units;
+        }
+    }
+  }
+};
+
+using Edit = std::function<void(std::vector<std::uint8_t>& grey, std::vector<std::uint16_t>& depth)>;
+
+// What is found in so many frames with what the edit makes of them.
+std::string findings(const Edit& edit, double units_per_metre = 5000, int frames = 40) {
+  FrameCheck check;
+  std::string text;
+  const auto keep = [&text](const std::vector<std::string>& found) {
+    for (const std::string& sentence : found) text += sentence + '\n';
+  };
+  for (int i = 0; i < frames; ++i) {
+    BoxScene scene(static_cast<std::uint64_t>(i / 4));
+    edit(scene.grey, scene.depth);
+    RgbdFrame frame;
+    frame.colour = {scene.grey.data(), kWidth, kHeight, kWidth, PixelFormat::kGray8};
+    frame.depth = {scene.depth.data(), kWidth, kHeight, kWidth, 1 / units_per_metre};
+    keep(check.add(frame));
+  }
+  keep(check.finish());
+  return text;
+}
+
+void as_it_is(std::vector<std::uint8_t>&, std::vector<std::uint16_t>&) {}
+
+TEST(FrameCheck, GoodFramesAreSilent) {
+  EXPECT_EQ(findings(as_it_is), "");
+  EXPECT_EQ(findings(as_it_is, 5000, 3), "");
+  EXPECT_EQ(findings(as_it_is, 5000, 0), "");
+}
+
+TEST(FrameCheck, BlackColourAndEmptyDepthAreToldApart) {
+  const std::string black =
+      findings([](auto& grey, auto&) { std::fill(grey.begin(), grey.end(), std::uint8_t{7}); });
+  EXPECT_TRUE(
+      contains(black, "the colour images are black: of the first 40 frames no pixel is brighter than 7"));
+  EXPECT_FALSE(contains(black, "depth"));
+  const std::string white =
+      findings([](auto& grey, auto&) { std::fill(grey.begin(), grey.end(), std::uint8_t{255}); });
+  EXPECT_TRUE(contains(white, "all pixels lie between 255 and 255"));
+  const std::string empty =
+      findings([](auto&, auto& depth) { std::fill(depth.begin(), depth.end(), std::uint16_t{0}); }, 5000, 6);
+  EXPECT_TRUE(contains(empty, "the depth images are empty: of the first 6 frames 0.00 % of the pixels"));
+  EXPECT_FALSE(contains(empty, "colour images")) << empty;
+  // Black for a moment is nothing to speak of.
+  int frame = 0;
+  EXPECT_EQ(findings([&frame](auto& grey, auto& depth) {
+              if (frame++ > 20) return;
+              std::fill(grey.begin(), grey.end(), std::uint8_t{0});
+              std::fill(depth.begin(), depth.end(), std::uint16_t{0});
+            }),
+            "");
+}
+
+TEST(FrameCheck, DepthInAnotherUnit) {
+  EXPECT_TRUE(contains(findings(as_it_is, 1000), "1000 units per metre are in force"));
+  EXPECT_TRUE(contains(findings(as_it_is, 25000), "no depth lies beyond 0.42 m"));
+}
+
+// Every second row and column is empty, whichever comes first.
+TEST(FrameCheck, ACombOfDepthIsNotEmpty) {
+  for (const int first : {0, 1})
+    EXPECT_EQ(findings([first](auto&, auto& depth) {
+                for (int y = 0; y < kHeight; ++y)
+                  for (int x = 0; x < kWidth; ++x)
+                    if (x % 2 == first || y % 2 == first) depth[static_cast<std::size_t>(y * kWidth + x)] = 0;
+              }),
+              "")
+        << first;
+}
+
+// Whatever is done to depth, and the words for it.
+TEST(FrameCheck, DepthThatLiesMirroredOverColour) {
+  const auto flip = [](bool left_right, bool up_down) {
+    return findings([=](auto&, auto& depth) {
+      const std::vector<std::uint16_t> copy = depth;
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+          depth[static_cast<std::size_t>(y * kWidth + x)] = copy[static_cast<std::size_t>(
+              (up_down ? kHeight - 1 - y : y) * kWidth + (left_right ? kWidth - 1 - x : x))];
+    });
+  };
+  EXPECT_TRUE(contains(flip(true, false), "depth looks mirrored left to right against colour"))
+      << flip(true, false);
+  EXPECT_TRUE(contains(flip(false, true), "depth looks upside down against colour"));
+  EXPECT_TRUE(contains(flip(true, true), "depth looks turned by 180 degrees against colour"));
+  EXPECT_EQ(flip(false, false), "");
+  // Depth of another scene agrees with colour in no way, and that is not said to be a mirror.
+  for (std::uint64_t seed = 100; seed < 130; ++seed)
+    EXPECT_EQ(findings([seed](auto&, auto& depth) { depth = BoxScene(seed).depth; }, 5000, 10), "") << seed;
+}
+
+// The recorded sequences: silent as they are; mirrored, those that show enough are told.
+TEST(FrameCheck, RecordedSequences) {
+  const char* shared = std::getenv("PLVO_SHARED");
+  const fs::path data = fs::path(shared == nullptr ? "" : shared) / "data";
+  if (!fs::exists(data)) GTEST_SKIP() << "the shared sequences are not here: " << data;
+  for (const char* name : {"fr1_rpy_150", "fr1_desk_9f", "fr1_xyz_10f", "fr1_360_5f", "fr3_notexture_120",
+                           "corridor_constant", "corridor_varying", "realsense_shelf_50"}) {
+    SCOPED_TRACE(name);
+    Calibration calibration;
+    std::string guess;
+    ASSERT_TRUE(sequence_calibration(data / name, calibration, guess).ok());
+    RecordedCamera camera;
+    SequenceOptions options;
+    options.end_frame = 40;
+    ASSERT_TRUE(camera.open(data / name, calibration, options).ok());
+    EXPECT_EQ(camera.index().remark, "");
+    EXPECT_TRUE(doubts_about(camera.model(), 640, 480).empty());
+    FrameCheck as_is, mirrored;
+    std::vector<std::string> of_as_is, of_mirrored;
+    RgbdFrame frame;
+    std::vector<std::uint16_t> flipped(640 * 480);
+    const auto keep = [](std::vector<std::string>& to, const std::vector<std::string>& found) {
+      to.insert(to.end(), found.begin(), found.end());
+    };
+    while (camera.next(frame).ok()) {
+      keep(of_as_is, as_is.add(frame));
+      for (int y = 0; y < 480; ++y)
+        std::reverse_copy(frame.depth.data + y * frame.depth.stride,
+                          frame.depth.data + y * frame.depth.stride + 640, flipped.begin() + y * 640);
+      frame.depth.data = flipped.data();
+      frame.depth.stride = 640;
+      keep(of_mirrored, mirrored.add(frame));
+    }
+    keep(of_as_is, as_is.finish());
+    keep(of_mirrored, mirrored.finish());
+    EXPECT_TRUE(of_as_is.empty()) << of_as_is.front();
+    // Five frames show too little, and the shelf's depth is a comb of holes.
+    const std::string_view n = name;
+    if (n == "fr1_360_5f" || n == "realsense_shelf_50") continue;
+    ASSERT_EQ(of_mirrored.size(), 1u);
+    EXPECT_TRUE(contains(of_mirrored.front(), "mirrored left to right")) << of_mirrored.front();
+  }
+}
+
+}  // namespace
+}  // namespace plvo
