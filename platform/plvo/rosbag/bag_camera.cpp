@@ -185,9 +185,8 @@ Status BagCamera::in_order(std::size_t topic, Messages& messages) {
 // before and after.
 Status BagCamera::check_clock(std::size_t topic) const {
   std::vector<std::int64_t> stamps;
-  for (const BagMessage& message : bag_.messages())
-    if (message.topic == topic && (stamps.empty() || message.stamp_ns != stamps.back()))
-      stamps.push_back(message.stamp_ns);
+  for (const BagMessage& message : bag_.messages(topic))
+    if (stamps.empty() || message.stamp_ns != stamps.back()) stamps.push_back(message.stamp_ns);
   const std::optional<StampFault> fault = find_stamp_fault(stamps);
   if (!fault || fault->kind != StampFault::Kind::kClockStep) return {};
   return {
