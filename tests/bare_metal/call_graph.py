@@ -13,7 +13,7 @@ LEAVES = re.compile(r"__(?:aeabi_|u?div|u?mod|float|fix)\w*$|(?:memcpy|memmove|m
 # (which callers, which functions they may reach through a pointer or a virtual table; None: the user's own, not counted)
 INDIRECT = [
     (re.compile(r"StageTimer"), None),  # Config::stage_clock
-    (re.compile(r"SideBySide5start"), None),  # Config::side_by_side: the second core has a stack of its own
+    (re.compile(r"Executor5start"), None),  # Config::executor: the second core has a stack of its own
     (re.compile(r"LevenbergMarquardt.*@lines"), re.compile(r"LmAnyProblem.*EndDepths.*_FUN")),
     (re.compile(r"LevenbergMarquardt"), re.compile(r"LmAnyProblem.*MotionProblem.*_FUN")),
     (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),

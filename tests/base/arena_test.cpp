@@ -17,7 +17,7 @@ struct Small {
 };
 
 // What a room does at init: the same code with memory and without.
-constexpr void carve(Arena& memory, std::size_t n) {
+constexpr void allocate(Arena& memory, std::size_t n) {
   (void)memory.take<std::uint8_t>("pixels", 3 * n + 1);
   (void)memory.take<double>("table", n);
   {
@@ -29,9 +29,9 @@ constexpr void carve(Arena& memory, std::size_t n) {
   (void)memory.take<Small>("records", n);
 }
 
-constexpr std::size_t carve_bytes(std::size_t n) {
+constexpr std::size_t allocate_bytes(std::size_t n) {
   Arena sizer = Arena::counting();
-  carve(sizer, n);
+  allocate(sizer, n);
   return sizer.peak();
 }
 
@@ -54,25 +54,25 @@ class ArenaOf {
 bool aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kArenaAlignment == 0; }
 
 TEST(CountingArena, CountsAtCompileTime) {
-  static_assert(carve_bytes(0) > 0);
-  static_assert(carve_bytes(100) > carve_bytes(10));
+  static_assert(allocate_bytes(0) > 0);
+  static_assert(allocate_bytes(100) > allocate_bytes(10));
   Arena sizer = Arena::counting();
-  carve(sizer, 100);
-  EXPECT_EQ(sizer.peak(), carve_bytes(100));
+  allocate(sizer, 100);
+  EXPECT_EQ(sizer.peak(), allocate_bytes(100));
   EXPECT_LT(sizer.used(), sizer.peak());
 }
 
 TEST(CountingArena, AgreesWithTheArenaToTheByte) {
   for (std::size_t n : {0U, 1U, 2U, 63U, 64U, 65U, 1000U}) {
     Arena sizer = Arena::counting();
-    carve(sizer, n);
+    allocate(sizer, n);
     ArenaOf exact(sizer.peak());
-    carve(exact.arena, n);
+    allocate(exact.arena, n);
     EXPECT_FALSE(exact.arena.exhausted()) << n;
     EXPECT_EQ(exact.arena.peak(), sizer.peak()) << n;
     EXPECT_EQ(exact.arena.used(), sizer.used()) << n;
     ArenaOf short_by_one(sizer.peak() - 1);
-    carve(short_by_one.arena, n);
+    allocate(short_by_one.arena, n);
     EXPECT_TRUE(short_by_one.arena.exhausted()) << n;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The front door for C gives the bits of the C++ one, takes no memory, and answers nonsense with words.
+// The public API for C gives the bits of the C++ one, takes no memory, and answers nonsense with words.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -165,7 +165,7 @@ TEST(CSequence, RefusesWhatIsNoSequence) {
   plvo_sequence_close(nullptr);
 }
 
-// The poses of the C++ front door, to the nine decimals that the program prints.
+// The poses of the C++ public API, to the nine decimals that the program prints.
 TEST(CSequence, TheProgramOfThePageTracksAFolder) {
   constexpr int kFrames = 6;
   const test::TemporaryFolder folder;

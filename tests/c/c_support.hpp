@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests of the front door for C share: C++'s structs as C's, and whether two results have the same bits.
+// What tests of the public API for C share: C++'s structs as C's, and whether two results have the same bits.
 #pragma once
 
 #include <gtest/gtest.h>

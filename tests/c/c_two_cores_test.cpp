@@ -78,8 +78,8 @@ TEST_F(CTwoCores, ThePagesFunctionGivesTheSameBits) {
 
 TEST_F(CTwoCores, AFunctionOfTheCallersOwn) {
   Runs runs;
-  config.side_by_side = run_here;
-  config.side_by_side_runner = &runs;
+  config.executor = run_here;
+  config.executor_runner = &runs;
   const plvo_status status = init();
   ASSERT_EQ(status.code, PLVO_OK) << status.message;
   expect_the_bits_of_one_core(c_odometry);
@@ -102,8 +102,8 @@ TEST_F(CTwoCores, EachTaskHasAThreadOfItsOwn) {
 
 TEST_F(CTwoCores, NeedTheirMemory) {
   Runs runs;
-  config.side_by_side = run_here;
-  config.side_by_side_runner = &runs;
+  config.executor = run_here;
+  config.executor_runner = &runs;
   const std::size_t of_two = plvo_required_bytes(&limits);
   limits.cores = 0;
   EXPECT_LT(plvo_required_bytes(&limits), of_two);
@@ -116,7 +116,7 @@ TEST_F(CTwoCores, NeedTheirMemory) {
 
 // What lies behind the structs of a program that was compiled before is not the library's to read or to call.
 TEST_F(CTwoCores, AnOlderProgramHasOneCore) {
-  config.side_by_side = [](void*, plvo_task, plvo_task) { ADD_FAILURE() << "called"; };
+  config.executor = [](void*, plvo_task, plvo_task) { ADD_FAILURE() << "called"; };
   config.stage_hook = [](void*, std::int32_t) { ADD_FAILURE() << "called"; };
   config.struct_size = offsetof(plvo_config, stage_hook);
   limits.cores = 77;

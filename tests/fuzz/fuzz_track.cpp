@@ -83,12 +83,12 @@ Config read_config(Bytes& bytes) {
   references.policy = static_cast<ReferencePolicy>((bytes.below(4) + 2) % 4);
   references.recent_frames = 1 + bytes.below(4);
   references.max_lost_frames = 1 + bytes.below(4);
-  references.look_back_frames = 1 + bytes.below(4);
+  references.relocalisation_interval_frames = 1 + bytes.below(4);
   tune(references.keyframe_inlier_ratio, 0, 1);
   tune(references.window_inlier_ratio, 0, 1);
   tune(references.older_inlier_ratio, 0, 1);
-  tune(references.unseen_m_per_s, 0, 100);
-  tune(references.unseen_rad_per_s, 0, 100);
+  tune(references.process_noise_m_per_s, 0, 100);
+  tune(references.process_noise_rad_per_s, 0, 100);
   config.points.registered = !bytes.one_in(4);
   config.points.depth_reach_px = (bytes.below(4) + 2) % 4;
   tune(config.points.sigma_px, 0.01, 2);
@@ -103,10 +103,10 @@ Config read_config(Bytes& bytes) {
   tune(config.motion.max_sigma_m, 1e-6, 100);
   tune(config.motion.max_sigma_rad, 1e-6, 10);
   tune(config.noise.learning_rate, 0, 0.5);
-  tune(config.noise.repeated_share, 0, 1);
+  tune(config.noise.common_mode_share, 0, 1);
   tune(config.noise.point_correlation, 0, 1);
   tune(config.noise.shared_depth_m, 0, 1);
-  tune(config.noise.turning_rad_per_s, 0, 10);
+  tune(config.noise.angular_rate_error_rad_per_s, 0, 10);
   tune(config.depth_noise.c1, 0, 0.01);
   tune(config.depth_noise.floor_m, 1e-6, 0.1);
   config.budget.frame_ns = bytes.below(2) * 1000;

@@ -5,19 +5,19 @@
 
 #include "fingerprint.hpp"
 #include "result_fingerprint.hpp"
-#include "test_room.hpp"
+#include "test_limits.hpp"
 #include "text_line.hpp"
 
 namespace plvo {
 namespace {
 
-using test::kRoom;
+using test::kTestLimits;
 
 // One run of the odometry over the procedural sequence.
 struct GoldenCase {
   const char* name;
   Config config;
-  Limits limits = kRoom;
+  Limits limits = kTestLimits;
   int frames = 6;
   // From this frame on there is nothing to see, for as many frames as given: being lost and going on belong
   // to the golden run.
@@ -113,8 +113,8 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
   ProceduralRenderer sequence;
   if (!print_input(memory, sequence, print)) return false;
   Config points, lines, keyframe, lost, window;
-  Limits surfaces = kRoom;
-  Limits three = kRoom;
+  Limits surfaces = kTestLimits;
+  Limits three = kTestLimits;
   surfaces.surfaces = 200;
   points.features = Features::kPoints;
   lines.features = Features::kLines;

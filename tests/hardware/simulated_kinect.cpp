@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr uid_t kNobody = 65534;
+constexpr uid_t kInvalidSlot = 65534;
 // How long a reap may wait for data: without it, libusb spins, for umockdev's device files always look ready.
 constexpr auto kReapWait = std::chrono::milliseconds(2);
 
@@ -145,7 +145,7 @@ void SimulatedKinect::deny() {
   const std::string path = std::string(root) + node_;
   ::chmod(path.c_str(), 0);
   g_free(root);
-  ::setfsuid(kNobody);
+  ::setfsuid(kInvalidSlot);
 }
 
 void SimulatedKinect::allow() { ::setfsuid(::geteuid()); }

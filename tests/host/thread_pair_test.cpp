@@ -19,12 +19,12 @@ namespace {
 
 TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
   ThreadPair pair;
-  const SideBySide side_by_side = pair.side_by_side();
+  const Executor executor = pair.executor();
   const std::thread::id caller = std::this_thread::get_id();
   std::thread::id second;
   for (int i = 0; i < 1000; ++i) {
     int here = 0, beside = 0;
-    side_by_side.both(
+    executor.both(
         [&] {
           EXPECT_EQ(std::this_thread::get_id(), caller);
           here = i + 1;
@@ -44,10 +44,10 @@ TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
 
 TEST(ThreadPair, HalvesCoverAllAndMeetOnce) {
   ThreadPair pair;
-  for (const SideBySide& side_by_side : {pair.side_by_side(), SideBySide()}) {
+  for (const Executor& executor : {pair.executor(), Executor()}) {
     for (const std::size_t count : {0U, 1U, 2U, 7U, 100U}) {
       std::vector<int> visits(count);
-      side_by_side.halves(count, [&](std::size_t begin, std::size_t end) {
+      executor.halves(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) ++visits[i];
       });
       EXPECT_EQ(visits, std::vector<int>(count, 1));
@@ -68,7 +68,7 @@ Walk walk(ProceduralSequence& sequence, Config config, TaskPair* pair) {
   config.references.max_lost_frames = 2;
   if (pair != nullptr) {
     limits.cores = 2;
-    config.side_by_side = pair->side_by_side();
+    config.executor = pair->executor();
   }
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;
@@ -110,7 +110,7 @@ TEST(ThreadPair, AnOdometryOnTwoCoresGivesTheSameBits) {
 TEST(ThreadPair, NeedsTheMemoryOfTwo) {
   ThreadPair pair;
   Config config;
-  config.side_by_side = pair.side_by_side();
+  config.executor = pair.executor();
   Limits limits;
   std::vector<std::byte> memory(2 * required_bytes(limits));
   CameraModel camera = ProceduralSequence(limits.width, limits.height).camera();

@@ -178,7 +178,7 @@ struct SlopeBehind {
       : scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; }),
         memory(kWidth * kHeight * 4 + 2 * kArenaAlignment),
         arena(memory) {
-    scene.map.carve(arena, kWidth, kHeight);
+    scene.map.allocate(arena, kWidth, kHeight);
     scene.map.init({kWidth, kHeight, {40, 40, 24, 18}, lens});
   }
   Scene scene;
@@ -254,7 +254,7 @@ TEST(DepthSampler, APlaneIsRecoveredThroughTheLens) {
   });
   std::vector<std::byte> memory(kWidth * kHeight * 4 + 2 * kArenaAlignment);
   Arena arena(memory);
-  scene.map.carve(arena, kWidth, kHeight);
+  scene.map.allocate(arena, kWidth, kHeight);
   scene.map.init(camera);
   for (double v = 5; v < kHeight - 5; v += 3.37)
     for (double u = 5; u < kWidth - 5; u += 4.19) {

@@ -36,7 +36,7 @@ struct RawScene {
       for (int x = 0; x < kRawWidth; ++x)
         units[static_cast<std::size_t>(y * kRawWidth + x)] =
             static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kRawUnit + 0.5));
-    map.carve(arena, kRawWidth, kRawHeight);
+    map.allocate(arena, kRawWidth, kRawHeight);
     map.init(camera);
   }
   DepthSampler sampler(const Exposure& exposure) const {

@@ -15,7 +15,7 @@ namespace {
 class Owned {
  public:
   Owned(int width, int height) : memory_(bytes(width, height)), arena_(memory_) {
-    pyramid.carve(arena_, width, height);
+    pyramid.allocate(arena_, width, height);
     pyramid.init(width, height);
   }
   bool fits() const { return !arena_.exhausted(); }
@@ -24,7 +24,7 @@ class Owned {
   static constexpr std::size_t bytes(int width, int height) {
     Arena sizer = Arena::counting();
     Pyramid counted;
-    counted.carve(sizer, width, height);
+    counted.allocate(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
 

@@ -38,7 +38,7 @@ class Map {
       : memory_(static_cast<std::size_t>(camera.width * camera.height + (camera.width + camera.height) * 8 +
                                          1000)) {
     Arena arena(memory_);
-    map.carve(arena, camera.width, camera.height);
+    map.allocate(arena, camera.width, camera.height);
     map.init(camera);
   }
   UndistortionMap map;

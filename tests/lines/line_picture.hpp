@@ -92,7 +92,7 @@ class DetectorRig {
         arena_(memory_),
         storage_(capacity),
         segments_(storage_) {
-    pyramid_.carve(arena_, width, height);
+    pyramid_.allocate(arena_, width, height);
     pyramid_.init(width, height);
   }
 
@@ -112,7 +112,7 @@ class DetectorRig {
   static std::size_t pyramid_bytes(int width, int height) {
     Arena sizer = Arena::counting();
     Pyramid pyramid;
-    pyramid.carve(sizer, width, height);
+    pyramid.allocate(sizer, width, height);
     return sizer.peak();
   }
   Pyramid pyramid_;

@@ -37,44 +37,44 @@ struct Field {
   std::vector<std::byte> memory;
   Arena arena;
   LevelLineField field;
-  std::span<Piece> storage;
+  std::span<Run> storage;
   int width;
   int height;
 
   Field(int w, int h, std::vector<std::uint8_t> image)
       : pixels(std::move(image)), memory(1 << 21), arena(memory), width(w), height(h) {
-    field = carve_field(arena, w, h);
-    storage = arena.take<Piece>("region", static_cast<std::size_t>(w * h));
+    field = allocate_field(arena, w, h);
+    storage = arena.take<Run>("region", static_cast<std::size_t>(w * h));
     compute_field({pixels.data(), w, h, w}, field);
   }
   int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
-  bool is_open(Piece pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }
+  bool is_open(Run pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }
   bool is_open(int x, int y) const { return is_open(piece_of(x, y)); }
   bool is_directed(int x, int y) const {
-    const Piece piece = piece_of(x, y);
-    return (field.directed[static_cast<std::size_t>(field.index(piece))] & piece.bits) != 0;
+    const Run run = piece_of(x, y);
+    return (field.directed[static_cast<std::size_t>(field.index(run))] & run.bits) != 0;
   }
   Angle angle(int x, int y) const { return field.angles()[field.pixel(x, y)]; }
   int magnitude(int x, int y) const {
     return field.magnitude_and_releases[static_cast<std::size_t>(field.pixel(x, y))] &
            ((1 << LevelLineField::kReleaseBit) - 1);
   }
-  static Piece piece_of(int x, int y) {
+  static Run piece_of(int x, int y) {
     return {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(x / kBlockPixels),
             static_cast<std::uint8_t>(1 << x % kBlockPixels)};
   }
-  std::span<const Piece> seeds() const { return field.seeds.first(field.seed_count); }
+  std::span<const Run> seeds() const { return field.seeds.first(field.seed_count); }
 };
 
 using Pixels = std::vector<std::pair<int, int>>;  // x, y
 
-void append(Piece piece, Pixels& pixels) {
+void append(Run run, Pixels& pixels) {
   for (int i = 0; i < kBlockPixels; ++i)
-    if ((piece.bits >> i & 1) != 0) pixels.push_back({piece.block * kBlockPixels + i, piece.row});
+    if ((run.bits >> i & 1) != 0) pixels.push_back({run.block * kBlockPixels + i, run.row});
 }
-Pixels pixels_of(std::span<const Piece> pieces) {
+Pixels pixels_of(std::span<const Run> runs) {
   Pixels pixels;
-  for (const Piece piece : pieces) append(piece, pixels);
+  for (const Run run : runs) append(run, pixels);
   return pixels;
 }
 
@@ -161,19 +161,19 @@ class SlowRegion {
     first_ = middle_ = f.angle(seed_x, seed_y);
     take(seed_x / kBlockPixels, seed_y, {{seed_x, seed_y}});
     for (std::size_t next = 0; next < pieces_.size(); ++next) {
-      const Pixels piece = pieces_[next];
-      for (const auto& [x, y] : piece) beyond_first_ += static_cast<Angle>(f_.angle(x, y) - first_);
-      size_ += piece.size();
+      const Pixels run = pieces_[next];
+      for (const auto& [x, y] : run) beyond_first_ += static_cast<Angle>(f_.angle(x, y) - first_);
+      size_ += run.size();
       if (size_ >= renew_) renew();
-      const int row = piece.front().second;
-      const int block = piece.front().first / kBlockPixels;
-      take(block, row - 1, piece);
-      take(block, row + 1, piece);
+      const int row = run.front().second;
+      const int block = run.front().first / kBlockPixels;
+      take(block, row - 1, run);
+      take(block, row + 1, run);
       for (const int beside : {-1, 1})
-        for (const int down : {-1, 0, 1}) take(block + beside, row + down, piece);
+        for (const int down : {-1, 0, 1}) take(block + beside, row + down, run);
     }
   }
-  const std::vector<Pixels>& pieces() const { return pieces_; }
+  const std::vector<Pixels>& runs() const { return pieces_; }
 
  private:
   bool fits(int x, int y) const {
@@ -217,18 +217,18 @@ TEST(Region, GrowsAsPixelByPixel) {
   for (std::uint64_t seed = 3; seed < 9; ++seed) {
     Field f = busy_field(seed, 158 + static_cast<int>(seed));
     std::set<std::pair<int, int>> used;
-    for (const Piece start : f.seeds()) {
+    for (const Run start : f.seeds()) {
       const auto [x, y] = pixels_of({&start, 1}).front();
       ASSERT_EQ(f.is_open(start), used.count({x, y}) == 0);
       if (!f.is_open(start)) continue;
       const SlowRegion expected(f, used, x, y);
       const Region region = grow(f.field, start, kTau, f.storage);
-      ASSERT_EQ(region.pieces.size(), expected.pieces().size());
+      ASSERT_EQ(region.runs.size(), expected.runs().size());
       std::size_t size = 0;
       double beyond = 0;
-      for (std::size_t i = 0; i < region.pieces.size(); ++i) {
-        const Pixels pixels = pixels_of(region.pieces.subspan(i, 1));
-        ASSERT_EQ(pixels, expected.pieces()[i]);
+      for (std::size_t i = 0; i < region.runs.size(); ++i) {
+        const Pixels pixels = pixels_of(region.runs.subspan(i, 1));
+        ASSERT_EQ(pixels, expected.runs()[i]);
         size += pixels.size();
         for (const auto& [px, py] : pixels) beyond += static_cast<Angle>(f.angle(px, py) - f.angle(x, y));
       }
@@ -257,16 +257,16 @@ TEST(Region, OneDirectionHoldsTogetherAtTheLeastTolerance) {
 
 TEST(Region, APixelIsGivenBackSoManyTimesAndNoMore) {
   Field f = busy_field(4);
-  const Piece seed = f.field.seeds[0];
+  const Run seed = f.field.seeds[0];
   for (int i = 0; i < 20; ++i) {
     const Region region = grow(f.field, seed, kTau, f.storage);
-    const Pixels pixels = pixels_of(region.pieces);
+    const Pixels pixels = pixels_of(region.runs);
     if (i <= kMaxReleases) {
       EXPECT_GT(region.size, 3);
     } else {
       EXPECT_EQ(region.size, 1);  // all its neighbours have had their turns
     }
-    for (const Piece piece : region.pieces) release(f.field, piece);
+    for (const Run run : region.runs) release(f.field, run);
     for (const auto& [x, y] : pixels) EXPECT_EQ(f.is_open(x, y), i < kMaxReleases);
     if (i == 0) {
       for (const auto& [x, y] : pixels)  // the magnitudes stay
@@ -278,13 +278,13 @@ TEST(Region, APixelIsGivenBackSoManyTimesAndNoMore) {
 TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
   Field f = busy_field(6);
   int compared = 0;
-  for (const Piece start : f.seeds()) {
+  for (const Run start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     const Rectangle r = fit_rectangle(region, weigh(f.field, region));
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();
     double mass = 0;
-    const Pixels pixels = pixels_of(region.pieces);
+    const Pixels pixels = pixels_of(region.runs);
     for (const auto& [x, y] : pixels) {
       const double w = f.magnitude(x, y);
       centre += w * Eigen::Vector2d(x, y);
@@ -402,7 +402,7 @@ TEST(AngleSum, SquaresHalfTurns) {
 TEST(Validation, ATightenedRegionHasTheSumsOfItsPixels) {
   Field f = busy_field(9);
   int cut = 0;
-  for (const Piece start : f.seeds()) {
+  for (const Run start : f.seeds()) {
     if (!f.is_open(start)) continue;
     Region region = grow(f.field, start, kTau, f.storage);
     if (region.size < 10) continue;
@@ -413,7 +413,7 @@ TEST(Validation, ATightenedRegionHasTheSumsOfItsPixels) {
     ++cut;
     std::int32_t size = 0;
     std::int64_t beyond = 0, m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
-    for (const auto& [px, py] : pixels_of(region.pieces)) {
+    for (const auto& [px, py] : pixels_of(region.runs)) {
       ++size;
       beyond += static_cast<Angle>(f.angle(px, py) - region.from);
       const std::int64_t w = f.magnitude(px, py);
@@ -437,7 +437,7 @@ TEST(Validation, CountsWhatTheRectangleHolds) {
   Field f = busy_field(8);
   const FalseAlarms alarms(f.width, f.height);
   int meaningful = 0;
-  for (const Piece start : f.seeds()) {
+  for (const Run start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     Rectangle r = fit_rectangle(region, weigh(f.field, region));

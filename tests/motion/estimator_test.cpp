@@ -311,8 +311,8 @@ class PlaneSamples final : public ConstraintSet {
     const double r = residual(samples_[i], T) / samples_[i].sigma;
     return r * r;
   }
-  void begin(const Se3&, const SharedErrors&, const RobustKernel&, std::size_t) override {}
-  double linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
+  void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
+  double linearize(const Se3& T, const NuisanceParameters&, const RobustKernel& kernel,
                    JointInformation& sum) const override {
     double cost = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {

@@ -68,12 +68,12 @@ TEST(PriorConstraint, GradientIsThatOfItsCost) {
   Gaussian gaussian(3);
   for (const RobustLoss loss : {RobustLoss::kNone, RobustLoss::kHuber})
     for (int trial = 0; trial < 20; ++trial) {
-      const Se3 T_sensed = test::random_motion(gaussian);
-      OnePrior prior(T_sensed, some_covariance(gaussian));
+      const Se3 T_propagated = test::random_motion(gaussian);
+      OnePrior prior(T_propagated, some_covariance(gaussian));
       const RobustKernel kernel(loss, prior.set.dof());
       Vector6 away;
       away << 0.02 * gaussian.vector<3>(), 0.02 * gaussian.vector<3>();
-      const Se3 T = boxplus(T_sensed, away);
+      const Se3 T = boxplus(T_propagated, away);
       const auto cost = [&](const Vector6& step) {
         JointInformation unused;
         return prior.set.linearize(boxplus(T, step), {}, kernel, unused);
@@ -99,11 +99,12 @@ TEST(PriorConstraint, AddsItsInformationToThatOfVision) {
   const Matrix6 C = some_covariance(gaussian);
   Vector6 away;
   away << 0.002, -0.001, 0.003, 0.001, 0.002, -0.002;
-  const Se3 T_sensed = boxplus(alone.T_current_reference, away);
-  OnePrior prior(T_sensed, C);
+  const Se3 T_propagated = boxplus(alone.T_current_reference, away);
+  OnePrior prior(T_propagated, C);
   bench.load(pair);
   const std::array<ConstraintSet*, 3> sets{bench.sets[0], bench.sets[1], &prior.set};
-  const MotionEstimate both = estimate_motion(sets, MotionReferences{}, {}, {}, 1, {&T_sensed}, bench.arena);
+  const MotionEstimate both =
+      estimate_motion(sets, MotionReferences{}, {}, {}, 1, {&T_propagated}, bench.arena);
   ASSERT_EQ(both.status, StatusCode::kOk);
   EXPECT_EQ(both.inliers[2], 1);
   const Matrix6 H = test::inverse(alone.C_H);
@@ -136,15 +137,15 @@ TEST(PriorConstraint, HoldsWhatVisionLeavesOpen) {
   const Vector3 across = open.cross(Vector3(0, 1, 0)).normalized();
   Vector6 error;
   error << 0.2 * open + 0.004 * across, 2e-4, -1e-4, 3e-4;
-  const Se3 T_sensed = boxplus(pair.truth, error);
-  OnePrior prior(T_sensed, C);
+  const Se3 T_propagated = boxplus(pair.truth, error);
+  OnePrior prior(T_propagated, C);
   constexpr LmOptions kAsTracking{.max_iterations = 20, .step_tolerance = 1e-6, .decrease_tolerance = 1e-9};
   MotionConfig config;
   config.max_sigma_m = config.max_sigma_rad = 1e6;
   bench.load(pair);
   const std::array<ConstraintSet*, 3> sets{bench.sets[0], bench.sets[1], &prior.set};
   const MotionEstimate held =
-      estimate_motion(sets, MotionReferences{}, config, kAsTracking, 1, {&T_sensed}, bench.arena);
+      estimate_motion(sets, MotionReferences{}, config, kAsTracking, 1, {&T_propagated}, bench.arena);
   ASSERT_EQ(held.status, StatusCode::kOk);
   // Little along the lines, though the noise of their directions looks like information; across them as much
   // as vision.
@@ -163,15 +164,15 @@ TEST(PriorConstraint, TheJointCovarianceIsHonest) {
   for (int trial = 0; trial < kTrials; ++trial) {
     const SimulatedPair pair = test::simulate(gaussian, 12, 0);
     const Matrix6 C = some_covariance(gaussian);
-    const Se3 T_sensed = boxplus(pair.truth, gaussian.draw<6>(C));
-    OnePrior prior(T_sensed, C);
+    const Se3 T_propagated = boxplus(pair.truth, gaussian.draw<6>(C));
+    OnePrior prior(T_propagated, C);
     test::Bench bench;
     bench.load(pair);
     const std::array<ConstraintSet*, 3> sets{bench.sets[0], bench.sets[1], &prior.set};
     MotionConfig config;
     config.robust = false;
     const MotionEstimate estimate =
-        estimate_motion(sets, MotionReferences{}, config, {}, 1, {&T_sensed}, bench.arena);
+        estimate_motion(sets, MotionReferences{}, config, {}, 1, {&T_propagated}, bench.arena);
     ASSERT_EQ(estimate.status, StatusCode::kOk);
     const Vector6 e = boxminus(pair.truth, estimate.T_current_reference);
     nees += e.dot(Vector6(test::inverse(estimate.C_H) * e)) / kTrials;

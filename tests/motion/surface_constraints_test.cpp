@@ -68,7 +68,7 @@ struct SurfaceSet {
 
 const RobustKernel kKernel(RobustLoss::kHuber, 1);
 
-SharedErrors room_errors() {
+NuisanceParameters room_errors() {
   CameraModel camera;
   camera.readout_s = 0.03;
   return {Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004};
@@ -78,8 +78,8 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   Gaussian gaussian(11);
   Walls walls(gaussian, room(), 30, 0.004, 0.03);
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
-  SharedErrors at = room_errors();
-  for (int k = 0; k < SharedErrors::kCount; ++k) at.value[k] = 0.2 * at.sigma(k) * gaussian();
+  NuisanceParameters at = room_errors();
+  for (int k = 0; k < NuisanceParameters::kCount; ++k) at.value[k] = 0.2 * at.sigma(k) * gaussian();
   SurfaceSet set(walls);
   const Se3 T = boxplus(walls.truth, 1e-3 * gaussian.vector<6>());
   set.constraints.begin(T, at, kKernel, 1);
@@ -88,7 +88,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   EXPECT_EQ(sum.H, sum.H.transpose());
   const auto cost = [&](int k, double step) {
     Vector6 delta = Vector6::Zero();
-    SharedErrors shared = at;
+    NuisanceParameters shared = at;
     if (k < 6)
       delta[k] = step;
     else
@@ -128,12 +128,12 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   Gaussian gaussian(12);
   Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
-  SharedErrors shared = room_errors();
+  NuisanceParameters shared = room_errors();
   SurfaceSet set(walls);
   set.constraints.begin(walls.truth, shared, kKernel, 1);
   // Some steps of a solve later.
   const Se3 T = boxplus(walls.truth, 3e-3 * gaussian.vector<6>());
-  for (int k = 0; k < SharedErrors::kCount; ++k) shared.value[k] = 0.2 * shared.sigma(k) * gaussian();
+  for (int k = 0; k < NuisanceParameters::kCount; ++k) shared.value[k] = 0.2 * shared.sigma(k) * gaussian();
   JointInformation sum;
   const double cost = set.constraints.linearize(T, shared, kKernel, sum);
 

@@ -179,7 +179,7 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
 
 // The pose and the shared errors are eliminated together: what both are moved to, the motion held, is what
 // one dense system of them says.
-TEST(TwoReferences, APoseAndSharedErrorsMoveAsADenseSystemSays) {
+TEST(TwoReferences, APoseAndNuisanceParametersMoveAsADenseSystemSays) {
   CameraModel camera;
   camera.readout_s = 0.03;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -187,7 +187,7 @@ TEST(TwoReferences, APoseAndSharedErrorsMoveAsADenseSystemSays) {
     const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
     const Vector6 sd = (Vector6() << 2e-3, 1e-3, 3e-3, 1e-3, 5e-4, 2e-3).finished();
     two.references[1].covariance = sd.cwiseAbs2().asDiagonal();
-    const SharedErrors shared(Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004);
+    const NuisanceParameters shared(Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004);
     const Se3 T = boxplus(two.truth, kAway);
     const auto kernels = MotionProblem::make_kernels(sets, RobustLoss::kNone);
     MotionProblem problem(sets, two.references, shared, kernels, T);
@@ -207,7 +207,7 @@ TEST(TwoReferences, APoseAndSharedErrorsMoveAsADenseSystemSays) {
     JointInformation base, other;
     for (std::size_t kind = 0; kind < sets.size(); ++kind)
       (void)sets[kind]->linearize(kind < 2 ? T : T_1, shared, kernels[kind], kind < 2 ? base : other);
-    constexpr int n = SharedErrors::kCount;
+    constexpr int n = NuisanceParameters::kCount;
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(6 + n, 6 + n);
     dense.topLeftCorner(6, 6) =
         J.transpose() * Eigen::MatrixXd(other.H.topLeftCorner<6, 6>()) * J + Eigen::MatrixXd::Identity(6, 6);
@@ -221,7 +221,7 @@ TEST(TwoReferences, APoseAndSharedErrorsMoveAsADenseSystemSays) {
         Eigen::VectorXd(base.g.tail<n>() + other.g.tail<n>());
     const Eigen::VectorXd expected = -dense.inverse() * gradient;
     for (int k = 0; k < 6; ++k) EXPECT_NEAR(problem.poses()[1].moved[k], expected[k], 1e-3);
-    const SharedErrorEstimate found = problem.shared(Matrix6::Zero());
+    const NuisanceEstimate found = problem.shared(Matrix6::Zero());
     for (int k = 0; k < n; ++k) EXPECT_NEAR(found.value[k], expected[6 + k], 1e-3 * shared.sigma(k));
   }
 }

@@ -30,12 +30,12 @@ void note(FeatureBudget& budget, std::int64_t took_ns, int times) {
 
 TEST(FeatureBudget, EachStepTakesAQuarterOfOneKindInTurns) {
   FeatureBudget budget = make_budget();
-  std::vector<std::size_t> keypoints{budget.room().keypoints}, segments{budget.room().segments};
+  std::vector<std::size_t> keypoints{budget.capacity().keypoints}, segments{budget.capacity().segments};
   for (int i = 0; i < FeatureBudget::kSteps; ++i) {
     note(budget, kTooLong, 1 + FeatureBudget::kSettlingFrames);
     EXPECT_EQ(budget.step(), i + 1);
-    keypoints.push_back(budget.room().keypoints);
-    segments.push_back(budget.room().segments);
+    keypoints.push_back(budget.capacity().keypoints);
+    segments.push_back(budget.capacity().segments);
   }
   EXPECT_EQ(keypoints, (std::vector<std::size_t>{400, 300, 300, 225, 225, 169, 169, 127, 127}));
   EXPECT_EQ(segments, (std::vector<std::size_t>{256, 256, 192, 192, 144, 144, 108, 108, 81}));
@@ -47,8 +47,8 @@ TEST(FeatureBudget, ALeastNumberStaysUnlessThereWereFewer) {
   FeatureBudget budget;
   budget.init(kConfig, {160, 120, 60, 12});
   note(budget, kTooLong, 100);
-  EXPECT_EQ(budget.room().keypoints, 40U);
-  EXPECT_EQ(budget.room().segments, 12U);
+  EXPECT_EQ(budget.capacity().keypoints, 40U);
+  EXPECT_EQ(budget.capacity().segments, 12U);
 }
 
 TEST(FeatureBudget, AFrameAfterAStepIsNotJudged) {
@@ -121,8 +121,9 @@ TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const TrackResult result = odometry_.track(sequence_.render(static_cast<int>(i)));
     EXPECT_EQ(result.feature_step, steps[i]);
-    EXPECT_EQ(odometry_.features().keypoints.size(), expected.room().keypoints) << "there is texture enough";
-    EXPECT_LE(odometry_.features().segments.size(), expected.room().segments);
+    EXPECT_EQ(odometry_.features().keypoints.size(), expected.capacity().keypoints)
+        << "there is texture enough";
+    EXPECT_LE(odometry_.features().segments.size(), expected.capacity().segments);
     EXPECT_GT(result.points.dropped, 0);
     if (i > 0) {
       EXPECT_EQ(result.state, TrackState::kTracking);

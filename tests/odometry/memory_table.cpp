@@ -60,7 +60,7 @@ std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny) {
   };
   std::string page =
       "<!-- SPDX-License-Identifier: Apache-2.0 -->\n# Memory\n\n"
-      "The caller owns one block; `init` carves it once, and nothing is taken from anywhere else, then or "
+      "The caller owns one block; `init` allocates it once, and nothing is taken from anywhere else, then or "
       "later. This first\n"
       "part of the page is written by a test (`tests/odometry/memory_test.cpp`), which fails when the "
       "figures "

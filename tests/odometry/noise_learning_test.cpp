@@ -189,7 +189,7 @@ TEST(Learning, StaysWithinItsBounds) {
 
 // Estimates of the shared errors as a frame makes them: drawn with the true SD, seen with a noise of their
 // own, and shrunk towards the prior as that noise deserves.
-TEST(Learning, SettlesAtTheTrueSizeOfSharedErrors) {
+TEST(Learning, SettlesAtTheTrueSizeOfNuisanceParameters) {
   NoiseConfig config;
   CameraModel camera;
   camera.readout_s = 0.03;
@@ -202,10 +202,10 @@ TEST(Learning, SettlesAtTheTrueSizeOfSharedErrors) {
       double mean_depth = 0;
       constexpr int kFrames = 4000;
       for (int frame = 0; frame < kFrames; ++frame) {
-        const SharedErrors prior(Exposure(camera, Vector6::Zero(), 0), std::sqrt(scales.turning),
-                                 std::sqrt(scales.shared_depth));
-        SharedErrorEstimate estimate;
-        for (int k = 0; k < SharedErrors::kCount; ++k) {
+        const NuisanceParameters prior(Exposure(camera, Vector6::Zero(), 0), std::sqrt(scales.angular_rate),
+                                       std::sqrt(scales.shared_depth));
+        NuisanceEstimate estimate;
+        for (int k = 0; k < NuisanceParameters::kCount; ++k) {
           const double variance = prior.sigma(k) * prior.sigma(k);
           const double noise = seen_with * truth;
           const double gain = variance / (variance + noise * noise);
@@ -213,10 +213,10 @@ TEST(Learning, SettlesAtTheTrueSizeOfSharedErrors) {
           estimate.variance[k] = (1 - gain) * variance;
         }
         NoiseScales shown;
-        note_shared(prior, estimate, shown);
+        note_nuisance(prior, estimate, shown);
         learn(config, shown, scales);
         if (frame < kFrames / 2) continue;
-        mean_turning += 2 * scales.turning / kFrames;
+        mean_turning += 2 * scales.angular_rate / kFrames;
         mean_depth += 2 * scales.shared_depth / kFrames;
       }
       EXPECT_NEAR(std::sqrt(mean_turning) / truth, 1, 0.25) << truth << ", " << seen_with;
@@ -226,8 +226,8 @@ TEST(Learning, SettlesAtTheTrueSizeOfSharedErrors) {
 
 TEST(Learning, WhatThereIsNotShowsNothing) {
   NoiseScales shown;
-  note_shared(SharedErrors{}, {}, shown);
-  EXPECT_EQ(shown.turning, 1);
+  note_nuisance(NuisanceParameters{}, {}, shown);
+  EXPECT_EQ(shown.angular_rate, 1);
   EXPECT_EQ(shown.shared_depth, 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The front door: what init and track refuse, what happens when there is nothing to see, and that nothing a
+// The public API: what init and track refuse, what happens when there is nothing to see, and that nothing a
 // frame may hold leads to a number that is not one.
 #include <gtest/gtest.h>
 
@@ -281,7 +281,8 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
     EXPECT_TRUE(same_pose(anew, before));
     const double seconds = static_cast<double>(good(i).stamp_ns - before.stamp_ns) * 1e-9;
     for (int k = 0; k < 6; ++k) {
-      const double rate = k < 3 ? config.references.unseen_m_per_s : config.references.unseen_rad_per_s;
+      const double rate =
+          k < 3 ? config.references.process_noise_m_per_s : config.references.process_noise_rad_per_s;
       const double expected = before.pose_covariance(k, k) + (rate * seconds) * (rate * seconds);
       EXPECT_NEAR(anew.pose_covariance(k, k), expected, 1e-9 * expected);
     }

@@ -144,7 +144,7 @@ TEST(OdometryPrior, AFrameThatShowsNothingGoesOnByIt) {
   Config config;
   // What the keyframe errs in every frame stays, however often it is found again.
   expect_to_go_on_by_the_prior(config, 0.9);
-  config.noise.repeated_share = 0;
+  config.noise.common_mode_share = 0;
   expect_to_go_on_by_the_prior(config, 0.7);
 }
 

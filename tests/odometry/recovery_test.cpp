@@ -118,7 +118,7 @@ TEST(Recovery, AViewThatCannotBeTheOldOneIsNotTakenForIt) {
   // The camera is said to move by at most a millimetre a second while nobody sees: what looks like the old
   // view from a hand's breadth beside must be another place.
   Config config = Walk::quick_to_give_up();
-  config.references.unseen_m_per_s = config.references.unseen_rad_per_s = 1e-3;
+  config.references.process_noise_m_per_s = config.references.process_noise_rad_per_s = 1e-3;
   Walk walk(1, config);
   TrackResult before;
   for (int view = 0; view <= kOut; ++view) before = walk.see(view);

@@ -56,7 +56,7 @@ struct Pair {
   Pair(const std::vector<Plane>& planes, const Se3& motion, std::uint64_t seed)
       : truth(motion), memory(1 << 20), arena(memory), storage(200) {
     Gaussian gaussian(seed);
-    features.carve(arena, 200);
+    features.allocate(arena, 200);
     const DepthPicture before = picture(planes, Se3{}, gaussian);
     const DepthPicture after = picture(planes, motion, gaussian);
     sample_surfaces(before.sampler(), kPinhole, kWidth, kHeight, kNoiseShare * kNoiseShare, arena, features);

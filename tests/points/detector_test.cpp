@@ -27,7 +27,7 @@ class DetectorFrame {
  public:
   explicit DetectorFrame(const GrayImage& image) : depth_(kWidth * kHeight, 1000), memory_(bytes()) {
     Arena arena(memory_);
-    pyramid.carve(arena, kWidth, kHeight);
+    pyramid.allocate(arena, kWidth, kHeight);
     pyramid.init(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) pyramid.base().at(x, y) = image.view().at(x, y);
@@ -42,7 +42,7 @@ class DetectorFrame {
   static std::size_t bytes() {
     Arena sizer = Arena::counting();
     Pyramid counted;
-    counted.carve(sizer, kWidth, kHeight);
+    counted.allocate(sizer, kWidth, kHeight);
     return sizer.peak() + kArenaAlignment;
   }
   std::vector<std::uint16_t> depth_;

@@ -29,7 +29,7 @@ class Frame {
       : memory_(kCapacity * (sizeof(Keypoint) + sizeof(Descriptor) + sizeof(Patch) + sizeof(Point3d)) +
                 1024) {
     Arena arena(memory_);
-    features.carve(arena, kCapacity);
+    features.allocate(arena, kCapacity);
   }
   void add(double u, double v, int level, const Descriptor& descriptor) {
     Keypoint keypoint;
@@ -72,15 +72,15 @@ std::vector<Match> reference_match(const PointFeatures& reference, const std::ve
   const auto distance = [&](std::size_t i, std::size_t j) {
     return hamming_distance(reference.descriptors[i], current.descriptors[j]);
   };
-  constexpr int kNobody = -1;
-  std::vector<int> choice(reference.keypoints.size(), kNobody);
+  constexpr int kInvalidSlot = -1;
+  std::vector<int> choice(reference.keypoints.size(), kInvalidSlot);
   for (std::size_t i = 0; i < choice.size(); ++i) {
     if (!predictions[i].visible) continue;
     for (std::size_t j = 0; j < current.keypoints.size(); ++j)
       if (in_reach(i, j) &&
-          (choice[i] == kNobody || distance(i, j) < distance(i, static_cast<std::size_t>(choice[i]))))
+          (choice[i] == kInvalidSlot || distance(i, j) < distance(i, static_cast<std::size_t>(choice[i]))))
         choice[i] = static_cast<int>(j);
-    if (choice[i] == kNobody) continue;
+    if (choice[i] == kInvalidSlot) continue;
     const int best = distance(i, static_cast<std::size_t>(choice[i]));
     bool accepted = best <= options.max_distance;
     for (std::size_t j = 0; j < current.keypoints.size(); ++j)
@@ -90,11 +90,11 @@ std::vector<Match> reference_match(const PointFeatures& reference, const std::ve
       }
     // Alone, a candidate is compared with the worst that there could be.
     accepted = accepted && best <= options.max_ratio * 257;
-    if (!accepted) choice[i] = kNobody;
+    if (!accepted) choice[i] = kInvalidSlot;
   }
   std::vector<Match> matches;
   for (std::size_t i = 0; i < choice.size(); ++i) {
-    if (choice[i] == kNobody) continue;
+    if (choice[i] == kInvalidSlot) continue;
     const auto j = static_cast<std::size_t>(choice[i]);
     bool nearest = true;
     for (std::size_t other = 0; other < choice.size(); ++other)

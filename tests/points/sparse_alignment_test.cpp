@@ -48,15 +48,15 @@ void render(const test::Texture& texture, const Se3& T_camera_reference, const L
     }
 }
 
-// The reference's features, two pyramids, and room for windows.
+// The reference's features, two pyramids, and capacity for windows.
 class SparseAlignmentTest : public testing::Test {
  protected:
-  SparseAlignmentTest() : memory_(std::size_t{1} << 21), room_(kMostAlignmentWindows) {
+  SparseAlignmentTest() : memory_(std::size_t{1} << 21), capacity_(kMostAlignmentWindows) {
     arena_ = Arena(memory_);
-    reference_.carve(arena_, kPlanesWidth, kPlanesHeight);
-    current_.carve(arena_, kPlanesWidth, kPlanesHeight);
-    alignment_.carve(arena_, kPlanesWidth, kPlanesHeight);
-    features_.carve(arena_, 300);
+    reference_.allocate(arena_, kPlanesWidth, kPlanesHeight);
+    current_.allocate(arena_, kPlanesWidth, kPlanesHeight);
+    alignment_.allocate(arena_, kPlanesWidth, kPlanesHeight);
+    features_.allocate(arena_, 300);
     arena_.seal();
     reference_.init(kPlanesWidth, kPlanesHeight);
     current_.init(kPlanesWidth, kPlanesHeight);
@@ -103,7 +103,7 @@ class SparseAlignmentTest : public testing::Test {
   Pyramid reference_, current_;
   SparseAlignment alignment_;
   PointFeatures features_;
-  std::vector<AlignmentWindow> room_;
+  std::vector<AlignmentWindow> capacity_;
 };
 
 const Vector6 kMotion = (Vector6() << 0.03, -0.02, 0.04, 0.01, -0.035, 0.012).finished();
@@ -115,10 +115,10 @@ TEST_F(SparseAlignmentTest, FindsItsWayOverTenPixelsUnderAnotherLight) {
     Se3 T;
     AlignmentStep step;
     EXPECT_GT(worst_px(T, truth), 10);
-    ASSERT_TRUE(align(alignment_.cut_coarse(features_, room_), 8, T, step));
+    ASSERT_TRUE(align(alignment_.cut_coarse(features_, capacity_), 8, T, step));
     EXPECT_TRUE(step.trusted()) << step.agreeing << " of " << step.seen;
     EXPECT_LT(worst_px(T, truth), 0.7);
-    ASSERT_TRUE(align(SparseAlignment::cut_fine(features_, room_), 2, T, step));
+    ASSERT_TRUE(align(SparseAlignment::cut_fine(features_, capacity_), 2, T, step));
     EXPECT_LT(worst_px(T, truth), 0.12) << "gain " << light.gain;
   }
 }
@@ -128,14 +128,14 @@ TEST_F(SparseAlignmentTest, IsNotTrustedWhereNothingIsToBeFound) {
   see({}, {}, 8);
   Se3 T;
   AlignmentStep step;
-  const std::span<const AlignmentWindow> windows = alignment_.cut_coarse(features_, room_);
+  const std::span<const AlignmentWindow> windows = alignment_.cut_coarse(features_, capacity_);
   ASSERT_GT(windows.size(), 50u);
   EXPECT_FALSE(align(windows, 8, T, step) && step.trusted());
 
   see({}, {0, 90});
   EXPECT_FALSE(align(windows, 1, T, step));
   alignment_.keep(current_, 6);
-  EXPECT_TRUE(alignment_.cut_coarse(features_, room_).empty());
+  EXPECT_TRUE(alignment_.cut_coarse(features_, capacity_).empty());
 
   see({}, {});
   for (Point3d& point : features_.points) point.p.setZero();
@@ -155,14 +155,14 @@ TEST_F(SparseAlignmentTest, KnowsWhoseImageItHolds) {
 
 TEST_F(SparseAlignmentTest, SpreadsItsWindowsOverAllKeypoints) {
   ASSERT_GT(features_.keypoints.size(), kMostAlignmentWindows);
-  const std::span<const AlignmentWindow> windows = alignment_.cut_coarse(features_, room_);
+  const std::span<const AlignmentWindow> windows = alignment_.cut_coarse(features_, capacity_);
   ASSERT_FALSE(windows.empty());
   // The first and the last row lie at the border.
   EXPECT_LT(windows.front().keypoint, 40u);
   EXPECT_GT(windows.back().keypoint, features_.keypoints.size() - 40);
 }
 
-// Whatever the number of keypoints is to the room: every one of them has a window here.
+// Whatever the number of keypoints is to the capacity: every one of them has a window here.
 TEST_F(SparseAlignmentTest, FillsTheRoomAndNoMore) {
   const std::size_t keypoints = features_.keypoints.size();
   for (std::size_t i = 0; i < keypoints; ++i) {
@@ -170,12 +170,12 @@ TEST_F(SparseAlignmentTest, FillsTheRoomAndNoMore) {
     features_.patches[i] = features_.patches[keypoints / 2];
   }
   constexpr std::size_t kUntouched = 1 << 20;
-  for (std::size_t room = 0; room < kMostAlignmentWindows; ++room) {
-    room_[room].keypoint = kUntouched;
-    const auto windows = SparseAlignment::cut_fine(features_, std::span(room_).first(room));
-    ASSERT_LE(windows.size(), room);
-    ASSERT_GE(2 * windows.size(), room);
-    ASSERT_EQ(room_[room].keypoint, kUntouched) << room;
+  for (std::size_t capacity = 0; capacity < kMostAlignmentWindows; ++capacity) {
+    capacity_[capacity].keypoint = kUntouched;
+    const auto windows = SparseAlignment::cut_fine(features_, std::span(capacity_).first(capacity));
+    ASSERT_LE(windows.size(), capacity);
+    ASSERT_GE(2 * windows.size(), capacity);
+    ASSERT_EQ(capacity_[capacity].keypoint, kUntouched) << capacity;
   }
 }
 
@@ -239,7 +239,7 @@ TEST_F(SparseAlignmentTest, StepIsThatOfTheSlowOne) {
   see(truth, {0.8, 20});
   for (const bool fine : {false, true}) {
     const std::span<const AlignmentWindow> windows =
-        fine ? SparseAlignment::cut_fine(features_, room_) : alignment_.cut_coarse(features_, room_);
+        fine ? SparseAlignment::cut_fine(features_, capacity_) : alignment_.cut_coarse(features_, capacity_);
     const Se3 start = fine ? boxplus(truth, 0.05 * kMotion) : Se3{};
     Se3 T = start;
     AlignmentStep step;

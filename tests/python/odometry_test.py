@@ -294,7 +294,7 @@ def test_what_is_assumed_is_warned_of(walk, tmp_path):
         plvo.Sequence(walk, plvo.Sequence(walk).camera)
 
 
-def test_threads_track_side_by_side(walk):
+def test_threads_track_executor(walk):
     """Each its own odometry: the same results as one after the other."""
     expected = [r.T_world_camera for r in plvo.run(walk)]
     found = {}

@@ -23,10 +23,10 @@ struct Rooms {
   ReferenceTracking tracking;
   std::array<FrameFeatures, 2> frames;
 
-  constexpr void carve(Arena& memory, const Limits& limits) {
-    for (FrameFeatures& frame : frames) frame.carve(memory, limits);
-    extraction.carve(memory, limits);
-    tracking.carve(memory, limits);
+  constexpr void allocate(Arena& memory, const Limits& limits) {
+    for (FrameFeatures& frame : frames) frame.allocate(memory, limits);
+    extraction.allocate(memory, limits);
+    tracking.allocate(memory, limits);
   }
 };
 
@@ -35,37 +35,37 @@ class Pairs {
  public:
   explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
     // The theorem is of the kinds alone: what both share belongs to neither.
-    config_.noise.turning_rad_per_s = config_.noise.shared_depth_m = 0;
+    config_.noise.angular_rate_error_rad_per_s = config_.noise.shared_depth_m = 0;
     config_.surfaces = false;
     arena_ = Arena(memory_);
-    rooms_.carve(arena_, Limits::vga());
+    memory_.allocate(arena_, Limits::vga());
     arena_.seal();
-    rooms_.extraction.init(camera, config_);
+    memory_.extraction.init(camera, config_);
   }
 
   // The motion from the frame before.
   MotionEstimate next(const RgbdFrame& frame) {
     TrackResult result;
-    const DepthSampler depth = rooms_.extraction.depth_sampler(frame);
-    FrameFeatures& current = rooms_.frames[slot_];
+    const DepthSampler depth = memory_.extraction.depth_sampler(frame);
+    FrameFeatures& current = memory_.frames[slot_];
     const NoiseScales noise = config_.noise.initial;
     const Limits limits = Limits::vga();
     current.clear({static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
-    rooms_.extraction.extract(frame, depth, true, arena_, current, result);
+    memory_.extraction.extract(frame, depth, true, arena_, current, result);
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
-      const Reference reference{&rooms_.frames[1 - slot_], prior_, {}};
-      const SensedMotion nothing;
+      const Reference reference{&memory_.frames[1 - slot_], prior_, {}};
+      const PropagatedPrior nothing;
       const MotionReference nobody;
-      const CurrentFrame now{current, rooms_.extraction, depth, noise, nothing, nobody};
-      rooms_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
+      const CurrentFrame now{current, memory_.extraction, depth, noise, nothing, nobody};
+      memory_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
       const Se3 T_found = motion.T_current_reference;
       if (motion.status == StatusCode::kOk)
-        rooms_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
+        memory_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
     }
-    if (!has_reference_) rooms_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
-    rooms_.extraction.lift(depth, noise, arena_, current);
+    if (!has_reference_) memory_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
+    memory_.extraction.lift(depth, noise, arena_, current);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
     has_reference_ = true;
     slot_ = 1 - slot_;
@@ -76,7 +76,7 @@ class Pairs {
   static std::size_t bytes() {
     Arena sizer = Arena::counting();
     Rooms rooms;
-    rooms.carve(sizer, Limits::vga());
+    rooms.allocate(sizer, Limits::vga());
     FeatureExtraction::reserve(sizer, Limits::vga());
     ReferenceTracking::reserve(sizer, Limits::vga());
     return sizer.peak() + kArenaAlignment;
@@ -85,7 +85,7 @@ class Pairs {
   Config config_;
   std::vector<std::byte> memory_;
   Arena arena_;
-  Rooms rooms_;
+  Rooms memory_;
   PairPrior prior_;
   std::size_t slot_ = 0;
   bool has_reference_ = false;

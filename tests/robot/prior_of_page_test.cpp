@@ -8,7 +8,7 @@
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
-#include "test_room.hpp"
+#include "test_limits.hpp"
 
 namespace plvo {
 namespace {
@@ -21,9 +21,9 @@ TrackResult track_as_the_page(Odometry& odometry, ImuIntegrator& imu, const Rgbd
 
 TEST(PriorOfThePage, BridgesACoveredLensAndLearnsTheOffset) {
   ProceduralSequence sequence{320, 240};
-  std::vector<std::byte> memory(required_bytes(test::kRoom));
+  std::vector<std::byte> memory(required_bytes(test::kTestLimits));
   Odometry odometry;
-  ASSERT_TRUE(odometry.init(memory, sequence.camera(), {}, test::kRoom).ok());
+  ASSERT_TRUE(odometry.init(memory, sequence.camera(), {}, test::kTestLimits).ok());
   std::vector<ImuSample> gyro(8), accelerometer(8);
   ImuIntegrator imu;
   ASSERT_TRUE(imu.init(gyro, accelerometer).ok());

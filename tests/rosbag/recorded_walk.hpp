@@ -2,10 +2,10 @@
 // The folder that the bags are made of.
 #pragma once
 
-#include "simulated_walk.hpp"
+#include "simulated_sequence.hpp"
 
 namespace plvo::test {
 
-inline const std::filesystem::path& walk() { return simulated_walk<6>(); }
+inline const std::filesystem::path& walk() { return simulated_sequence<6>(); }
 
 }  // namespace plvo::test

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A keyframe that is kept for long goes on erring alike: what is reported of the motion from it must not get
-// surer with every frame, and the estimate must stay what it is (repeated_error.hpp).
+// surer with every frame, and the estimate must stay what it is (common_mode_error.hpp).
 #include <cstdio>
 
-#include "tracked_walk.hpp"
+#include "tracked_sequence.hpp"
 
 namespace plvo {
 namespace {
 
 // Mean over the motions from a keyframe that is at least eight frames old; 6 if the covariance is true.
-double nees_of_old_keyframes(const test::TrackedWalk& walk) {
+double nees_of_old_keyframes(const test::TrackedSequence& walk) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < walk.results.size(); ++i) {
     if (walk.results[i].state != TrackState::kTracking || i < walk.reference(i) + 8) continue;
@@ -22,9 +22,9 @@ double nees_of_old_keyframes(const test::TrackedWalk& walk) {
 
 TEST(KeptKeyframe, DoesNotMakeTheCovarianceSurerWithEveryFrame) {
   Config config, as_if_new;
-  as_if_new.noise.repeated_share = 0;
-  const test::TrackedWalk walk = test::track_walk(SceneName::kCorridor, 60, config);
-  const test::TrackedWalk other = test::track_walk(SceneName::kCorridor, 60, as_if_new);
+  as_if_new.noise.common_mode_share = 0;
+  const test::TrackedSequence walk = test::track_sequence(SceneName::kCorridor, 60, config);
+  const test::TrackedSequence other = test::track_sequence(SceneName::kCorridor, 60, as_if_new);
   test::expect_same_poses(walk, other);
   const double told = nees_of_old_keyframes(walk), surer = nees_of_old_keyframes(other);
   std::printf("NEES of motions from old keyframes: %.2f, as if new %.2f\n", told, surer);

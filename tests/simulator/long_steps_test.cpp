@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 
-#include "tracked_walk.hpp"
+#include "tracked_sequence.hpp"
 
 namespace plvo {
 namespace {
@@ -19,7 +19,7 @@ void expect_motions_off(int expected, SceneName scene, double fps, int frames) {
   options.scene = scene;
   options.fps = fps;
   options.frames = frames;
-  const test::TrackedWalk walk = test::track_walk(options, Limits{}, Config{});
+  const test::TrackedSequence walk = test::track_sequence(options, Limits{}, Config{});
   int tracked = 0, off = 0;
   double most = 0;  // of the others
   for (std::size_t i = 0; i < walk.results.size(); ++i) {

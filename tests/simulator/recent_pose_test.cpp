@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 
-#include "tracked_walk.hpp"
+#include "tracked_sequence.hpp"
 
 namespace plvo {
 namespace {
@@ -16,7 +16,7 @@ TEST(RecentPose, IsEstimatedWithTheMotionInAHall) {
   options.scene = SceneName::kHall;
   options.camera.readout_s = 0.0261;
   options.frames = 25;
-  const test::TrackedWalk walk = test::track_walk(options, Limits{}, Config{});
+  const test::TrackedSequence walk = test::track_sequence(options, Limits{}, Config{});
   double most = 0;
   for (std::size_t i = 1; i < walk.results.size(); ++i) {
     const TrackResult& result = walk.results[i];

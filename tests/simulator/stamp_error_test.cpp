@@ -9,7 +9,7 @@
 
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
-#include "tracked_walk.hpp"
+#include "tracked_sequence.hpp"
 
 namespace plvo {
 namespace {
@@ -49,21 +49,21 @@ TEST(StampError, OfAMotionIsThatOfBothItsEnds) {
 
 // A walk whose stamps err by kSigma_s, tracked by an odometry that is told so, or not. What stamps err is
 // judged alone, without what a kept keyframe errs (kept_keyframe_test).
-test::TrackedWalk walk_with_stamps(double stamp_sigma_s) {
+test::TrackedSequence walk_with_stamps(double stamp_sigma_s) {
   constexpr int kFrames = 40;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   Config config;
-  config.noise.repeated_share = 0;
-  return test::track_walk(SceneName::kDesk, kFrames, config, stamp_sigma_s,
-                          [&] { return static_cast<std::int64_t>(1e9 * kSigma_s * normal(random)); });
+  config.noise.common_mode_share = 0;
+  return test::track_sequence(SceneName::kDesk, kFrames, config, stamp_sigma_s,
+                              [&] { return static_cast<std::int64_t>(1e9 * kSigma_s * normal(random)); });
 }
 
 struct Means {
   double of_motion = 0, of_pose = 0;  // 6 if the covariance is true
 };
 
-Means mean_nees(const test::TrackedWalk& walk) {
+Means mean_nees(const test::TrackedSequence& walk) {
   Means means;
   double tracked = 0;
   for (std::size_t i = 0; i < walk.results.size(); ++i) {
@@ -76,7 +76,7 @@ Means mean_nees(const test::TrackedWalk& walk) {
 }
 
 TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
-  const test::TrackedWalk told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
+  const test::TrackedSequence told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
   test::expect_same_poses(told, not_told);
   const Means with = mean_nees(told), without = mean_nees(not_told);
   const Means with_half = mean_nees(walk_with_stamps(kSigma_s / 2));

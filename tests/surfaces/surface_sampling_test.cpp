@@ -18,7 +18,7 @@ constexpr Pinhole kCamera{262, 262, 159.5, 119.5};
 
 struct Room {
   explicit Room(int samples) : memory(1 << 20), arena(memory) {
-    features.carve(arena, samples);
+    features.allocate(arena, samples);
     arena.seal();
   }
   void sample(const test::DepthPicture& picture) {

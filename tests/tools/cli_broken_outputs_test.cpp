@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "command.hpp"
-#include "simulated_walk.hpp"
+#include "simulated_sequence.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -26,7 +26,7 @@ using test::TemporaryFolder;
 constexpr int kFrames = 24;
 
 const std::string& walk() {
-  static const std::string folder = test::simulated_walk<kFrames>().string();
+  static const std::string folder = test::simulated_sequence<kFrames>().string();
   return folder;
 }
 

@@ -8,7 +8,7 @@
 
 #include "command.hpp"
 #include "plvo/host/printable.hpp"
-#include "simulated_walk.hpp"
+#include "simulated_sequence.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -37,7 +37,7 @@ void expect_one_line(const std::string& text) {
 class CliHostileNames : public ::testing::Test {
  protected:
   CliHostileNames() : walk_((folder_ / kHostile).string()) {
-    fs::copy(test::simulated_walk<kFrames>(), walk_, fs::copy_options::recursive);
+    fs::copy(test::simulated_sequence<kFrames>(), walk_, fs::copy_options::recursive);
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static CommandResult plvo(const std::string& arguments) {

@@ -12,7 +12,7 @@
 #include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/images/image_writer.hpp"
-#include "simulated_walk.hpp"
+#include "simulated_sequence.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -28,7 +28,7 @@ using test::write_file;
 
 constexpr int kShortWalk = 4;
 
-const fs::path& short_walk() { return test::simulated_walk<kShortWalk>(); }
+const fs::path& short_walk() { return test::simulated_sequence<kShortWalk>(); }
 
 class CliOutputs : public ::testing::Test {
  protected:

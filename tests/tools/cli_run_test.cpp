@@ -9,7 +9,7 @@
 
 #include "command.hpp"
 #include "plvo/replay/images/image_writer.hpp"
-#include "simulated_walk.hpp"
+#include "simulated_sequence.hpp"
 #include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
 
@@ -36,7 +36,7 @@ bool contains(const std::string& text, std::string_view words) {
 }
 
 // A walk through a simulated room, made once; each test works on its own copy.
-const fs::path& master_sequence() { return test::simulated_walk<kFrames>(); }
+const fs::path& master_sequence() { return test::simulated_sequence<kFrames>(); }
 
 class CliRun : public ::testing::Test {
  protected:

@@ -18,7 +18,7 @@
 namespace plvo {
 namespace {
 
-constexpr uid_t kNobody = 65534;
+constexpr uid_t kInvalidSlot = 65534;
 
 // A device with one configuration, one vendor-specific interface and one bulk endpoint either way.
 std::vector<std::uint8_t> descriptors(const MockDeviceSpec& s) {
@@ -180,7 +180,7 @@ void MockUsb::deny(const std::string& port) {
       16, FTW_PHYS);
   ::chmod(path.c_str(), 0);
   g_free(root);
-  ::setfsuid(kNobody);
+  ::setfsuid(kInvalidSlot);
 }
 
 void MockUsb::set_usbfs_memory(int megabytes) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the public headers under include/plvo/<room>/, libplvo_core.a, the CMake package (find_package(plvo) gives
+# cmake --install: the public headers under include/plvo/<module>/, libplvo_core.a, the CMake package (find_package(plvo) gives
 # plvo::core and plvo::hal, and plvo::plvo, the shared library for C), what pkg-config knows of them, and the command line.
 # Components are the Debian packages of package.cmake: library, development, python, and tools, which is the default.
 include(GNUInstallDirs)
@@ -20,8 +20,8 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" AND N
 endif()
 get_property(headers GLOBAL PROPERTY PLVO_PUBLIC_HEADERS)
 foreach(header ${headers})
-  string(REGEX REPLACE "^${PROJECT_SOURCE_DIR}/(core|hal|platform)/(.*)/[^/]*$" "\\2" room ${header})
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${room} COMPONENT development)
+  string(REGEX REPLACE "^${PROJECT_SOURCE_DIR}/(core|hal|platform)/(.*)/[^/]*$" "\\2" module ${header})
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${module} COMPONENT development)
 endforeach()
 if(TARGET plvo_shared)
   target_include_directories(plvo_shared INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

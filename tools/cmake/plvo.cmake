@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every target of the house shares: the warnings, and the switches that make the arithmetic the same on every
+# What every target of plvo shares: the warnings, and the switches that make the arithmetic the same on every
 # processor. The switches belong to this directory and those below it: whoever links plvo keeps his own.
 
 add_library(plvo_warnings INTERFACE)
@@ -10,7 +10,7 @@ target_compile_options(plvo_warnings INTERFACE
 # code that Eigen writes out (math/rolled_loops.hpp), and, where the build type says so, bytes of code before time
 # (base/build.hpp): templates must be the same in all files that are linked together, so they all see both.
 add_compile_options(-ffp-contract=off)
-add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY PLVO_ROLLED_LOOPS $<$<CONFIG:MinSizeRel>:PLVO_SMALL_CODE>)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY PLVO_ROLLED_LOOPS $<$<CONFIG:MinSizeRel>:PLVO_SIZE_OPTIMISED>)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 # The order of the sums within Eigen's functions is part of the bits: tests/golden/golden.txt was written with this one.
@@ -24,7 +24,7 @@ endif()
 # not: GCC 12 takes two of them together just behind the stores that made them one by one, and every such load waits for
 # both. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
 # processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
-# loops do not do so. house_embedding holds this.
+# loops do not do so. architecture_embedding holds this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize$<SEMICOLON>-fno-tree-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <limits> <span> <Eigen/Core>)
@@ -38,8 +38,8 @@ function(plvo_precompile target)
   endif()
 endfunction()
 
-# plvo_public_headers(<header>…): what this room of core or hal gives to those who install plvo. The lists together must
-# hold what odometry/odometry.hpp, inertial/imu_integrator.hpp and hal/ include, and nothing else; house_install says what
+# plvo_public_headers(<header>…): what this module of core or hal gives to those who install plvo. The lists together must
+# hold what odometry/odometry.hpp, inertial/imu_integrator.hpp and hal/ include, and nothing else; architecture_install says what
 # is missing or too much.
 function(plvo_public_headers)
   foreach(header ${ARGN})

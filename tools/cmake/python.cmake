@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# For the rooms that are part of the Python package: finds pybind11 in the including directory, where its targets then are,
+# For the modules that are part of the Python package: finds pybind11 in the including directory, where its targets then are,
 # and says whether the package is built (PLVO_BUILD_PYTHON).
 
 # The distribution's Python, which its numpy belongs to, before one that stands earlier on somebody's path.

@@ -100,7 +100,7 @@ if [ ! -e "${sources[0]}" ]; then sources=(/etc/apt/sources.list); fi
 mmdebstrap --quiet --variant=apt bookworm "$root" "${sources[@]}" >&2
 mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
-cp -r tests/house/consumer docs/python.md tools/packaging/try.sh "$root/try"
+cp -r tests/architecture/consumer docs/python.md tools/packaging/try.sh "$root/try"
 tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
 tools/setup/page_program.sh docs/c.md c 5 >"$root/try/track_with_imu.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh

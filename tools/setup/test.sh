@@ -30,7 +30,7 @@ suite() {
   say "[$((SECONDS - started)) s] $1: testing"
   ctest --preset "$1" --parallel "$(nproc)" --no-tests=error --output-junit ran.xml "${@:3}"
   # shellcheck disable=SC2086  # a list of words
-  python3 tests/house/ran.py "build/$1/ran.xml" "$1" $2
+  python3 tests/architecture/ran.py "build/$1/ran.xml" "$1" $2
 }
 # Of each fuzzer's and each Python test's file the entry of ctest that must have come of it.
 fuzzers() { basename --multiple --suffix=.cpp tests/fuzz/fuzz_*.cpp; }

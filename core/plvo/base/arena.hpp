@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only memory of the core: one block that the caller owns. What lives for ever is carved at init, from
+// The only memory of the core: one block that the caller owns. What lives for ever is allocated at init, from
 // the front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A
 // component states what it needs by carving: from an arena with memory it gets bytes, from one that only
 // counts (at compile time, if need be) the same code adds them up, so the two can never disagree.
@@ -41,7 +41,7 @@ class Arena {
     const char* who = nullptr;
     std::size_t bytes = 0;
   };
-  static constexpr std::size_t kMaxRecords = kSmallCode ? 0 : 64;
+  static constexpr std::size_t kMaxRecords = kSizeOptimised ? 0 : 64;
 
   Arena() = default;  // room for nothing
   // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
@@ -65,7 +65,7 @@ class Arena {
       add(bytes);
       return {};
     }
-    return construct<T>(take_bytes(kSmallCode ? nullptr : who, bytes), count);
+    return construct<T>(take_bytes(kSizeOptimised ? nullptr : who, bytes), count);
   }
 
   // Scratch: take after mark(), give back with rewind(). Stages nest like a stack.

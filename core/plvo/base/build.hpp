@@ -20,20 +20,20 @@ inline constexpr bool kLinesBuilt = true;
 #endif
 
 // Bytes of code before time: a computation in place of a table, the result the same.
-#ifdef PLVO_SMALL_CODE
-inline constexpr bool kSmallCode = true;
+#ifdef PLVO_SIZE_OPTIMISED
+inline constexpr bool kSizeOptimised = true;
 #else
-inline constexpr bool kSmallCode = false;
+inline constexpr bool kSizeOptimised = false;
 #endif
 
-// Numbers side by side (base/lanes.hpp) are loops, and what is made of them is the plain version: in small
+// Numbers side by side (base/simd.hpp) are loops, and what is made of them is the plain version: in small
 // code, and for a processor without registers for them, for which compilers write out every lane of every
 // operation. The result is the same.
-#if defined(PLVO_SMALL_CODE) || !(defined(__SSE2__) || defined(__ARM_NEON))
-#define PLVO_LANE_LOOPS
-inline constexpr bool kLaneLoops = true;
+#if defined(PLVO_SIZE_OPTIMISED) || !(defined(__SSE2__) || defined(__ARM_NEON))
+#define PLVO_SIMD_LOOPS
+inline constexpr bool kSimdLoops = true;
 #else
-inline constexpr bool kLaneLoops = false;
+inline constexpr bool kSimdLoops = false;
 #endif
 
 }  // namespace plvo

@@ -23,13 +23,13 @@ struct DepthNoise {
 
 // The variances that the residuals show over those that the models state, one factor for each kind of
 // measurement: across the image and along the ray for points, all of it for lines and for surfaces; and for
-// what all of a frame share (shared_errors.hpp).
+// what all of a frame share (nuisance_parameters.hpp).
 struct NoiseScales {
   double image = 1;
   double depth = 1;
   double lines = 1;
   double surfaces = 1;
-  double turning = 1;
+  double angular_rate = 1;
   double shared_depth = 1;
 };
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo {
@@ -83,22 +83,22 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
     }
 }
 
-#ifndef PLVO_LANE_LOOPS
+#ifndef PLVO_SIMD_LOOPS
 
 // As nearest_surface and sum_up where the whole window belongs to one surface, which most do; else false.
 // corner: of eight columns and 2 · radius + 1 rows that are there.
 bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius, double metres_per_unit,
                   const DepthNoise& noise, SurfaceSums& sums) {
   constexpr std::size_t kMostRows = 2 * DepthSampler::kMaxRadius + 1;
-  constexpr Lanes kEightColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr Int16x8 kEightColumns = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr std::int16_t kSign = std::numeric_limits<std::int16_t>::min();  // order of unsigned as of signed
   const auto side = static_cast<std::int16_t>(2 * radius + 1);
-  const Lanes of_window = kEightColumns < side;
-  std::array<Lanes, kMostRows> rows;
-  Lanes low = (Lanes{} + std::numeric_limits<std::int16_t>::max());
-  Lanes high = (Lanes{} + kSign);
+  const Int16x8 of_window = kEightColumns < side;
+  std::array<Int16x8, kMostRows> rows;
+  Int16x8 low = (Int16x8{} + std::numeric_limits<std::int16_t>::max());
+  Int16x8 high = (Int16x8{} + kSign);
   for (std::size_t j = 0; j < static_cast<std::size_t>(side); ++j, corner += stride) {
-    Lanes row;
+    Int16x8 row;
     std::memcpy(&row, corner, sizeof row);
     row ^= kSign;
     rows[j] = row;
@@ -117,11 +117,11 @@ bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius
   sums.most = farthest(sums.least, metres_per_unit, noise);
   if (most - kSign > sums.most) return false;
 
-  const Lanes across = (kEightColumns - static_cast<std::int16_t>(radius)) & of_window;
-  const Lanes one = of_window & 1;
-  WideLanes d{}, dx{}, dy{}, dd{}, part;
+  const Int16x8 across = (kEightColumns - static_cast<std::int16_t>(radius)) & of_window;
+  const Int16x8 one = of_window & 1;
+  Int32x4 d{}, dx{}, dy{}, dd{}, part;
   for (int j = 0; j < side; ++j) {
-    const Lanes row = (rows[static_cast<std::size_t>(j)] - static_cast<std::int16_t>(least)) & of_window;
+    const Int16x8 row = (rows[static_cast<std::size_t>(j)] - static_cast<std::int16_t>(least)) & of_window;
     dot_pairs(row, one, part);
     d += part;
     dy += part * (j - radius);
@@ -130,7 +130,7 @@ bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius
     dot_pairs(row, row, part);
     dd += part;
   }
-  const auto total = [](const WideLanes& w) { return std::int64_t{w[0]} + w[1] + w[2] + w[3]; };
+  const auto total = [](const Int32x4& w) { return std::int64_t{w[0]} + w[1] + w[2] + w[3]; };
   sums.n = side * side;
   sums.x = sums.y = sums.xy = 0;
   sums.xx = sums.yy = side * (side * side - 1) / 12 * side;
@@ -192,7 +192,7 @@ DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located, 
 }
 
 void DepthSampler::fetch() const {
-  if constexpr (kSmallCode) return;  // small processors have no room to keep it
+  if constexpr (kSizeOptimised) return;  // small processors have no room to keep it
   constexpr int kCacheLine = 64 / sizeof(std::uint16_t);
   for (int y = 0; y < depth_.height; ++y) {
     const volatile std::uint16_t* const row = depth_.data + y * depth_.stride;
@@ -254,7 +254,7 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
   const int top = place.y - radius;
   SurfaceSums sums;
   DepthSample result;
-#ifndef PLVO_LANE_LOOPS
+#ifndef PLVO_SIMD_LOOPS
   const bool whole =
       holds_raw(left, top) && holds_raw(left + 7, place.y + radius) &&
       sum_up_whole(raw(left, top), depth_.stride, radius, depth_.metres_per_unit, noise_, sums);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 
 namespace plvo {
 namespace {

@@ -17,7 +17,7 @@ class Pyramid {
   static constexpr int kMaxLevels = 4;
 
   // Takes ≤ 4/3 × width × height bytes.
-  constexpr void carve(Arena& memory, int width, int height) {
+  constexpr void allocate(Arena& memory, int width, int height) {
     row_sums_ = take_smoothing_row(memory, width);
     for (int level = 0; level < kMaxLevels; ++level) {
       storage_[static_cast<std::size_t>(level)] = memory.take<std::uint8_t>(
@@ -27,7 +27,7 @@ class Pyramid {
     }
   }
 
-  // Sizes within those carved.
+  // Sizes within those allocated.
   void init(int width, int height) {
     for (std::size_t level = 0; level < kMaxLevels; ++level) {
       levels_[level] = {storage_[level].data(), width, height, width};

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 
 namespace plvo {
 namespace {
@@ -31,13 +31,13 @@ std::uint8_t binomial5(const std::uint16_t* s) {
 
 // Eight of them, from sums of at most 16 · 255: sums that lie side by side are two columns of a product.
 void binomial5_of_eight(const std::uint16_t* s, std::uint8_t* out) {
-  constexpr Lanes kBefore = {1, 4, 1, 4, 1, 4, 1, 4}, kHere = {6, 4, 6, 4, 6, 4, 6, 4},
-                  kAfter = {1, 0, 1, 0, 1, 0, 1, 0};
-  WideLanes sums[2];
+  constexpr Int16x8 kBefore = {1, 4, 1, 4, 1, 4, 1, 4}, kHere = {6, 4, 6, 4, 6, 4, 6, 4},
+                    kAfter = {1, 0, 1, 0, 1, 0, 1, 0};
+  Int32x4 sums[2];
   for (int half = 0; half < 2; ++half, s += 8) {
     const auto* const at = reinterpret_cast<const std::int16_t*>(s);
-    Lanes two;
-    WideLanes before, here, after;
+    Int16x8 two;
+    Int32x4 before, here, after;
     load(at - 2, two);
     dot_pairs(two, kBefore, before);
     load(at, two);
@@ -46,7 +46,7 @@ void binomial5_of_eight(const std::uint16_t* s, std::uint8_t* out) {
     dot_pairs(two, kAfter, after);
     sums[half] = (before + here + after + 128) >> 8;
   }
-  Lanes eight;
+  Int16x8 eight;
   narrow(sums[0], sums[1], eight);
   store_bytes(eight, out);
 }
@@ -94,7 +94,7 @@ void halve_binomial5(GrayView in, ImageView<std::uint8_t> out, std::span<std::ui
     repeat_borders(sums, width, 3);
     std::uint8_t* line = out.row(y);
     int x = 0;
-    if constexpr (!kLaneLoops)
+    if constexpr (!kSimdLoops)
       for (; x + 8 <= out.width; x += 8) binomial5_of_eight(sums + 2 * x, line + x);
     for (; x < out.width; ++x) line[x] = binomial5(sums + 2 * x);
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/rounding.hpp"
 
 namespace plvo {
@@ -55,9 +55,9 @@ std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t
 std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p[0] | p[1] << 8); }
 
 // As blend, eight at once: of what lies above and below, blended along the row, · 2^7.
-inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const Lanes& lower, const Lanes& fy,
-                                                      std::uint8_t* out) {
-  Lanes half;
+inline __attribute__((always_inline)) void blend_rows(const Int16x8& upper, const Int16x8& lower,
+                                                      const Int16x8& fy, std::uint8_t* out) {
+  Int16x8 half;
   multiply_high(lower - upper, fy * std::int16_t{256}, half);
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
 }
@@ -66,14 +66,14 @@ inline __attribute__((always_inline)) void blend_rows(const Lanes& upper, const 
 // below 1 px where they are shifted.
 template <bool kIsShifted>
 inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, std::ptrdiff_t stride,
-                                                      const Lanes& x, const Lanes& y, std::uint8_t* out) {
-#ifdef PLVO_LANE_LOOPS
+                                                      const Int16x8& x, const Int16x8& y, std::uint8_t* out) {
+#ifdef PLVO_SIMD_LOOPS
   for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i] + i * kWeightOne, y[i]);
 #else
   if constexpr (kIsShifted) {
-    const Lanes left = kWeightOne - x;
+    const Int16x8 left = kWeightOne - x;
     const auto along = [&](const std::uint8_t* row) {
-      Lanes a, b;
+      Int16x8 a, b;
       load_bytes(row, a);
       load_bytes(row + 1, b);
       return a * left + b * x;
@@ -83,44 +83,44 @@ inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, 
   }
   // Nothing is fetched from a place of its own: of three pixels of each of three rows all are weighed, and
   // one has no weight.
-  const Lanes beyond = x - kWeightOne;
-  const Lanes last = beyond > 0 ? beyond : Lanes{};
-  const Lanes first = last - beyond;
-  const Lanes middle = kWeightOne - first - last;
+  const Int16x8 beyond = x - kWeightOne;
+  const Int16x8 last = beyond > 0 ? beyond : Int16x8{};
+  const Int16x8 first = last - beyond;
+  const Int16x8 middle = kWeightOne - first - last;
   const auto along = [&](const std::uint8_t* row) {
-    Lanes a, b, c;
+    Int16x8 a, b, c;
     load_bytes(row, a);
     load_bytes(row + 1, b);
     load_bytes(row + 2, c);
     return a * first + b * middle + c * last;
   };
-  const Lanes top = along(from), centre = along(from + stride), bottom = along(from + 2 * stride);
-  const Lanes is_below = y >= kWeightOne;
+  const Int16x8 top = along(from), centre = along(from + stride), bottom = along(from + 2 * stride);
+  const Int16x8 is_below = y >= kWeightOne;
   blend_rows(is_below ? centre : top, is_below ? bottom : centre, y & kWeightMask, out);
 #endif
 }
 
 // At eight places, in 2^-7 px from the pixel `from`.
-void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Lanes& x, const Lanes& y,
+void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Int16x8& x, const Int16x8& y,
                  std::uint8_t* out) {
-  if constexpr (kLaneLoops) {
+  if constexpr (kSimdLoops) {
     for (int i = 0; i < 8; ++i) out[i] = blend(from, stride, x[i], y[i]);
     return;
   }
-  const Lanes offsets = (y >> kWeightBits) * static_cast<std::int16_t>(stride) + (x >> kWeightBits);
+  const Int16x8 offsets = (y >> kWeightBits) * static_cast<std::int16_t>(stride) + (x >> kWeightBits);
   alignas(16) std::int16_t offset[8];
   store(offsets, offset);
   const std::uint8_t* const from_below = from + stride;
-  Lanes above, below;
+  Int16x8 above, below;
   for (int i = 0; i < 8; ++i) {
     above[i] = pair_at(from + offset[i]);
     below[i] = pair_at(from_below + offset[i]);
   }
-  const Lanes fx = x & kWeightMask;
-  const Lanes upper_left = above & 255;
-  const Lanes lower_left = below & 255;
-  const Lanes upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
-  const Lanes lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
+  const Int16x8 fx = x & kWeightMask;
+  const Int16x8 upper_left = above & 255;
+  const Int16x8 lower_left = below & 255;
+  const Int16x8 upper = upper_left * kWeightOne + (((above >> 8) & 255) - upper_left) * fx;
+  const Int16x8 lower = lower_left * kWeightOne + (((below >> 8) & 255) - lower_left) * fx;
   blend_rows(upper, lower, y & kWeightMask, out);
 }
 
@@ -142,13 +142,13 @@ struct UndistortionMap::NearCell {
   struct Axis {
     std::int32_t base;  // the raw cell's first column, or row
     std::int16_t bend;
-    Lanes first, step;
+    Int16x8 first, step;
 
     __attribute__((always_inline)) Axis(std::int32_t at, std::int32_t right, std::int32_t down,
                                         std::int32_t twist, std::int32_t bend_right, std::int32_t bend_down)
         : base((at - kHalf) >> kFractionBits), bend(lane(bend_down)) {
-      constexpr Lanes kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
-      constexpr Lanes kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
+      constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
+      constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
       first = kSteps * lane(right) + kBows * lane(bend_right) +
               static_cast<std::int16_t>(lane(at - (base << kFractionBits)) + kRound);
       step = kSteps * lane(twist) + lane(down);
@@ -160,7 +160,7 @@ struct UndistortionMap::NearCell {
       first = first - static_cast<std::int16_t>(whole << kBits);
     }
     // In 2^-7 px.
-    __attribute__((always_inline)) void of_row(int j, Lanes& out) const {
+    __attribute__((always_inline)) void of_row(int j, Int16x8& out) const {
       out = (first + step * static_cast<std::int16_t>(j) + static_cast<std::int16_t>(bow(j) * bend)) >>
             kToWeight;
     }
@@ -234,7 +234,7 @@ bool UndistortionMap::is_near(const Cell& c, bool& shifted) const {
       near.y.base + kCell + 2 > height_)
     return false;
   for (int j = 0; j < kCell; ++j) {
-    Lanes x, y;
+    Int16x8 x, y;
     near.x.of_row(j, x);
     near.y.of_row(j, y);
     for (int i = 0; i < kCell; ++i) {
@@ -266,13 +266,13 @@ void UndistortionMap::undistort_near(const Cell& cell, int first, int last, Gray
   }
   const std::uint8_t* const from = raw.data + near.y.base * raw.stride + near.x.base;
   const auto undistort_row = [&](int j) __attribute__((always_inline)) {
-    Lanes x, y;
+    Int16x8 x, y;
     near.x.of_row(j, x);
     near.y.of_row(j, y);
     blend_near<kIsShifted>(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
   };
   // Rows that are known when it is compiled: what their number is multiplied with is a constant.
-  if (!kLaneLoops && first == 0 && last == kCell) {
+  if (!kSimdLoops && first == 0 && last == kCell) {
 #pragma GCC unroll 8
     for (int j = 0; j < kCell; ++j) undistort_row(j);
     return;
@@ -302,18 +302,18 @@ struct UndistortionMap::PlainStart {
 void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                                       std::ptrdiff_t out_stride) const {
   const Cell c = cell;  // what is written cannot change it
-  constexpr Lanes kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
-  constexpr Lanes kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
+  constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
+  constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
   constexpr int kToWeight = kLaneBits - kWeightBits;
   constexpr std::int16_t kRound = 1 << (kToWeight - 1);
-  const Lanes bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
-  const Lanes bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;
+  const Int16x8 bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
+  const Int16x8 bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;
   for (int j = first; j < last; ++j, out += out_stride) {
     const std::int64_t start = c.at + j * c.down + bow(j) * c.bend_down;
     const std::int64_t right = c.right + j * c.twist;
     const PlainStart x(x_of(start), last_x_), y(y_of(start), last_y_);
-    Lanes at_x = (kSteps * to_lane(x_of(right)) + bent_x + x.at) >> kToWeight;
-    Lanes at_y = (kSteps * to_lane(y_of(right)) + bent_y + y.at) >> kToWeight;
+    Int16x8 at_x = (kSteps * to_lane(x_of(right)) + bent_x + x.at) >> kToWeight;
+    Int16x8 at_y = (kSteps * to_lane(y_of(right)) + bent_y + y.at) >> kToWeight;
     clamp(x.low, x.high, at_x);
     clamp(y.low, y.high, at_y);
     blend_eight(raw.data + y.base * raw.stride + x.base, raw.stride, at_x, at_y, out);
@@ -345,7 +345,7 @@ void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int
       const Cell& c = cell(x, top);
       std::uint8_t* const out = ideal.row(top + first) + x;
       const std::int64_t kind = c.at & kKinds;
-      if (kind == kShifted && !kLaneLoops)
+      if (kind == kShifted && !kSimdLoops)
         undistort_near<true>(c, first, last, raw, out, ideal.stride);
       else if (kind == kShifted || kind == kNear)
         undistort_near<false>(c, first, last, raw, out, ideal.stride);

@@ -22,7 +22,7 @@ class UndistortionMap {
   static constexpr int kCell = 8;        // px
 
   // Takes width × height × ¾ bytes.
-  constexpr void carve(Arena& memory, int width, int height) {
+  constexpr void allocate(Arena& memory, int width, int height) {
     cells_ = memory.take<Cell>("undistortion map", cells_along(width) * cells_along(height));
   }
 

@@ -127,9 +127,9 @@ int find_consensus(Samples& samples, const PlaneLine& line, double threshold) {
 }
 
 // Small code has one solver for all: of its six parameters the last four see nothing and stay.
-constexpr int kParameters = kSmallCode ? 6 : 2;
+constexpr int kParameters = kSizeOptimised ? 6 : 2;
 
-// (9) for the house's Levenberg–Marquardt: the depths (z_a, z_b) at the line's two pixels; A = z_a (t_a, 1),
+// (9) for plvo's Levenberg–Marquardt: the depths (z_a, z_b) at the line's two pixels; A = z_a (t_a, 1),
 // B = z_b (t_b, 1).
 struct EndDepths {
   const Samples& samples;

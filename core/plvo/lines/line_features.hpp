@@ -21,14 +21,14 @@ struct LineFeatures {
   std::size_t count_3d = 0;
   bool lifted = false;  // 3D was looked for
 
-  // No segments, and room for at most so many.
-  void clear(std::size_t room) {
-    segments = FixedVector<Segment>({segments.begin(), room < lines.size() ? room : lines.size()});
+  // No segments, and capacity for at most so many.
+  void clear(std::size_t capacity) {
+    segments = FixedVector<Segment>({segments.begin(), capacity < lines.size() ? capacity : lines.size()});
     count_3d = 0;
     lifted = false;
   }
 
-  constexpr void carve(Arena& memory, int capacity) {
+  constexpr void allocate(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
     segments = FixedVector<Segment>(memory.take<Segment>("line features", n));
     descriptors = memory.take<LineDescriptor>("line features", n);

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "plvo/base/bits.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -34,20 +34,20 @@ class AngleGate {
   AngleGate(const LinePose& predicted, float cos_angle)
       : least_(static_cast<std::int32_t>(cos_angle * (kDirectionOne * kDirectionOne)) - kRounding) {
     const std::int16_t x = fixed(predicted.ux), y = fixed(predicted.uy);
-    direction_ = Lanes{x, y, x, y, x, y, x, y};
+    direction_ = Int16x8{x, y, x, y, x, y, x, y};
   }
   unsigned passing(const std::int16_t* four) const {
-    Lanes directions;
+    Int16x8 directions;
     load(four, directions);
-    WideLanes cosines;
+    Int32x4 cosines;
     dot_pairs(directions, direction_, cosines);
-    return ~negative_lanes(cosines - least_) & 0xfU;
+    return ~negative_mask(cosines - least_) & 0xfU;
   }
 
  private:
   // Four numbers rounded by ½, times at most √2 · 2^14 between them.
   static constexpr std::int32_t kRounding = 1 << 15;
-  Lanes direction_;
+  Int16x8 direction_;
   std::int32_t least_;
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -138,7 +138,7 @@ struct BandSums {
 };
 using RegionSums = std::array<BandSums, kMsldBands>;
 
-#ifdef PLVO_LANE_LOOPS
+#ifdef PLVO_SIMD_LOOPS
 
 template <bool kInside>
 void sum_region(GrayView image, const Region& region, RegionSums& sums) {
@@ -171,13 +171,13 @@ void sum_region(GrayView image, const Region& region, RegionSums& sums) {
 
 // Four columns side by side: their parts across, then those along.
 struct Parts {
-  Lanes positive{}, negative{};
+  Int16x8 positive{}, negative{};
 };
 
-void repeat(Gradient g, Lanes& lanes) {
+void repeat(Gradient g, Int16x8& lanes) {
   std::int32_t both;
   std::memcpy(&both, &g, sizeof both);
-  const WideLanes four = WideLanes{} + both;
+  const Int32x4 four = Int32x4{} + both;
   std::memcpy(&lanes, &four, sizeof lanes);
 }
 
@@ -195,7 +195,7 @@ class FourColumns {
   }
 
   void next(const RowAxes& axes, Parts& parts) {
-    Lanes four, axis, both;
+    Int16x8 four, axis, both;
     if constexpr (kInside)
       read(four);
     else
@@ -203,18 +203,18 @@ class FourColumns {
     x_ += region_.nx;
     y_ += region_.ny;
     four = four & counts_;
-    WideLanes across, along;
+    Int32x4 across, along;
     repeat(axes.across, axis);
     dot_pairs(four, axis, across);
     repeat(axes.along, axis);
     dot_pairs(four, axis, along);
     narrow((across + kPartHalf) >> kPartShift, (along + kPartHalf) >> kPartShift, both);
-    parts.positive = both > 0 ? both : Lanes{};
+    parts.positive = both > 0 ? both : Int16x8{};
     parts.negative = parts.positive - both;
   }
 
  private:
-  void read_each(Lanes& four) const {
+  void read_each(Int16x8& four) const {
     Gradient gradients[4];
     for (int c = 0; c < 4; ++c) gradients[c] = gradient<false>(image_, x_[c], y_[c]);
     load_halves(&gradients[0].x, &gradients[2].x, four);
@@ -222,32 +222,32 @@ class FourColumns {
 
   // The same at once: a lane is a place's four bytes, of which the first is its left neighbour, or the one
   // above or below it.
-  void read(Lanes& four) const {
+  void read(Int16x8& four) const {
     constexpr int kLow = 0xffff, kByte = 0xff;
     const auto stride = static_cast<std::int16_t>(image_.stride);
-    const WideLanes row_above_y = y_ - (1 << kPositionBits);
-    const WideLanes whole = (x_ >> kPositionBits & kLow) | (row_above_y & ~kLow);
+    const Int32x4 row_above_y = y_ - (1 << kPositionBits);
+    const Int32x4 whole = (x_ >> kPositionBits & kLow) | (row_above_y & ~kLow);
     static_assert(kPositionBits == 16);
-    Lanes places;
+    Int16x8 places;
     std::memcpy(&places, &whole, sizeof places);
-    WideLanes offsets;
-    dot_pairs(places, Lanes{1, stride, 1, stride, 1, stride, 1, stride}, offsets);
+    Int32x4 offsets;
+    dot_pairs(places, Int16x8{1, stride, 1, stride, 1, stride, 1, stride}, offsets);
     alignas(16) std::int32_t offset[4];
     store(offsets, offset);
     const std::uint8_t* row_above[4];
     for (int c = 0; c < 4; ++c) row_above[c] = image_.data + offset[c];
-    const auto load_from = [&](std::ptrdiff_t behind, WideLanes& words) {
+    const auto load_from = [&](std::ptrdiff_t behind, Int32x4& words) {
       const std::uint8_t* const at[4] = {row_above[0] + behind, row_above[1] + behind, row_above[2] + behind,
                                          row_above[3] + behind};
       load_words(at, words);
     };
-    WideLanes above, beside, below;
+    Int32x4 above, beside, below;
     load_from(0, above);
     load_from(image_.stride - 1, beside);
     load_from(2 * image_.stride, below);
-    const WideLanes first = (beside & kByte) | (above & kByte) << 16;
-    const WideLanes last = (beside >> 16 & kByte) | (below & kByte) << 16;
-    Lanes from, to;
+    const Int32x4 first = (beside & kByte) | (above & kByte) << 16;
+    const Int32x4 last = (beside >> 16 & kByte) | (below & kByte) << 16;
+    Int16x8 from, to;
     std::memcpy(&from, &first, sizeof from);
     std::memcpy(&to, &last, sizeof to);
     four = to - from;
@@ -255,17 +255,17 @@ class FourColumns {
 
   GrayView image_;
   const Region& region_;
-  Lanes counts_{};
-  WideLanes x_{}, y_{};
+  Int16x8 counts_{};
+  Int32x4 x_{}, y_{};
 };
 
 // Σ V and Σ V² of one sign: of two pairs of columns across, then of two along.
 struct PairSums {
-  WideLanes first{}, second{};
+  Int32x4 first{}, second{};
 
-  void add(const Lanes& V) {
-    WideLanes pairs;
-    dot_pairs(V, Lanes{} + 1, pairs);
+  void add(const Int16x8& V) {
+    Int32x4 pairs;
+    dot_pairs(V, Int16x8{} + 1, pairs);
     first += pairs;
     dot_pairs(V, V, pairs);
     second += pairs;

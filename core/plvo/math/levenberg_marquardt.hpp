@@ -87,7 +87,7 @@ class LevenbergMarquardt {
  public:
   template <typename Problem>
   LmSummary solve(Problem& problem, const LmOptions& options = {}) {
-    if constexpr (kSmallCode) {
+    if constexpr (kSizeOptimised) {
       LmAnyProblem<N> any(problem);
       return run(any, options);
     } else {

@@ -12,7 +12,7 @@ namespace plvo {
 
 template <int N>
 constexpr auto matrix_size() {
-  if constexpr (kSmallCode)
+  if constexpr (kSizeOptimised)
     return N;
   else
     return std::integral_constant<int, N>{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The few matrix types of the house. DontAlign keeps their layout the same whatever vector flags a user's own
+// The few matrix types of plvo. DontAlign keeps their layout the same whatever vector flags a user's own
 // program is compiled with: Eigen's alignment would otherwise change with them and break the ABI.
 #pragma once
 
@@ -11,7 +11,7 @@
 #ifdef PLVO_ROLLED_LOOPS
 #include "plvo/math/rolled_loops.hpp"
 #endif
-#ifdef PLVO_SMALL_CODE
+#ifdef PLVO_SIZE_OPTIMISED
 #include "plvo/math/one_product.hpp"
 #include "plvo/math/written_entries.hpp"
 #endif

@@ -14,8 +14,8 @@
 #include <span>
 
 #include "plvo/math/se3.hpp"
+#include "plvo/motion/nuisance_parameters.hpp"
 #include "plvo/motion/robust_kernel.hpp"
-#include "plvo/motion/shared_errors.hpp"
 
 namespace plvo {
 
@@ -36,7 +36,7 @@ struct Primitive {
 // Information and gradient of the motion's perturbation ξ and of the shared errors β: Σ w Jᵀ Σ⁻¹ J and Σ w Jᵀ
 // Σ⁻¹ r with J the derivative by (ξ, β).
 struct JointInformation {
-  static constexpr int kSize = 6 + SharedErrors::kCount;
+  static constexpr int kSize = 6 + NuisanceParameters::kCount;
   Matrix<kSize, kSize> H = Matrix<kSize, kSize>::Zero();
   Vector<kSize> g = Vector<kSize>::Zero();
   void set_zero() {
@@ -65,9 +65,9 @@ class ConstraintSet {
   // linearize() moves the other parts of the landmarks to their optimum for T and the shared errors' value,
   // adds their Schur complement on (ξ, β) to `sum` (over the inliers; what belongs to β only if there are
   // any) and returns ½ Σ ρ there. Time is linear in size().
-  virtual void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  virtual void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                      std::size_t every) = 0;
-  virtual double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  virtual double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                            JointInformation& sum) const = 0;
 
   // reference: which of them the matches are with (motion_problem.hpp), 0 unless said otherwise. correlation:

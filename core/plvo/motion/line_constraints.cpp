@@ -268,13 +268,14 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   return cholesky.solve_lower(offsets.e).squaredNorm();
 }
 
-void LineConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel&, std::size_t) {
+void LineConstraints::begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel&,
+                            std::size_t) {
   if constexpr (!kLinesBuilt) return;
   for (std::size_t i = 0; i < matches_.size(); ++i)
     if (inliers_[i] != 0 && !hold(i, T, shared)) inliers_[i] = 0;
 }
 
-bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shared) {
+bool LineConstraints::hold(std::size_t i, const Se3& T, const NuisanceParameters& shared) {
   Line3d current = current_[matches_[i].current];
   if (shared.any()) {
     current.a -= shared.shift(current.a);
@@ -303,7 +304,7 @@ bool LineConstraints::hold(std::size_t i, const Se3& T, const SharedErrors& shar
   return true;
 }
 
-double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+double LineConstraints::linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                                   JointInformation& sum) const {
   if constexpr (!kLinesBuilt) return 0;
   const int size = shared.any() ? JointInformation::kSize : 6;
@@ -323,10 +324,10 @@ double LineConstraints::linearize(const Se3& T, const SharedErrors& shared, cons
       const Vector3 S = T.R.lazyProduct(held.ends[end]);
       Vector3 off = measured - T.t - S;
       if (shared.any()) {
-        const SharedField field = shared.field(measured);
+        const NuisanceField field = shared.field(measured);
         off -= field * shared.value;
         for (int k = 0; k < 2; ++k)
-          columns.block<1, SharedErrors::kCount>(2 * end + k, 6) =
+          columns.block<1, NuisanceParameters::kCount>(2 * end + k, 6) =
               field.transpose_times(held.across[k]).transpose();
       }
       for (int k = 0; k < 2; ++k) {

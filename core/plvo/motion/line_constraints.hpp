@@ -75,13 +75,13 @@ class LineConstraints final : public ConstraintSet {
   // With the reference measurement as the landmark: equal to the eliminated residual to first order in the
   // noise.
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
              std::size_t every) override;
-  double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 
  private:
-  bool hold(std::size_t i, const Se3& T, const SharedErrors& shared);
+  bool hold(std::size_t i, const Se3& T, const NuisanceParameters& shared);
 
   std::span<const Line3d> reference_, current_;
   std::span<const Match> matches_;

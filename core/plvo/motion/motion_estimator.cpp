@@ -92,7 +92,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   Se3 T;
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
-  SharedErrors shared = start.shared;
+  NuisanceParameters shared = start.shared;
   // From T, over the inliers that are flagged.
   const auto refine = [&](const LmOptions& options) {
     if (!consensus()) return StatusCode::kNoConsensus;

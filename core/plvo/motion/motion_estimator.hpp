@@ -35,7 +35,7 @@ struct MotionEstimate {
   // (26). Zero for an empty kind.
   std::array<Matrix6, kInformedKinds> information = zero_matrices<kInformedKinds>();
   ReferenceInformation references;                 // of all kinds, the shared errors taken for known
-  SharedErrorEstimate shared;                      // zero unless kOk
+  NuisanceEstimate shared;                         // zero unless kOk
   std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
   RansacSummary ransac;
@@ -48,10 +48,13 @@ struct MotionEstimate {
 // estimated. estimated: the prediction is an estimate from these frames already; hypotheses are drawn only
 // where the matches do not agree with it.
 struct MotionStart {
-  MotionStart(const Se3* T_predicted, const SharedErrors& shared_errors = {}, bool is_estimated = false)
-      : prediction(T_predicted), shared(shared_errors), estimated(is_estimated && T_predicted != nullptr) {}
+  MotionStart(const Se3* T_predicted, const NuisanceParameters& nuisance_parameters = {},
+              bool is_estimated = false)
+      : prediction(T_predicted),
+        shared(nuisance_parameters),
+        estimated(is_estimated && T_predicted != nullptr) {}
   const Se3* prediction;
-  SharedErrors shared;
+  NuisanceParameters shared;
   bool estimated;
 };
 

@@ -54,8 +54,8 @@ Matrix6 root(const Matrix6& S) {
 }  // namespace
 
 void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                          const SharedErrors& shared, const Kernels& kernels, const Se3& T, std::size_t every,
-                          bool exact_poses) {
+                          const NuisanceParameters& shared, const Kernels& kernels, const Se3& T,
+                          std::size_t every, bool exact_poses) {
   sets_ = sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds);
   references_ = references;
   if (exact_poses)
@@ -162,13 +162,13 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
     for (int i = c + 1; i < kJointSize; ++i) sum.H(i, c) = sum.H(c, i) = 0.5 * (sum.H(i, c) + sum.H(c, i));
   sum.g -= HL.lazyProduct(step);
   candidate_moved_[r] = moved - step;
-  pose_gain_[r] = gain.rightCols<SharedErrors::kCount>();
+  pose_gain_[r] = gain.rightCols<NuisanceParameters::kCount>();
   return 0.5 * moved.squaredNorm() - 0.5 * g.dot(step);
 }
 
 // With the prior, at the shared errors' best value for this motion.
 [[gnu::noinline]] double MotionProblem::eliminate_shared() {
-  constexpr int n = SharedErrors::kCount;
+  constexpr int n = NuisanceParameters::kCount;
   double cost = 0;
   for (int k = 0; k < n; ++k) {
     const double sigma = shared_.sigma(k);
@@ -180,8 +180,8 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   }
   Cholesky<n> cholesky;
   if (!cholesky.factor(sum_.H.block<n, n>(6, 6))) return std::numeric_limits<double>::infinity();
-  const SharedErrors::Vector g = sum_.g.tail<n>();
-  const SharedErrors::Vector step = cholesky.solve(g);
+  const NuisanceParameters::Vector g = sum_.g.tail<n>();
+  const NuisanceParameters::Vector step = cholesky.solve(g);
   candidate_shared_ = shared_.value - step;
   candidate_inverse_ = cholesky.inverse();
   candidate_gain_ = candidate_inverse_.lazyProduct(sum_.H.block<n, 6>(6, 0));
@@ -192,7 +192,7 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   return cost - 0.5 * g.dot(step);
 }
 
-SharedErrorEstimate MotionProblem::shared(const Matrix6& covariance) const {
+NuisanceEstimate MotionProblem::shared(const Matrix6& covariance) const {
   if (!shared_.any()) return {};
   return {shared_.value,
           inverse_.diagonal() + gain_.lazyProduct(covariance).eval().cwiseProduct(gain_).rowwise().sum()};

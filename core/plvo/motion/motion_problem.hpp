@@ -8,8 +8,8 @@
 #include <span>
 
 #include "plvo/math/levenberg_marquardt.hpp"
+#include "plvo/motion/common_mode_error.hpp"
 #include "plvo/motion/constraint_set.hpp"
-#include "plvo/motion/repeated_error.hpp"
 
 namespace plvo {
 
@@ -47,14 +47,14 @@ class MotionProblem {
   // For start(): it takes 16 kB, so the core has one in the arena for one estimate after the other.
   MotionProblem() = default;
   MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                const SharedErrors& shared, const Kernels& kernels, const Se3& T) {
+                const NuisanceParameters& shared, const Kernels& kernels, const Se3& T) {
     start(sets, references, shared, kernels, T);
   }
   // Over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at T and at the shared
   // errors' value. every: see ConstraintSet::begin(). exact_poses: the references' covariances are taken for
   // zero.
   void start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-             const SharedErrors& shared, const Kernels& kernels, const Se3& T, std::size_t every = 1,
+             const NuisanceParameters& shared, const Kernels& kernels, const Se3& T, std::size_t every = 1,
              bool exact_poses = false);
 
   // The shared errors, and the references' poses, are eliminated like landmarks: moved to their optimum for
@@ -70,7 +70,7 @@ class MotionProblem {
   // With their poses as estimated at the accepted state: a start() with them goes on from there.
   const MotionReferences& poses() const { return references_; }
   // At the accepted state, where the motion has this covariance.
-  SharedErrorEstimate shared(const Matrix6& covariance) const;
+  NuisanceEstimate shared(const Matrix6& covariance) const;
   // The Schur complement of one kind at the accepted state, the shared errors taken for known: C_P⁻¹ (14),
   // C_L⁻¹ (19). Of the first kInformedKinds sets.
   const Matrix6& information(std::size_t kind) const { return information_[kind]; }
@@ -78,9 +78,9 @@ class MotionProblem {
   const ReferenceInformation& references() const { return of_references_; }
 
  private:
-  using SharedMatrix = Matrix<SharedErrors::kCount, SharedErrors::kCount>;
-  using SharedGain = Matrix<SharedErrors::kCount, 6>;
-  using PoseGain = Matrix<6, SharedErrors::kCount>;
+  using SharedMatrix = Matrix<NuisanceParameters::kCount, NuisanceParameters::kCount>;
+  using SharedGain = Matrix<NuisanceParameters::kCount, 6>;
+  using PoseGain = Matrix<6, NuisanceParameters::kCount>;
 
   double add_reference(std::size_t r, const Se3& T);
   double add_kinds(std::size_t r, const Se3& T, bool& any);
@@ -98,8 +98,8 @@ class MotionProblem {
   // What a kind's inliers weigh together, as a share of what as many independent ones would.
   std::array<double, kMaxConstraintKinds> share_{};
   Se3 T_, candidate_;
-  SharedErrors shared_;
-  SharedErrors::Vector candidate_shared_;
+  NuisanceParameters shared_;
+  NuisanceParameters::Vector candidate_shared_;
   // Of the shared errors given the motion: their covariance, and how they follow the motion.
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;

@@ -99,10 +99,10 @@ namespace {
 class SharedSums {
  public:
   // W, We: the match's information, and times its residual.
-  void add(const SharedField& F, const Matrix3& W, const Vector3& We, const Vector3& q) {
+  void add(const NuisanceField& F, const Matrix3& W, const Vector3& We, const Vector3& q) {
     const Vector3 Wp = W.lazyProduct(F.p);
     const Vector3 moved = q.cross(Wp);
-    const Vector3 turned = F.turning(Wp);
+    const Vector3 turned = F.angular_rate(Wp);
     const double factors[kFactors] = {Wp[0],    Wp[1],     Wp[2],     moved[0],  moved[1],
                                       moved[2], turned[0], turned[1], turned[2], -F.p.dot(We)};
     const Pair along[kPairs] = {{F.along[0], F.along[1]}, {F.along[2], F.along[3]}};
@@ -115,21 +115,21 @@ class SharedSums {
     }
     if (F.delay_s == 0) return;
     Matrix3 WF;
-    for (int r = 0; r < 3; ++r) WF.row(r) = F.turning(W.row(r).transpose()).transpose();
-    turning_v_ += WF;
-    for (int c = 0; c < kTurning; ++c) {
-      turning_w_.col(c) += q.cross(WF.col(c));
-      turning_turning_.col(c) += F.turning(WF.col(c));
+    for (int r = 0; r < 3; ++r) WF.row(r) = F.angular_rate(W.row(r).transpose()).transpose();
+    rate_v_ += WF;
+    for (int c = 0; c < kAngularRate; ++c) {
+      rate_w_.col(c) += q.cross(WF.col(c));
+      rate_rate_.col(c) += F.angular_rate(WF.col(c));
     }
-    g_turning_ -= F.turning(We);
+    g_rate_ -= F.angular_rate(We);
   }
 
   void add_to(JointInformation& sum) const {
-    constexpr int kAlong = 6 + kTurning;
-    sum.H.block<kTurning, 3>(6, 0) += turning_v_.transpose();
-    sum.H.block<kTurning, 3>(6, 3) += turning_w_.transpose();
-    sum.H.block<kTurning, kTurning>(6, 6) += turning_turning_;
-    sum.g.segment<kTurning>(6) += g_turning_;
+    constexpr int kAlong = 6 + kAngularRate;
+    sum.H.block<kAngularRate, 3>(6, 0) += rate_v_.transpose();
+    sum.H.block<kAngularRate, 3>(6, 3) += rate_w_.transpose();
+    sum.H.block<kAngularRate, kAngularRate>(6, 6) += rate_rate_;
+    sum.g.segment<kAngularRate>(6) += g_rate_;
     for (int i = 0; i < kDepth; ++i) {
       for (int k = 0; k < kFactors - 1; ++k) sum.H(kAlong + i, k) += along_[k][i / 2][i % 2];
       for (int k = 0; k <= i; ++k) sum.H(kAlong + i, kAlong + k) += squares_[i][k / 2][k % 2];
@@ -141,18 +141,18 @@ class SharedSums {
   }
 
  private:
-  static constexpr int kTurning = SharedField::kTurning, kDepth = SharedField::kDepth;
-  static constexpr int kFactors = 6 + kTurning + 1;  // the motion, turning, and the gradient
+  static constexpr int kAngularRate = NuisanceField::kAngularRate, kDepth = NuisanceField::kDepth;
+  static constexpr int kFactors = 6 + kAngularRate + 1;  // the motion, angular_rate, and the gradient
   static constexpr int kPairs = kDepth / 2;
   Pair along_[kFactors][kPairs] = {};
   Pair squares_[kDepth][kPairs] = {};
-  Matrix3 turning_v_ = Matrix3::Zero(), turning_w_ = Matrix3::Zero(), turning_turning_ = Matrix3::Zero();
-  Vector3 g_turning_ = Vector3::Zero();
+  Matrix3 rate_v_ = Matrix3::Zero(), rate_w_ = Matrix3::Zero(), rate_rate_ = Matrix3::Zero();
+  Vector3 g_rate_ = Vector3::Zero();
 };
 
 }  // namespace
 
-double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+double PointConstraints::linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                                    JointInformation& sum) const {
   if constexpr (!kPointsBuilt) return 0;
   double cost = 0;
@@ -167,7 +167,7 @@ double PointConstraints::linearize(const Se3& T, const SharedErrors& shared, con
     const Point3d& reference = reference_[matches_[i].reference];
     const Point3d& current = current_[matches_[i].current];
     Vector3 p = current.p;
-    const SharedField F = shared.field(current.p);
+    const NuisanceField F = shared.field(current.p);
     if (shared.any()) p -= F * shared.value;
     const Vector3 e = p - T * reference.p;
     Symmetric3 W = inverse(sum_of_covariances(T.R, reference.Sigma, current.Sigma));

@@ -38,8 +38,8 @@ class PointConstraints final : public ConstraintSet {
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin(const Se3&, const SharedErrors&, const RobustKernel&, std::size_t) override {}
-  double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
+  double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 
  private:

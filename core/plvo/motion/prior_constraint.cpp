@@ -3,17 +3,18 @@
 
 namespace plvo {
 
-PriorConstraint::PriorConstraint(const Se3& T_sensed, const Matrix6& covariance, std::span<std::uint8_t> flag)
-    : ConstraintSet(flag), T_sensed_(T_sensed) {
+PriorConstraint::PriorConstraint(const Se3& T_propagated, const Matrix6& covariance,
+                                 std::span<std::uint8_t> flag)
+    : ConstraintSet(flag), T_propagated_(T_propagated) {
   Cholesky<6> cholesky;
-  usable_ = T_sensed.is_finite() && covariance.allFinite() && cholesky.factor(covariance);
+  usable_ = T_propagated.is_finite() && covariance.allFinite() && cholesky.factor(covariance);
   if (usable_) information_ = cholesky.inverse();
 }
 
-double PriorConstraint::linearize(const Se3& T, const SharedErrors&, const RobustKernel& kernel,
+double PriorConstraint::linearize(const Se3& T, const NuisanceParameters&, const RobustKernel& kernel,
                                   JointInformation& sum) const {
   if (inliers_[0] == 0) return 0;
-  const Vector6 r = boxminus(T, T_sensed_);
+  const Vector6 r = boxminus(T, T_propagated_);
   // ∂ log(Exp(ω) Exp(φ)) / ∂ω at 0, to the fourth order in φ.
   const Matrix3 Phi = skew(r.tail<3>());
   Matrix6 J = Matrix6::Identity();

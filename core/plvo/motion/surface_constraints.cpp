@@ -13,7 +13,7 @@ namespace {
 
 // Beyond so many σ it is another surface.
 constexpr double kGateSigmas = 5;
-constexpr int kShared = SharedErrors::kCount;
+constexpr int kShared = NuisanceParameters::kCount;
 constexpr int kJoint = JointInformation::kSize;
 constexpr int kCommon = SurfaceForm::kCommon;
 constexpr int kAll = kJoint + kCommon;
@@ -66,7 +66,7 @@ struct ErrorColumns {
 
 // The same without the motion's zeros, two columns at once; an entry beyond the diagonal may be off.
 void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
-  if constexpr (kSmallCode) return add_each(A, M, form);
+  if constexpr (kSizeOptimised) return add_each(A, M, form);
   static_assert(kOthers % 2 == 0);
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k <= i; ++k)
@@ -157,7 +157,7 @@ double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T, doub
   return normalised(match, T * match.p_reference - match.p_current);
 }
 
-void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+void SurfaceConstraints::begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                                std::size_t every) {
   T_begin_ = T;
   if (matches_.empty()) return;
@@ -170,7 +170,7 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
     const Vector3 offset = T * match.p_reference - match.p_current;
     Vector3 e = offset;
     if (shared.any()) {
-      const SharedField field = shared.field(match.p_current, match.delay_s);
+      const NuisanceField field = shared.field(match.p_current, match.delay_s);
       A.others.block<3, kShared>(0, 0) = field.matrix();
       e += field * shared.value;
     }
@@ -192,7 +192,7 @@ void SurfaceConstraints::begin(const Se3& T, const SharedErrors& shared, const R
   mirror(*form_);
 }
 
-double SurfaceConstraints::linearize(const Se3& T, const SharedErrors& shared, const RobustKernel&,
+double SurfaceConstraints::linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel&,
                                      JointInformation& sum) const {
   if (matches_.empty()) return 0;
   const auto& Q = form_->Q;

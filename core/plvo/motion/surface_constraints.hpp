@@ -33,7 +33,7 @@ struct SurfaceMatch {
 
 // Σ w Aᵀ M A, symmetric, for e = A x with x = (T − T where the solve began, by rows; β; γ; 1).
 struct SurfaceForm {
-  static constexpr int kMotion = 12, kCommon = 2, kOthers = SharedErrors::kCount + kCommon + 1;
+  static constexpr int kMotion = 12, kCommon = 2, kOthers = NuisanceParameters::kCount + kCommon + 1;
   static constexpr int kSize = kMotion + kOthers;
   double Q[kSize][kSize];
 };
@@ -60,9 +60,9 @@ class SurfaceConstraints final : public ConstraintSet {
   // r² / σ². What the matches share is not in it: where that shows, they weigh less (gate, robust loss, the
   // learning of σ²), which on real sensors is better than to believe that it is known (docs/sensors.md).
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
-  void begin(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
              std::size_t every) override;
-  double linearize(const Se3& T, const SharedErrors& shared, const RobustKernel& kernel,
+  double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;
 
  private:

@@ -100,16 +100,16 @@ void check(RangeCheck& ranges, const NoiseConfig& noise) {
   ranges.require("depth", noise.initial.depth, 0.01, 100.0);
   ranges.require("lines", noise.initial.lines, 0.01, 100.0);
   ranges.require("surfaces", noise.initial.surfaces, 0.01, 100.0);
-  ranges.require("turning", noise.initial.turning, 0.01, 100.0);
+  ranges.require("angular_rate", noise.initial.angular_rate, 0.01, 100.0);
   ranges.require("shared_depth", noise.initial.shared_depth, 0.01, 100.0);
   ranges.group("noise.");
   ranges.require("learning_rate", noise.learning_rate, 0.0, 0.5);
-  ranges.require("turning_rad_per_s", noise.turning_rad_per_s, 0, 10);
+  ranges.require("angular_rate_error_rad_per_s", noise.angular_rate_error_rad_per_s, 0, 10);
   ranges.require("shared_depth_m", noise.shared_depth_m, 0, 1);
   ranges.require("point_correlation", noise.point_correlation, 0, 1);
   ranges.require("line_correlation", noise.line_correlation, 0, 1);
   ranges.require("surface_correlation", noise.surface_correlation, 0, 1);
-  ranges.require("repeated_share", noise.repeated_share, 0, 1);
+  ranges.require("common_mode_share", noise.common_mode_share, 0, 1);
   ranges.require("depth_moment_s", noise.depth_moment_s, 0, 1);
   ranges.require("depth_offset_m", noise.depth_offset_m, 0, 1);
 }
@@ -165,10 +165,10 @@ void check(RangeCheck& ranges, const ReferenceConfig& references) {
   ranges.require("older_inlier_ratio", references.older_inlier_ratio, 0, 1);
   ranges.require("wide_search_px", references.wide_search_px, 1, 4000);
   ranges.require("max_lost_frames", references.max_lost_frames, 1, 1000000);
-  ranges.require("unseen_m_per_s", references.unseen_m_per_s, 0, 100);
-  ranges.require("unseen_rad_per_s", references.unseen_rad_per_s, 0, 100);
+  ranges.require("process_noise_m_per_s", references.process_noise_m_per_s, 0, 100);
+  ranges.require("process_noise_rad_per_s", references.process_noise_rad_per_s, 0, 100);
   ranges.require("recent_frames", references.recent_frames, 1, 1000000);
-  ranges.require("look_back_frames", references.look_back_frames, 1, 1000000);
+  ranges.require("relocalisation_interval_frames", references.relocalisation_interval_frames, 1, 1000000);
 }
 
 void check(RangeCheck& ranges, const BudgetConfig& budget) {
@@ -216,11 +216,11 @@ Config Config::paper() {
   config.depth_noise.registration_px = 0;
   config.noise = {.initial = {},
                   .learning_rate = 0,
-                  .turning_rad_per_s = 0,
+                  .angular_rate_error_rad_per_s = 0,
                   .shared_depth_m = 0,
                   .point_correlation = 0,
                   .line_correlation = 0,
-                  .repeated_share = 0};
+                  .common_mode_share = 0};
   config.points.registered = false;
   config.points.sigma_px = 1;
   config.points.depth_reach_px = 0;

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "plvo/base/side_by_side.hpp"
+#include "plvo/base/executor.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/image/undistortion.hpp"
@@ -37,7 +37,7 @@ struct Limits {
   // Keyframes that are kept after a loss, 0 … 4 (3 with 3 references), each as large as a reference
   // (kept_keyframes.hpp).
   int kept_keyframes = 1;
-  // 2: points are searched for in scratch of their own, so that Config::side_by_side may be set.
+  // 2: points are searched for in scratch of their own, so that Config::executor may be set.
   int cores = 1;
   // Samples of surfaces per frame, 0 … 1000: what depth alone says of the motion. 0: none, and no memory.
   int surfaces = 200;
@@ -98,16 +98,17 @@ struct NoiseConfig {
   NoiseScales initial{.image = 1, .depth = 0.25, .lines = 1, .surfaces = 0.25};
   // Each frame moves the scales by this share of what its residuals show; 0: they stay.
   double learning_rate = 0.1;
-  // Where the errors start that all features of a frame share (shared_errors.hpp), SD; 0: there are none.
-  double turning_rad_per_s = 0.1;
+  // Where the errors start that all features of a frame share (nuisance_parameters.hpp), SD; 0: there are
+  // none.
+  double angular_rate_error_rad_per_s = 0.1;
   double shared_depth_m = 0.001;  // at 1 m
   // The correlation between the residuals of any two points, or lines, of a frame: what else they share
   // (reflections, the lens, the clock) does not average out either.
   double point_correlation = 0.1;
   double line_correlation = 0.02;
   double surface_correlation = 0.1;
-  // How much of what matches with a keyframe err is the same in the next frame (repeated_error.hpp).
-  double repeated_share = 0.6;
+  // How much of what matches with a keyframe err is the same in the next frame (common_mode_error.hpp).
+  double common_mode_share = 0.6;
   // What the samples of surfaces in a depth image share, SD: when it was taken is off by so much, and its
   // depths by so much at 1 m, growing with their square.
   double depth_moment_s = 0.005;
@@ -130,10 +131,10 @@ struct ReferenceConfig {
   // After so many lost frames in a row the references are given up and tracking starts anew from the last
   // good pose, whose covariance then grows by the motion that nobody saw: at most this fast (SD per second).
   int max_lost_frames = 15;
-  double unseen_m_per_s = 0.5;
-  double unseen_rad_per_s = 0.5;
+  double process_noise_m_per_s = 0.5;
+  double process_noise_rad_per_s = 0.5;
   // Once it tracks again, every so many frames it looks whether it is back at a kept keyframe.
-  int look_back_frames = 5;
+  int relocalisation_interval_frames = 5;
 };
 
 // What a frame may take, where somebody waits for it (features/feature_budget.hpp). The caller measures.
@@ -175,7 +176,7 @@ struct Config {
   StageHook stage_hook;
   // Where there is a second core: it takes half of the images' rows and of the features, and the points while
   // segments are searched for (Stage::kPoints is then the time of both searches). Needs Limits::cores = 2.
-  SideBySide side_by_side;
+  Executor executor;
 
   static Config paper();
   // Settings that Limits::tiny() has the room for.

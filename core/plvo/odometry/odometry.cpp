@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The front door itself: what is refused, and the order in which a frame goes through the rooms.
+// The public API itself: what is refused, and the order in which a frame goes through the rooms.
 #include "plvo/odometry/odometry.hpp"
 
 #include <algorithm>
@@ -28,8 +28,8 @@ Odometry::Odometry() = default;
   if (const int references = references_of(config.references.policy); limits.references < references)
     return Status(StatusCode::kInvalidArgument, "config: references.policy needs Limits::references = ")
         .append(references);
-  if (config.side_by_side && limits.cores < 2)
-    return {StatusCode::kInvalidArgument, "config: side_by_side needs Limits::cores = 2"};
+  if (config.executor && limits.cores < 2)
+    return {StatusCode::kInvalidArgument, "config: executor needs Limits::cores = 2"};
   if (const std::size_t bytes = required_bytes(limits); memory.size() < bytes)
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
         .append(static_cast<std::ptrdiff_t>(bytes))
@@ -37,10 +37,10 @@ Odometry::Odometry() = default;
         .append(static_cast<std::ptrdiff_t>(memory.size()));
   arena_ = Arena(memory);
   std::array<FrameFeatures, kFrames> features;
-  rooms_.carve(arena_, limits, features);
+  memory_.allocate(arena_, limits, features);
   for (std::size_t i = 0; i < kFrames; ++i) frames_[i].features = features[i];
   arena_.seal();
-  rooms_.extraction.init(camera, config);
+  memory_.extraction.init(camera, config);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
   kept_.init(limits.kept_keyframes);
@@ -91,7 +91,7 @@ Status Odometry::check(const RgbdFrame& input) const {
 }
 
 void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result) {
-  const bool has_pose = last_ != kNobody;
+  const bool has_pose = last_ != kInvalidSlot;
   report(held(has_pose ? last_ : current_), has_pose ? frame(last_).velocity : Vector6::Zero(), result);
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   Status status = check(input);
@@ -106,33 +106,33 @@ void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackRe
   view_slot_ = current_;
   has_stamp_ = true;
   depth_after_colour_s_ = depth_after_colour_s(input);
-  const DepthSampler depth = rooms_.extraction.depth_sampler(input);
+  const DepthSampler depth = memory_.extraction.depth_sampler(input);
   const Exposure predicted = predict_exposure(input.stamp_ns);
   take_feature_memory();
   FrameFeatures& features = frame(current_).features;
-  features.clear(budget_.room());
+  features.clear(budget_.capacity());
   result.feature_step = budget_.step();
   result.points = points_found_;
-  rooms_.extraction.extract(input, depth.with(predicted), wants_points(), arena_, features, result);
+  memory_.extraction.extract(input, depth.with(predicted), wants_points(), arena_, features, result);
   TrackedMotion tracked;
-  if (keyframe_ != kNobody) {
+  if (keyframe_ != kInvalidSlot) {
     estimate_motion(depth, tracked, result);
     fill_track_views(tracked.motion);
     if (tracked.motion.status == StatusCode::kOk) {
       accept(depth, tracked, prior, result);
-      look_back(depth, tracked, result);
+      relocalise(depth, tracked, result);
     } else {
       lose(tracked.motion, prior, result);
     }
   } else if (!resume(depth, prior, tracked, result)) {
-    rooms_.extraction.lift(depth.with(predicted), noise_, arena_, features);
-    rooms_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
-    if (last_ == kNobody)
+    memory_.extraction.lift(depth.with(predicted), noise_, arena_, features);
+    memory_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
+    if (last_ == kInvalidSlot)
       start_first(prior, result);
     else
       start_again(prior, result);
   }
-  segment_count_ = fill_segment_views(features.lines, rooms_.segment_views);
+  segment_count_ = fill_segment_views(features.lines, memory_.segment_views);
   points_found_ = result.points;
   points_found_.matched = points_found_.inliers = 0;
 }
@@ -152,7 +152,7 @@ void Odometry::take_feature_memory() {
 // Every frame's points are looked for where descriptors alone find them again, else those of a frame that
 // will be matched later.
 bool Odometry::wants_points() const {
-  if (keyframe_ == kNobody || !config().points.registered || looks_back()) return true;
+  if (keyframe_ == kInvalidSlot || !config().points.registered || relocalisation_is_due()) return true;
   const ReferenceConfig& references = config().references;
   if (references.policy == ReferencePolicy::kPreviousFrame) return true;
   return references_of(references.policy) > 1 && !recent_is_young();
@@ -161,14 +161,14 @@ bool Odometry::wants_points() const {
 // Of the current frame, where they are wanted after all. Before the frame is the last one. Apart, for the
 // sampler would else be on the stack while the motion is solved for.
 [[gnu::noinline]] void Odometry::find_points(const DepthSampler& depth, TrackResult& result) {
-  rooms_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
-                                frame(current_).features.points, result);
+  memory_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
+                                 frame(current_).features.points, result);
 }
 
 // Of the current frame, which becomes a keyframe or is searched by descriptors; a recent frame is found again
 // by its image. Apart, as find_points.
 [[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
-  rooms_.extraction.describe_points(arena_, frame(current_).features.points, result);
+  memory_.extraction.describe_points(arena_, frame(current_).features.points, result);
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The front door: frames in, poses with covariances out. After Lu & Song, "Robust RGB-D Odometry Using Point
+// The public API: frames in, poses with covariances out. After Lu & Song, "Robust RGB-D Odometry Using Point
 // and Line Features" (ICCV 2015), Figure 1.
 //
 //   alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
@@ -7,9 +7,9 @@
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
 //   plvo::TrackResult result = odometry.track(frame);  // or track(frame, prior), with a gyro's help
 //
-// Memory: init carves the caller's block once; nothing is taken or returned afterwards. Threads: an Odometry
-// is used by one thread at a time. Determinism: the same frames and config give the same bits on every
-// supported machine.
+// Memory: init allocates the caller's block once; nothing is taken or returned afterwards. Threads: an
+// Odometry is used by one thread at a time. Determinism: the same frames and config give the same bits on
+// every supported machine.
 #pragma once
 
 #include <array>
@@ -27,9 +27,9 @@
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
-#include "plvo/odometry/gravity_hold.hpp"
+#include "plvo/odometry/gravity_filter.hpp"
 #include "plvo/odometry/kept_keyframes.hpp"
-#include "plvo/odometry/sensed_motion.hpp"
+#include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 
@@ -61,25 +61,25 @@ struct FeatureView {
 // The frame being tracked, the last good one, those that are matched, and those that are kept.
 inline constexpr std::size_t kFrames = 2 + kMostOtherFrames;
 
-// What init carves, in order; an arena without memory counts it.
-struct OdometryRooms {
+// What init allocates, in order; an arena without memory counts it.
+struct OdometryMemory {
   FeatureExtraction extraction;
   ReferenceTracking tracking;
   std::span<PointTrackView> point_track_views;
   std::span<LineTrackView> line_track_views;
   std::span<SegmentView> segment_views, reference_segment_views;
 
-  constexpr void carve(Arena& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
+  constexpr void allocate(Arena& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
-      frames[i].carve(memory, limits);
+      frames[i].allocate(memory, limits);
     point_track_views =
         memory.take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
     line_track_views = memory.take<LineTrackView>("feature view", segments);
     segment_views = memory.take<SegmentView>("feature view", segments);
     reference_segment_views = memory.take<SegmentView>("feature view", segments);
-    extraction.carve(memory, limits);
-    tracking.carve(memory, limits);
+    extraction.allocate(memory, limits);
+    tracking.allocate(memory, limits);
   }
   // The stages of one frame come one after the other: of their scratch the largest counts.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
@@ -91,17 +91,18 @@ struct OdometryRooms {
 // Bytes that init needs for these capacities, wherever the block starts.
 constexpr std::size_t required_bytes(const Limits& limits) {
   Arena sizer = Arena::counting();
-  OdometryRooms rooms;
+  OdometryMemory rooms;
   std::array<FrameFeatures, kFrames> frames;
-  rooms.carve(sizer, limits, frames);
-  OdometryRooms::reserve(sizer, limits);
+  rooms.allocate(sizer, limits, frames);
+  OdometryMemory::reserve(sizer, limits);
   return sizer.peak() + kArenaAlignment;
 }
 
 class Odometry {
  public:
   Odometry();
-  // Checks everything once, carves `memory`, builds the tables. kOutOfMemory says how many bytes are needed.
+  // Checks everything once, allocates `memory`, builds the tables. kOutOfMemory says how many bytes are
+  // needed.
   Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config = {},
               const Limits& limits = Limits::vga());
 
@@ -154,11 +155,11 @@ class Odometry {
   // How uncertain T_frame_keyframe is.
   struct FromKeyframe {
     Matrix6 covariance = Matrix6::Zero();  // for weighing it against what is matched with the keyframe
-    Matrix6 repeated = Matrix6::Zero();    // besides: repeated_error.hpp
+    Matrix6 repeated = Matrix6::Zero();    // besides: common_mode_error.hpp
     Matrix6 total() const { return covariance + repeated; }
   };
   using References = std::array<Reference, kMaxReferences>;
-  static constexpr int kNobody = -1;
+  static constexpr int kInvalidSlot = -1;
 
   // odometry.cpp: what is refused, and what a frame brings with it.
   Status check(const RgbdFrame& input) const;
@@ -184,10 +185,10 @@ class Odometry {
   // odometry_outcome.cpp: what becomes of a frame, and which one the next are matched with.
   void start_first(const MotionPrior& prior, TrackResult& result);
   void start_again(const MotionPrior& prior, TrackResult& result);
-  void start_at(const HeldPose& pose, TrackResult& result);
+  void start_at(const PoseWithCovariance& pose, TrackResult& result);
   void forget_world();
-  void read_gravity(const MotionPrior& prior, HeldPose& pose);
-  void grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const;
+  void read_gravity(const MotionPrior& prior, PoseWithCovariance& pose);
+  void add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const;
   void accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
               TrackResult& result);
   void note_velocity(std::int64_t motion_ns);
@@ -207,55 +208,56 @@ class Odometry {
   const char* first_word_of_loss() const;
 
   // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
-  HeldPose held(int slot) const;
-  void hold(int slot, HeldPose pose);
-  void report(const HeldPose& pose, const Vector6& velocity, TrackResult& result) const;
+  PoseWithCovariance held(int slot) const;
+  void hold(int slot, PoseWithCovariance pose);
+  void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
   MotionReference from_keyframe(int slot) const;
-  void move_keyframe(const HeldPose& pose);
+  void move_keyframe(const PoseWithCovariance& pose);
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);
-  HeldPose predicted_pose(const MotionPrior& prior, TrackResult& result) const;
+  PoseWithCovariance predicted_pose(const MotionPrior& prior, TrackResult& result) const;
 
   // recovery.cpp: the view of a kept keyframe comes back.
   bool recognise(int slot, FrameFeatures& features, const Vector6& velocity, const DepthSampler& depth,
-                 const HeldPose& believed, TrackedMotion& tracked, TrackResult& result);
+                 const PoseWithCovariance& believed, TrackedMotion& tracked, TrackResult& result);
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
-  bool looks_back() const {
-    return !kept_.empty() && frames_since_look_back_ + 1 >= config().references.look_back_frames;
+  bool relocalisation_is_due() const {
+    return !kept_.empty() &&
+           frames_since_relocalisation_ + 1 >= config().references.relocalisation_interval_frames;
   }
-  void look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
-  void return_to(int slot, const MotionEstimate& motion);
+  void relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
+  void move_to_relocalised_pose(int slot, const MotionEstimate& motion);
 
   // odometry_views.cpp: what features() shows.
   static std::size_t fill_segment_views(const LineFeatures& lines, std::span<SegmentView> views);
   void fill_track_views(const MotionEstimate& motion);
 
-  const CameraModel& camera() const { return rooms_.extraction.camera(); }
-  const Config& config() const { return rooms_.extraction.config(); }
+  const CameraModel& camera() const { return memory_.extraction.camera(); }
+  const Config& config() const { return memory_.extraction.config(); }
   Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& frame(int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
   Arena arena_;
-  OdometryRooms rooms_;
+  OdometryMemory memory_;
   FeatureBudget budget_;
   bool ready_ = false;
 
   std::array<Frame, kFrames> frames_;
   // Slots of frames_. Until the first usable frame there is no keyframe.
-  int keyframe_ = kNobody;
-  int last_ = kNobody;
+  int keyframe_ = kInvalidSlot;
+  int last_ = kInvalidSlot;
   // Matched beside the keyframe: a frame since, until it makes way for a newer one; else the keyframe itself.
-  int recent_ = kNobody;
-  int recent_age_ = 0;   // frames since it was tracked
-  int older_ = kNobody;  // the keyframe before, while it is matched
+  int recent_ = kInvalidSlot;
+  int recent_age_ = 0;        // frames since it was tracked
+  int older_ = kInvalidSlot;  // the keyframe before, while it is matched
   // Zero while it is the keyframe, or there is none.
   FromKeyframe last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();
   int current_ = 0;  // until the first usable frame it holds the pose of that one
   KeptKeyframes kept_;
-  int frames_since_look_back_ = 0;
-  SensedMotion sensed_;  // since the last good frame
-  GravityHold gravity_;
+  int frames_since_relocalisation_ = 0;
+  PropagatedPrior propagated_prior_;  // since the last good frame
+  GravityFilter gravity_;
   NoiseScales noise_;                // learnt so far
   double depth_after_colour_s_ = 0;  // of the current frame
   std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not

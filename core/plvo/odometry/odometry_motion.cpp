@@ -10,12 +10,12 @@ namespace {
 // Beyond so many times the last motion's own time a prediction is worse than none.
 constexpr int kLongestPrediction = 3;
 
-// A first motion convinces where at least this share is found of what it puts into the image. An image that
+// A first motion is_accepted where at least this share is found of what it puts into the image. An image that
 // is aligned where it does not belong mostly finds less than a tenth; a search by features, before a wall
 // that repeats itself and a brick off, a fifth. So does a right one in a blurred image: it is not refused,
 // but others are looked for as well.
-constexpr double kConvincingByImage = 0.1;
-constexpr double kConvincingByFeatures = 0.2;
+constexpr double kAcceptedShareByImage = 0.1;
+constexpr double kAcceptedShareByFeatures = 0.2;
 // Or two ways lead to the same motion: within this distance (m and rad).
 constexpr double kSameMotion = 0.02;
 
@@ -23,7 +23,7 @@ constexpr double kSameMotion = 0.02;
 
 // How the camera moves while the frame is exposed, if it goes on as it did.
 Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
-  if (last_ == kNobody) return {};
+  if (last_ == kInvalidSlot) return {};
   const PairPrior prior = prior_of(last_, stamp_ns);
   return current_exposure(camera(), prior, prior.T_current_reference);
 }
@@ -33,7 +33,7 @@ Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   const Frame& last = frame(last_);
   const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
-  if (sensed_.known()) return sensed_.T_current_last() * T_last_reference;
+  if (propagated_prior_.known()) return propagated_prior_.T_current_last() * T_last_reference;
   const auto elapsed = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns));
   if (!(elapsed < kLongestPrediction * static_cast<double>(last.motion_ns))) return T_last_reference;
   return boxplus(Se3{}, elapsed * 1e-9 * last.velocity) * T_last_reference;
@@ -65,26 +65,27 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   };
   add(keyframe_);
   if (uses_both_references()) add(recent_);
-  if (older_ != kNobody) add(older_);
+  if (older_ != kInvalidSlot) add(older_);
   return count;
 }
 
 // A first motion from the latest reference, by its image; failing that by features: where they are predicted,
 // or from each reference, wherever they may be, unless other sensors say where. Each leads to the motion from
-// all references. The first that convinces is taken, else the one that most agree with. The keyframe's points
-// are described, and those of the keyframe before, not a recent frame's.
+// all references. The first that is_accepted is taken, else the one that most agree with. The keyframe's
+// points are described, and those of the keyframe before, not a recent frame's.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
   References references;
   const std::size_t count = list_references(result.stamp_ns, references);
   const MotionReference last = from_keyframe(last_);
-  const CurrentFrame current{frame(current_).features, rooms_.extraction, depth, noise_, sensed_, last};
+  const CurrentFrame current{
+      frame(current_).features, memory_.extraction, depth, noise_, propagated_prior_, last};
   result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
   const Reference& latest = all[latest_of(all)];
   const bool registered = config().points.registered;
   const auto refine = [&](const Se3& T_current_base) {
-    rooms_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
+    memory_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
     return tracked.motion.status == StatusCode::kOk;
   };
   // Of the motions that did not convince: where it led to, from where, and how many agree with it.
@@ -93,7 +94,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     int inliers = 0;
   } best;
   bool last_is_best = false;  // nothing was tried since
-  const auto convinces = [&](const Se3& start, double share) {
+  const auto is_accepted = [&](const Se3& start, double share) {
     const Se3& motion = tracked.motion.T_current_reference;
     const int inliers = result.points.inliers + result.lines.inliers;
     if (is_share_of_view(inliers, share, all, camera(), motion)) return true;
@@ -101,9 +102,9 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     if (last_is_best) best = {motion, start, inliers};
     return false;
   };
-  if (Se3 start; registered && rooms_.tracking.align(latest, current, arena_, start, result)) {
+  if (Se3 start; registered && memory_.tracking.align(latest, current, arena_, start, result)) {
     start = start * latest.pose.T_reference_base;
-    if (refine(start) && convinces(start, kConvincingByImage)) return;
+    if (refine(start) && is_accepted(start, kAcceptedShareByImage)) return;
   }
 
   find_points(depth, result);
@@ -114,17 +115,17 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   };
   const auto find = [&](const Reference& from, double radius_px) {
     last_is_best = false;
-    rooms_.tracking.find(from, current, radius_px, arena_, tracked, result);
+    memory_.tracking.find(from, current, radius_px, arena_, tracked, result);
     if (tracked.motion.status != StatusCode::kOk) return false;
     if (!registered) return true;
     const Se3 start = tracked.motion.T_current_reference * from.pose.T_reference_base;
     if (best.inliers > 0 && boxminus(start, best.motion).norm() < kSameMotion) return refine(best.start);
-    return refine(start) && convinces(start, kConvincingByFeatures);
+    return refine(start) && is_accepted(start, kAcceptedShareByFeatures);
   };
   if (find(findable(latest) ? latest : all[0], config().points.match.radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
     if (!findable(references[r])) continue;
-    if (!sensed_.known()) references[r].prior.T_current_reference = Se3{};
+    if (!propagated_prior_.known()) references[r].prior.T_current_reference = Se3{};
     if (find(references[r], config().references.wide_search_px)) return;
   }
   if (best.inliers > 0 && !last_is_best) (void)refine(best.start);

@@ -66,7 +66,7 @@ void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
         "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
     return;
   }
-  HeldPose pose = held(current_);
+  PoseWithCovariance pose = held(current_);
   if (levels)
     gravity_.level(*prior.gravity, pose);
   else
@@ -85,15 +85,15 @@ void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
   if (too_few_features(result)) {
     result.state = TrackState::kLost;
     result.status = hardly_anything(StatusCode::kTooFewFeatures, first_word_of_loss(), result);
-    if (sensed_.known()) (void)predicted_pose(prior, result);
+    if (propagated_prior_.known()) (void)predicted_pose(prior, result);
     return;
   }
-  const bool sensed = sensed_.known();
-  HeldPose pose = sensed ? predicted_pose(prior, result) : held(last_);
-  if (!sensed) grow_unseen(result.stamp_ns, pose.covariance);
+  const bool sensed = propagated_prior_.known();
+  PoseWithCovariance pose = sensed ? predicted_pose(prior, result) : held(last_);
+  if (!sensed) add_process_noise(result.stamp_ns, pose.covariance);
   if (may_be_anywhere(pose.covariance)) {
     forget_world();
-    report(HeldPose(), Vector6::Zero(), result);
+    report(PoseWithCovariance(), Vector6::Zero(), result);
     result.T_camera_reference = Se3();
     result.motion_covariance.setZero();
     start_first(prior, result);
@@ -110,26 +110,26 @@ void Odometry::forget_world() {
     each = Frame();
     each.features = features;
   }
-  keyframe_ = recent_ = last_ = older_ = kNobody;
+  keyframe_ = recent_ = last_ = older_ = kInvalidSlot;
   recent_age_ = 0;
   last_motion_ = recent_motion_ = {};
   kept_.clear();
-  frames_since_look_back_ = 0;
+  frames_since_relocalisation_ = 0;
   start_is_set_ = false;
-  sensed_ = SensedMotion();
+  propagated_prior_ = PropagatedPrior();
   gravity_.forget();
   lost_frames_ = 0;
   world_is_lost_ = true;
 }
 
 // Of a camera that is not chained to an earlier pose.
-void Odometry::read_gravity(const MotionPrior& prior, HeldPose& pose) {
-  HeldPose itself = pose;
+void Odometry::read_gravity(const MotionPrior& prior, PoseWithCovariance& pose) {
+  PoseWithCovariance itself = pose;
   if (prior.gravity) gravity_.read(*prior.gravity, itself, pose);
 }
 
 // The current frame becomes the keyframe and the last good one, with no motion behind it.
-void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
+void Odometry::start_at(const PoseWithCovariance& pose, TrackResult& result) {
   describe_points(result);
   hold(current_, pose);
   report(held(current_), Vector6::Zero(), result);
@@ -140,18 +140,18 @@ void Odometry::start_at(const HeldPose& pose, TrackResult& result) {
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
   keyframe_ = recent_ = last_ = current_;
-  older_ = kNobody;
+  older_ = kInvalidSlot;
   keep_image();
   current_ = free_slot();
   lost_frames_ = 0;
-  sensed_.restart();
+  propagated_prior_.restart();
 }
 
 // The last good pose's covariance by now, when nobody saw the motion since.
-void Odometry::grow_unseen(std::int64_t stamp_ns, Matrix6& covariance) const {
+void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const {
   const double seconds = static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, stamp_ns)) * 1e-9;
-  const double sigma_m = config().references.unseen_m_per_s * seconds;
-  const double sigma_rad = config().references.unseen_rad_per_s * seconds;
+  const double sigma_m = config().references.process_noise_m_per_s * seconds;
+  const double sigma_rad = config().references.process_noise_rad_per_s * seconds;
   for (int i = 0; i < 3; ++i) {
     covariance(i, i) += sigma_m * sigma_m;
     double& turned = covariance(3 + i, 3 + i);
@@ -166,16 +166,16 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
   if (!kept.recent) {
     find_points(depth, result);
     if (!kept.keyframe) describe_points(result);
-    rooms_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
+    memory_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
   }
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
   // Of the last frame until here, of the current one from here on.
-  last_motion_ = {motion.C_H,
-                  repeated_error(motion.references, recent_motion_.repeated, config().noise.repeated_share)};
+  last_motion_ = {motion.C_H, common_mode_error(motion.references, recent_motion_.repeated,
+                                                config().noise.common_mode_share)};
   const Matrix6 covariance = last_motion_.total();
-  HeldPose from = held(keyframe_);
-  HeldPose pose = advance(from, motion.T_current_reference, covariance);
+  PoseWithCovariance from = held(keyframe_);
+  PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance);
   if (prior.gravity) {
     gravity_.read(*prior.gravity, from, pose);
     move_keyframe(from);
@@ -188,8 +188,8 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
                                               camera().stamp_sigma_s);
   lost_frames_ = 0;
-  sensed_.restart();
-  learn(config().noise, tracked.shown, noise_);
+  propagated_prior_.restart();
+  learn(config().noise, tracked.observed, noise_);
   choose_references(kept);
 }
 
@@ -213,7 +213,7 @@ Odometry::Kept Odometry::still_good() const {
     return affordable(slot) && still_seen(slot, index, share);
   };
   Kept kept;
-  kept.older = older_ != kNobody && good(older_, both ? 2 : 1, references.older_inlier_ratio);
+  kept.older = older_ != kInvalidSlot && good(older_, both ? 2 : 1, references.older_inlier_ratio);
   kept.keyframe =
       references.policy != ReferencePolicy::kPreviousFrame &&
       good(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
@@ -227,7 +227,7 @@ Odometry::Kept Odometry::still_good() const {
 
 // The tracked frame becomes the last good one, and takes the place of a reference that is none any more.
 void Odometry::choose_references(const Kept& kept) {
-  if (!kept.older) older_ = kNobody;
+  if (!kept.older) older_ = kInvalidSlot;
   last_ = current_;
   if (!kept.keyframe) replace_keyframe();
   ++recent_age_;
@@ -254,7 +254,7 @@ void Odometry::replace_keyframe() {
 
 // Of the current frame, which is the latest reference from now on.
 void Odometry::keep_image() {
-  rooms_.tracking.keep_image(rooms_.extraction.pyramid(), frame(current_).features.stamp_ns);
+  memory_.tracking.keep_image(memory_.extraction.pyramid(), frame(current_).features.stamp_ns);
 }
 
 // Whether the last estimate, whose reference of this index was that frame, found this share of its features.
@@ -263,15 +263,15 @@ bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   std::size_t available = features.lines.count_3d;
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
-  return rooms_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
+  return memory_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
 }
 
 // Too full a frame for the budget goes on costing what it did.
 bool Odometry::affordable(int slot) const {
   const FrameFeatures& features = frame(slot).features;
-  const FeatureRoom room = budget_.room();
-  return features.points.keypoints.size() <= room.keypoints &&
-         features.lines.segments.size() <= room.segments;
+  const FeatureCapacity capacity = budget_.capacity();
+  return features.points.keypoints.size() <= capacity.keypoints &&
+         features.lines.segments.size() <= capacity.segments;
 }
 
 bool Odometry::is_reference(int slot) const {
@@ -287,17 +287,19 @@ int Odometry::free_slot() const {
 void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result) {
   result.state = TrackState::kLost;
   result.status = explain_loss(motion, result, first_word_of_loss());
-  if (sensed_.known()) (void)predicted_pose(prior, result);
+  if (propagated_prior_.known()) (void)predicted_pose(prior, result);
   ++lost_frames_;
   if (lost_frames_ < config().references.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
   // starts anew at the last good pose.
   kept_.keep(keyframe_);
-  keyframe_ = recent_ = older_ = kNobody;
+  keyframe_ = recent_ = older_ = kInvalidSlot;
   last_motion_ = recent_motion_ = {};
   current_ = free_slot();
 }
 
-const char* Odometry::first_word_of_loss() const { return sensed_.known() ? "predicted: " : "lost: "; }
+const char* Odometry::first_word_of_loss() const {
+  return propagated_prior_.known() ? "predicted: " : "lost: ";
+}
 
 }  // namespace plvo

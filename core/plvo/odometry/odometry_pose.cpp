@@ -45,18 +45,18 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
     return {StatusCode::kInvalidArgument,
             "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
   gravity_.forget();
-  HeldPose pose;
+  PoseWithCovariance pose;
   pose.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
   pose.covariance = covariance;
   start_is_set_ = true;
   world_is_lost_ = false;
   kept_.clear();  // their poses are in the world that was
-  if (last_ == kNobody) {
+  if (last_ == kInvalidSlot) {
     hold(current_, pose);
     return {};
   }
   // The keyframe moves with the last frame: the motion between them stays what it is.
-  if (keyframe_ != kNobody)
+  if (keyframe_ != kInvalidSlot)
     move_keyframe(keyframe_ == last_
                       ? pose
                       : advance(pose, from_keyframe(last_).T_reference_base.inverse(), Matrix6::Zero()));
@@ -64,12 +64,12 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   return {};
 }
 
-HeldPose Odometry::held(int slot) const {
+PoseWithCovariance Odometry::held(int slot) const {
   return {frame(slot).T_world_camera, frame(slot).covariance, frame(slot).covariance_with_gravity};
 }
 
 // What is not finite is found where the result leaves.
-void Odometry::hold(int slot, HeldPose pose) {
+void Odometry::hold(int slot, PoseWithCovariance pose) {
   (void)settle(pose);
   frame(slot).T_world_camera = pose.T_world_camera;
   frame(slot).covariance = pose.covariance;
@@ -77,7 +77,7 @@ void Odometry::hold(int slot, HeldPose pose) {
 }
 
 // What the caller is told of a pose: of its stamp, which may err.
-void Odometry::report(const HeldPose& pose, const Vector6& velocity, TrackResult& result) const {
+void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const {
   result.T_world_camera = pose.T_world_camera;
   result.pose_covariance =
       pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera().stamp_sigma_s);
@@ -85,7 +85,7 @@ void Odometry::report(const HeldPose& pose, const Vector6& velocity, TrackResult
 
 // A frame as a reference whose pose relative to the keyframe is known.
 MotionReference Odometry::from_keyframe(int slot) const {
-  if (keyframe_ == kNobody || keyframe_ == slot) return {};
+  if (keyframe_ == kInvalidSlot || keyframe_ == slot) return {};
   const Matrix6& covariance = slot == older_    ? older_covariance_
                               : slot == recent_ ? recent_motion_.covariance
                                                 : last_motion_.covariance;
@@ -93,35 +93,36 @@ MotionReference Odometry::from_keyframe(int slot) const {
 }
 
 // The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
-void Odometry::move_keyframe(const HeldPose& pose) {
-  for (const int slot : {last_, older_, recent_ == last_ ? kNobody : recent_})
-    if (slot != kNobody && slot != keyframe_)
+void Odometry::move_keyframe(const PoseWithCovariance& pose) {
+  for (const int slot : {last_, older_, recent_ == last_ ? kInvalidSlot : recent_})
+    if (slot != kInvalidSlot && slot != keyframe_)
       frame(slot).T_world_camera = pose.T_world_camera * from_keyframe(slot).T_reference_base.inverse();
   hold(keyframe_, pose);
 }
 
 // Takes in what the prior says of the motion since the frame before.
 void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
-  if (last_ == kNobody) return;
+  if (last_ == kInvalidSlot) return;
   const Frame& last = frame(last_);
   const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
                        elapsed_ns(last.features.stamp_ns, stamp_ns) <= kLongestCoast_ns;
   const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, stamp_ns)) * 1e-9;
-  sensed_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config().references);
+  propagated_prior_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config().references);
 }
 
 // Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
 // gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
-HeldPose Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
-  const int anchor = keyframe_ != kNobody ? keyframe_ : last_;
+PoseWithCovariance Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
+  const int anchor = keyframe_ != kInvalidSlot ? keyframe_ : last_;
   const MotionReference last = from_keyframe(last_);
-  result.T_camera_reference = sensed_.T_current_last() * last.T_reference_base;
-  result.motion_covariance = compose_covariance(sensed_.T_current_last(), sensed_.covariance(),
-                                                last.T_reference_base, last_motion_.total());
+  result.T_camera_reference = propagated_prior_.T_current_last() * last.T_reference_base;
+  result.motion_covariance =
+      compose_covariance(propagated_prior_.T_current_last(), propagated_prior_.covariance(),
+                         last.T_reference_base, last_motion_.total());
   result.reference_stamp_ns = frame(anchor).features.stamp_ns;
-  HeldPose from = held(anchor);
-  HeldPose pose = advance(from, result.T_camera_reference, result.motion_covariance);
-  GravityHold gravity = gravity_;
+  PoseWithCovariance from = held(anchor);
+  PoseWithCovariance pose = advance(from, result.T_camera_reference, result.motion_covariance);
+  GravityFilter gravity = gravity_;
   if (prior.gravity && gravity.known()) gravity.read(*prior.gravity, from, pose);
   report(pose, frame(last_).velocity, result);
   result.state = TrackState::kPredicted;

@@ -18,30 +18,30 @@ void Odometry::fill_track_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
   const bool both = uses_both_references();
   const FrameFeatures& reference = frame(both ? recent_ : keyframe_).features;
-  const ReferenceTracks& tracks = rooms_.tracking.tracks(both ? 1 : 0);
+  const ReferenceTracks& tracks = memory_.tracking.tracks(both ? 1 : 0);
   point_track_count_ = tracks.points.matches.size();
   for (std::size_t i = 0; i < point_track_count_; ++i) {
     const Keypoint& from = reference.points.keypoints[tracks.points.matches[i].reference];
     const Vector2& to = tracks.points.pixels[i];
-    rooms_.point_track_views[i] = {from.u, from.v, static_cast<float>(to.x()), static_cast<float>(to.y()),
-                                   tracks.point_inliers[i] != 0};
+    memory_.point_track_views[i] = {from.u, from.v, static_cast<float>(to.x()), static_cast<float>(to.y()),
+                                    tracks.point_inliers[i] != 0};
   }
-  reference_segment_count_ = fill_segment_views(reference.lines, rooms_.reference_segment_views);
+  reference_segment_count_ = fill_segment_views(reference.lines, memory_.reference_segment_views);
   line_track_count_ = tracks.lines.size();
   for (std::size_t i = 0; i < line_track_count_; ++i)
-    rooms_.line_track_views[i] = {tracks.lines[i].reference, tracks.lines[i].current,
-                                  tracks.line_inliers[i] != 0};
+    memory_.line_track_views[i] = {tracks.lines[i].reference, tracks.lines[i].current,
+                                   tracks.line_inliers[i] != 0};
 }
 
 FeatureView Odometry::features() const {
   FeatureView view;
   if (!ready_ || !has_stamp_) return view;
-  view.image = rooms_.extraction.pyramid().level(0);
+  view.image = memory_.extraction.pyramid().level(0);
   view.keypoints = frame(view_slot_).features.points.keypoints.span();
-  view.point_tracks = rooms_.point_track_views.first(point_track_count_);
-  view.segments = rooms_.segment_views.first(segment_count_);
-  view.reference_segments = rooms_.reference_segment_views.first(reference_segment_count_);
-  view.line_tracks = rooms_.line_track_views.first(line_track_count_);
+  view.point_tracks = memory_.point_track_views.first(point_track_count_);
+  view.segments = memory_.segment_views.first(segment_count_);
+  view.reference_segments = memory_.reference_segment_views.first(reference_segment_count_);
+  view.line_tracks = memory_.line_track_views.first(line_track_count_);
   return view;
 }
 

@@ -17,8 +17,9 @@ namespace {
 constexpr double kPlausible = 0.9999;
 
 // Apart, for its matrices would else be on the stack while the motion is solved for.
-[[gnu::noinline]] bool agree(const HeldPose& reference, const MotionEstimate& motion, const HeldPose& b) {
-  const HeldPose a = advance(reference, motion.T_current_reference, motion.C_H);
+[[gnu::noinline]] bool agree(const PoseWithCovariance& reference, const MotionEstimate& motion,
+                             const PoseWithCovariance& b) {
+  const PoseWithCovariance a = advance(reference, motion.T_current_reference, motion.C_H);
   Cholesky<6> cholesky;
   if (!cholesky.factor(a.covariance + b.covariance)) return false;
   const Vector6 apart = boxminus(a.T_world_camera, b.T_world_camera);
@@ -29,8 +30,8 @@ constexpr double kPlausible = 0.9999;
 
 // features: of the current frame, which moves at this velocity; believed: its pose otherwise.
 bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& velocity,
-                         const DepthSampler& depth, const HeldPose& believed, TrackedMotion& tracked,
-                         TrackResult& result) {
+                         const DepthSampler& depth, const PoseWithCovariance& believed,
+                         TrackedMotion& tracked, TrackResult& result) {
   PairPrior prior;
   prior.velocity = velocity;
   prior.velocity_known = true;
@@ -38,16 +39,16 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   prior.reference_velocity_known = frame(slot).motion_ns > 0;
   prior.reference_is_last = false;
   prior.depth_after_colour_s = depth_after_colour_s_;
-  const SensedMotion nothing;
+  const PropagatedPrior nothing;
   const MotionReference nobody;
-  const CurrentFrame current{features, rooms_.extraction, depth, noise_, nothing, nobody};
+  const CurrentFrame current{features, memory_.extraction, depth, noise_, nothing, nobody};
   const Reference reference{&frame(slot).features, prior, {}};
-  rooms_.extraction.describe_points(arena_, features.points, result);
+  memory_.extraction.describe_points(arena_, features.points, result);
   const double anywhere_px = std::max(camera().width, camera().height);
-  rooms_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
+  memory_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
   if (tracked.motion.status == StatusCode::kOk && config().points.registered) {
     const Se3 T_current_reference = tracked.motion.T_current_reference;
-    rooms_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
+    memory_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
   }
   return tracked.motion.status == StatusCode::kOk &&
          still_seen(slot, 0, config().references.keyframe_inlier_ratio) &&
@@ -59,8 +60,8 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
                       TrackResult& result) {
   if (kept_.empty()) return false;
   const int slot = kept_.latest();
-  HeldPose believed = held(last_);
-  grow_unseen(result.stamp_ns, believed.covariance);
+  PoseWithCovariance believed = held(last_);
+  add_process_noise(result.stamp_ns, believed.covariance);
   TrackResult trial = result;
   // It stands still, for all that is known: what it did before says nothing any more.
   const bool found =
@@ -79,13 +80,13 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 // Tracking goes on since a new start, whose pose nobody saw: if the camera is back at the view of a kept
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
 // tracked: of the frame's own motion, which is accepted and not needed any more: room for another one.
-void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
+void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   if (kept_.empty()) return;
-  if (!looks_back()) {
-    ++frames_since_look_back_;
+  if (!relocalisation_is_due()) {
+    ++frames_since_relocalisation_;
     return;
   }
-  frames_since_look_back_ = 0;
+  frames_since_relocalisation_ = 0;
   const int slot = kept_.next();
   Frame& last = frame(last_);  // the frame just tracked
   TrackResult trial;           // the counts of the frame are those of its own tracking
@@ -93,15 +94,15 @@ void Odometry::look_back(const DepthSampler& depth, TrackedMotion& tracked, Trac
   const bool found = recognise(slot, last.features, last.velocity, depth, held(last_), tracked, trial);
   result.stage_ns = trial.stage_ns;
   if (!found) return;
-  return_to(slot, tracked.motion);
+  move_to_relocalised_pose(slot, tracked.motion);
   report(held(last_), last.velocity, result);
   result.returned = true;
 }
 
 // All poses are moved so that the last frame stands where `motion` leads from the kept keyframe. Apart, for
 // its matrices would else be on the stack while that keyframe is looked for.
-[[gnu::noinline]] void Odometry::return_to(int slot, const MotionEstimate& motion) {
-  const HeldPose pose = advance(held(slot), motion.T_current_reference, motion.C_H);
+[[gnu::noinline]] void Odometry::move_to_relocalised_pose(int slot, const MotionEstimate& motion) {
+  const PoseWithCovariance pose = advance(held(slot), motion.T_current_reference, motion.C_H);
   const MotionReference from = from_keyframe(last_);
   move_keyframe(keyframe_ == last_
                     ? pose

@@ -51,7 +51,7 @@ struct TrackResult {
   Matrix6 pose_covariance = Matrix6::Zero();
 
   // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance: C_H
-  // (23), what the matches with a keyframe err alike in every frame (repeated_error.hpp), and what both
+  // (23), what the matches with a keyframe err alike in every frame (common_mode_error.hpp), and what both
   // stamps err.
   Se3 T_camera_reference;
   Matrix6 motion_covariance = Matrix6::Zero();

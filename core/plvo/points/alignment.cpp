@@ -8,7 +8,7 @@
 
 #include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -62,9 +62,9 @@ constexpr double kMostStretch = 3;
 // after the second.
 // Eight pixels at once: no weighted sum passes 255 · 128.
 void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
-  Lanes tap[kTaps];
+  Int16x8 tap[kTaps];
   for (int i = 0; i < kTaps; ++i) load_bytes(p + i, tap[i]);
-  const Lanes blended =
+  const Int16x8 blended =
       (tap[0] * w[0] + tap[1] * w[1] + tap[2] * w[2] + tap[3] * w[3] + std::int16_t{4}) >> 3;
   store(blended, out);
 }
@@ -75,19 +75,19 @@ void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
 
 // Of eight columns at once, in 32 bits.
 struct DownWeights {
-  Lanes upper, lower;  // of neighbouring taps, in pairs
+  Int16x8 upper, lower;  // of neighbouring taps, in pairs
   explicit DownWeights(const Weights& w)
       : upper{w[0], w[1], w[0], w[1], w[0], w[1], w[0], w[1]}, lower{w[2], w[3], w[2], w[3],
                                                                      w[2], w[3], w[2], w[3]} {}
 };
-inline __attribute__((always_inline)) void blend_down(const Lanes taps[kTaps], const DownWeights& weights,
-                                                      Lanes& out) {
-  Lanes upper[2], lower[2];
+inline __attribute__((always_inline)) void blend_down(const Int16x8 taps[kTaps], const DownWeights& weights,
+                                                      Int16x8& out) {
+  Int16x8 upper[2], lower[2];
   interleave(taps[0], taps[1], upper[0], upper[1]);
   interleave(taps[2], taps[3], lower[0], lower[1]);
-  WideLanes sums[2];
+  Int32x4 sums[2];
   for (int i = 0; i < 2; ++i) {
-    WideLanes above, below;
+    Int32x4 above, below;
     dot_pairs(upper[i], weights.upper, above);
     dot_pairs(lower[i], weights.lower, below);
     sums[i] = (above + below + 64) >> 7;
@@ -119,21 +119,21 @@ class WindowMove {
 
   // To first order, of a row of the window: by twice the gradient, in the unit of the values. Of 255 · 16 the
   // sum stays within 4800: where a neighbour pulls it up, it was down itself.
-  void add_change(std::size_t row, const Lanes& gx, const Lanes& gy, Lanes& values) const {
-    constexpr Lanes kAcross = {-4, -3, -2, -1, 0, 1, 2, 3};
+  void add_change(std::size_t row, const Int16x8& gx, const Int16x8& gy, Int16x8& values) const {
+    constexpr Int16x8 kAcross = {-4, -3, -2, -1, 0, 1, 2, 3};
     static_assert(kWindowReach == 4);
     const auto down = static_cast<std::int16_t>(static_cast<int>(row) - kWindowReach);
-    const Lanes dx = kAcross * across_x_ + static_cast<std::int16_t>(down_x_ * down);
-    const Lanes dy = kAcross * across_y_ + static_cast<std::int16_t>(down_y_ * down);
-    Lanes gradient[2], offset[2];
+    const Int16x8 dx = kAcross * across_x_ + static_cast<std::int16_t>(down_x_ * down);
+    const Int16x8 dy = kAcross * across_y_ + static_cast<std::int16_t>(down_y_ * down);
+    Int16x8 gradient[2], offset[2];
     interleave(gx, gy, gradient[0], gradient[1]);
     interleave(dx, dy, offset[0], offset[1]);
-    WideLanes change[2];
+    Int32x4 change[2];
     for (int i = 0; i < 2; ++i) {
       dot_pairs(gradient[i], offset[i], change[i]);
       change[i] = (change[i] + (1 << kMoveBits)) >> (kMoveBits + 1);
     }
-    Lanes eight;
+    Int16x8 eight;
     narrow(change[0], change[1], eight);
     values = values + eight;
   }
@@ -148,10 +148,10 @@ class WindowMove {
 Template make_template(const Patch& patch, const WindowMask& mask, const WindowMove& move) {
   constexpr const Weights& kWhole = kWeights[0];
   static_assert(kWhole[0] == kWhole[2] && kWhole[3] == 0);
-  Lanes smoothed[kRows + kTaps - 1] = {}, difference[kRows + 2];
+  Int16x8 smoothed[kRows + kTaps - 1] = {}, difference[kRows + 2];
   const std::uint8_t* p = patch.data() + (kPatchRadius - kWindowReach - 1) * (kPatchSide + 1) + 1;
   for (std::size_t y = 0; y < kRows + 2; ++y, p += kPatchSide) {
-    Lanes left, here, right;
+    Int16x8 left, here, right;
     load_bytes(p - 1, left);
     load_bytes(p, here);
     load_bytes(p + 1, right);
@@ -160,19 +160,19 @@ Template make_template(const Patch& patch, const WindowMask& mask, const WindowM
   }
   Template t;
   const DownWeights down(kWhole);
-  constexpr Lanes kBits = {1, 2, 4, 8, 16, 32, 64, 128};
-  WideLanes total = {};
+  constexpr Int16x8 kBits = {1, 2, 4, 8, 16, 32, 64, 128};
+  Int32x4 total = {};
   for (std::size_t y = 0; y < kRows; ++y) {
-    const Lanes on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
-    const Lanes one = on & std::int16_t{1};
-    const Lanes gx =
+    const Int16x8 on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
+    const Int16x8 one = on & std::int16_t{1};
+    const Int16x8 gx =
         ((difference[y] + difference[y + 2]) * kWhole[0] + difference[y + 1] * kWhole[1] + std::int16_t{4}) >>
         3;
-    const Lanes gy = smoothed[y + 2] - smoothed[y];
-    Lanes value;
+    const Int16x8 gy = smoothed[y + 2] - smoothed[y];
+    Int16x8 value;
     blend_down(&smoothed[y], down, value);
     if (!move.is_none()) move.add_change(y, gx, gy, value);
-    WideLanes sums;
+    Int32x4 sums;
     dot_pairs(value, one, sums);
     total += sums;
     const std::size_t first = y * kColumns;
@@ -228,17 +228,17 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
   constexpr int kBlendedRows = kRows + kTaps - 1;
   std::array<std::int16_t, kColumns * kBlendedRows> blended;
   for (int r = 0; r < kBlendedRows; ++r) {
-    static_assert(kColumns * sizeof(std::int16_t) == sizeof(Lanes));
+    static_assert(kColumns * sizeof(std::int16_t) == sizeof(Int16x8));
     blend_across(first + r * image.stride, across, &blended[static_cast<std::size_t>(r * kColumns)]);
   }
   Window values;
-  if constexpr (kLaneLoops) {
+  if constexpr (kSimdLoops) {
     for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
     return values;
   }
   const DownWeights weights(down);
   for (std::size_t k = 0; k < kPixels; k += kColumns) {
-    Lanes taps[kTaps], out;
+    Int16x8 taps[kTaps], out;
     for (std::size_t tap = 0; tap < kTaps; ++tap) load(&blended[k + tap * kColumns], taps[tap]);
     blend_down(taps, weights, out);
     store(out, &values[k]);
@@ -276,7 +276,7 @@ std::int16_t rounded(double offset) {
 // The same: a multiple of a power of two is the same before or after a sum, and the farthest is a corner,
 // since no rounding turns an order around.
 WarpedWindow warp_window(const PatchWarp& warp) {
-  if constexpr (kLaneLoops) return warp_each(warp);
+  if constexpr (kSimdLoops) return warp_each(warp);
   WarpedWindow window;
   std::array<double, kColumns> across_x, across_y;
   for (int i = 0; i < kColumns; ++i) {
@@ -332,18 +332,18 @@ alignas(16) constexpr auto kColumnWeights = [] {
 // A pixel's column sums, of rows that are two apart; alike for a neighbour. Then of both all, across.
 inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[2], std::ptrdiff_t stride,
                                                     const std::int16_t* across, const std::int16_t* down,
-                                                    WideLanes& halves) {
-  Lanes columns[2];
+                                                    Int32x4& halves) {
+  Int16x8 columns[2];
   for (int i = 0; i < 2; ++i) {
     const std::uint8_t* const rows[kTaps] = {p[i], p[i] + stride, p[i] + 2 * stride, p[i] + 3 * stride};
     const auto& weights = kColumnWeights[static_cast<std::size_t>(down[i])];
-    Lanes first, last, upper, lower;
+    Int16x8 first, last, upper, lower;
     load_bytes(rows, first, last);
     load(weights[0].data(), upper);
     load(weights[2].data(), lower);
     columns[i] = first * upper + last * lower;
   }
-  Lanes sum, weights;
+  Int16x8 sum, weights;
   add_halves(columns[0], columns[1], sum);
   sum = (sum + std::int16_t{4}) >> 3;
   load_halves(kWeights[static_cast<std::size_t>(across[0])].data(),
@@ -353,48 +353,48 @@ inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[
 
 // As read_each, a row of the window at once.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
-  if constexpr (kLaneLoops) return read_each(image, window, x, y);
+  if constexpr (kSimdLoops) return read_each(image, window, x, y);
   constexpr std::int16_t kFraction = kOnePixel - 1;
   const std::uint8_t* const from =
       image.data + ((y >> kFractionBits) - 1) * image.stride + (x >> kFractionBits) - 1;
   const auto fraction_x = static_cast<std::int16_t>(x & kFraction);
   const auto fraction_y = static_cast<std::int16_t>(y & kFraction);
   const auto stride = static_cast<std::int16_t>(image.stride);
-  const Lanes steps = {stride, 1, stride, 1, stride, 1, stride, 1};
+  const Int16x8 steps = {stride, 1, stride, 1, stride, 1, stride, 1};
   Window values;
   for (std::size_t row = 0; row < kPixels; row += kColumns) {
-    Lanes at_x, at_y;
+    Int16x8 at_x, at_y;
     load(&window.x[row], at_x);
     load(&window.y[row], at_y);
     at_x = at_x + fraction_x;
     at_y = at_y + fraction_y;
-    const Lanes whole_x = at_x >> kFractionBits;
-    const Lanes whole_y = at_y >> kFractionBits;
-    Lanes first, last;
+    const Int16x8 whole_x = at_x >> kFractionBits;
+    const Int16x8 whole_y = at_y >> kFractionBits;
+    Int16x8 first, last;
     interleave(whole_y, whole_x, first, last);
-    WideLanes four;
+    Int32x4 four;
     alignas(16) std::int32_t offset[kColumns];
     dot_pairs(first, steps, four);
     store(four, offset);
     dot_pairs(last, steps, four);
     store(four, offset + 4);
     alignas(16) std::int16_t across[kColumns], down[kColumns];
-    const Lanes part_x = at_x & kFraction;
-    const Lanes part_y = at_y & kFraction;
+    const Int16x8 part_x = at_x & kFraction;
+    const Int16x8 part_y = at_y & kFraction;
     store(part_x, across);
     store(part_y, down);
-    WideLanes read[2];
+    Int32x4 read[2];
     for (int i = 0; i < kColumns; i += 4) {
       const std::uint8_t* const p[4] = {from + offset[i], from + offset[i + 1], from + offset[i + 2],
                                         from + offset[i + 3]};
-      WideLanes halves[2];
+      Int32x4 halves[2];
       read_two(p, image.stride, across + i, down + i, halves[0]);
       read_two(p + 2, image.stride, across + i + 2, down + i + 2, halves[1]);
-      WideLanes sums;
+      Int32x4 sums;
       add_pairs(halves[0], halves[1], sums);
       read[i / 4] = (sums + 64) >> 7;
     }
-    Lanes eight;
+    Int16x8 eight;
     narrow(read[0], read[1], eight);
     store(eight, &values[row]);
   }

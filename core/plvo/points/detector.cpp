@@ -9,7 +9,7 @@
 #include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
 #include "plvo/base/heap_sort.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/points/fast.hpp"
 
@@ -47,7 +47,7 @@ Bytes columns_of(const Cell& cell, int x) {
 
 // The same, sixteen columns at once. What lies beyond the cell is in the image, by the keypoints' margin.
 int contrast_threshold(GrayView image, const Cell& cell) {
-  if constexpr (kLaneLoops) return contrast_threshold_each(image, cell);
+  if constexpr (kSimdLoops) return contrast_threshold_each(image, cell);
   static_assert(kKeypointMargin >= kBytes);
   constexpr Bytes kNever = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};
   Bytes low = ~Bytes{}, high = {};
@@ -101,7 +101,7 @@ class Band {
 
   // Pixels of the cell that pass at this threshold, 0 … 127.
   int count_above(const Cell& cell, int threshold) const {
-    if constexpr (kLaneLoops) return count_above_by_words(cell, threshold);
+    if constexpr (kSimdLoops) return count_above_by_words(cell, threshold);
     int count = 0;
     for (int x = cell.x0; x < cell.x1; x += kBytes) {
       Bytes counts = {};  // of a column in each byte: a cell has at most kMaxCell rows
@@ -115,12 +115,12 @@ class Band {
   }
 
   // So many pixels from x on, of a row, are looked at together.
-  static constexpr int kAtOnce = kLaneLoops ? sizeof(std::size_t) : kBytes;
+  static constexpr int kAtOnce = kSimdLoops ? sizeof(std::size_t) : kBytes;
 
   // Bit i: the pixel (x + i, y) is in the cell, passes, and is a local maximum. Of equal neighbours the first
   // is the maximum: the suppression has a total order.
   unsigned maxima(const Cell& cell, int x, int y, int threshold) const {
-    if constexpr (kLaneLoops) return maxima_by_words(cell, x, y, threshold);
+    if constexpr (kSimdLoops) return maxima_by_words(cell, x, y, threshold);
     const Bytes centre = read(x, y);
     const Bytes least =
         higher(higher(higher(read(x - 1, y - 1), read(x, y - 1)), higher(read(x + 1, y - 1), read(x - 1, y))),
@@ -227,7 +227,7 @@ class DepthQueue {
  public:
   DepthQueue(const DepthSampler& depth, BestOfCell& best) : depth_(depth), best_(best) {}
   void push(const Candidate& candidate, int x, int y) {
-    if constexpr (kSmallCode) {
+    if constexpr (kSizeOptimised) {
       if (depth_.at(x, y) > 0) best_.insert(candidate);
       return;
     }
@@ -251,7 +251,7 @@ class DepthQueue {
   };
   const DepthSampler& depth_;
   BestOfCell& best_;
-  std::array<Waiting, kSmallCode ? 1 : 8> waiting_;
+  std::array<Waiting, kSizeOptimised ? 1 : 8> waiting_;
   std::size_t size_ = 0;
 };
 
@@ -277,7 +277,7 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
       }
     }
   }
-  if constexpr (!kSmallCode) queue.settle();
+  if constexpr (!kSizeOptimised) queue.settle();
   for (std::size_t i = 0; i < best.size(); ++i) search.candidates.push_back(best.at(i));
 }
 
@@ -347,18 +347,18 @@ std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t c
 double corner_strength(GrayView image, int x, int y) {
   constexpr int kRadius = 3;
   constexpr int kSide = 2 * kRadius + 1;
-  constexpr Lanes kCounts = {-1, -1, -1, -1, -1, -1, -1, 0};  // of a row of eight the last counts nothing
-  WideLanes sums[3] = {};
+  constexpr Int16x8 kCounts = {-1, -1, -1, -1, -1, -1, -1, 0};  // of a row of eight the last counts nothing
+  Int32x4 sums[3] = {};
   for (int r = 0; r < kSide; ++r) {
     const std::uint8_t* row = image.data + (y + r - kRadius) * image.stride + x - kRadius;
-    Lanes left, right, above, below;
+    Int16x8 left, right, above, below;
     load_bytes(row - 1, left);
     load_bytes(row + 1, right);
     load_bytes(row - image.stride, above);
     load_bytes(row + image.stride, below);
-    const Lanes across = (right - left) & kCounts;
-    const Lanes down = (below - above) & kCounts;
-    WideLanes pairs;
+    const Int16x8 across = (right - left) & kCounts;
+    const Int16x8 down = (below - above) & kCounts;
+    Int32x4 pairs;
     dot_pairs(across, across, pairs);
     sums[0] += pairs;
     dot_pairs(across, down, pairs);
@@ -366,7 +366,7 @@ double corner_strength(GrayView image, int x, int y) {
     dot_pairs(down, down, pairs);
     sums[2] += pairs;
   }
-  const auto total = [](const WideLanes& four) { return four[0] + four[1] + four[2] + four[3]; };
+  const auto total = [](const Int32x4& four) { return four[0] + four[1] + four[2] + four[3]; };
   const std::int32_t xx = total(sums[0]);
   const std::int32_t xy = total(sums[1]);
   const std::int32_t yy = total(sums[2]);

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 
 namespace plvo {
 namespace {
@@ -139,7 +139,7 @@ inline __attribute__((always_inline)) void bound_pixels(const Byte* row, std::pt
 constexpr int kBlock = sizeof(Bytes);
 
 inline __attribute__((always_inline)) bool any_above(Byte floor, const Byte* scores, int size) {
-  if (kLaneLoops || size < kBlock) {
+  if (kSimdLoops || size < kBlock) {
     Byte highest = 0;
     for (int i = 0; i < size; ++i) highest = most(highest, scores[i]);
     return highest > floor;
@@ -155,7 +155,7 @@ inline __attribute__((always_inline)) void score_block(const Byte* row, std::ptr
                                                        Byte floor, Byte* __restrict scores) {
   bound_pixels(row, stride, size, scores);
   if (!any_above(floor, scores, size)) return;
-  if (kLaneLoops)
+  if (kSimdLoops)
     score_passing(row, stride, size, floor, scores);
   else
     score_pixels(row, stride, size, scores);
@@ -167,7 +167,7 @@ void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width,
                       std::uint8_t* __restrict scores) {
   int x = 0;
   // What is compiled for a whole block's size is faster.
-  if constexpr (!kLaneLoops)
+  if constexpr (!kSimdLoops)
     for (; x + kBlock <= width; x += kBlock) score_block(row + x, stride, kBlock, floor, scores + x);
   for (; x < width; x += kBlock) score_block(row + x, stride, std::min(kBlock, width - x), floor, scores + x);
 }

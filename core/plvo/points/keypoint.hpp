@@ -30,7 +30,7 @@ inline constexpr int kPatchSide = 2 * kPatchRadius + 1;
 using Patch = std::array<std::uint8_t, kPatchSide * kPatchSide>;
 
 // The part of a patch that is registered, columns −4 … 3 and rows −4 … 4 about its centre, and which of its
-// pixels show the keypoint's own surface: a byte a row, a bit a column (own_surface.hpp).
+// pixels show the keypoint's own surface: a byte a row, a bit a column (depth_mask.hpp).
 inline constexpr int kWindowReach = 4;
 inline constexpr int kWindowColumns = 2 * kWindowReach;
 inline constexpr int kWindowRows = 2 * kWindowReach + 1;
@@ -46,13 +46,14 @@ struct PointFeatures {
   bool looked_for = false;
   bool described = false;
 
-  // Not looked for yet: no keypoints, and room for at most so many.
-  void clear(std::size_t room) {
+  // Not looked for yet: no keypoints, and capacity for at most so many.
+  void clear(std::size_t capacity) {
     looked_for = described = false;
-    keypoints = FixedVector<Keypoint>({keypoints.begin(), room < points.size() ? room : points.size()});
+    keypoints =
+        FixedVector<Keypoint>({keypoints.begin(), capacity < points.size() ? capacity : points.size()});
   }
 
-  constexpr void carve(Arena& memory, int capacity) {
+  constexpr void allocate(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
     keypoints = FixedVector<Keypoint>(memory.take<Keypoint>("point features", n));
     descriptors = memory.take<Descriptor>("point features", n);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/math/cholesky.hpp"
 
 namespace plvo {
@@ -44,7 +44,7 @@ bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
   constexpr std::int16_t kEighths = static_cast<std::int16_t>(kUnits);
   for (int row = 0; row < kAlignmentSide; ++row) {
     const std::uint8_t* p = image.row(y - kAlignmentReach + row) + x - kAlignmentReach;
-    Lanes here, left, right, above, below;
+    Int16x8 here, left, right, above, below;
     load_bytes(p, here);
     load_bytes(p - 1, left);
     load_bytes(p + 1, right);
@@ -76,12 +76,12 @@ void read_window(GrayView image, int x, int y, Numbers& values) {
   const auto fy = static_cast<std::int16_t>(y & (kOne - 1));
   const auto rest = static_cast<std::int16_t>(kOne - fx);
   const std::uint8_t* p = image.row((y >> kReadBits) - kAlignmentReach) + (x >> kReadBits) - kAlignmentReach;
-  Lanes above = {};
+  Int16x8 above = {};
   for (int row = 0; row <= kAlignmentSide; ++row, p += image.stride) {
-    Lanes left, right;
+    Int16x8 left, right;
     load_bytes(p, left);
     load_bytes(p + 1, right);
-    const Lanes across = (left * rest + right * fx + std::int16_t{1}) >> 1;
+    const Int16x8 across = (left * rest + right * fx + std::int16_t{1}) >> 1;
     if (row > 0)
       store(above + (((across - above) * fy + std::int16_t{kOne / 2}) >> kReadBits),
             &values[static_cast<std::size_t>((row - 1) * kAlignmentSide)]);
@@ -119,17 +119,17 @@ Vector2 position(const Keypoint& keypoint, int level) {
 
 // make(i, window) says whether there is one around keypoint i.
 template <typename Make>
-std::span<AlignmentWindow> cut(const PointFeatures& features, std::span<AlignmentWindow> room,
+std::span<AlignmentWindow> cut(const PointFeatures& features, std::span<AlignmentWindow> capacity,
                                const Make& make) {
   std::size_t count = 0;
-  const std::size_t keypoints = room.empty() ? 0 : features.keypoints.size();
-  const std::size_t step = room.empty() ? 1 : (keypoints + room.size() - 1) / room.size();
+  const std::size_t keypoints = capacity.empty() ? 0 : features.keypoints.size();
+  const std::size_t step = capacity.empty() ? 1 : (keypoints + capacity.size() - 1) / capacity.size();
   for (std::size_t i = 0; i < keypoints; i += step) {
-    if (!make(i, room[count])) continue;
-    room[count].keypoint = i;
+    if (!make(i, capacity[count])) continue;
+    capacity[count].keypoint = i;
     ++count;
   }
-  return room.first(count);
+  return capacity.first(count);
 }
 
 }  // namespace
@@ -143,8 +143,8 @@ void SparseAlignment::keep(const Pyramid& pyramid, std::int64_t stamp_ns) {
 }
 
 std::span<AlignmentWindow> SparseAlignment::cut_coarse(const PointFeatures& features,
-                                                       std::span<AlignmentWindow> room) const {
-  return cut(features, room, [&](std::size_t i, AlignmentWindow& window) {
+                                                       std::span<AlignmentWindow> capacity) const {
+  return cut(features, capacity, [&](std::size_t i, AlignmentWindow& window) {
     const Vector2 at = position(features.keypoints[i], kLevel);
     const int x = static_cast<int>(at.x() + 0.5);
     const int y = static_cast<int>(at.y() + 0.5);
@@ -156,9 +156,9 @@ std::span<AlignmentWindow> SparseAlignment::cut_coarse(const PointFeatures& feat
 }
 
 std::span<AlignmentWindow> SparseAlignment::cut_fine(const PointFeatures& features,
-                                                     std::span<AlignmentWindow> room) {
+                                                     std::span<AlignmentWindow> capacity) {
   static_assert(kPatchRadius > kAlignmentReach);
-  return cut(features, room, [&](std::size_t i, AlignmentWindow& window) {
+  return cut(features, capacity, [&](std::size_t i, AlignmentWindow& window) {
     const Keypoint& keypoint = features.keypoints[i];
     const GrayView patch{features.patches[i].data(), kPatchSide, kPatchSide, kPatchSide};
     window.level = keypoint.level;

@@ -55,7 +55,7 @@ struct AlignmentStep {
 
 class SparseAlignment {
  public:
-  constexpr void carve(Arena& memory, int width, int height) {
+  constexpr void allocate(Arena& memory, int width, int height) {
     for (int level = 0; level < kLevel; ++level) {
       width = (width + 1) / 2;
       height = (height + 1) / 2;
@@ -71,10 +71,12 @@ class SparseAlignment {
   void keep(const Pyramid& pyramid, std::int64_t stamp_ns);
   bool holds(std::int64_t stamp_ns) const { return image_.data != nullptr && stamp_ns == stamp_ns_; }
 
-  // Windows around keypoints of that frame, evenly as many of them as there is room for: of that image, or of
-  // the keypoints' patches. Those that lie at the border or show nothing are left out.
-  std::span<AlignmentWindow> cut_coarse(const PointFeatures& features, std::span<AlignmentWindow> room) const;
-  static std::span<AlignmentWindow> cut_fine(const PointFeatures& features, std::span<AlignmentWindow> room);
+  // Windows around keypoints of that frame, evenly as many of them as there is capacity for: of that image,
+  // or of the keypoints' patches. Those that lie at the border or show nothing are left out.
+  std::span<AlignmentWindow> cut_coarse(const PointFeatures& features,
+                                        std::span<AlignmentWindow> capacity) const;
+  static std::span<AlignmentWindow> cut_fine(const PointFeatures& features,
+                                             std::span<AlignmentWindow> capacity);
 
  private:
   static constexpr int kLevel = 2;

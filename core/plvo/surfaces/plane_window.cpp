@@ -41,7 +41,7 @@ void read_plane(const DepthSampler& depth, const DepthSampler::Place& place, Pla
     for (int i = 0; i < kPlaneSide; ++i) {
       const int x = place.x + kStride * (i - kPlaneReach);
       const int y = place.y + kStride * (j - kPlaneReach);
-      const std::uint16_t reading = !kSmallCode && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
+      const std::uint16_t reading = !kSizeOptimised && whole ? *depth.raw(x, y) : depth.raw_units(x, y);
       row[static_cast<std::size_t>(i)] = reading;
       window.missing += reading == 0 ? 1 : 0;
     }

@@ -21,7 +21,7 @@ struct SurfaceSample {
 struct SurfaceFeatures {
   FixedVector<SurfaceSample> samples;
 
-  constexpr void carve(Arena& memory, int capacity) {
+  constexpr void allocate(Arena& memory, int capacity) {
     if (capacity > 0)
       samples = FixedVector<SurfaceSample>(
           memory.take<SurfaceSample>("surface features", static_cast<std::size_t>(capacity)));

@@ -3,7 +3,7 @@
 // bits.
 #pragma once
 
-#include "plvo/base/side_by_side.hpp"
+#include "plvo/base/executor.hpp"
 
 namespace plvo {
 
@@ -13,8 +13,8 @@ class TaskPair {
   // several times a frame.
   virtual void run(Task here, Task beside) = 0;
 
-  // For Config::side_by_side; the pair must live as long as the odometry that it is given to.
-  SideBySide side_by_side() {
+  // For Config::executor; the pair must live as long as the odometry that it is given to.
+  Executor executor() {
     return {[](void* pair, Task here, Task beside) { static_cast<TaskPair*>(pair)->run(here, beside); },
             this};
   }

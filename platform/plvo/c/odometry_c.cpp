@@ -16,7 +16,7 @@ struct plvo_odometry {
   // The caller's functions, which the core's own call.
   void (*stage_hook)(void* context, std::int32_t stage) = nullptr;
   void* stage_hook_context = nullptr;
-  void (*side_by_side)(void* runner, plvo_task here, plvo_task beside) = nullptr;
+  void (*executor)(void* runner, plvo_task here, plvo_task beside) = nullptr;
   void* runner = nullptr;
 };
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
@@ -111,21 +111,20 @@ void take_functions(const plvo_config* given, plvo_odometry& handle, plvo::Confi
   if (given == nullptr || !plvo::c::take_struct(given, whole, "config").ok()) return;
   handle.stage_hook = whole.stage_hook;
   handle.stage_hook_context = whole.stage_hook_context;
-  handle.side_by_side = whole.side_by_side;
-  handle.runner = whole.side_by_side_runner;
+  handle.executor = whole.executor;
+  handle.runner = whole.executor_runner;
   if (handle.stage_hook != nullptr)
     config.stage_hook = {[](void* self, plvo::Stage stage) {
                            const auto& own = *static_cast<const plvo_odometry*>(self);
                            own.stage_hook(own.stage_hook_context, static_cast<std::int32_t>(stage));
                          },
                          &handle};
-  if (handle.side_by_side != nullptr)
-    config.side_by_side = {
-        [](void* self, plvo::Task here, plvo::Task beside) {
-          const auto& own = *static_cast<const plvo_odometry*>(self);
-          own.side_by_side(own.runner, {here.call, here.context}, {beside.call, beside.context});
-        },
-        &handle};
+  if (handle.executor != nullptr)
+    config.executor = {[](void* self, plvo::Task here, plvo::Task beside) {
+                         const auto& own = *static_cast<const plvo_odometry*>(self);
+                         own.executor(own.runner, {here.call, here.context}, {beside.call, beside.context});
+                       },
+                       &handle};
 }
 
 Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The front door for C, and for every language that calls C: frames in, poses with covariances out. C99.
+/* The public API for C, and for every language that calls C: frames in, poses with covariances out. C99.
  *
  *   plvo_limits limits;
  *   plvo_limits_init(&limits, sizeof limits);
@@ -93,7 +93,7 @@ typedef struct plvo_limits {
   int32_t references;          /* frames that one is matched with, 1 to 3; 0: the default, 2 */
   int32_t line_bands;          /* of the image, searched for segments one by one, 1 to 8; 0: the default, 1 */
   int32_t kept_keyframes;      /* after a loss, 0 to 4, or 3 beside 3 references */
-  int32_t cores;               /* 2: room for plvo_config.side_by_side; 0: the default, 1 */
+  int32_t cores;               /* 2: room for plvo_config.executor; 0: the default, 1 */
   int32_t surfaces;            /* samples of bare surfaces per frame, 0 to 1000; 0: none */
 } plvo_limits;
 
@@ -139,8 +139,8 @@ typedef struct plvo_config {
   /* A second core, where there is one: does both, `here` on the calling thread, and returns when both are
    * done; called several times a frame. It needs plvo_limits.cores = 2. The results are the same bits.
    * plvo_thread_pair_run (thread_pair.h) is one. NULL: one thing after the other. */
-  void (*side_by_side)(void* runner, plvo_task here, plvo_task beside);
-  void* side_by_side_runner;
+  void (*executor)(void* runner, plvo_task here, plvo_task beside);
+  void* executor_runner;
   /* 1: a level world. Its y axis points down, its heading is the first camera's; the first frame waits for
    * one whose plvo_prior brings gravity. plvo_set_pose before the first frame comes before it. */
   int32_t level_world;

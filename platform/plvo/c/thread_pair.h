@@ -4,8 +4,8 @@
  *   plvo_thread_pair* pair;
  *   plvo_status status = plvo_thread_pair_start(&pair);
  *   limits.cores = 2;
- *   config.side_by_side = plvo_thread_pair_run;
- *   config.side_by_side_runner = pair;
+ *   config.executor = plvo_thread_pair_run;
+ *   config.executor_runner = pair;
  *
  * Unlike the odometry it takes memory from the heap, and a thread, which waits without taking time while
  * there is nothing for it to do. */
@@ -23,7 +23,7 @@ typedef struct plvo_thread_pair plvo_thread_pair;
 /* On failure *pair is NULL. */
 PLVO_API plvo_status plvo_thread_pair_start(plvo_thread_pair** pair);
 
-/* For plvo_config.side_by_side; pair: a plvo_thread_pair, of one odometry alone. */
+/* For plvo_config.executor; pair: a plvo_thread_pair, of one odometry alone. */
 PLVO_API void plvo_thread_pair_run(void* pair, plvo_task here, plvo_task beside);
 
 /* Nanoseconds of processor time that the second thread took so far, for plvo_frame_took. */

@@ -51,7 +51,7 @@ class Tracker {
     Config config = settings.config;
     if (cores > 1) {
       pair_ = std::make_unique<ThreadPair>();
-      config.side_by_side = pair_->side_by_side();
+      config.executor = pair_->executor();
     }
     throw_unless_ok(odometry_.init(memory_, camera.camera, config, limits));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The RGB-D sensors that this house knows by their USB ids, and what each one needs: which OpenNI2 driver
+// The RGB-D sensors that plvo knows by their USB ids, and what each one needs: which OpenNI2 driver
 // serves it and how fast a port it wants.
 #pragma once
 

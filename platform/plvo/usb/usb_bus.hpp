@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The USB as this house needs it: which known sensors are there, and a word when one arrives or leaves.
+// The USB as plvo needs it: which known sensors are there, and a word when one arrives or leaves.
 // libusb 1.0. OpenNI2 over libfreenect raises no event when a Kinect is unplugged, it merely times out: this
 // tells.
 #pragma once

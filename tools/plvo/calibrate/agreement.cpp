@@ -67,7 +67,7 @@ class Observer {
   DepthSampler depth_;
 };
 
-std::vector<Match> side_by_side(std::size_t count) {
+std::vector<Match> executor(std::size_t count) {
   std::vector<Match> matches;
   for (std::size_t i = 0; i < count; ++i)
     matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(i)});
@@ -106,8 +106,8 @@ class PairJudge {
     lift(pair, reference_frame, current_frame, reference, current, from, to);
 
     const ScratchScope scope(scratch_);
-    const std::vector<Match> point_matches = side_by_side(from.points.size());
-    const std::vector<Match> line_matches = side_by_side(from.lines.size());
+    const std::vector<Match> point_matches = executor(from.points.size());
+    const std::vector<Match> line_matches = executor(from.lines.size());
     PointConstraints points(from.points, to.points, point_matches,
                             PointConstraints::Workspace::take(scratch_, point_matches.size()));
     LineConstraints lines(from.lines, to.lines, line_matches,
@@ -182,10 +182,10 @@ std::vector<double> disagreement(std::span<const TrackedRecording> recordings, c
     const TrackedRecording& recording = recordings[r];
     cameras.push_back(with_timing(recording.camera, timing));
     Arena sizer = Arena::counting();
-    UndistortionMap().carve(sizer, recording.camera.width, recording.camera.height);
+    UndistortionMap().allocate(sizer, recording.camera.width, recording.camera.height);
     blocks.emplace_back(sizer.peak() + kArenaAlignment);
     Arena arena(blocks.back());
-    maps[r].carve(arena, recording.camera.width, recording.camera.height);
+    maps[r].allocate(arena, recording.camera.width, recording.camera.height);
     maps[r].init(recording.camera);
     for (const FramePair& pair : recording.pairs) {
       most = std::max({most, pair.points.size(), pair.lines.size()});

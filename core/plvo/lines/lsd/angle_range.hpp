@@ -8,7 +8,7 @@
 
 #include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/lines/lsd/level_line_field.hpp"
 
 namespace plvo::lsd {
@@ -21,8 +21,8 @@ inline constexpr auto kOnes = [] {
 }();
 
 // All bits of lane i where bit i is set.
-inline Lanes chosen(unsigned bits) {
-  return ((Lanes{} + static_cast<std::int16_t>(bits)) & Lanes{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
+inline Int16x8 chosen(unsigned bits) {
+  return ((Int16x8{} + static_cast<std::int16_t>(bits)) & Int16x8{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
 
 class AngleRange {
@@ -31,33 +31,33 @@ class AngleRange {
   AngleRange(Angle middle, Angle tolerance)
       : least_(static_cast<Angle>(middle - tolerance)),
         beyond_(static_cast<std::uint16_t>(2 * tolerance + 1)) {
-#ifndef PLVO_LANE_LOOPS
-    // Lanes have a sign: there the range begins at the least number of 16 bits.
-    origins_ = Lanes{} + static_cast<Angle>(least_ - INT16_MIN);
-    ends_ = Lanes{} + static_cast<Angle>(INT16_MIN + beyond_);
+#ifndef PLVO_SIMD_LOOPS
+    // Int16x8 have a sign: there the range begins at the least number of 16 bits.
+    origins_ = Int16x8{} + static_cast<Angle>(least_ - INT16_MIN);
+    ends_ = Int16x8{} + static_cast<Angle>(INT16_MIN + beyond_);
 #endif
   }
   bool holds(Angle angle) const { return static_cast<std::uint16_t>(angle - least_) < beyond_; }
   // Bit i: the angle eight[i] is in it.
   unsigned holding(const Angle* eight) const {
-#ifdef PLVO_LANE_LOOPS
+#ifdef PLVO_SIMD_LOOPS
     unsigned held = 0;
     for (int i = kBlockPixels - 1; i >= 0; --i) held = held << 1 | (holds(eight[i]) ? 1U : 0U);
     return held;
 #else
-    Lanes angles;
+    Int16x8 angles;
     load(eight, angles);
-    const Lanes from_least = angles - origins_;
-    const Lanes held = from_least < ends_;
-    return negative_lanes(held);
+    const Int16x8 from_least = angles - origins_;
+    const Int16x8 held = from_least < ends_;
+    return negative_mask(held);
 #endif
   }
 
  private:
   Angle least_;
   std::uint16_t beyond_;
-#ifndef PLVO_LANE_LOOPS
-  Lanes origins_, ends_;
+#ifndef PLVO_SIMD_LOOPS
+  Int16x8 origins_, ends_;
 #endif
 };
 
@@ -67,15 +67,15 @@ class AngleSum {
   explicit AngleSum(Angle from) : from_(from) {}
   // Of eight pixels, those whose bit is set.
   void add(const Angle* eight, unsigned bits) {
-    if constexpr (kLaneLoops) {
+    if constexpr (kSimdLoops) {
       for (unsigned rest = bits; rest != 0; rest &= rest - 1)
         minus_[0] -= static_cast<Angle>(eight[lowest_bit(rest)] - from_);
       return;
     }
-    Lanes angles;
+    Int16x8 angles;
     load(eight, angles);
-    const Lanes beyond = angles - from_;
-    WideLanes pairs;
+    const Int16x8 beyond = angles - from_;
+    Int32x4 pairs;
     dot_pairs(beyond, chosen(bits), pairs);  // a chosen lane is −1
     minus_ += pairs;
   }
@@ -83,12 +83,12 @@ class AngleSum {
 
  private:
   Angle from_;
-  WideLanes minus_{};
+  Int32x4 minus_{};
 };
 
 // The sum of their squares.
 inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits) {
-  if constexpr (kLaneLoops) {
+  if constexpr (kSimdLoops) {
     std::int64_t sum = 0;
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
       const auto beyond = static_cast<Angle>(eight[lowest_bit(rest)] - from);
@@ -96,10 +96,10 @@ inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits
     }
     return sum;
   }
-  Lanes angles;
+  Int16x8 angles;
   load(eight, angles);
-  const Lanes beyond = (angles - from) & chosen(bits);
-  WideLanes pairs;
+  const Int16x8 beyond = (angles - from) & chosen(bits);
+  Int32x4 pairs;
   dot_pairs(beyond, beyond, pairs);
   // Of two half turns the sum is 2^31.
   const auto sum_of = [&](int i) { return std::int64_t{static_cast<std::uint32_t>(pairs[i])}; };

@@ -8,7 +8,7 @@
 
 #include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 
 namespace plvo::lsd {
@@ -52,42 +52,42 @@ struct BlockGradients {
 // Which of the eight entries have a magnitude above the quantisation noise. above and below can be read nine
 // bytes on.
 unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, BlockGradients& out) {
-  Lanes a, b, c, d;
+  Int16x8 a, b, c, d;
   load_bytes(above, a);
   load_bytes(above + 1, b);
   load_bytes(below, c);
   load_bytes(below + 1, d);
-  const Lanes diagonal = d - a;
-  const Lanes antidiagonal = b - c;
-  const Lanes gx = diagonal + antidiagonal;
-  const Lanes gy = diagonal - antidiagonal;
+  const Int16x8 diagonal = d - a;
+  const Int16x8 antidiagonal = b - c;
+  const Int16x8 gx = diagonal + antidiagonal;
+  const Int16x8 gy = diagonal - antidiagonal;
   store(gx, out.gx);
   store(gy, out.gy);
-  Lanes pairs[2];
+  Int16x8 pairs[2];
   interleave(gx, gy, pairs[0], pairs[1]);
-  WideLanes squares[2];
+  Int32x4 squares[2];
   dot_pairs(pairs[0], pairs[0], squares[0]);
   dot_pairs(pairs[1], pairs[1], squares[1]);
-  const WideLanes most = WideLanes{} + kMinMagnitudeSquared;
-  const WideLanes first = most - squares[0], last = most - squares[1];
-  return negative_lanes(first) | negative_lanes(last) << 4;
+  const Int32x4 most = Int32x4{} + kMinMagnitudeSquared;
+  const Int32x4 first = most - squares[0], last = most - squares[1];
+  return negative_mask(first) | negative_mask(last) << 4;
 }
 
 // Calls with_bin(i, bin) for a block's pixels: those that have an angle, first to last. Where lanes are worth
 // it, for the others too, with bins from kBins on: no branch can foresee which they are.
-constexpr std::size_t kAllBins = kLaneLoops ? kBins : 2 * kBins;
+constexpr std::size_t kAllBins = kSimdLoops ? kBins : 2 * kBins;
 template <typename WithBin>
 void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_bin) {
-  if constexpr (kLaneLoops) {
+  if constexpr (kSimdLoops) {
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
       const int i = lowest_bit(rest);
       with_bin(i, static_cast<std::size_t>(kBins - 1 - (magnitudes[i] * kBinsPerUnit_q16 >> 16)));
     }
     return;
   }
-  Lanes bins;
+  Int16x8 bins;
   load(magnitudes, bins);
-  multiply_high(bins, Lanes{} + kBinsPerUnit_q16, bins);
+  multiply_high(bins, Int16x8{} + kBinsPerUnit_q16, bins);
   // Where there is no angle, −1 + 1 is not 0.
   bins = (chosen(bits) + std::int16_t{1}) * kBins + std::int16_t{kBins - 1} - bins;
   for (int i = 0; i < kBlockPixels; ++i) with_bin(i, static_cast<std::uint16_t>(bins[i]));
@@ -133,7 +133,7 @@ void compute_field(GrayView image, LevelLineField& field) {
         magnitude[i] = gradient.magnitude;
       };
       // Side by side, those that have no angle too.
-      if constexpr (!kLaneLoops)
+      if constexpr (!kSimdLoops)
         for (int i = 0; i < kBlockPixels; ++i) make_polar(i);
       else
         for (unsigned rest = bits; rest != 0; rest &= rest - 1) make_polar(lowest_bit(rest));
@@ -144,7 +144,7 @@ void compute_field(GrayView image, LevelLineField& field) {
   // Where each bin begins; once all are in their places, where it ends.
   std::uint32_t before = 0;
   for (std::uint32_t& of_bin : places) before += std::exchange(of_bin, before);
-  Piece* const seeds = field.seeds.data();
+  Run* const seeds = field.seeds.data();
   for (int y = 0; y < field.height; ++y) {
     for (int block = 0; block < blocks; ++block) {
       const std::ptrdiff_t at = field.index(block, y);

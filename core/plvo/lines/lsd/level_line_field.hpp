@@ -25,7 +25,7 @@ inline constexpr int kBlockPixels = 8;
 
 // Some pixels of one block: bit i is the pixel (8 · block + i, row), counted from 0. It has no initialisers:
 // a frame's scratch holds a hundred thousand, all of which are written before they are read.
-struct Piece {
+struct Run {
   std::uint16_t row;
   std::uint8_t block;
   std::uint8_t bits;
@@ -44,19 +44,19 @@ struct LevelLineField {
   int stride = 0;  // blocks of a row, and one that has no pixels: it is beside the first and the last one
   // By block: which pixels have an angle, and which of these are in no region. By pixel, where there is an
   // angle: that of the gradient, towards the brighter side; and the magnitude, in 1/16 grey level per pixel,
-  // with how often the pixel was given back from kReleaseBit on. What regions look at around their pieces has
+  // with how often the pixel was given back from kReleaseBit on. What regions look at around their runs has
   // a row before the first, and one behind the last, where nothing is open.
   std::span<std::uint8_t> directed;
   std::span<std::uint8_t> padded_open;
   std::span<Angle> padded_angles;
   std::span<std::int16_t> magnitude_and_releases;
-  std::span<Piece> seeds;  // of one pixel each; capacity: all pixels of all blocks
+  std::span<Run> seeds;  // of one pixel each; capacity: all pixels of all blocks
   std::size_t seed_count = 0;
 
   static constexpr int kReleaseBit = 13;
 
   std::ptrdiff_t index(int block, int row) const { return row * std::ptrdiff_t{stride} + block; }
-  std::ptrdiff_t index(Piece piece) const { return index(piece.block, piece.row); }
+  std::ptrdiff_t index(Run run) const { return index(run.block, run.row); }
   // Of block 0: of others, by their index, from there.
   std::uint8_t* open() const { return padded_open.data() + stride + 1; }
   Angle* angles() const { return padded_angles.data() + (stride + 1) * kBlockPixels; }
@@ -64,7 +64,7 @@ struct LevelLineField {
 };
 
 // Takes the field's arrays for an image of that size, at most LevelLineField::kMostWidth wide.
-constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_height) {
+constexpr LevelLineField allocate_field(Arena& memory, int image_width, int image_height) {
   LevelLineField field;
   field.width = image_width > 1 ? image_width - 1 : 0;
   field.height = image_height > 1 ? image_height - 1 : 0;
@@ -76,13 +76,13 @@ constexpr LevelLineField carve_field(Arena& memory, int image_width, int image_h
   field.padded_open = memory.take<std::uint8_t>("lines/lsd", padded);
   field.padded_angles = memory.take<Angle>("lines/lsd", padded * kBlockPixels);
   field.magnitude_and_releases = memory.take<std::int16_t>("lines/lsd", stride * rows * kBlockPixels);
-  field.seeds = memory.take<Piece>("lines/lsd", (stride - 1) * rows * kBlockPixels);
+  field.seeds = memory.take<Run>("lines/lsd", (stride - 1) * rows * kBlockPixels);
   return field;
 }
 
 // Of its first pixel, and of its last one.
-inline int first_x(Piece piece) { return piece.block * kBlockPixels + lowest_bit(piece.bits); }
-inline int last_x(Piece piece) { return piece.block * kBlockPixels + highest_bit(piece.bits); }
+inline int first_x(Run run) { return run.block * kBlockPixels + lowest_bit(run.bits); }
+inline int last_x(Run run) { return run.block * kBlockPixels + highest_bit(run.bits); }
 
 // Angle and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The angle is
 // off by at most 0.004°, the magnitude (1/16 grey level) by at most a half.

@@ -7,7 +7,7 @@
 
 #include "plvo/base/bits.hpp"
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -17,14 +17,14 @@ namespace {
 
 std::int32_t to_fixed(double value, double one) { return round_to<std::int32_t>(value * one); }
 
-// Of one piece, about its block: sums of the pixels' magnitudes, by themselves, times x, and times x².
+// Of one run, about its block: sums of the pixels' magnitudes, by themselves, times x, and times x².
 struct PieceMass {
   std::int32_t m, mx, mxx;
 };
 
 PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   constexpr std::int16_t kMagnitude = (1 << LevelLineField::kReleaseBit) - 1;
-  if constexpr (kLaneLoops) {
+  if constexpr (kSimdLoops) {
     PieceMass of{};
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
       const int x = lowest_bit(rest);
@@ -35,14 +35,14 @@ PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
     }
     return of;
   }
-  Lanes w;
+  Int16x8 w;
   load(magnitudes, w);
   w = w & chosen(bits) & kMagnitude;
-  WideLanes m, mx, mxx;
-  dot_pairs(w, Lanes{1, 1, 1, 1, 1, 1, 1, 1}, m);
-  dot_pairs(w, Lanes{0, 1, 2, 3, 4, 5, 6, 7}, mx);
-  dot_pairs(w, Lanes{0, 1, 4, 9, 16, 25, 36, 49}, mxx);
-  WideLanes pairs, sums;
+  Int32x4 m, mx, mxx;
+  dot_pairs(w, Int16x8{1, 1, 1, 1, 1, 1, 1, 1}, m);
+  dot_pairs(w, Int16x8{0, 1, 2, 3, 4, 5, 6, 7}, mx);
+  dot_pairs(w, Int16x8{0, 1, 4, 9, 16, 25, 36, 49}, mxx);
+  Int32x4 pairs, sums;
   add_pairs(m, mx, pairs);
   add_pairs(pairs, mxx, sums);
   return {sums[0], sums[1], sums[2] + sums[3]};
@@ -57,25 +57,25 @@ std::int32_t pair_of(int x, int y) {
   return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xffffU) | static_cast<std::uint32_t>(y)
                                                                                    << 16);
 }
-Lanes pairs(const WideLanes& four) {
-  Lanes lanes;
+Int16x8 pairs(const Int32x4& four) {
+  Int16x8 lanes;
   std::memcpy(&lanes, &four, sizeof lanes);
   return lanes;
 }
 
-// Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px: of a piece, those of its first and
+// Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px: of a run, those of its first and
 // its last pixel.
-void range_along_and_across(std::span<const Piece> pieces, std::int32_t dx, std::int32_t dy, Range& along,
+void range_along_and_across(std::span<const Run> runs, std::int32_t dx, std::int32_t dy, Range& along,
                             Range& across) {
   const std::int32_t axis = pair_of(dx, dy), normal = pair_of(-dy, dx);
-  const Lanes axes = pairs(WideLanes{axis, axis, normal, normal});
-  WideLanes low = WideLanes{} + std::numeric_limits<std::int32_t>::max();
-  WideLanes high = WideLanes{} + std::numeric_limits<std::int32_t>::min();
-  for (const Piece piece : pieces) {
-    const std::int32_t first = pair_of(first_x(piece), piece.row);
-    const std::int32_t last = pair_of(last_x(piece), piece.row);
-    const Lanes ends = pairs(WideLanes{first, last, first, last});
-    WideLanes value;
+  const Int16x8 axes = pairs(Int32x4{axis, axis, normal, normal});
+  Int32x4 low = Int32x4{} + std::numeric_limits<std::int32_t>::max();
+  Int32x4 high = Int32x4{} + std::numeric_limits<std::int32_t>::min();
+  for (const Run run : runs) {
+    const std::int32_t first = pair_of(first_x(run), run.row);
+    const std::int32_t last = pair_of(last_x(run), run.row);
+    const Int16x8 ends = pairs(Int32x4{first, last, first, last});
+    Int32x4 value;
     dot_pairs(ends, axes, value);
     take_range(value, low, high);
   }
@@ -93,11 +93,10 @@ Range about(Range range, std::int64_t centre_q22) {
 
 }  // namespace
 
-void GradientMass::add(const LevelLineField& field, Piece seed, Piece piece) {
-  const PieceMass of =
-      weigh(field.magnitude_and_releases.data() + field.index(piece) * kBlockPixels, piece.bits);
-  const std::int64_t x = piece.block * kBlockPixels - first_x(seed);
-  const std::int64_t y = piece.row - seed.row;
+void GradientMass::add(const LevelLineField& field, Run seed, Run run) {
+  const PieceMass of = weigh(field.magnitude_and_releases.data() + field.index(run) * kBlockPixels, run.bits);
+  const std::int64_t x = run.block * kBlockPixels - first_x(seed);
+  const std::int64_t y = run.row - seed.row;
   const std::int64_t piece_mx = of.m * x + of.mx;
   m += of.m;
   mx += piece_mx;
@@ -118,7 +117,7 @@ void GradientMass::operator-=(const GradientMass& part) {
 
 GradientMass weigh(const LevelLineField& field, const Region& region) {
   GradientMass mass;
-  for (const Piece piece : region.pieces) mass.add(field, region.seed, piece);
+  for (const Run run : region.runs) mass.add(field, region.seed, run);
   return mass;
 }
 
@@ -162,7 +161,7 @@ Rectangle fit_rectangle(const Region& region, const GradientMass& mass) {
   const std::int64_t x_q8 = r.x_q8;
   const std::int64_t y_q8 = r.y_q8;
   Range along, across;
-  range_along_and_across(region.pieces, r.dx, r.dy, along, across);
+  range_along_and_across(region.runs, r.dx, r.dy, along, across);
   along = about(along, x_q8 * r.dx + y_q8 * r.dy);
   across = about(across, y_q8 * r.dx - x_q8 * r.dy);
   r.along_min = along.low;

@@ -36,10 +36,10 @@ struct Rectangle {
 };
 
 // The sums of a region's magnitudes, by themselves and times x, y, x², x y and y² from its seed: whole
-// numbers, so that pieces may come and go in any order.
+// numbers, so that runs may come and go in any order.
 struct GradientMass {
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
-  void add(const LevelLineField& field, Piece seed, Piece piece);
+  void add(const LevelLineField& field, Run seed, Run run);
   void operator-=(const GradientMass& part);
 };
 GradientMass weigh(const LevelLineField& field, const Region& region);

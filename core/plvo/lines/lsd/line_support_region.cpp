@@ -2,7 +2,7 @@
 #include "plvo/lines/lsd/line_support_region.hpp"
 
 #include "plvo/base/build.hpp"
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 
 namespace plvo::lsd {
@@ -32,32 +32,32 @@ bool is_alone(const std::uint8_t* open, std::ptrdiff_t stride, unsigned bit) {
 
 }  // namespace
 
-Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece> storage) {
+Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> storage) {
   // Plain pointers: the compiler must not fear that a write to what is open changes where the arrays are.
   std::uint8_t* const open = field.open();
   const Angle* const angles = field.angles();
-  Piece* const pieces = storage.data();
+  Run* const runs = storage.data();
   const std::ptrdiff_t stride = field.stride;
   const Angle seed_angle = angles[field.pixel(first_x(seed), seed.row)];
   AngleRange range(seed_angle, tolerance);
   AngleSum sum(seed_angle);
   std::size_t piece_count = 0;
-  std::int32_t count = 0;  // of the pixels whose pieces have had their turn
+  std::int32_t count = 0;  // of the pixels whose runs have had their turn
   std::int32_t renew = 0;
   // Of a block, what touches: is open, and in the range. That it is nothing cannot be foreseen, so nothing
   // branches on it.
   const auto take = [&](std::ptrdiff_t at, int row, int block, unsigned touching) {
     const unsigned free = open[at];
-    if (kLaneLoops && (free & touching) == 0) return;  // eight looks cost more than the branch
+    if (kSimdLoops && (free & touching) == 0) return;  // eight looks cost more than the branch
     const unsigned fit = free & range.holding(angles + at * kBlockPixels);
     const unsigned taken = spread(fit & touching, fit);
     open[at] = static_cast<std::uint8_t>(free & ~taken);
-    pieces[piece_count] = {static_cast<std::uint16_t>(row), static_cast<std::uint8_t>(block),
-                           static_cast<std::uint8_t>(taken)};
+    runs[piece_count] = {static_cast<std::uint16_t>(row), static_cast<std::uint8_t>(block),
+                         static_cast<std::uint8_t>(taken)};
     piece_count += taken != 0 ? 1 : 0;
   };
   // The same of the blocks above and below one, together: one's bits, and from bit 16 on the other's.
-  const auto take_above_and_below = [&](std::ptrdiff_t at, Piece of, unsigned touching) {
+  const auto take_above_and_below = [&](std::ptrdiff_t at, Run of, unsigned touching) {
     const std::ptrdiff_t above = at - stride, below = at + stride;
     const unsigned free = open[above] | unsigned{open[below]} << 16;
     const unsigned fit = free & (range.holding(angles + above * kBlockPixels) |
@@ -66,11 +66,10 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
     const unsigned left = free & ~taken;
     open[above] = static_cast<std::uint8_t>(left);
     open[below] = static_cast<std::uint8_t>(left >> 16);
-    pieces[piece_count] = {static_cast<std::uint16_t>(of.row - 1), of.block,
-                           static_cast<std::uint8_t>(taken)};
+    runs[piece_count] = {static_cast<std::uint16_t>(of.row - 1), of.block, static_cast<std::uint8_t>(taken)};
     piece_count += (taken & 0xffU) != 0 ? 1 : 0;
-    pieces[piece_count] = {static_cast<std::uint16_t>(of.row + 1), of.block,
-                           static_cast<std::uint8_t>(taken >> 16)};
+    runs[piece_count] = {static_cast<std::uint16_t>(of.row + 1), of.block,
+                         static_cast<std::uint8_t>(taken >> 16)};
     piece_count += taken >> 16 != 0 ? 1 : 0;
   };
   // The seed is taken, whether it was open or has been given back too often.
@@ -78,14 +77,14 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
   open[at_seed] = static_cast<std::uint8_t>(open[at_seed] | seed.bits);
   if (is_alone(open + at_seed, stride, seed.bits)) {
     open[at_seed] = static_cast<std::uint8_t>(open[at_seed] & ~seed.bits);
-    pieces[0] = seed;
+    runs[0] = seed;
     return {storage.first(1), 1, seed, seed_angle, 0};
   }
   take(at_seed, seed.row, seed.block, seed.bits);
   for (std::size_t next = 0; next < piece_count; ++next) {
-    const Piece piece = pieces[next];
-    const std::ptrdiff_t at = field.index(piece);
-    const unsigned bits = piece.bits;
+    const Run run = runs[next];
+    const std::ptrdiff_t at = field.index(run);
+    const unsigned bits = run.bits;
     sum.add(angles + at * kBlockPixels, bits);
     count += kOnes[bits];
     if (count >= renew) {
@@ -93,18 +92,18 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
       renew = count + count / 8 + 1;
     }
     const unsigned touching = (bits | bits << 1 | bits >> 1) & 0xffU;
-    if constexpr (kLaneLoops) {
-      take(at - stride, piece.row - 1, piece.block, touching);
-      take(at + stride, piece.row + 1, piece.block, touching);
+    if constexpr (kSimdLoops) {
+      take(at - stride, run.row - 1, run.block, touching);
+      take(at + stride, run.row + 1, run.block, touching);
     } else {
-      take_above_and_below(at, piece, touching);
+      take_above_and_below(at, run, touching);
     }
     // Beside a block hardly anything is open: there a branch pays.
     const auto take_beside = [&](int right, unsigned touching_there) {
       for (int down = -1; down <= 1; ++down) {
         const std::ptrdiff_t there = at + down * stride + right;
         if ((open[there] & touching_there) != 0)
-          take(there, piece.row + down, piece.block + right, touching_there);
+          take(there, run.row + down, run.block + right, touching_there);
       }
     };
     if ((bits & 0x01U) != 0) take_beside(-1, 0x80U);
@@ -113,19 +112,19 @@ Region grow(LevelLineField& field, Piece seed, Angle tolerance, std::span<Piece>
   return {storage.first(piece_count), count, seed, seed_angle, sum.beyond()};
 }
 
-void release(LevelLineField& field, Piece piece) {
-  const std::ptrdiff_t at = field.index(piece);
+void release(LevelLineField& field, Run run) {
+  const std::ptrdiff_t at = field.index(run);
   constexpr std::int16_t kReleases = (1 << (16 - LevelLineField::kReleaseBit)) - 1;
   static_assert(kMaxReleases <= kReleases);
   std::int16_t* const magnitudes = field.magnitude_and_releases.data() + at * kBlockPixels;
-  Lanes lanes;
+  Int16x8 lanes;
   load(magnitudes, lanes);
-  const Lanes may = (((lanes >> LevelLineField::kReleaseBit) & kReleases) != std::int16_t{kMaxReleases}) &
-                    chosen(piece.bits);
-  const Lanes more = lanes + (may & std::int16_t{1 << LevelLineField::kReleaseBit});
+  const Int16x8 may =
+      (((lanes >> LevelLineField::kReleaseBit) & kReleases) != std::int16_t{kMaxReleases}) & chosen(run.bits);
+  const Int16x8 more = lanes + (may & std::int16_t{1 << LevelLineField::kReleaseBit});
   store(more, magnitudes);
   std::uint8_t& open = field.open()[at];
-  open = static_cast<std::uint8_t>(open | negative_lanes(may));
+  open = static_cast<std::uint8_t>(open | negative_mask(may));
 }
 
 }  // namespace plvo::lsd

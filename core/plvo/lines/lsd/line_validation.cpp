@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "plvo/base/lanes.hpp"
+#include "plvo/base/simd.hpp"
 #include "plvo/lines/lsd/angle_range.hpp"
 #include "plvo/math/rounding.hpp"
 #include "plvo/math/trigonometry.hpp"
@@ -11,24 +11,24 @@
 namespace plvo::lsd {
 namespace {
 
-std::int32_t squared_distance(int x, int y, Piece seed) {
+std::int32_t squared_distance(int x, int y, Run seed) {
   const std::int32_t dx = x - first_x(seed);
   const std::int32_t dy = y - seed.row;
   return dx * dx + dy * dy;
 }
 
-// Which pixels of the piece's block are at most so far from the seed.
-unsigned within(std::int32_t squared_px, Piece seed, Piece piece) {
-  const Lanes x =
-      Lanes{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(piece.block * kBlockPixels - first_x(seed));
-  const Lanes y = Lanes{} + static_cast<std::int16_t>(piece.row - seed.row);
-  Lanes first, last;
+// Which pixels of the run's block are at most so far from the seed.
+unsigned within(std::int32_t squared_px, Run seed, Run run) {
+  const Int16x8 x =
+      Int16x8{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(run.block * kBlockPixels - first_x(seed));
+  const Int16x8 y = Int16x8{} + static_cast<std::int16_t>(run.row - seed.row);
+  Int16x8 first, last;
   interleave(x, y, first, last);
-  WideLanes squared_first, squared_last;
+  Int32x4 squared_first, squared_last;
   dot_pairs(first, first, squared_first);
   dot_pairs(last, last, squared_last);
-  const WideLanes most = WideLanes{} + squared_px;
-  return ~(negative_lanes(most - squared_first) | negative_lanes(most - squared_last) << 4);
+  const Int32x4 most = Int32x4{} + squared_px;
+  return ~(negative_mask(most - squared_first) | negative_mask(most - squared_last) << 4);
 }
 
 // Twice the standard deviation of the angles within a rectangle's width of the seed, and never above kTau.
@@ -39,10 +39,10 @@ Angle spread_near_seed(const LevelLineField& field, const Region& region, const 
   std::int32_t n = 0;
   AngleSum sum(middle);
   std::int64_t squares = 0;
-  for (const Piece piece : region.pieces) {
-    const unsigned near = within(reach, region.seed, piece) & piece.bits;
+  for (const Run run : region.runs) {
+    const unsigned near = within(reach, region.seed, run) & run.bits;
     if (near == 0) continue;
-    const Angle* const angles = field.angles() + field.index(piece) * kBlockPixels;
+    const Angle* const angles = field.angles() + field.index(run) * kBlockPixels;
     n += kOnes[near];
     sum.add(angles, near);
     squares += squares_beyond(middle, angles, near);
@@ -53,16 +53,16 @@ Angle spread_near_seed(const LevelLineField& field, const Region& region, const 
   return spread >= kTau ? kTau : std::max(kLeastTolerance, static_cast<Angle>(spread));
 }
 
-// Keeps of each piece the pixels that keep(piece) has as bits; gives the rest back.
+// Keeps of each run the pixels that keep(run) has as bits; gives the rest back.
 template <typename Keep>
 void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& keep) {
   std::size_t kept = 0;
   AngleSum lost_angles(region.from);
   GradientMass lost_mass;
-  for (const Piece piece : region.pieces) {
-    const unsigned bits = keep(piece) & piece.bits;
-    Piece part = piece;
-    part.bits = static_cast<std::uint8_t>(piece.bits & ~bits);
+  for (const Run run : region.runs) {
+    const unsigned bits = keep(run) & run.bits;
+    Run part = run;
+    part.bits = static_cast<std::uint8_t>(run.bits & ~bits);
     if (part.bits != 0) {
       lost_mass.add(field, region.seed, part);
       lost_angles.add(field.angles() + field.index(part) * kBlockPixels, part.bits);
@@ -70,10 +70,10 @@ void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& ke
       release(field, part);
     }
     part.bits = static_cast<std::uint8_t>(bits);
-    region.pieces[kept] = part;
+    region.runs[kept] = part;
     kept += bits != 0 ? 1 : 0;
   }
-  region.pieces = region.pieces.first(kept);
+  region.runs = region.runs.first(kept);
   region.beyond -= lost_angles.beyond();
   mass -= lost_mass;
 }
@@ -86,14 +86,14 @@ class Strip {
         dy_(r.dy),
         centre_(static_cast<std::int32_t>((std::int64_t{r.y_q8} * r.dx - std::int64_t{r.x_q8} * r.dy) >> 8)),
         reach_(reach << (Rectangle::kDirectionBits - 8)) {}
-  unsigned holding(Piece piece) const {
+  unsigned holding(Run run) const {
     // From the axis, 2^-14 px.
-    const WideLanes first =
-        WideLanes{0, 1, 2, 3} * -dy_ + (piece.row * dx_ - piece.block * kBlockPixels * dy_ - centre_);
-    const WideLanes last = first + -4 * dy_;
-    const WideLanes above = WideLanes{} + reach_;
-    const unsigned out = negative_lanes(above - first) | negative_lanes(first + reach_) |
-                         (negative_lanes(above - last) | negative_lanes(last + reach_)) << 4;
+    const Int32x4 first =
+        Int32x4{0, 1, 2, 3} * -dy_ + (run.row * dx_ - run.block * kBlockPixels * dy_ - centre_);
+    const Int32x4 last = first + -4 * dy_;
+    const Int32x4 above = Int32x4{} + reach_;
+    const unsigned out = negative_mask(above - first) | negative_mask(first + reach_) |
+                         (negative_mask(above - last) | negative_mask(last + reach_)) << 4;
     return ~out;
   }
 
@@ -114,7 +114,7 @@ bool trim(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& 
     if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
     const std::int32_t reach = std::max<std::int32_t>(256, 2 * rectangle.across_sd);
     const Strip strip(rectangle, reach);
-    filter(field, region, mass, [&](Piece piece) { return strip.holding(piece); });
+    filter(field, region, mass, [&](Run run) { return strip.holding(run); });
     if (region.size < min_size) return false;
     rectangle = fit_rectangle(region, mass);
   }
@@ -139,25 +139,25 @@ int count_held(const LevelLineField& field, const AngleRange& range, int y, int 
 }  // namespace
 
 bool tighten(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
-             std::int32_t min_size, std::span<Piece> storage) {
+             std::int32_t min_size, std::span<Run> storage) {
   if (is_dense(rectangle, region.size)) return true;
-  const Piece seed = region.seed;
+  const Run seed = region.seed;
   const Angle tolerance = spread_near_seed(field, region, rectangle);
   if (trim(field, region, mass, rectangle, min_size)) return true;
-  for (const Piece piece : region.pieces) release(field, piece);
+  for (const Run run : region.runs) release(field, run);
   region = grow(field, seed, tolerance, storage);
   if (region.size < min_size) return false;
   mass = weigh(field, region);
   rectangle = fit_rectangle(region, mass);
   std::int32_t farthest = 0;
-  for (const Piece piece : region.pieces)
-    farthest = std::max({farthest, squared_distance(first_x(piece), piece.row, seed),
-                         squared_distance(last_x(piece), piece.row, seed)});
+  for (const Run run : region.runs)
+    farthest = std::max({farthest, squared_distance(first_x(run), run.row, seed),
+                         squared_distance(last_x(run), run.row, seed)});
   double squared_radius = farthest;
   for (int i = 0; i < 24 && !is_dense(rectangle, region.size); ++i) {
     squared_radius *= 0.75 * 0.75;
     const auto most = static_cast<std::int32_t>(squared_radius);
-    filter(field, region, mass, [&](Piece piece) { return within(most, seed, piece); });
+    filter(field, region, mass, [&](Run run) { return within(most, seed, run); });
     if (region.size < min_size) return false;
     rectangle = fit_rectangle(region, mass);
   }

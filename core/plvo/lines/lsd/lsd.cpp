@@ -30,7 +30,7 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
   lsd::compute_field(band, field);
   counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
   const auto min_size = static_cast<std::int32_t>(min_region(search_.width, search_.height));
-  for (const lsd::Piece seed : field.seeds.first(field.seed_count)) {
+  for (const lsd::Run seed : field.seeds.first(field.seed_count)) {
     if ((field.open()[field.index(seed)] & seed.bits) == 0) continue;
     lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
     counts.grown_pixels += region.size;
@@ -101,7 +101,7 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
         .append(lsd::LevelLineField::kMostWidth);
   }
   const ScratchScope scope(scratch_memory);
-  Scratch scratch = carve(scratch_memory, search_);
+  Scratch scratch = allocate(scratch_memory, search_);
   if (scratch.candidates.empty()) {
     return {StatusCode::kOutOfMemory, "lines: the scratch memory is too small for this image size"};
   }

@@ -76,7 +76,7 @@ class SegmentDetector {
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Piece> region;
+    std::span<lsd::Run> region;
     std::span<Candidate> candidates;
   };
 
@@ -92,11 +92,11 @@ class SegmentDetector {
     return search.height > 1 ? (search.height - 1 + search.bands - 1) / search.bands : 0;
   }
 
-  static constexpr Scratch carve(Arena& memory, const SegmentSearch& search) {
+  static constexpr Scratch allocate(Arena& memory, const SegmentSearch& search) {
     Scratch scratch;
     const int band_height = band_rows(search) + 1;
-    scratch.field = lsd::carve_field(memory, search.width, band_height);
-    scratch.region = memory.take<lsd::Piece>("lines/lsd", scratch_pixels(search.width, band_height) + 1);
+    scratch.field = lsd::allocate_field(memory, search.width, band_height);
+    scratch.region = memory.take<lsd::Run>("lines/lsd", scratch_pixels(search.width, band_height) + 1);
     // No two meaningful regions share a pixel: that bounds their number.
     const std::size_t bound =
         scratch_pixels(search.width, search.height) / min_region(search.width, search.height) + 1;
@@ -124,7 +124,7 @@ class SegmentDetector {
 // Behind the class: Clang evaluates at compile time only what it has seen the whole of.
 constexpr std::size_t SegmentDetector::scratch_bytes(const SegmentSearch& search) {
   Arena sizer = Arena::counting();
-  carve(sizer, search);
+  allocate(sizer, search);
   return sizer.peak();
 }
 

@@ -23,7 +23,7 @@ void FeatureBudget::init(const BudgetConfig& config, const Limits& limits) {
   all_ = {static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)};
 }
 
-FeatureRoom FeatureBudget::room_of(int step) const {
+FeatureCapacity FeatureBudget::capacity_of(int step) const {
   return {without_quarters(all_.keypoints, (step + 1) / 2, kLeastKeypoints),
           without_quarters(all_.segments, step / 2, kLeastSegments)};
 }

@@ -12,7 +12,7 @@
 namespace plvo {
 
 // How many features of a frame are kept.
-struct FeatureRoom {
+struct FeatureCapacity {
   std::size_t keypoints = 0;
   std::size_t segments = 0;
 };
@@ -31,14 +31,14 @@ class FeatureBudget {
   void note(std::int64_t took_ns);
 
   int step() const { return step_; }  // 0: all that fit, … kSteps
-  FeatureRoom room() const { return room_of(step_); }
+  FeatureCapacity capacity() const { return capacity_of(step_); }
 
  private:
-  FeatureRoom room_of(int step) const;
+  FeatureCapacity capacity_of(int step) const;
   void move_to(int step);
 
   BudgetConfig config_;
-  FeatureRoom all_;
+  FeatureCapacity all_;
   int step_ = 0;
   int settling_ = 0;
   int quick_frames_ = 0;  // in a row

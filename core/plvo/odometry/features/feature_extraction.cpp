@@ -8,8 +8,8 @@
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
 #include "plvo/math/trigonometry.hpp"
+#include "plvo/points/depth_mask.hpp"
 #include "plvo/points/descriptor.hpp"
-#include "plvo/points/own_surface.hpp"
 
 namespace plvo {
 namespace {
@@ -41,7 +41,7 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
 }
 
 void FeatureExtraction::make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const {
-  config_->side_by_side.halves(
+  config_->executor.halves(
       camera_.height, [&](int begin, int end) { to_gray(rows(colour, begin, end), rows(gray, begin, end)); });
 }
 
@@ -52,7 +52,7 @@ void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) 
     const std::span<std::uint8_t> raw = scratch.take<std::uint8_t>("raw grey image", pixels);
     const ImageView<std::uint8_t> raw_view{raw.data(), camera_.width, camera_.height, camera_.width};
     make_gray(colour, raw_view);
-    config_->side_by_side.halves(
+    config_->executor.halves(
         camera_.height, [&](int begin, int end) { map_.undistort(raw_view, pyramid_.base(), begin, end); });
   } else {
     make_gray(colour, pyramid_.base());
@@ -89,14 +89,14 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
   const bool lines = kLinesBuilt && config_->features != Features::kPoints;
-  const bool at_once = has_points() && points && lines && config_->side_by_side;
+  const bool at_once = has_points() && points && lines && config_->executor;
   if (at_once) {
     const StageTimer timer(*config_, result, Stage::kPoints);
     const ScratchScope scope(scratch);
     Arena own(
         scratch.take<std::byte>("points beside segments", point_scratch(camera_.width, camera_.height)));
-    config_->side_by_side.both([&] { find_segments(scratch, features.lines, result); },
-                               [&] { detect_points(depth, own, features.points, result); });
+    config_->executor.both([&] { find_segments(scratch, features.lines, result); },
+                           [&] { detect_points(depth, own, features.points, result); });
   } else if (points) {
     find_points(depth, scratch, features.points, result);
   }
@@ -145,7 +145,7 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
   const PointConfig& config = config_->points;
   const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
   const double depth_scale = sqrt(noise.depth);
-  config_->side_by_side.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
+  config_->executor.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Keypoint& keypoint = points.keypoints[i];
       const auto u = static_cast<double>(keypoint.u);
@@ -155,7 +155,7 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
       points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
                                        depth_scale * depth.sigma_m);
       points.masks[i] = depth.depth_m > 0
-                            ? own_surface(depth_sampler, depth.located, depth.depth_m, keypoint.level)
+                            ? depth_mask(depth_sampler, depth.located, depth.depth_m, keypoint.level)
                             : WindowMask{};
     }
   });
@@ -187,7 +187,7 @@ void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& ex
 
 void FeatureExtraction::lift_segments_again(const DepthSampler& depth, const NoiseScales& noise,
                                             LineFeatures& lines) const {
-  config_->side_by_side.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
+  config_->executor.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
   });
@@ -206,7 +206,7 @@ void FeatureExtraction::lift_segments(const DepthSampler& depth, const NoiseScal
   const ScratchScope scope(scratch);
   const std::size_t n = lines.segments.size();
   const std::span<std::uint8_t> lifted = scratch.take<std::uint8_t>("segments with 3D", n);
-  config_->side_by_side.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
+  config_->executor.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Segment& segment = lines.segments[i];
       lifted[i] = lift_line(depth, noise, segment, lines.lines[i]) ? 1 : 0;

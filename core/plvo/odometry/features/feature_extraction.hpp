@@ -25,9 +25,9 @@ namespace plvo {
 
 class FeatureExtraction {
  public:
-  constexpr void carve(Arena& memory, const Limits& limits) {
-    map_.carve(memory, limits.width, limits.height);
-    pyramid_.carve(memory, limits.width, limits.height);
+  constexpr void allocate(Arena& memory, const Limits& limits) {
+    map_.allocate(memory, limits.width, limits.height);
+    pyramid_.allocate(memory, limits.width, limits.height);
     segment_search_ = segment_search(limits);
     segment_detector_ = memory.take<SegmentDetector>("segment detector", 1);
   }

@@ -20,17 +20,17 @@ struct FrameFeatures {
   LineFeatures lines;
   SurfaceFeatures surfaces;
 
-  // Empty, with room for so many of what was carved.
-  void clear(const FeatureRoom& room) {
-    points.clear(room.keypoints);
-    lines.clear(room.segments);
+  // Empty, with capacity for so many of what was allocated.
+  void clear(const FeatureCapacity& capacity) {
+    points.clear(capacity.keypoints);
+    lines.clear(capacity.segments);
     surfaces.samples.clear();
   }
 
-  constexpr void carve(Arena& memory, const Limits& limits) {
-    points.carve(memory, limits.keypoints);
-    lines.carve(memory, limits.segments);
-    surfaces.carve(memory, limits.surfaces);
+  constexpr void allocate(Arena& memory, const Limits& limits) {
+    points.allocate(memory, limits.keypoints);
+    lines.allocate(memory, limits.segments);
+    surfaces.allocate(memory, limits.surfaces);
   }
 };
 

@@ -35,7 +35,7 @@ constexpr double kMostScale = 25;
 double median_over(FixedVector<double>& values, double expected) {
   if (values.size() < kLeastMatches) return 1;
   double* const middle = values.begin() + values.size() / 2;
-  if constexpr (kSmallCode)
+  if constexpr (kSizeOptimised)
     heap_sort(values.begin(), values.end(), [](double a, double b) { return a < b; });
   else
     std::nth_element(values.begin(), middle, values.end());
@@ -60,12 +60,12 @@ PointResidual residual_of(const Pinhole& pinhole, const Point3d& reference, cons
           d * d / Sigma(2, 2)};
 }
 
-double step(double scale, double shown, double rate, double least = kLeastScale) {
-  const double bounded = std::clamp(shown, 1 / kMostOfAFrame, kMostOfAFrame);
+double step(double scale, double observed, double rate, double least = kLeastScale) {
+  const double bounded = std::clamp(observed, 1 / kMostOfAFrame, kMostOfAFrame);
   return std::clamp(scale * (1 + rate * (bounded - 1)), least, kMostScale);
 }
 
-double mean_square(const SharedErrors& shared, const SharedErrorEstimate& estimate, int first, int count) {
+double mean_square(const NuisanceParameters& shared, const NuisanceEstimate& estimate, int first, int count) {
   const double sigma = shared.sigma(first);
   if (!(sigma > 0)) return 1;
   const double sum =
@@ -95,11 +95,11 @@ NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& poin
     const double s = lines.mahalanobis_squared(i, T_current_reference, kFarthestLine);
     if (s < kFarthestLine) line.push_back(s);
   }
-  NoiseScales shown;
-  shown.image = median_over(image, kMedian2);
-  shown.depth = median_over(depth, kMedian1);
-  shown.lines = median_over(line, kMedian4);
-  return shown;
+  NoiseScales observed;
+  observed.image = median_over(image, kMedian2);
+  observed.depth = median_over(depth, kMedian1);
+  observed.lines = median_over(line, kMedian4);
+  return observed;
 }
 
 double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch) {
@@ -113,19 +113,21 @@ double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_re
   return median_over(residuals, kMedian1);
 }
 
-void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown) {
-  shown.turning = mean_square(shared, estimate, 0, SharedField::kTurning);
-  shown.shared_depth = mean_square(shared, estimate, SharedField::kTurning, SharedField::kDepth);
+void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& estimate,
+                   NoiseScales& observed) {
+  observed.angular_rate = mean_square(shared, estimate, 0, NuisanceField::kAngularRate);
+  observed.shared_depth = mean_square(shared, estimate, NuisanceField::kAngularRate, NuisanceField::kDepth);
 }
 
-void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales) {
-  scales.image = step(scales.image, shown.image, config.learning_rate);
-  scales.depth = step(scales.depth, shown.depth, config.learning_rate);
-  scales.lines = step(scales.lines, shown.lines, config.learning_rate);
-  scales.surfaces = step(scales.surfaces, shown.surfaces, config.learning_rate, kLeastSurfaceScale);
-  scales.turning = step(scales.turning, shown.turning, config.learning_rate, kLeastSharedScale);
+void learn(const NoiseConfig& config, const NoiseScales& observed, NoiseScales& scales) {
+  scales.image = step(scales.image, observed.image, config.learning_rate);
+  scales.depth = step(scales.depth, observed.depth, config.learning_rate);
+  scales.lines = step(scales.lines, observed.lines, config.learning_rate);
+  scales.surfaces = step(scales.surfaces, observed.surfaces, config.learning_rate, kLeastSurfaceScale);
+  scales.angular_rate =
+      step(scales.angular_rate, observed.angular_rate, config.learning_rate, kLeastSharedScale);
   scales.shared_depth =
-      step(scales.shared_depth, shown.shared_depth, config.learning_rate, kLeastSharedScale);
+      step(scales.shared_depth, observed.shared_depth, config.learning_rate, kLeastSharedScale);
 }
 
 }  // namespace plvo

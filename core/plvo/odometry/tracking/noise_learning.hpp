@@ -11,8 +11,8 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/motion/line_constraints.hpp"
+#include "plvo/motion/nuisance_parameters.hpp"
 #include "plvo/motion/point_constraints.hpp"
-#include "plvo/motion/shared_errors.hpp"
 #include "plvo/motion/surface_constraints.hpp"
 #include "plvo/odometry/config.hpp"
 
@@ -29,10 +29,10 @@ double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_re
 // What the shared errors' estimate says of their variances: the mean square of each kind's parameters, with
 // what is not known of them, over the prior's (expectation maximisation of a variance component); 1 for a
 // kind that there is not.
-void note_shared(const SharedErrors& shared, const SharedErrorEstimate& estimate, NoiseScales& shown);
+void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& estimate, NoiseScales& observed);
 
-// One step of `scales` towards what a frame showed, shown times the scales themselves.
-void learn(const NoiseConfig& config, const NoiseScales& shown, NoiseScales& scales);
+// One step of `scales` towards what a frame showed, observed times the scales themselves.
+void learn(const NoiseConfig& config, const NoiseScales& observed, NoiseScales& scales);
 
 constexpr void reserve_noise_learning(Arena& memory, const Limits& limits) {
   const ScratchScope scope(memory);

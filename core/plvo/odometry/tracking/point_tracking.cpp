@@ -143,10 +143,10 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
     }
   };
   const std::size_t n = reference.keypoints.size();
-  if (!view.side_by_side) return track(0, n, tracks);
+  if (!view.executor) return track(0, n, tracks);
   const std::size_t middle = n / 2;
   PointTracks later = from(tracks, middle);
-  view.side_by_side.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
+  view.executor.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
   append(later, tracks);
 }
 

@@ -29,7 +29,7 @@ struct PointTracks {
   std::span<Vector2> pixels;  // level-0 px
   std::span<Point3d> points;  // camera frame of the current frame, at mid-exposure
 
-  constexpr void carve(Arena& memory, int capacity) {
+  constexpr void allocate(Arena& memory, int capacity) {
     const auto n = static_cast<std::size_t>(capacity);
     matches = FixedVector<Match>(memory.take<Match>("point tracks", n));
     pixels = memory.take<Vector2>("point tracks", n);
@@ -45,7 +45,7 @@ struct TrackingView {
   const DepthSampler& depth;
   const Exposure& exposure;
   const NoiseScales& noise;
-  const SideBySide& side_by_side;
+  const Executor& executor;
 };
 
 // Through descriptors, within radius_px of where T_current_reference puts the reference keypoints; registered

@@ -59,13 +59,13 @@ struct FeatureConstraints {
   std::array<SurfaceConstraints, kMaxReferences> surfaces;
 };
 
-FeatureConstraints constraints_of(std::span<const MidExposure> features,
+FeatureConstraints constraints_of(std::span<const RowTimeCompensation> features,
                                   std::span<const ReferenceTracks> tracks, const NoiseConfig& noise,
                                   Arena& scratch) {
   static_assert(kMaxReferences == 3);
   const double weight = weight_of_one(features.size());
-  const MidExposure nothing;
-  const auto at = [&](std::size_t r) -> const MidExposure& {
+  const RowTimeCompensation nothing;
+  const auto at = [&](std::size_t r) -> const RowTimeCompensation& {
     return r < features.size() ? features[r] : nothing;
   };
   const auto count = [&](std::size_t r, std::size_t matches) { return r < features.size() ? matches : 0; };
@@ -96,8 +96,9 @@ FeatureConstraints constraints_of(std::span<const MidExposure> features,
           {surfaces(0), surfaces(1), surfaces(2)}};
 }
 
-SharedErrors shared_errors(const NoiseConfig& config, const Exposure& exposure, const NoiseScales& noise) {
-  return {exposure, config.turning_rad_per_s * sqrt(noise.turning),
+NuisanceParameters nuisance_parameters(const NoiseConfig& config, const Exposure& exposure,
+                                       const NoiseScales& noise) {
+  return {exposure, config.angular_rate_error_rad_per_s * sqrt(noise.angular_rate),
           config.shared_depth_m * sqrt(noise.shared_depth)};
 }
 
@@ -109,7 +110,7 @@ TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, con
           depth,
           exposure,
           current.noise,
-          config.side_by_side};
+          config.executor};
 }
 
 }  // namespace
@@ -160,7 +161,7 @@ ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Referenc
   return at;
 }
 
-void ReferenceTracking::solve(std::span<const MidExposure> features, const MotionReferences& poses,
+void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, const MotionReferences& poses,
                               const CurrentFrame& current, const Indices& at, const MotionStart& start,
                               const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
                               TrackResult& result) {
@@ -174,10 +175,10 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     sets[lines_set(r)] = &constraints.lines[r];
   }
   std::size_t set_count = matched_sets(features.size());
-  const SensedMotion& sensed = current.sensed;
+  const PropagatedPrior& sensed = current.sensed;
   MotionConfig motion_config = config.motion;
-  std::uint8_t sensed_flag = 0;
-  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&sensed_flag, 1});
+  std::uint8_t prior_flag = 0;
+  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&prior_flag, 1});
   if (sensed.known()) {
     prior.set_reference(at.last_frame, 0);
     sets[set_count++] = &prior;
@@ -187,7 +188,7 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     if (set.size() > 0) sets[set_count++] = &set;
 
   tracked.exposure = {};
-  tracked.shown = {};
+  tracked.observed = {};
   estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
                   tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
@@ -202,10 +203,10 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     // With the poses as they were known: moved to what they show, matches show less than they err.
     const Se3 T_current_latest = motions_to_current(tracked.motion.T_current_reference, poses)[latest];
     const Pinhole& pinhole = current.extraction.camera().pinhole;
-    tracked.shown = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
-                                    T_current_latest, scratch);
-    tracked.shown.surfaces = surface_scale(constraints.surfaces[latest], T_current_latest, scratch);
-    note_shared(start.shared, tracked.motion.shared, tracked.shown);
+    tracked.observed = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
+                                       T_current_latest, scratch);
+    tracked.observed.surfaces = surface_scale(constraints.surfaces[latest], T_current_latest, scratch);
+    note_nuisance(start.shared, tracked.motion.shared, tracked.observed);
   }
 }
 
@@ -227,7 +228,8 @@ void ReferenceTracking::solve(std::span<const MidExposure> features, const Motio
     for (int round = 0; round < rounds; ++round) {
       const ScratchScope exposed(scratch);
       // What a rolling shutter does depends on the motion: anew for each better idea of it.
-      const MidExposure at = points_at_mid_exposure(camera, reference.prior, T, *reference.features, scratch);
+      const RowTimeCompensation at =
+          compensate_row_times_of_points(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
         if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
           return false;
@@ -249,8 +251,8 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const Se3& T_predicted = reference.prior.T_current_reference;
   current.extraction.lift_lines(current.depth, current_exposure(camera, reference.prior, T_predicted),
                                 current.noise, scratch, current.features.lines, result);
-  const MidExposure features =
-      at_mid_exposure(camera, reference.prior, T_predicted, *reference.features, current.features, scratch);
+  const RowTimeCompensation features = compensate_row_times(camera, reference.prior, T_predicted,
+                                                            *reference.features, current.features, scratch);
   {
     const StageTimer timer(config, result, Stage::kMatching);
     const DepthSampler depth = current.depth.with(features.current_exposure);
@@ -266,8 +268,9 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   }
   // Without registration this is the whole estimate, else it only leads to it.
   const bool whole = !config.points.registered;
-  const SharedErrors shared =
-      whole ? shared_errors(config.noise, features.current_exposure, current.noise) : SharedErrors{};
+  const NuisanceParameters shared =
+      whole ? nuisance_parameters(config.noise, features.current_exposure, current.noise)
+            : NuisanceParameters{};
   MotionReferences poses;
   const Indices at = set_poses({&reference, 1}, current.last, poses);
   solve({&features, 1}, poses, current, at, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
@@ -289,11 +292,11 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const DepthSampler depth = current.depth.with(exposure);
   current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,
                                 result);
-  std::array<MidExposure, kMaxReferences> features;
+  std::array<RowTimeCompensation, kMaxReferences> features;
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
-    features[r] =
-        at_mid_exposure(camera, reference.prior, motions[r], *reference.features, current.features, scratch);
+    features[r] = compensate_row_times(camera, reference.prior, motions[r], *reference.features,
+                                       current.features, scratch);
     const StageTimer timer(config, result, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points,
                     features[r].reference_points, motions[r], tracks_[r].points);
@@ -306,8 +309,8 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
                    features[r].reference_surfaces, motions[r], tracks_[r].surfaces);
   }
   solve(std::span(features).first(references.size()), poses, current, at,
-        {&T_current_base, shared_errors(config.noise, exposure, current.noise), true}, kFineSolve, scratch,
-        tracked, result);
+        {&T_current_base, nuisance_parameters(config.noise, exposure, current.noise), true}, kFineSolve,
+        scratch, tracked, result);
   if (tracked.motion.status == StatusCode::kOk)
     tracked.exposure =
         current_exposure(camera, references[at.latest].prior, tracked.motion.motions[at.latest]);

@@ -13,12 +13,12 @@
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
-#include "plvo/odometry/sensed_motion.hpp"
+#include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/line_tracking.hpp"
-#include "plvo/odometry/tracking/mid_exposure.hpp"
 #include "plvo/odometry/tracking/noise_learning.hpp"
 #include "plvo/odometry/tracking/point_tracking.hpp"
+#include "plvo/odometry/tracking/row_time_compensation.hpp"
 #include "plvo/odometry/tracking/surface_tracking.hpp"
 #include "plvo/points/sparse_alignment.hpp"
 
@@ -49,8 +49,8 @@ struct ReferenceTracks {
   FixedVector<SurfaceMatch> surfaces;
   int inliers = 0;  // points and lines
 
-  constexpr void carve(Arena& memory, const Limits& limits) {
-    points.carve(memory, limits.keypoints);
+  constexpr void allocate(Arena& memory, const Limits& limits) {
+    points.allocate(memory, limits.keypoints);
     point_inliers = memory.take<std::uint8_t>("point tracks", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
     lines = FixedVector<Match>(memory.take<Match>("line tracks", segments));
@@ -67,22 +67,22 @@ struct CurrentFrame {
   const FeatureExtraction& extraction;  // of its image; with the camera and the configuration of both
   const DepthSampler& depth;
   const NoiseScales& noise;
-  const SensedMotion& sensed;   // since the last good frame,
-  const MotionReference& last;  // whose pose this is, relative to the base
+  const PropagatedPrior& sensed;  // since the last good frame,
+  const MotionReference& last;    // whose pose this is, relative to the base
 };
 
 struct TrackedMotion {
   MotionEstimate motion;  // from the base
   Exposure exposure;      // how the camera moved while the current frame was exposed
-  NoiseScales shown;      // what the residuals say of the noise
+  NoiseScales observed;   // what the residuals say of the noise
 };
 
 class ReferenceTracking {
  public:
-  constexpr void carve(Arena& memory, const Limits& limits) {
+  constexpr void allocate(Arena& memory, const Limits& limits) {
     for (std::size_t r = 0; r < static_cast<std::size_t>(limits.references); ++r)
-      tracks_[r].carve(memory, limits);
-    alignment_.carve(memory, limits.width, limits.height);
+      tracks_[r].allocate(memory, limits);
+    alignment_.allocate(memory, limits.width, limits.height);
   }
   // Scratch: the larger of the stages, which come one after the other.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
@@ -90,10 +90,10 @@ class ReferenceTracking {
     {
       const ScratchScope aligning(memory);
       SparseAlignment::take_windows(memory);
-      take_points_at_mid_exposure(memory, limits);
+      take_row_times_of_points(memory, limits);
     }
     const auto references = static_cast<std::size_t>(limits.references);
-    for (std::size_t r = 0; r < references; ++r) take_mid_exposure(memory, limits);
+    for (std::size_t r = 0; r < references; ++r) take_row_times(memory, limits);
     reserve_tracking(memory, limits.keypoints, limits.width, limits.height);
     reserve_line_tracking(memory, limits.segments);
     reserve_noise_learning(memory, limits);
@@ -127,7 +127,7 @@ class ReferenceTracking {
   };
   static Indices set_poses(std::span<const Reference> references, const MotionReference& last,
                            MotionReferences& poses);
-  void solve(std::span<const MidExposure> features, const MotionReferences& poses,
+  void solve(std::span<const RowTimeCompensation> features, const MotionReferences& poses,
              const CurrentFrame& current, const Indices& at, const MotionStart& start, const LmOptions& lm,
              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
   std::array<ReferenceTracks, kMaxReferences> tracks_;

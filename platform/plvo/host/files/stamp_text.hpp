@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time stamps as text. Files write seconds with decimals; the house counts nanoseconds in integers. A double
+// Time stamps as text. Files write seconds with decimals; plvo counts nanoseconds in integers. A double
 // cannot hold both the seconds since 1970 and the nanoseconds, so the digits are read one by one.
 #pragma once
 

@@ -156,14 +156,14 @@ std::uint32_t Bvh::collapse(std::uint32_t binary_index) {
 
 // Parameters at which a ray enters and leaves four boxes at once (Kay & Kajiya's slabs).
 inline void Bvh::slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max,
-                       Lanes& near, Lanes& far) {
-  near = Lanes{t_min, t_min, t_min, t_min};
-  far = Lanes{t_max, t_max, t_max, t_max};
+                       Float32x4& near, Float32x4& far) {
+  near = Float32x4{t_min, t_min, t_min, t_min};
+  far = Float32x4{t_max, t_max, t_max, t_max};
   for (int axis = 0; axis < 3; ++axis) {
     const float o = ray.origin[axis];
     const float s = inverse[axis];
-    const Lanes enter = ((s < 0 ? node.hi[axis] : node.lo[axis]) - o) * s;
-    const Lanes leave = ((s < 0 ? node.lo[axis] : node.hi[axis]) - o) * s;
+    const Float32x4 enter = ((s < 0 ? node.hi[axis] : node.lo[axis]) - o) * s;
+    const Float32x4 leave = ((s < 0 ? node.lo[axis] : node.hi[axis]) - o) * s;
     near = enter > near ? enter : near;
     far = leave < far ? leave : far;
   }
@@ -200,8 +200,8 @@ Hit Bvh::closest(const Ray& ray, float t_min, float t_max) const {
       continue;
     }
     const Node& node = nodes_[entry.child.first];
-    Lanes near;
-    Lanes far;
+    Float32x4 near;
+    Float32x4 far;
     slabs(node, ray, inverse, t_min, best.t, near, far);
     // The nearest child goes on top.
     const std::size_t base = top;
@@ -223,8 +223,8 @@ bool Bvh::occluded(const Ray& ray, float t_min, float t_max) const {
   stack[top++] = 0;
   while (top > 0) {
     const Node& node = nodes_[stack[--top]];
-    Lanes near;
-    Lanes far;
+    Float32x4 near;
+    Float32x4 far;
     slabs(node, ray, inverse, t_min, t_max, near, far);
     for (int k = 0; k < node.size; ++k) {
       if (near[k] > far[k] * kRounding) continue;

@@ -31,10 +31,10 @@ class Bvh {
   };
   // Four floats that compilers keep in one register where there is one; lane by lane the arithmetic of plain
   // floats.
-  using Lanes = float __attribute__((vector_size(16)));
+  using Float32x4 = float __attribute__((vector_size(16)));
   struct Node {
-    Lanes lo[3] = {};
-    Lanes hi[3] = {};
+    Float32x4 lo[3] = {};
+    Float32x4 hi[3] = {};
     Child child[kWidth];
     int size = 0;
   };
@@ -46,8 +46,8 @@ class Bvh {
   };
 
   std::uint32_t build_node(std::vector<std::uint32_t>& items, std::size_t begin, std::size_t end, int depth);
-  static void slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max, Lanes& near,
-                    Lanes& far);
+  static void slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max,
+                    Float32x4& near, Float32x4& far);
   std::uint32_t collapse(std::uint32_t binary_index);
 
   const std::vector<Solid>* solids_ = nullptr;

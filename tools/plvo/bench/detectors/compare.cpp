@@ -28,28 +28,28 @@ std::vector<NamedScore> find_all(const ViewSequence& sequence, const std::vector
 
 }  // namespace
 
-DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorRooms& rooms,
+DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorCapacity& capacity,
                                      const ScoreOptions& options) {
   DetectorComparison comparison;
-  std::vector<SegmentFinder> segment_finders = {own_segment_finder(rooms)};
+  std::vector<SegmentFinder> segment_finders = {own_segment_finder(capacity)};
   for (const SegmentFinder& finder : opencv_segment_finders()) segment_finders.push_back(finder);
   std::vector<std::vector<std::vector<Line>>> lines;
   comparison.segments = find_all(
       sequence, segment_finders,
       [&](std::vector<Line> all) {
-        return longest(std::move(all), options.min_length_px, static_cast<std::size_t>(rooms.segments));
+        return longest(std::move(all), options.min_length_px, static_cast<std::size_t>(capacity.segments));
       },
       lines);
   for (std::size_t k = 0; k < lines.size(); ++k)
     score_segments(sequence, lines[k], options, comparison.segments[k].score);
 
-  std::vector<PointFinder> point_finders = {own_point_finder(rooms)};
-  for (const PointFinder& finder : opencv_point_finders(rooms)) point_finders.push_back(finder);
+  std::vector<PointFinder> point_finders = {own_point_finder(capacity)};
+  for (const PointFinder& finder : opencv_point_finders(capacity)) point_finders.push_back(finder);
   std::vector<std::vector<std::vector<Vector2>>> points;
   comparison.points = find_all(
       sequence, point_finders,
       [&](std::vector<FoundPoint> all) {
-        return strongest(std::move(all), static_cast<std::size_t>(rooms.keypoints));
+        return strongest(std::move(all), static_cast<std::size_t>(capacity.keypoints));
       },
       points);
   for (std::size_t k = 0; k < points.size(); ++k)

@@ -18,7 +18,7 @@ struct DetectorComparison {
   std::vector<NamedScore> segments, points;  // ours first
 };
 
-DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorRooms& rooms,
+DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorCapacity& capacity,
                                      const ScoreOptions& options);
 
 // CPU time over that of `ours`: the median over the views of the ratio within a view.

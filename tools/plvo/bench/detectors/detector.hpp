@@ -12,7 +12,7 @@
 namespace plvo::bench {
 
 // How many features each may bring.
-struct DetectorRooms {
+struct DetectorCapacity {
   int keypoints = 400;
   int segments = 256;
   int width = 640, height = 480;  // of all pictures
@@ -33,10 +33,10 @@ struct PointFinder {
 };
 
 // Ours, with the pyramid that both make in their time.
-SegmentFinder own_segment_finder(const DetectorRooms& rooms);
-PointFinder own_point_finder(const DetectorRooms& rooms);
+SegmentFinder own_segment_finder(const DetectorCapacity& capacity);
+PointFinder own_point_finder(const DetectorCapacity& capacity);
 // OpenCV's, with their default settings; none where its contrib modules are not installed.
 std::vector<SegmentFinder> opencv_segment_finders();
-std::vector<PointFinder> opencv_point_finders(const DetectorRooms& rooms);
+std::vector<PointFinder> opencv_point_finders(const DetectorCapacity& capacity);
 
 }  // namespace plvo::bench

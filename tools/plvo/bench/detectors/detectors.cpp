@@ -21,7 +21,7 @@ struct DetectorsArguments {
   std::string scenes = "corridor,staircase,hall,desk,bare";
   std::vector<std::string> folders;
   JobOptions measuring;
-  DetectorRooms rooms;
+  DetectorCapacity capacity;
   ScoreOptions score;
 };
 
@@ -50,10 +50,10 @@ Status compare_one(ViewSequence& sequence, const DetectorsArguments& arguments, 
     return {StatusCode::kTooFewFeatures,
             fmt::format("{}: only {} frames with a true pose, --gap is {}", sequence.name,
                         sequence.views.size(), arguments.score.gap)};
-  DetectorRooms rooms = arguments.rooms;
-  rooms.width = sequence.views.front().width;
-  rooms.height = sequence.views.front().height;
-  const DetectorComparison comparison = compare_detectors(sequence, rooms, arguments.score);
+  DetectorCapacity capacity = arguments.capacity;
+  capacity.width = sequence.views.front().width;
+  capacity.height = sequence.views.front().height;
+  const DetectorComparison comparison = compare_detectors(sequence, capacity, arguments.score);
   add_rows(sequence.name, comparison.segments, sequence.views.size(), true, segments);
   add_rows(sequence.name, comparison.points, sequence.views.size(), false, points);
   print_to_stderr(fmt::format("{}: {} views\n", sequence.name, sequence.views.size()));
@@ -109,12 +109,12 @@ void add_detectors(CLI::App& app, int& exit_code) {
   command->add_option("--scenes", arguments->scenes, "Rendered ones; default " + arguments->scenes)
       ->type_name("LIST");
   command
-      ->add_option("--segments", arguments->rooms.segments,
+      ->add_option("--segments", arguments->capacity.segments,
                    "At most so many of each: the longest (default 256)")
       ->check(CLI::Range(1, 60000).description(""))
       ->type_name("NUMBER");
   command
-      ->add_option("--keypoints", arguments->rooms.keypoints,
+      ->add_option("--keypoints", arguments->capacity.keypoints,
                    "At most so many of each: the strongest (default 400)")
       ->check(CLI::Range(1, 60000).description(""))
       ->type_name("NUMBER");

@@ -61,9 +61,9 @@ std::vector<SegmentFinder> opencv_segment_finders() {
            }}};
 }
 
-std::vector<PointFinder> opencv_point_finders(const DetectorRooms& rooms) {
+std::vector<PointFinder> opencv_point_finders(const DetectorCapacity& capacity) {
   cv::setNumThreads(1);
-  const auto orb = cv::ORB::create(rooms.keypoints);
+  const auto orb = cv::ORB::create(capacity.keypoints);
   const auto fast = cv::FastFeatureDetector::create();
   return {{"OpenCV ORB",
            [orb](const GrayView& image) {

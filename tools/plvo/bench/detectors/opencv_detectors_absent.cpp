@@ -5,6 +5,6 @@
 namespace plvo::bench {
 
 std::vector<SegmentFinder> opencv_segment_finders() { return {}; }
-std::vector<PointFinder> opencv_point_finders(const DetectorRooms& /*rooms*/) { return {}; }
+std::vector<PointFinder> opencv_point_finders(const DetectorCapacity& /*capacity*/) { return {}; }
 
 }  // namespace plvo::bench

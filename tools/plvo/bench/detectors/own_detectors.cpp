@@ -16,9 +16,9 @@ namespace {
 // A pyramid and the scratch of both detectors.
 class Ground {
  public:
-  explicit Ground(const DetectorRooms& rooms) : memory_(bytes(rooms)), arena_(memory_) {
-    pyramid_.carve(arena_, rooms.width, rooms.height);
-    pyramid_.init(rooms.width, rooms.height);
+  explicit Ground(const DetectorCapacity& capacity) : memory_(bytes(capacity)), arena_(memory_) {
+    pyramid_.allocate(arena_, capacity.width, capacity.height);
+    pyramid_.init(capacity.width, capacity.height);
   }
   const Pyramid& build(const GrayView& image) {
     for (int y = 0; y < image.height; ++y) std::copy_n(image.row(y), image.width, pyramid_.base().row(y));
@@ -28,16 +28,16 @@ class Ground {
   Arena& scratch() { return arena_; }
 
  private:
-  static std::size_t bytes(const DetectorRooms& rooms) {
+  static std::size_t bytes(const DetectorCapacity& capacity) {
     Arena sizer = Arena::counting();
     Pyramid pyramid;
-    pyramid.carve(sizer, rooms.width, rooms.height);
+    pyramid.allocate(sizer, capacity.width, capacity.height);
     {
       const ScratchScope scope(sizer);
-      reserve_detection(sizer, rooms.width, rooms.height);
+      reserve_detection(sizer, capacity.width, capacity.height);
     }
-    return sizer.peak() + SegmentDetector::scratch_bytes((rooms.width + 1) / 2, (rooms.height + 1) / 2) +
-           4096;
+    return sizer.peak() +
+           SegmentDetector::scratch_bytes((capacity.width + 1) / 2, (capacity.height + 1) / 2) + 4096;
   }
   std::vector<std::byte> memory_;
   Arena arena_;
@@ -46,10 +46,10 @@ class Ground {
 
 }  // namespace
 
-SegmentFinder own_segment_finder(const DetectorRooms& rooms) {
-  const auto ground = std::make_shared<Ground>(rooms);
-  const auto storage = std::make_shared<std::vector<Segment>>(static_cast<std::size_t>(rooms.segments));
-  const SegmentDetector detector((rooms.width + 1) / 2, (rooms.height + 1) / 2);
+SegmentFinder own_segment_finder(const DetectorCapacity& capacity) {
+  const auto ground = std::make_shared<Ground>(capacity);
+  const auto storage = std::make_shared<std::vector<Segment>>(static_cast<std::size_t>(capacity.segments));
+  const SegmentDetector detector((capacity.width + 1) / 2, (capacity.height + 1) / 2);
   return {"plvo (LSD at half size)", [=](const GrayView& image) {
             const Pyramid& pyramid = ground->build(image);
             FixedVector<Segment> segments(*storage);
@@ -61,12 +61,13 @@ SegmentFinder own_segment_finder(const DetectorRooms& rooms) {
           }};
 }
 
-PointFinder own_point_finder(const DetectorRooms& rooms) {
-  const auto ground = std::make_shared<Ground>(rooms);
-  const auto storage = std::make_shared<std::vector<Keypoint>>(static_cast<std::size_t>(rooms.keypoints));
+PointFinder own_point_finder(const DetectorCapacity& capacity) {
+  const auto ground = std::make_shared<Ground>(capacity);
+  const auto storage = std::make_shared<std::vector<Keypoint>>(static_cast<std::size_t>(capacity.keypoints));
   // Our detector passes over pixels without depth; here every pixel has one.
   const auto depth = std::make_shared<std::vector<std::uint16_t>>(
-      static_cast<std::size_t>(rooms.width) * static_cast<std::size_t>(rooms.height), std::uint16_t{1000});
+      static_cast<std::size_t>(capacity.width) * static_cast<std::size_t>(capacity.height),
+      std::uint16_t{1000});
   const auto map = std::make_shared<UndistortionMap>();
   return {"plvo", [=](const GrayView& image) {
             const Pyramid& pyramid = ground->build(image);

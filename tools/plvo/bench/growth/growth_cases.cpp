@@ -24,7 +24,7 @@ class Planner {
   void add_sizes() {
     StageSetting tiny, qvga;
     tiny.make_tiny();
-    qvga.take_room(Limits::qvga());
+    qvga.take_limits(Limits::qvga());
     GrowthTable table{"Image size", "size", {}};
     table.rows.push_back({"320×240, tiny", add_case(0.5, tiny, options_.frames)});
     table.rows.push_back({"320×240, Limits::qvga", add_case(0.5, qvga, options_.frames)});
@@ -36,8 +36,8 @@ class Planner {
     plan_.tables.push_back(table);
   }
 
-  void add_rooms(const char* title, const char* entry, int StageSetting::*room,
-                 const std::vector<int>& sizes) {
+  void add_capacities(const char* title, const char* entry, int StageSetting::*room,
+                      const std::vector<int>& sizes) {
     GrowthTable table{title, entry, {}};
     for (const int size : sizes) {
       StageSetting setting;
@@ -113,11 +113,11 @@ Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>&
     if (table == "sizes") {
       planner.add_sizes();
     } else if (table == "points") {
-      planner.add_rooms("Room for points", "Limits::keypoints", &StageSetting::keypoints,
-                        {100, 200, Limits{}.keypoints, 1000, 2000});
+      planner.add_capacities("Room for points", "Limits::keypoints", &StageSetting::keypoints,
+                             {100, 200, Limits{}.keypoints, 1000, 2000});
     } else if (table == "segments") {
-      planner.add_rooms("Room for segments", "Limits::segments", &StageSetting::segments,
-                        {20, 50, 100, 200, Limits{}.segments, 400});
+      planner.add_capacities("Room for segments", "Limits::segments", &StageSetting::segments,
+                             {20, 50, 100, 200, Limits{}.segments, 400});
     } else if (table == "images") {
       planner.add_images();
     } else if (table == "walks") {

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "plvo/bench/jobs/process_pool.hpp"
-#include "plvo/bench/sequences/rendered_walk.hpp"
+#include "plvo/bench/sequences/rendered_sequence.hpp"
 #include "plvo/bench/stages/callgrind_run.hpp"
 #include "plvo/host/standard_streams.hpp"
 
@@ -29,7 +29,7 @@ Status render(const GrowthPlan& plan) {
     std::error_code error;
     if (!one.walk || fs::is_directory(one.sequence.folder, error)) continue;
     print_to_stderr(fmt::format("rendering {}\n", one.sequence.sequence));
-    if (Status status = render_walk(*one.walk, one.sequence.folder); !status.ok()) return status;
+    if (Status status = render_sequence(*one.walk, one.sequence.folder); !status.ok()) return status;
   }
   return {};
 }

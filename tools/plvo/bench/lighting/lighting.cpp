@@ -14,7 +14,7 @@
 #include "plvo/bench/jobs/campaign.hpp"
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/lighting/lighting_table.hpp"
-#include "plvo/bench/sequences/rendered_walk.hpp"
+#include "plvo/bench/sequences/rendered_sequence.hpp"
 #include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {
@@ -70,7 +70,7 @@ Status render(const Walk& walk, const fs::path& folder) {
   options.threads = 1;  // --jobs is for more
   if (Status status = parse_scene(walk.site, options.scene); !status.ok()) return status;
   if (Status status = parse_light(walk.light, options.light); !status.ok()) return status;
-  return render_walk(options, folder);
+  return render_sequence(options, folder);
 }
 
 std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& systems,

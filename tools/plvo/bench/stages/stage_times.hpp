@@ -24,7 +24,7 @@ struct StageSetting {
   int segments = Limits{}.segments;
   int surfaces = Limits{}.surfaces;
 
-  void take_room(const Limits& limits) {
+  void take_limits(const Limits& limits) {
     keypoints = limits.keypoints;
     segments = limits.segments;
     surfaces = limits.surfaces;
@@ -32,7 +32,7 @@ struct StageSetting {
   // As plvo run --preset tiny.
   void make_tiny() {
     tiny = true;
-    take_room(Limits::tiny());
+    take_limits(Limits::tiny());
   }
 };
 

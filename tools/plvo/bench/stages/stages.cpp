@@ -11,7 +11,7 @@
 #include "plvo/bench/jobs/process_pool.hpp"
 #include "plvo/bench/jobs/result.hpp"
 #include "plvo/bench/sequences/named_folder.hpp"
-#include "plvo/bench/sequences/rendered_walk.hpp"
+#include "plvo/bench/sequences/rendered_sequence.hpp"
 #include "plvo/bench/stages/callgrind_run.hpp"
 #include "plvo/bench/stages/stage_instructions.hpp"
 #include "plvo/bench/stages/stage_times.hpp"
@@ -70,7 +70,7 @@ Status run_stages(const StagesOptions& options) {
     sequence = {options.out / name, name, ""};
     SimulatorOptions walk;
     walk.frames = static_cast<int>(options.measuring.frames);
-    if (Status status = render_walk(walk, sequence.folder); !status.ok()) return status;
+    if (Status status = render_sequence(walk, sequence.folder); !status.ok()) return status;
   } else {
     std::vector<NamedFolder> named;
     if (Status status = name_folders({options.folder}, named); !status.ok()) return status;

@@ -60,10 +60,10 @@ class FrontEnd {
   explicit FrontEnd(const plvo::CameraModel& camera)
       : camera_(camera), detector_((camera.width + 1) / 2, (camera.height + 1) / 2), memory_(32u << 20) {
     arena_ = plvo::Arena(memory_);
-    map_.carve(arena_, camera.width, camera.height);
+    map_.allocate(arena_, camera.width, camera.height);
     map_.init(camera);
     raw_.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-    pyramid_.carve(arena_, camera.width, camera.height);
+    pyramid_.allocate(arena_, camera.width, camera.height);
     pyramid_.init(camera.width, camera.height);
   }
 

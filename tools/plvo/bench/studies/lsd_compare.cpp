@@ -96,7 +96,7 @@ class Ours {
         arena_(memory_),
         detector_((width + 1) / 2, (height + 1) / 2),
         storage_(256) {
-    pyramid_.carve(arena_, width, height);
+    pyramid_.allocate(arena_, width, height);
     pyramid_.init(width, height);
   }
 
@@ -124,7 +124,7 @@ class Ours {
   static std::size_t pyramid_bytes(int width, int height) {
     plvo::Arena sizer = plvo::Arena::counting();
     plvo::Pyramid pyramid;
-    pyramid.carve(sizer, width, height);
+    pyramid.allocate(sizer, width, height);
     return sizer.peak();
   }
   int width_;

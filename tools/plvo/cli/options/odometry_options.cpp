@@ -86,7 +86,7 @@ Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& opt
   config.stage_clock = posix_thread_cpu_ns;
   if (options.cores > 1) {
     pair_ = std::make_unique<ThreadPair>();
-    config.side_by_side = pair_->side_by_side();
+    config.executor = pair_->executor();
   }
   const Limits limits = make_limits(options, config, camera);
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});

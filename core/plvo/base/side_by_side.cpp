@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "plvo/base/side_by_side.hpp"
-
-namespace plvo {
-
-// Apart from the templates: whoever bounds the stack has this call alone to know.
-void SideBySide::start(Task here, Task beside) const { run(runner, here, beside); }
-
-}  // namespace plvo

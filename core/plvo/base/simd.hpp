@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eight 16-bit integers side by side, and four of 32 bits, in the vector types of GCC and Clang: one register
+// where a processor has such, the same bits everywhere. Pass them by reference or inline: how they travel by
+// value differs between boards. What is read in parts is put together in registers: a wide load just behind
+// narrower stores waits for them. Where a processor has no such registers, and in small code, loops are in
+// their place (base/simd_loops.hpp, base/build.hpp).
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "plvo/base/build.hpp"
+#include "plvo/base/simd_loops.hpp"
+
+namespace plvo {
+
+// Sixteen bytes side by side, for what has no loops in its place.
+using Bytes = std::uint8_t __attribute__((vector_size(16)));
+
+// The first eight bytes of both in turns.
+inline __attribute__((always_inline)) Bytes in_turns(const Bytes& a, const Bytes& b) {
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+}
+
+// Bit i: byte i of eight, all of whose bits are equal.
+inline __attribute__((always_inline)) unsigned gather_bytes(std::uint64_t eight) {
+  // Byte i keeps its bit i; the product's highest byte is the sum of all.
+  static_assert(std::endian::native == std::endian::little);
+  return static_cast<unsigned>((eight & 0x8040201008040201U) * 0x0101010101010101U >> 56);
+}
+
+// The same of sixteen.
+inline __attribute__((always_inline)) unsigned set_bytes(const Bytes& bytes) {
+#ifdef __SSE2__
+  using Signed = char __attribute__((vector_size(16)));
+  return static_cast<unsigned>(__builtin_ia32_pmovmskb128(reinterpret_cast<Signed>(bytes)));
+#else
+  std::uint64_t halves[2];
+  std::memcpy(halves, &bytes, sizeof halves);
+  return gather_bytes(halves[0]) | gather_bytes(halves[1]) << 8;
+#endif
+}
+
+#ifdef PLVO_SIMD_LOOPS
+
+using simd_loops::Int16x8;
+using simd_loops::Int32x4;
+
+#else
+
+using Int16x8 = std::int16_t __attribute__((vector_size(16)));
+using Int32x4 = std::int32_t __attribute__((vector_size(16)));
+
+// Of eight bytes.
+inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int16x8& lanes) {
+  // Zeros between the bytes: one instruction, of the plain conversion GCC 12 makes five, or takes it byte by
+  // byte.
+  static_assert(std::endian::native == std::endian::little);
+  using Words = std::uint64_t __attribute__((vector_size(16)));
+  const Words words = {bytes, 0};
+  Bytes eight;
+  std::memcpy(&eight, &words, sizeof eight);
+  const Bytes wide = in_turns(eight, Bytes{});
+  std::memcpy(&lanes, &wide, sizeof lanes);
+}
+
+// Of eight bytes in memory.
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Int16x8& lanes) {
+  std::uint64_t eight;
+  std::memcpy(&eight, bytes, sizeof eight);
+  widen_bytes(eight, lanes);
+}
+
+// Four bytes at each of four places, a lane each.
+inline __attribute__((always_inline)) void load_words(const std::uint8_t* const places[4], Int32x4& words) {
+  std::int32_t four[4];
+  for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
+  words = Int32x4{four[0], four[1], four[2], four[3]};
+}
+
+// Of four bytes at each of four places: of the first two, and of the others.
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const places[4], Int16x8& first_two,
+                                                      Int16x8& others) {
+  Int32x4 words;
+  load_words(places, words);
+  Bytes bytes;
+  std::memcpy(&bytes, &words, sizeof bytes);
+  const Bytes low = in_turns(bytes, Bytes{});
+  const Bytes high =
+      __builtin_shufflevector(bytes, Bytes{}, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+  std::memcpy(&first_two, &low, sizeof first_two);
+  std::memcpy(&others, &high, sizeof others);
+}
+
+// Four numbers from either place.
+inline __attribute__((always_inline)) void load_halves(const std::int16_t* first, const std::int16_t* second,
+                                                       Int16x8& lanes) {
+  using Words = std::uint64_t __attribute__((vector_size(16)));
+  std::uint64_t four[2];
+  std::memcpy(&four[0], first, sizeof four[0]);
+  std::memcpy(&four[1], second, sizeof four[1]);
+  const Words words = {four[0], four[1]};
+  std::memcpy(&lanes, &words, sizeof lanes);
+}
+
+inline __attribute__((always_inline)) void load(const std::int16_t* from, Int16x8& lanes) {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
+
+inline __attribute__((always_inline)) void store(const Int16x8& lanes, std::int16_t* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+inline __attribute__((always_inline)) void store(const Int32x4& lanes, std::int32_t* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+// Into eight bytes, which must hold the numbers.
+inline __attribute__((always_inline)) void store_bytes(const Int16x8& lanes, std::uint8_t* to) {
+#ifdef __SSE2__
+  const auto packed = __builtin_ia32_packuswb128(lanes, lanes);
+  std::memcpy(to, &packed, 8);
+#else
+  using EightBytes = std::uint8_t __attribute__((vector_size(8)));
+  const EightBytes eight = __builtin_convertvector(lanes, EightBytes);
+  std::memcpy(to, &eight, sizeof eight);
+#endif
+}
+
+// Lane by lane, low becomes the lesser and high the greater of itself and value.
+inline __attribute__((always_inline)) void take_range(const Int32x4& value, Int32x4& low, Int32x4& high) {
+  low = value < low ? value : low;
+  high = value > high ? value : high;
+}
+
+// Lane by lane, no less than low and no more than high.
+inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t high, Int16x8& lanes) {
+  const Int16x8 least = Int16x8{} + low;
+  const Int16x8 most = Int16x8{} + high;
+  lanes = lanes < least ? least : lanes;
+  lanes = lanes > most ? most : lanes;
+}
+
+// Lane by lane a · b / 2^16, rounded down.
+inline __attribute__((always_inline)) void multiply_high(const Int16x8& a, const Int16x8& b, Int16x8& high) {
+#ifdef __SSE2__
+  high = __builtin_ia32_pmulhw128(a, b);
+#else
+  using EightWide = std::int32_t __attribute__((vector_size(32)));
+  const EightWide products = __builtin_convertvector(a, EightWide) * __builtin_convertvector(b, EightWide);
+  high = __builtin_convertvector(products >> 16, Int16x8);
+#endif
+}
+
+// Four sums of a and four of b: of the numbers that are four apart.
+inline __attribute__((always_inline)) void add_halves(const Int16x8& a, const Int16x8& b, Int16x8& sums) {
+  sums = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+// Two sums of a and two of b: of neighbours.
+inline __attribute__((always_inline)) void add_pairs(const Int32x4& a, const Int32x4& b, Int32x4& sums) {
+  sums = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+}
+
+// Both into one, which must hold the numbers.
+inline __attribute__((always_inline)) void narrow(const Int32x4& first, const Int32x4& last, Int16x8& lanes) {
+#ifdef __SSE2__
+  lanes = __builtin_ia32_packssdw128(first, last);
+#else
+  Int16x8 low, high;
+  std::memcpy(&low, &first, sizeof low);
+  std::memcpy(&high, &last, sizeof high);
+  static_assert(std::endian::native == std::endian::little);
+  lanes = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+#endif
+}
+
+// a and b in turns: a[0], b[0], a[1] … b[3], and the others.
+inline __attribute__((always_inline)) void interleave(const Int16x8& a, const Int16x8& b, Int16x8& first,
+                                                      Int16x8& last) {
+  first = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
+  last = __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+}
+
+// sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1], which must not pass 32 bits.
+inline __attribute__((always_inline)) void dot_pairs(const Int16x8& a, const Int16x8& b, Int32x4& sums) {
+#ifdef __SSE2__
+  sums = __builtin_ia32_pmaddwd128(a, b);
+#else
+  // Two in a lane of 32 bits: the first is the lower half.
+  static_assert(std::endian::native == std::endian::little);
+  Int32x4 both_a, both_b;
+  std::memcpy(&both_a, &a, sizeof both_a);
+  std::memcpy(&both_b, &b, sizeof both_b);
+  sums = ((both_a << 16) >> 16) * ((both_b << 16) >> 16) + (both_a >> 16) * (both_b >> 16);
+#endif
+}
+
+// Bit i: lane i is below 0.
+inline __attribute__((always_inline)) unsigned negative_mask(const Int16x8& lanes) {
+#ifdef __SSE2__
+  const auto packed = __builtin_ia32_packsswb128(lanes, lanes);
+  return static_cast<unsigned>(__builtin_ia32_pmovmskb128(packed)) & 0xffU;
+#else
+  using EightBytes = std::int8_t __attribute__((vector_size(8)));
+  const EightBytes bytes = __builtin_convertvector(lanes >> 15, EightBytes);
+  std::uint64_t eight;
+  std::memcpy(&eight, &bytes, sizeof eight);
+  return gather_bytes(eight);
+#endif
+}
+
+inline __attribute__((always_inline)) unsigned negative_mask(const Int32x4& lanes) {
+#ifdef __SSE2__
+  using Floats = float __attribute__((vector_size(16)));
+  Floats same;
+  std::memcpy(&same, &lanes, sizeof same);
+  return static_cast<unsigned>(__builtin_ia32_movmskps(same));
+#else
+  const Int32x4 bits = (lanes >> 31) & Int32x4{1, 2, 4, 8};
+  return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+}
+
+#endif
+
+}  // namespace plvo

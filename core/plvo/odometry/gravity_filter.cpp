@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/gravity_filter.hpp"
+
+#include <algorithm>
+
+#include "plvo/math/covariance.hpp"
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
+// No accelerometer says where down is to better than a microradian. What is surer would cancel the variance
+// of a pose that may be turned anyhow (kMostRotationVariance) beyond a double's digits.
+constexpr double kLeastReadingVariance = 1e-12;
+
+// ∂δ_current / ∂δ_from of advance().
+Matrix6 carry(const PoseWithCovariance& from, const PoseWithCovariance& current) {
+  Matrix6 A = Matrix6::Identity();
+  A.block<3, 3>(0, 3) = -skew(current.T_world_camera.t - from.T_world_camera.t);
+  return A;
+}
+
+template <int N>
+Matrix<N, N> symmetric(const Matrix<N, N>& M) {
+  return 0.5 * (M + Matrix<N, N>(M.transpose()));
+}
+
+Matrix3 turned(const Matrix3& J, const Matrix3& C) {
+  return symmetric<3>(J.lazyProduct(C).eval().lazyProduct(J.transpose()));
+}
+
+}  // namespace
+
+PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
+                           const Matrix6& motion_covariance) {
+  const Se3 T_from_current = T_current_from.inverse();
+  PoseWithCovariance current;
+  current.T_world_camera = from.T_world_camera * T_from_current;
+  current.T_world_camera.R = renormalise(current.T_world_camera.R);
+  current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
+                                          inverse_covariance(T_current_from, motion_covariance));
+  current.covariance_with_gravity = carry(from, current).lazyProduct(from.covariance_with_gravity);
+  return current;
+}
+
+bool settle(PoseWithCovariance& pose) {
+  Vector6 scale;
+  if (!pose.T_world_camera.is_finite() || !pose.covariance_with_gravity.allFinite() ||
+      !make_bounded_covariance(pose.covariance, &scale))
+    return false;
+  for (int i = 0; i < 6; ++i)
+    if (scale[i] < 1) pose.covariance_with_gravity.row(i) *= scale[i];
+  return true;
+}
+
+// g = R (z − β − noise), R being off by ω: ε = −[g]× ω − R (β + noise).
+void GravityFilter::start(const Vector3& z, const GravityPrior& reading, const Matrix<6, 3>& from_omega,
+                          PoseWithCovariance& from, PoseWithCovariance& current) {
+  const Matrix3& R = current.T_world_camera.R;
+  known_ = true;
+  down_ = R * z;
+  const Matrix3 G = skew(down_);
+  from.covariance_with_gravity.setZero();
+  current.covariance_with_gravity.setZero();
+  from.covariance_with_gravity.block<6, 3>(0, 0) = from_omega.lazyProduct(G);
+  current.covariance_with_gravity.block<6, 3>(0, 0) = current.covariance.block<6, 3>(0, 3).lazyProduct(G);
+  const Matrix3 offset = Matrix3::Identity() * (reading.offset_sigma * reading.offset_sigma);
+  covariance_.block<3, 3>(0, 0) =
+      turned(G, current.covariance.block<3, 3>(3, 3)) + turned(R, reading.covariance) + offset;
+  covariance_.block<3, 3>(0, 3) = -R.lazyProduct(offset);
+  covariance_.block<3, 3>(3, 0) = -offset.lazyProduct(R.transpose());
+  covariance_.block<3, 3>(3, 3) = offset;
+}
+
+// z = R_cw y + β + noise, y known: the pose is off by ω = [y]× R (β + noise), and not about y.
+void GravityFilter::level(const GravityPrior& reading, PoseWithCovariance& pose) {
+  const Vector3 y(0, 1, 0);
+  Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
+  // A camera that hangs upside down is rolled over, so that it looks where it looked.
+  const bool hangs = z.y() < 0;
+  Matrix3 roll = Matrix3::Identity();
+  if (hangs) roll(0, 0) = roll(1, 1) = -1;
+  z = roll * z;
+  // The least turn from z to y; V = [z × y]×.
+  const Matrix3 V = y * z.transpose() - z * y.transpose();
+  const Matrix3 R = renormalise(
+      (Matrix3::Identity() + V + Matrix3(V.lazyProduct(V)) / (1 + z.y())).lazyProduct(roll).eval());
+  const Matrix3 Y = skew(y);
+  const Matrix3 offset = Matrix3::Identity() * (reading.offset_sigma * reading.offset_sigma);
+  pose = PoseWithCovariance();
+  pose.T_world_camera.R = R;
+  pose.covariance.block<3, 3>(3, 3) = turned(Y, turned(R, reading.covariance + offset));
+  pose.covariance_with_gravity.block<3, 3>(3, 3) = Y.lazyProduct(R).eval().lazyProduct(offset);
+  *this = GravityFilter();
+  known_ = true;
+  down_ = y;
+  covariance_.block<3, 3>(3, 3) = offset;
+}
+
+void GravityFilter::read(const GravityPrior& reading, PoseWithCovariance& from, PoseWithCovariance& current) {
+  const Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
+  // Covariances of the errors of `from` and `current` with the orientation's of `current`.
+  const Matrix<6, 3> from_omega =
+      from.covariance.lazyProduct(carry(from, current).transpose()).eval().block<6, 3>(0, 3);
+  const Matrix<6, 3> current_omega = current.covariance.block<6, 3>(0, 3);
+  if (!known_) return start(z, reading, from_omega, from, current);
+
+  const Matrix3 R_camera_world = current.T_world_camera.R.transpose();
+  const Vector3 expected = R_camera_world * down_;
+  const Matrix<3, 2> U = frame_along(expected).block<3, 2>(0, 0);
+  const Matrix<2, 3> J_omega = U.transpose().lazyProduct(R_camera_world).eval().lazyProduct(skew(down_));
+  Matrix<2, 6> J_gravity;
+  J_gravity.block<2, 3>(0, 0) = U.transpose().lazyProduct(R_camera_world);
+  J_gravity.block<2, 3>(0, 3) = U.transpose();
+  // Covariances of each error with the residual.
+  const Matrix<6, 2> P_from = from_omega.lazyProduct(J_omega.transpose()) +
+                              from.covariance_with_gravity.lazyProduct(J_gravity.transpose());
+  const Matrix<6, 2> P_current = current_omega.lazyProduct(J_omega.transpose()) +
+                                 current.covariance_with_gravity.lazyProduct(J_gravity.transpose());
+  const Matrix<6, 3> gravity_omega = current.covariance_with_gravity.block<3, 6>(3, 0).transpose();
+  const Matrix<6, 2> P_gravity =
+      gravity_omega.lazyProduct(J_omega.transpose()) + covariance_.lazyProduct(J_gravity.transpose());
+  Matrix2 noise = U.transpose().lazyProduct(reading.covariance).eval().lazyProduct(U);
+  for (int i = 0; i < 2; ++i) noise(i, i) = std::max(noise(i, i), kLeastReadingVariance);
+  const Matrix2 S = symmetric<2>(J_omega.lazyProduct(P_current.block<3, 2>(3, 0)) +
+                                 J_gravity.lazyProduct(P_gravity) + noise);
+  const double determinant = S(0, 0) * S(1, 1) - S(0, 1) * S(0, 1);
+  if (!(determinant > 0)) return;
+  Matrix2 S_inverse;
+  S_inverse << S(1, 1), -S(0, 1), -S(0, 1), S(0, 0);
+  S_inverse /= determinant;
+  const Vector2 residual = U.transpose() * (z - expected - offset_);
+  const Vector2 weighted = S_inverse * residual;
+  if (!(residual.dot(weighted) <= kJolt) || expected.dot(z) < 0) return;
+
+  const Matrix<2, 6> gain_gravity = S_inverse.lazyProduct(P_gravity.transpose());
+  const auto correct = [&](PoseWithCovariance& pose, const Matrix<6, 2>& P) {
+    pose.T_world_camera = boxplus(pose.T_world_camera, P.lazyProduct(weighted));
+    pose.T_world_camera.R = renormalise(pose.T_world_camera.R);
+    const Matrix<2, 6> gain = S_inverse.lazyProduct(P.transpose());
+    pose.covariance = symmetric<6>(pose.covariance - P.lazyProduct(gain));
+    pose.covariance_with_gravity -= P.lazyProduct(gain_gravity);
+  };
+  correct(from, P_from);
+  correct(current, P_current);
+  const Vector6 correction = P_gravity.lazyProduct(weighted);
+  down_ += correction.head<3>();
+  down_ /= sqrt(down_.squaredNorm());
+  offset_ += correction.tail<3>();
+  covariance_ = symmetric<6>(covariance_ - P_gravity.lazyProduct(gain_gravity));
+  if (!make_covariance(covariance_)) forget();
+}
+
+}  // namespace plvo

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/tracking/row_time_compensation.hpp"
+
+namespace plvo {
+namespace {
+
+// A mean velocity over longer than this says nothing of the moment of exposure.
+constexpr double kLongestInterval_s = 0.2;
+
+// Since the last good frame, if this is the motion from the reference.
+Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
+  if (prior.velocity_known) return prior.velocity;
+  if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s))
+    return Vector6::Zero();
+  return boxminus(T_current_reference * prior.T_reference_last, Se3{}) / prior.seconds_since_last;
+}
+
+Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
+  if (!prior.reference_velocity_known) return recent;
+  if (!prior.reference_is_last) return prior.reference_velocity;
+  return 0.5 * (prior.reference_velocity + recent);
+}
+
+Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
+  if (!prior.last_velocity_known) return recent;
+  constexpr double kExtrapolated = 0.5;
+  return recent + 0.5 * kExtrapolated * (recent - prior.last_velocity);
+}
+
+Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,
+                            const Se3& T_current_reference) {
+  return {camera, reference_velocity(prior, recent_velocity(prior, T_current_reference)), 0};
+}
+
+std::span<const Line3d> carried(const Exposure& exposure, std::span<const Line3d> lines, Arena& scratch) {
+  const std::span<Line3d> copies = scratch.take<Line3d>("at mid-exposure", lines.size());
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    copies[i] = lines[i];
+    copies[i].a = exposure.at_mid_exposure(lines[i].a);
+    copies[i].b = exposure.at_mid_exposure(lines[i].b);
+  }
+  return copies;
+}
+
+std::span<const SurfaceSample> carried(const Exposure& exposure, std::span<const SurfaceSample> samples,
+                                       Arena& scratch) {
+  if (samples.empty()) return samples;
+  const std::span<SurfaceSample> copies = scratch.take<SurfaceSample>("at mid-exposure", samples.size());
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    copies[i] = samples[i];
+    copies[i].p = exposure.at_mid_exposure(samples[i].p);
+  }
+  return copies;
+}
+
+}  // namespace
+
+Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference) {
+  const Vector6 recent = recent_velocity(prior, T_current_reference);
+  return {camera, current_velocity(prior, recent), prior.depth_after_colour_s};
+}
+
+RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairPrior& prior,
+                                                   const Se3& T_current_reference,
+                                                   const FrameFeatures& reference, Arena& scratch) {
+  RowTimeCompensation result;
+  const std::span<const Point3d> points = reference.points.points.first(reference.points.keypoints.size());
+  result.reference_points = points;
+  result.current_exposure = current_exposure(camera, prior, T_current_reference);
+  if (!(camera.readout_s > 0)) return result;
+
+  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
+  const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    copies[i] = {exposure.at_mid_exposure(points[i].p), points[i].Sigma};
+  result.reference_points = copies;
+  return result;
+}
+
+RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairPrior& prior,
+                                         const Se3& T_current_reference, const FrameFeatures& reference,
+                                         const FrameFeatures& current, Arena& scratch) {
+  RowTimeCompensation result =
+      compensate_row_times_of_points(camera, prior, T_current_reference, reference, scratch);
+  result.reference_lines = reference.lines.lines_3d();
+  result.current_lines = current.lines.lines_3d();
+  result.reference_surfaces = reference.surfaces.samples.span();
+  if (!(camera.readout_s > 0)) return result;
+
+  const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
+  result.reference_lines = carried(exposure, reference.lines.lines_3d(), scratch);
+  result.current_lines = carried(result.current_exposure, current.lines.lines_3d(), scratch);
+  result.reference_surfaces = carried(exposure, result.reference_surfaces, scratch);
+  return result;
+}
+
+}  // namespace plvo

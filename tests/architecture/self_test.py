@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The checks of plvo must be able to fail: each is shown a made-up tree that breaks its rule."""
+import pathlib
+import tempfile
+import unittest
+
+import dependencies
+import figures
+import ran
+import rules
+
+LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
+
+
+class Tree:
+    """A small source tree in a temporary folder."""
+
+    def __init__(self, contents):
+        self._folder = tempfile.TemporaryDirectory()
+        self.root = pathlib.Path(self._folder.name)
+        for name, text in contents.items():
+            path = self.root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+
+    def __enter__(self):
+        return self.root
+
+    def __exit__(self, *_):
+        self._folder.cleanup()
+
+
+def include(*headers):
+    return LICENCE + "".join(f'#include "{header}"\n' for header in headers)
+
+
+GOOD = {
+    "core/plvo/base/status.hpp": include(),
+    "core/plvo/math/se3.hpp": include("plvo/base/status.hpp"),
+    "core/plvo/points/match.hpp": include("plvo/math/se3.hpp"),
+    "core/plvo/lines/match.hpp": include("plvo/base/status.hpp"),
+    "core/plvo/odometry/odometry.hpp": include("plvo/points/match.hpp", "plvo/lines/match.hpp", "plvo/base/status.hpp"),
+    "hal/plvo/hal/clock.hpp": include("plvo/base/status.hpp"),
+    "platform/plvo/replay/replay.hpp": include("plvo/hal/clock.hpp", "plvo/odometry/odometry.hpp"),
+    "tools/plvo/cli/main.cpp": include("plvo/replay/replay.hpp", "plvo/base/status.hpp"),
+}
+
+
+class Arrows(unittest.TestCase):
+    def found(self, extra):
+        with Tree({**GOOD, **extra}) as root:
+            return dependencies.check(root)
+
+    def test_a_good_tree_passes(self):
+        self.assertEqual(self.found({}), [])
+
+    def test_every_forbidden_arrow_is_named(self):
+        bad = {
+            "core/plvo/base/up.hpp": "plvo/math/se3.hpp",
+            "core/plvo/points/sideways.cpp": "plvo/lines/match.hpp",
+            "core/plvo/lines/sideways.cpp": "plvo/points/match.hpp",
+            "core/plvo/motion/sideways.cpp": "plvo/points/match.hpp",
+            "core/plvo/math/far_up.cpp": "plvo/odometry/odometry.hpp",
+            "core/plvo/base/to_hal.cpp": "plvo/hal/clock.hpp",
+            "core/plvo/odometry/to_platform.cpp": "plvo/replay/replay.hpp",
+            "hal/plvo/hal/to_platform.hpp": "plvo/replay/replay.hpp",
+            "platform/plvo/replay/to_tools.cpp": "plvo/cli/run.hpp",
+            "core/plvo/attic/new_room.cpp": "plvo/base/status.hpp",
+            "tools/plvo/cli/nowhere.cpp": "plvo/cellar/door.hpp",
+        }
+        for path, header in bad.items():
+            errors = self.found({path: include(header), "tools/plvo/cli/run.hpp": include()})
+            self.assertTrue(any(error.startswith(path + ":2:") for error in errors), (path, errors))
+
+    def test_roundabout_spellings_do_not_help(self):
+        for text in ('#include "../odometry/odometry.hpp"', '#include "odometry.hpp"', '# include <plvo/odometry/odometry.hpp>',
+                     '  #  include   "plvo/odometry/odometry.hpp"  // why not'):
+            self.assertTrue(self.found({"core/plvo/math/clever.cpp": LICENCE + text + "\n"}), text)
+
+    def test_a_comment_is_not_an_include(self):
+        text = LICENCE + '// #include "plvo/odometry/odometry.hpp"\n/* \n#include "plvo/lines/match.hpp"\n*/\n'
+        self.assertEqual(self.found({"core/plvo/math/prose.cpp": text}), [])
+
+    def test_a_circle_between_modules_of_one_floor_is_named(self):
+        errors = self.found({"platform/plvo/replay/a.cpp": include("plvo/host/b.hpp"),
+                             "platform/plvo/host/b.hpp": include("plvo/replay/replay.hpp")})
+        self.assertTrue(any("cycle" in error for error in errors), errors)
+
+
+class Rules(unittest.TestCase):
+    def found(self, name, text):
+        with Tree({name: text}) as root:
+            return rules.check(root)
+
+    def test_a_good_file_passes(self):
+        text = LICENCE + ('// new and delete, malloc() and std::vector in prose\n#include <array>\n#include <Eigen/Core>\n'
+                          'const char* text = "throw";\nA(const A&) = delete;\nnew (first + i) T;\ndouble y = sqrt(x);\n')
+        self.assertEqual(self.found("core/plvo/base/a.hpp", text), [])
+
+    def test_a_missing_licence_is_named(self):
+        for name in ("core/plvo/base/a.hpp", "tools/x.py", "platform/CMakeLists.txt", "tests/a_test.cpp", "tools/setup/x.sh"):
+            self.assertTrue(self.found(name, "\n"), name)
+
+    def test_every_forbidden_word_is_named(self):
+        for line in ("#include <vector>", "#include <cmath>", "#include <iostream>", "#include <stdlib.h>", "p = malloc(8);",
+                     "free(p);", "int* p = new int;", "auto p = new T[3];", "delete p;", "throw 1;", "try {", "printf(text);",
+                     "std::vector<int> v;", "std::string s;", "std::function<void()> f;", "std::stable_sort(a, b);", "x = std::sin(y);",
+                     "x = std::pow(y, 2);", "dynamic_cast<A*>(b);", "abort();", "thread_local int x;", "__m128 v;"):
+            self.assertTrue(self.found("core/plvo/base/a.cpp", LICENCE + line + "\n"), line)
+            self.assertTrue(self.found("hal/plvo/hal/a.hpp", LICENCE + line + "\n"), line)
+
+    def test_other_floors_may(self):
+        self.assertEqual(self.found("platform/plvo/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
+
+    def test_a_path_of_one_machine_is_named(self):
+        self.assertTrue(self.found("tools/plvo/cli/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
+
+
+def entry(name, status="run", output=""):
+    return f'<testcase name="{name}" status="{status}"><system-out>{output}</system-out></testcase>'
+
+
+SKIPPED = entry("a_test", "notrun", """[  SKIPPED ] A.Here (12 ms)
+[  PASSED  ] 3 tests.
+[  SKIPPED ] 2 tests, listed below:
+[  SKIPPED ] A.Here
+[  SKIPPED ] Kinds/A.There/0
+""")
+
+
+class Ran(unittest.TestCase):
+    def errors(self, entries, may_skip=(), names=()):
+        return list(ran.check(f"<testsuite>{''.join(entries)}</testsuite>", may_skip, names))
+
+    def test_what_ran_passes(self):
+        self.assertEqual(self.errors([entry("a_test"), entry("fuzz_bag", output="no test was skipped")], names=["fuzz_bag"]), [])
+
+    def test_what_was_not_built_is_named(self):
+        self.assertEqual(self.errors([entry("golden_test")], names=["golden_test", "fuzz_bag"]), ["fuzz_bag did not run"])
+
+    def test_what_was_skipped_did_not_run(self):
+        self.assertIn("a_test did not run", self.errors([entry("a_test", "notrun")], may_skip=["a_test"], names=["a_test"]))
+
+    def test_a_skip_that_the_list_does_not_name_is_named(self):
+        errors = self.errors([SKIPPED], may_skip=["A.Here", "a_test"])
+        self.assertEqual(len(errors), 1, errors)
+        self.assertTrue(errors[0].startswith("Kinds/A.There/0 was skipped (a_test)"), errors)
+        self.assertEqual(self.errors([SKIPPED], may_skip=["A.Here", "*/A.There/*"]), [])
+
+    def test_so_are_programs_without_googletest_and_python_tests(self):
+        for skipped in (entry("b_test", "notrun", "SKIPPED: no Chromium here"), entry("b_test", "disabled"),
+                        entry("b_test", output="sss  [100%]\n3 skipped in 0.01s"),
+                        entry("b_test", output="..s  [100%]\n2 passed, 1 skipped in 0.01s")):
+            self.assertEqual(len(self.errors([skipped])), 1, skipped)
+            self.assertEqual(self.errors([skipped], may_skip=["b_test"]), [])
+
+    def test_the_list_holds_where_it_says(self):
+        text = "# why\nalways A.A  # why\nasan *.B\nno-shared C.C\n"
+        self.assertEqual(ran.allowed(text, {"always", "release"}), {"A.A"})
+        self.assertEqual(ran.allowed(text, {"always", "asan", "no-shared"}), {"A.A", "*.B", "C.C"})
+
+    def test_every_row_of_the_list_is_a_test(self):
+        tests = pathlib.Path(__file__).parent.parent
+        text = "".join(path.read_text(encoding="utf-8") for path in tests.rglob("*") if path.suffix in (".cpp", ".txt")
+                       and path != ran.ALLOWED)
+        presets = ("asan", "tsan", "armhf", "armhf-neon", "no-shared", "no-root", "no-mount", "always")
+        for name in ran.allowed(ran.ALLOWED.read_text(encoding="utf-8"), presets):
+            suite, _, test = name.removeprefix("*/").partition(".")
+            self.assertRegex(text, rf"{suite}, {test}\)" if test not in ("", "*") else rf"\b{suite}\b", name)
+
+
+README = """
+| sequence | system | mm per s | ° per s | mm per frame | ° per frame |
+|---|---|---:|---:|---:|---:|
+| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 |
+
+| site | light | path m | **plvo, both** |
+|---|---|---:|---:|
+| hall | constant | 3.7 | 7.2 |
+"""
+BENCH = """
+| site | light | path m | **plvo, both** | others |
+|---|---|---:|---:|---:|
+| hall | constant | 3.7 | 7.2 | 9 |
+
+| sequence | system | mm/frame | °/frame | mm/s | °/s |
+|---|---|---:|---:|---:|---:|
+| rpy | plvo-both | 2.8 | 0.26 | 7.5 | 0.89 |
+"""
+
+
+class Figures(unittest.TestCase):
+    def found(self, readme=README, bench=BENCH, **more):
+        files = {"README.md": readme, "docs/bench.md": bench}
+        with Tree({**files, **{f"docs/{name}.md": text for name, text in more.items()}}) as root:
+            return figures.check(root)
+
+    def test_equal_copies_and_a_page_that_refers_pass(self):
+        self.assertEqual(self.found(memory="`track` takes 24,516 bytes of stack", porting="a [stack](memory.md#stack)"), [])
+
+    def test_a_figure_on_another_page_is_named(self):
+        for text in ("3. a stack: on a Cortex-M7\n20.9 KiB for `track`", "118 kB of flash", "code size (121 kB)",
+                     "`Limits::tiny()` (489 KiB)", "0.4 of the\ninstructions", "a frame of 320×240 is 52 million instructions",
+                     "The covariance is honest about it"):
+            errors = self.found(porting="\n" + text + "\n")
+            self.assertEqual(len(errors), 1, (text, errors))
+            self.assertTrue(errors[0].startswith("docs/porting.md:2:"), errors)
+
+    def test_a_copy_that_differs_is_named(self):
+        for bench in (BENCH.replace("7.2", "7.3"), BENCH.replace("| 7.5", "| 7.6"), BENCH.replace("0.26 ", "0.27 ")):
+            self.assertEqual(len(self.found(bench=bench)), 1, bench)
+
+    def test_nothing_compared_is_a_failure(self):
+        self.assertTrue(self.found(readme="", bench=""))
+
+
+if __name__ == "__main__":
+    unittest.main()

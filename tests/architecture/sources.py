@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the checks of plvo share: which files there are, and what of a C++ file is code."""
+import pathlib
+import re
+
+LAYERS = ("core", "hal", "platform", "tools", "tests")
+CODE = (".hpp", ".cpp", ".h", ".c")
+SCRIPTS = (".py", ".sh", ".cmake")
+
+
+def files(root, layers=LAYERS, suffixes=CODE):
+    """Every file below these layers, in a fixed order."""
+    root = pathlib.Path(root)
+    for layer in layers:
+        for path in sorted((root / layer).rglob("*")):
+            if path.is_file() and (path.suffix in suffixes or path.name in suffixes):
+                yield path
+
+
+_NOISE = re.compile(
+    r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
+
+
+def code_only(text):
+    """The text with comments and literals blanked; line numbers stay."""
+    def blank(match):
+        token = match.group(0)
+        if token[0] == '"':
+            return '""'
+        return "\n" * token.count("\n") or " "
+    return _NOISE.sub(blank, text)
+
+
+def includes(text):
+    """(line number, 'quote' or 'angle', header) of every #include outside comments."""
+    without_comments = re.sub(r"//[^\n]*|/\*.*?\*/", lambda m: "\n" * m.group(0).count("\n"), text, flags=re.S)
+    for number, line in enumerate(without_comments.splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', line)
+        if match:
+            yield number, ("quote" if match.group(1) else "angle"), match.group(1) or match.group(2)

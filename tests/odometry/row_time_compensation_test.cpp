@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera that turns ever faster looks at points through a rolling shutter. What each row saw is computed
+// from the motion itself; the features at mid-exposure must then agree with one motion between the two
+// frames.
+#include "plvo/odometry/tracking/row_time_compensation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 30;
+constexpr double kReadout_s = 0.0261;
+constexpr int kPoints = 200;
+
+// T_camera(t)_world: angular velocity and speed change at a constant rate.
+struct Motion {
+  Vector3 omega, omega_rate, v;
+  Se3 at(double t) const { return {rotation_exp(t * omega + 0.5 * t * t * omega_rate), t * v}; }
+};
+
+// T_to_from.
+Se3 motion_between(const Motion& motion, double from, double to) {
+  return motion.at(to) * motion.at(from).inverse();
+}
+
+struct Frame {
+  std::vector<std::byte> memory = std::vector<std::byte>(1 << 22);
+  FrameFeatures features;
+  Frame() {
+    Arena arena(memory);
+    features.allocate(arena, Limits::vga());
+  }
+};
+
+// What the frame taken at time t sees of the world's points: each at its own row's moment.
+void see(const CameraModel& camera, const Motion& motion, double t, const std::vector<Vector3>& world,
+         FrameFeatures& features) {
+  features.points.keypoints.clear();
+  features.lines.segments.clear();
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    double delay = 0;
+    Vector3 p;
+    for (int step = 0; step < 20; ++step) {
+      p = motion.at(t + delay) * world[i];
+      delay = kReadout_s * (project(camera.pinhole, p).y() / (camera.height - 1) - 0.5);
+    }
+    features.points.keypoints.push_back({});
+    features.points.points[i] = {p, Matrix3::Identity()};
+  }
+}
+
+class RowTimeCompensationOfAPair : public testing::Test {
+ protected:
+  RowTimeCompensationOfAPair() {
+    camera_.readout_s = kReadout_s;
+    Random random(3);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * static_cast<double>(random.below(1'000'001)) * 1e-6;
+    };
+    for (int i = 0; i < kPoints; ++i)
+      world_.push_back(back_project(camera_.pinhole, uniform(150, 500), uniform(100, 380), uniform(1, 4)));
+  }
+
+  PairPrior prior(const Motion& motion) const {
+    PairPrior prior;
+    prior.seconds_since_last = kFrame_s;
+    prior.reference_velocity = boxminus(motion.at(0) * motion.at(-kFrame_s).inverse(), Se3{}) / kFrame_s;
+    prior.reference_velocity_known = true;
+    prior.last_velocity = prior.reference_velocity;
+    prior.last_velocity_known = true;
+    return prior;
+  }
+
+  // RMS distance (m) of the current points from where the motion puts the reference's.
+  double disagreement(const Motion& motion, const PairPrior& prior, const CameraModel& camera) {
+    see(camera_, motion, 0, world_, reference_.features);
+    see(camera_, motion, kFrame_s, world_, current_.features);
+    const Se3 T = motion.at(kFrame_s) * motion.at(0).inverse();
+    std::vector<std::byte> block(1 << 20);
+    Arena scratch(block);
+    const RowTimeCompensation features =
+        compensate_row_times(camera, prior, T, reference_.features, current_.features, scratch);
+    double sum = 0;
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      const Vector3 now = features.current_exposure.at_mid_exposure(current_.features.points.points[i].p);
+      sum += (now - T * features.reference_points[i].p).squaredNorm();
+    }
+    return std::sqrt(sum / kPoints);
+  }
+
+  CameraModel camera_;
+  std::vector<Vector3> world_;
+  Frame reference_, current_;
+};
+
+TEST_F(RowTimeCompensationOfAPair, ASteadyTurnIsTakenOutWhole) {
+  const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
+  const double raw = disagreement(steady, prior(steady), CameraModel{});
+  const double corrected = disagreement(steady, prior(steady), camera_);
+  EXPECT_LT(corrected, 1e-4);
+  EXPECT_LT(corrected, 0.1 * raw);
+}
+
+TEST_F(RowTimeCompensationOfAPair, OfAChangeOfSpeedThreeQuartersAre) {
+  const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
+  const double raw = disagreement(faster, prior(faster), CameraModel{});
+  const double corrected = disagreement(faster, prior(faster), camera_);
+  EXPECT_GT(raw, 1e-3) << "the shutter must matter for the test to mean something";
+  EXPECT_LT(corrected, 0.35 * raw);
+}
+
+TEST_F(RowTimeCompensationOfAPair, TheFirstPairOfAllKnowsOneVelocityOnly) {
+  const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
+  PairPrior first = prior(steady);
+  first.reference_velocity_known = first.last_velocity_known = false;
+  EXPECT_LT(disagreement(steady, first, camera_), 1e-4);
+}
+
+TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
+  // The last good frame stood half-way; since then the turn has become faster.
+  const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
+  PairPrior keyframe = prior(faster);
+  keyframe.reference_is_last = false;
+  keyframe.seconds_since_last = kFrame_s / 2;
+  keyframe.T_reference_last = motion_between(faster, kFrame_s / 2, 0);
+  keyframe.last_velocity = boxminus(motion_between(faster, 0, kFrame_s / 2), Se3{}) / (kFrame_s / 2);
+  const double h = 1e-4;
+  keyframe.reference_velocity = boxminus(motion_between(faster, -h, h), Se3{}) / (2 * h);
+  EXPECT_LT(disagreement(faster, keyframe, camera_), 0.35 * disagreement(faster, keyframe, CameraModel{}));
+}
+
+TEST_F(RowTimeCompensationOfAPair, AfterALongGapNobodyGuesses) {
+  const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
+  PairPrior late = prior(steady);
+  late.seconds_since_last = 1;
+  late.reference_velocity_known = late.last_velocity_known = false;
+  EXPECT_EQ(disagreement(steady, late, camera_), disagreement(steady, late, CameraModel{}));
+}
+
+}  // namespace
+}  // namespace plvo

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mask of a keypoint's own surface against its definition: a pixel belongs to it when every pixel of its
+// level within two has a depth that differs by less than 6 %.
+#include "plvo/points/depth_mask.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "plvo/base/random.hpp"
+#include "whole_window.hpp"
+
+namespace plvo {
+namespace {
+
+using test::kWholeWindow;
+
+constexpr int kSceneWidth = 96;
+constexpr int kSceneHeight = 80;
+constexpr double kUnit = 0.001;  // m
+
+// A depth image made from a function of the pixel, in metres, 0 for none; no lens.
+struct Scene {
+  template <typename Function>
+  explicit Scene(Function depth_m) : units(kSceneWidth * kSceneHeight) {
+    for (int y = 0; y < kSceneHeight; ++y)
+      for (int x = 0; x < kSceneWidth; ++x)
+        units[static_cast<std::size_t>(y * kSceneWidth + x)] =
+            static_cast<std::uint16_t>(std::floor(depth_m(x, y) / kUnit + 0.5));
+  }
+  DepthSampler sampler() const {
+    return {{units.data(), kSceneWidth, kSceneHeight, kSceneWidth, kUnit}, map, {}};
+  }
+  double at(int x, int y) const {
+    if (x < 0 || y < 0 || x >= kSceneWidth || y >= kSceneHeight) return 0;
+    return units[static_cast<std::size_t>(y * kSceneWidth + x)] * kUnit;
+  }
+  std::vector<std::uint16_t> units;
+  UndistortionMap map;
+};
+
+Keypoint keypoint_at(double u, double v, int level) {
+  Keypoint keypoint;
+  keypoint.u = static_cast<float>(u);
+  keypoint.v = static_cast<float>(v);
+  keypoint.level = static_cast<std::uint8_t>(level);
+  return keypoint;
+}
+
+// Depth is exposed with colour here.
+WindowMask depth_mask_of(const DepthSampler& depth, const Keypoint& keypoint, double depth_m) {
+  const Vector2 centre(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
+  return depth_mask(depth, centre, depth_m, keypoint.level);
+}
+
+WindowMask slow_mask(const Scene& scene, const Keypoint& keypoint, double depth_m) {
+  constexpr int kRim = 2;
+  const int step = 1 << keypoint.level;
+  // A pixel of the keypoint's level, so many columns and rows from the keypoint.
+  const auto on_surface = [&](int column, int row) {
+    const int x = static_cast<int>(std::floor(static_cast<double>(keypoint.u) + column * step + 0.5));
+    const int y = static_cast<int>(std::floor(static_cast<double>(keypoint.v) + row * step + 0.5));
+    return std::fabs(scene.at(x, y) - depth_m) < 0.06 * depth_m;
+  };
+  WindowMask mask{};
+  for (int r = 0; r < kWindowRows; ++r)
+    for (int c = 0; c < kWindowColumns; ++c) {
+      bool all = true;
+      for (int dy = -kRim; dy <= kRim; ++dy)
+        for (int dx = -kRim; dx <= kRim; ++dx)
+          all = all && on_surface(c - kWindowReach + dx, r - kWindowReach + dy);
+      if (all)
+        mask[static_cast<std::size_t>(r)] =
+            static_cast<std::uint8_t>(mask[static_cast<std::size_t>(r)] | 1 << c);
+    }
+  return mask;
+}
+
+int count(const WindowMask& mask) {
+  int n = 0;
+  for (const std::uint8_t row : mask)
+    for (int c = 0; c < kWindowColumns; ++c) n += row >> c & 1;
+  return n;
+}
+
+TEST(DepthMask, IsWhatItsDefinitionSays) {
+  // An edge aslant, a gap without depth along a part of it, single holes, and a slope.
+  const Scene scene([](int x, int y) {
+    if (x + y / 3 > 55 && x + y / 3 < 59 && y > 30) return 0.0;
+    if ((x * 7 + y * 13) % 211 == 0) return 0.0;
+    return x + y / 3 < 57 ? 1.0 + 0.004 * x : 1.7 - 0.003 * y;
+  });
+  const DepthSampler sampler = scene.sampler();
+  Random random(3);
+  int whole = 0, empty = 0, partly = 0;
+  for (int trial = 0; trial < 8000; ++trial) {
+    // As close to the border as the window's centre gets.
+    const double u = (kSceneWidth - 1.0) * random.uniform();
+    const double v = (kSceneHeight - 1.0) * random.uniform();
+    const Keypoint keypoint = keypoint_at(u, v, trial % 3);
+    const double depth_m = scene.at(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
+    if (depth_m == 0) continue;
+    const WindowMask mask = depth_mask_of(sampler, keypoint, depth_m);
+    ASSERT_EQ(mask, slow_mask(scene, keypoint, depth_m))
+        << "u " << u << ", v " << v << ", level " << trial % 3;
+    ++(mask == kWholeWindow ? whole : count(mask) == 0 ? empty : partly);
+  }
+  // All that may happen did.
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(partly, 100);
+  EXPECT_GT(empty, 100);
+}
+
+TEST(DepthMask, FarFromAnyEdgeItIsTheWholeWindow) {
+  // The edge is just beyond the window and its rim: columns −6 … 5 of the level.
+  for (int level : {0, 1, 2}) {
+    const int step = 1 << level;
+    const int u = 40;
+    const Scene scene([&](int x, int) { return x <= u + 5 * step ? 1.0 : 2.0; });
+    EXPECT_EQ(depth_mask_of(scene.sampler(), keypoint_at(u, 40, level), 1.0), kWholeWindow) << level;
+    // One column nearer it takes the window's last column away, and no more.
+    WindowMask but_last;
+    but_last.fill(0x7f);
+    EXPECT_EQ(depth_mask_of(scene.sampler(), keypoint_at(u + step, 40, level), 1.0), but_last) << level;
+  }
+}
+
+TEST(DepthMask, WhatHasNoDepthIsAnotherSurface) {
+  const Scene hole([](int x, int y) { return x == 40 && y == 40 ? 0.0 : 1.0; });
+  // The hole and the rim around it: 25 pixels.
+  const WindowMask mask = depth_mask_of(hole.sampler(), keypoint_at(40, 40, 0), 1.0);
+  EXPECT_EQ(count(mask), kWindowColumns * kWindowRows - 25);
+  const Scene blind([](int, int) { return 0.0; });
+  EXPECT_EQ(depth_mask_of(blind.sampler(), keypoint_at(40, 40, 0), 1.0), WindowMask{});
+}
+
+TEST(DepthMask, BesideTheImageThereIsNone) {
+  // Everything at one depth: what is missing of the mask lies outside, or within two pixels of it.
+  const Scene wall([](int, int) { return 1.5; });
+  for (int level : {0, 1, 2})
+    for (int u = 0; u < 7 << level; ++u) {
+      const Keypoint keypoint = keypoint_at(u, 40, level);
+      ASSERT_EQ(depth_mask_of(wall.sampler(), keypoint, 1.5), slow_mask(wall, keypoint, 1.5))
+          << "u " << u << ", level " << level;
+    }
+}
+
+}  // namespace
+}  // namespace plvo
