@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong while `plvo live` runs: it says so, waits, and goes on when frames do; files stay whole.
+// Faults while `plvo live` runs: it reports the fault, waits, and continues when frames arrive again; its
+// files stay complete.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -20,7 +21,7 @@ long count_of(const std::string& text, const std::string& words) {
   return count;
 }
 
-// Lines from a Unix socket, each as soon as it is whole.
+// Reads lines from a Unix socket, each as soon as it is complete.
 class LineReader {
  public:
   explicit LineReader(const std::string& path) : fd_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -53,17 +54,17 @@ class CliLiveFaults : public LiveCommand {
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
     wait_for_rows(first_rows);
   }
-  // Until the statistics have so many frames.
+  // Waits until the statistics contain this number of frames.
   void wait_for_rows(long least) const {
     EXPECT_TRUE(comes_true([&] { return rows() >= least; })) << err();
   }
-  // Whether the newest frame gets this state at some time.
+  // Waits until the newest frame has this state; false if it does not happen in time.
   bool reaches(const std::string& state) const {
     return comes_true([&] { return !states().empty() && states().back() == state; });
   }
   long rows() const { return lines_in(read_file(path("s.csv"))) - 1; }
   nlohmann::json summary() const { return nlohmann::json::parse(read_file(path("j.json"))); }
-  // The third column of the statistics.
+  // The third column of the statistics: the states.
   std::vector<std::string> states() const {
     std::vector<std::string> states;
     std::istringstream rows(read_file(path("s.csv")));
@@ -127,13 +128,13 @@ TEST_F(CliLiveFaults, SilenceOfOneStreamOrBoth) {
     tell_device("run");
     wait_for_rows(before + 5);
   }
-  // The pattern has moved on meanwhile: it may be lost and start anew first.
+  // The pattern has moved on in the meantime: tracking may be lost and start again first.
   EXPECT_TRUE(reaches("tracking"));
   EXPECT_EQ(interrupt(), 0) << err();
   expect_whole_files();
 }
 
-TEST_F(CliLiveFaults, CoveredCameraIsLostAndComesBack) {
+TEST_F(CliLiveFaults, CoveredCameraIsLostAndRecovers) {
   start_live();
   for (const char* cover : {"dark", "zero_depth"}) {
     tell_device(std::string(cover) + " 1");
@@ -149,8 +150,8 @@ TEST_F(CliLiveFaults, CoveredCameraIsLostAndComesBack) {
   expect_whole_files();
 }
 
-// A robot that reads the poses tells a camera that stalls from a program that hangs.
-TEST_F(CliLiveFaults, ThePoseStreamHasAHeartbeatThatNamesTheCamerasState) {
+// The heartbeat lets a robot that reads the poses distinguish a camera that stalls from a program that hangs.
+TEST_F(CliLiveFaults, HeartbeatOfThePoseStreamNamesTheCameraState) {
   start_live("--stream unix:" + path("poses"));
   LineReader robot(path("poses"));
   const auto next = [&robot] { return nlohmann::json::parse(robot.next()); };
@@ -167,7 +168,7 @@ TEST_F(CliLiveFaults, ThePoseStreamHasAHeartbeatThatNamesTheCamerasState) {
     ASSERT_EQ(beat["heartbeat"], true) << beat;
     EXPECT_EQ(beat["state"], "stalled");
     EXPECT_TRUE(contains(beat["message"], "no frames from Virtual RGB-D")) << beat;
-    // At most two a second, however busy the machine.
+    // At most two a second, whatever the load of the machine.
     EXPECT_GE(beat["seconds_since_frame"].get<double>(), silent_s + (i == 0 ? 0.5 : 0.49)) << beat;
     silent_s = beat["seconds_since_frame"];
   }
@@ -184,7 +185,7 @@ TEST_F(CliLiveFaults, ThePoseStreamHasAHeartbeatThatNamesTheCamerasState) {
 }
 
 TEST_F(CliLiveFaults, DiskFullWhileRecordingEndsTheRecordingAlone) {
-  // No file may grow beyond 8 KiB: black images fit, a test pattern does not.
+  // The size limit of a file is 8 KiB: black images fit, a test pattern does not.
   start("live --stats " + path("s.csv") + " --record " + path("walk") + " --json " + path("j.json"),
         device("dark 1;zero_depth 1"), "ulimit -f 16; ");
   EXPECT_TRUE(comes_true([&] { return lines_in(read_file(path("walk/rgb.txt"))) >= 8; })) << err();
@@ -205,7 +206,8 @@ TEST_F(CliLiveFaults, DiskFullWhileRecordingEndsTheRecordingAlone) {
 }
 
 TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
-  // Each frame is shown when the one before is done: none is passed over, however busy the machine.
+  // The device shows each frame when the previous one is done, so no frame is skipped, whatever the load of
+  // the machine.
   start_live("--every-frame --view 0 --stream 0", device("allow 1"), 1);
   std::vector<int> sockets;
   for (const char* word : {"live view: http://127.0.0.1:", "poses: 127.0.0.1:"}) {
@@ -224,10 +226,10 @@ TEST_F(CliLiveFaults, ViewersAndReadersThatNeverReadCostNothing) {
       const std::string ask =
           "GET /update?after=0&image=0 HTTP/1.1\r\nHost: localhost:" + std::to_string(port) + "\r\n\r\n";
       for (int n = 0; n < 20; ++n) ::send(fd, ask.data(), ask.size(), MSG_NOSIGNAL);
-      sockets.push_back(fd);  // and nobody ever reads from it
+      sockets.push_back(fd);  // never read from
     }
   }
-  // A frame that waited for one of them would wait for ever.
+  // A frame that waited for one of these readers would wait forever.
   for (long row = 2; row <= 61; ++row) {
     tell_device("allow 1");
     wait_for_rows(row);

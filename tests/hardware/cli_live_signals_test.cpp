@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// However `plvo live` and `plvo record` are told to end - Ctrl-C, a supervisor's SIGTERM, a terminal that
-// closes - their files are whole. With the real program, signals and the virtual device.
+// `plvo live` and `plvo record` leave complete files after each kind of termination: Ctrl-C, a supervisor's
+// SIGTERM, a terminal that closes. Uses the real program, real signals and the virtual device.
 #include <nlohmann/json.hpp>
 
 #include "live_command.hpp"
@@ -20,7 +20,7 @@ class CliLiveSignals : public LiveCommand {
   bool frames_reach(long count) const {
     return comes_true([&] { return lines_in(read_file(path("s.csv"))) > count; });
   }
-  // Every file says the same, to its last line.
+  // All files agree, up to their last line.
   void expect_whole_files() const {
     const nlohmann::json json = nlohmann::json::parse(read_file(path("j.json")));
     EXPECT_EQ(json["interrupted"], true);
@@ -33,7 +33,7 @@ class CliLiveSignals : public LiveCommand {
     EXPECT_FALSE(std::filesystem::exists(path("poses"))) << "the socket is tidied away";
     expect_whole_recording(json["recording"]["frames"]);
   }
-  // What the recording lists is there, and can be read.
+  // All files that the recording lists exist and are readable.
   void expect_whole_recording(long frames) const {
     EXPECT_EQ(lines_in(read_file(path("walk/rgb.txt"))), frames + 1);
     EXPECT_EQ(lines_in(read_file(path("walk/depth.txt"))), frames + 1);
@@ -59,7 +59,7 @@ TEST_F(CliLiveSignals, Termination) {
   expect_whole_files();
 }
 
-TEST_F(CliLiveSignals, ATerminalThatClosesSaysItTwice) {
+TEST_F(CliLiveSignals, RepeatedSignalsOfAClosingTerminal) {
   start_live();
   send(SIGHUP);
   send(SIGHUP);
@@ -69,7 +69,7 @@ TEST_F(CliLiveSignals, ATerminalThatClosesSaysItTwice) {
   expect_whole_files();
 }
 
-TEST_F(CliLiveSignals, NohupOutlivesItsTerminal) {
+TEST_F(CliLiveSignals, NohupIgnoresHangup) {
   start_live("trap '' HUP; ");
   send(SIGHUP);
   const long before = lines_in(read_file(path("s.csv")));
@@ -79,7 +79,7 @@ TEST_F(CliLiveSignals, NohupOutlivesItsTerminal) {
   expect_whole_files();
 }
 
-TEST_F(CliLiveSignals, RecordKeepsWholeFilesToo) {
+TEST_F(CliLiveSignals, RecordLeavesCompleteFiles) {
   for (const int signal : {SIGHUP, SIGTERM}) {
     std::filesystem::remove_all(path("walk"));
     start("record " + path("walk"));

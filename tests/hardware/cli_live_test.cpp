@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo live` over the real OpenNI2 and a virtual device: the same poses as from files, byte for byte, and
-// what each way of ending says.
+// `plvo live` with the real OpenNI2 and a virtual device: the poses equal those from files, byte for byte.
+// Also tests the output of each way of ending.
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -18,7 +18,7 @@ const std::string kSmall = "--mode 320x240 ";
 
 class CliLive : public LiveCommand {
  protected:
-  // The same 12 frames of the simulator for the device (raw) and as a folder (walk).
+  // The same 12 simulated frames for the device (raw) and as a folder (walk).
   void make_walk() {
     const CommandResult made =
         run_command(std::string(PLVO_VIRTUAL_FRAMES_BINARY) + ' ' + path("raw") + ' ' + path("walk") + " 12");
@@ -28,8 +28,8 @@ class CliLive : public LiveCommand {
     return " --quiet --out " + path(name) + ".txt --covariance " + path(name) + ".cov --motions " +
            path(name) + ".mot";
   }
-  // live over the 12 frames, each shown when the pose of the one before is out: none is lost, however busy
-  // the machine. The poses go to standard output.
+  // Runs live on the 12 frames. The device shows each frame when the pose of the previous one has been
+  // written, so none is lost, whatever the load of the machine. The poses go to standard output.
   int live_over_walk(const std::string& arguments) {
     start("live " + kSmall + "--calibration " + path("walk/calibration.txt") +
               " --every-frame --frames 12 --stream - " + arguments,
@@ -59,7 +59,7 @@ TEST_F(CliLive, GivesTheSamePosesAsRunOnTheSameFramesFromFiles) {
   ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
   ASSERT_EQ(live_over_walk("--record " + path("again") + files("live")), 0) << err();
   expect_same("files", "live", 12);
-  // And what the session recorded meanwhile gives them once more.
+  // The recording of the session gives the same poses again.
   ASSERT_EQ(plvo("run " + path("again") + files("again")).exit_code, 0);
   expect_same("files", "again", 12);
 }
@@ -94,7 +94,7 @@ TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
   EXPECT_EQ(poses, 12);
 }
 
-TEST_F(CliLive, ADepthCameraInTheCalibrationIsForRecordings) {
+TEST_F(CliLive, LiveRefusesADepthCameraInTheCalibration) {
   plvo::test::write_file(
       path("c.txt"),
       "262 262 159.5 119.5 1000\ndepth_fx 262\ndepth_fy 262\ndepth_cx 159.5\ndepth_cy 119.5\n");
@@ -118,7 +118,7 @@ TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {
   expect_same("oni", "folder", poses);
 }
 
-TEST_F(CliLive, StandardOutputCarriesNothingButPosesAndHeartbeatsWhenItIsTheStream) {
+TEST_F(CliLive, StandardOutputAsStreamCarriesOnlyPosesAndHeartbeats) {
   const CommandResult r = plvo("live --frames 8 --every-frame --stream - --stream unix:" + path("socket"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   std::istringstream lines(r.out);
@@ -126,7 +126,7 @@ TEST_F(CliLive, StandardOutputCarriesNothingButPosesAndHeartbeatsWhenItIsTheStre
   int poses = 0;
   for (std::string line; std::getline(lines, line);) {
     const auto json = nlohmann::json::parse(line);
-    if (json.contains("heartbeat")) continue;  // where frames take their time
+    if (json.contains("heartbeat")) continue;  // appears if frames take long
     EXPECT_GT(json["stamp_ns"].get<std::int64_t>(), last_ns);
     last_ns = json["stamp_ns"];
     ++poses;
@@ -144,7 +144,7 @@ TEST_F(CliLive, EndsWhenItsOnlyReaderLeaves) {
   EXPECT_FALSE(contains(r.err, "time                   30")) << "long before its time: " << r.err;
 }
 
-TEST_F(CliLive, KeepsABudget) {
+TEST_F(CliLive, FrameBudgetReducesTheFeatures) {
   const CommandResult r = plvo("live --frames 8 --every-frame --frame-budget 0.001 --json " + path("j"));
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(nlohmann::json::parse(read_file(path("j")))["fewer_features"]["frames"], 7);
@@ -156,15 +156,16 @@ TEST_F(CliLive, ChosenRateDropsOldFramesAndCountsThem) {
   const auto json = nlohmann::json::parse(read_file(path("j")));
   const int frames = json["frames"], dropped = json["dropped"], captured = json["camera_frames"];
   EXPECT_EQ(frames, 8);
-  // Late ones are made up for at once, by one frame: every second interval at least has its length.
+  // A late frame is compensated at once by the next one, so at least every second interval has its full
+  // length.
   EXPECT_GE(json["seconds"].get<double>(), 0.6) << "eight frames at five a second";
   EXPECT_GT(dropped, 0) << "the newest frame wins";
-  // What was captured was tracked, dropped, or lies in the ring (one slot is being written, one ready).
+  // Each captured frame was tracked, was dropped, or lies in the ring (one slot being written, one ready).
   EXPECT_LE(frames + dropped, captured);
   EXPECT_GE(frames + dropped, captured - 4);
 }
 
-TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
+TEST_F(CliLive, ErrorsGiveAnExitCodeAndOneLine) {
   const auto expect = [](const CommandResult& r, int code, const std::string& words) {
     EXPECT_EQ(r.exit_code, code) << words << ": " << r.err;
     const std::size_t at = r.err.rfind("plvo: error: ");
@@ -190,7 +191,7 @@ TEST_F(CliLive, ExitCodesAndOneLineSayWhatIsWrong) {
   EXPECT_EQ(plvo("live --depth-scale 1000").exit_code, 2);
 }
 
-TEST_F(CliLive, AnAddressInUseCostsNoOldTrajectory) {
+TEST_F(CliLive, AddressInUseKeepsTheOldTrajectory) {
   const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in here{};
   here.sin_family = AF_INET;
@@ -210,7 +211,7 @@ TEST_F(CliLive, AnAddressInUseCostsNoOldTrajectory) {
   ::close(fd);
 }
 
-TEST_F(CliLive, HelpNeedsNoManual) {
+TEST_F(CliLive, HelpDocumentsExitCodesAndExamples) {
   for (const char* command : {"live", "record", "doctor", "tilt"}) {
     const CommandResult r = plvo(std::string(command) + " --help");
     EXPECT_EQ(r.exit_code, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// .oni recordings at the command line: what is wrong with a file, or kills the process that plays it, is an
+// .oni recordings on the command line: a faulty file, or one that kills the process that plays it, gives an
 // error message and exit code 1.
 #include <nlohmann/json.hpp>
 
@@ -18,7 +18,7 @@ class CliOni : public LiveCommand {
         plvo("record " + path("a.oni") + " --quiet --mode 320x240 --frames " + std::to_string(frames));
     ASSERT_EQ(r.exit_code, 0) << r.err;
   }
-  // The child of the started program; 0 if none comes.
+  // Process id of the child of the started program; 0 if no child appears.
   pid_t player(double limit_s = 30) const {
     const auto start = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - start < std::chrono::duration<double>(limit_s)) {
@@ -32,7 +32,7 @@ class CliOni : public LiveCommand {
   }
 };
 
-TEST_F(CliOni, TheReadersCrashIsAnErrorMessage) {
+TEST_F(CliOni, CrashOfTheReaderIsAnErrorMessage) {
   record(20);
   start("live --quiet --device " + path("a.oni"));
   const pid_t child = player();
@@ -44,7 +44,7 @@ TEST_F(CliOni, TheReadersCrashIsAnErrorMessage) {
   EXPECT_TRUE(contains(err(), "a.oni")) << err();
 }
 
-// About every sixth of these crashes OpenNI2 2.2's reader.
+// About one in six of these files crashes OpenNI2 2.2's reader.
 TEST_F(CliOni, DamagedHeadersNeverCrashTheProgram) {
   record(4);
   const std::string whole = read_file(path("a.oni"));
@@ -54,14 +54,14 @@ TEST_F(CliOni, DamagedHeadersNeverCrashTheProgram) {
     for (int n = 0; n < 3; ++n) bytes[random.below(2000)] = static_cast<char>(random.below(256));
     plvo::test::write_file(path("b.oni"), bytes);
     const CommandResult r = plvo("live --quiet --device " + path("b.oni"));
-    // 3: no frame of it could be tracked.
+    // Exit code 3: no frame of the file could be tracked.
     EXPECT_TRUE(r.exit_code == 0 || r.exit_code == 1 || r.exit_code == 3)
         << i << ": " << r.exit_code << r.err;
     EXPECT_EQ(r.exit_code == 0, !contains(r.err, "plvo: error: ")) << i << ": " << r.err;
   }
 }
 
-TEST_F(CliOni, WhatIsNoRecordingIsNamed) {
+TEST_F(CliOni, FilesThatAreNotRecordingsGiveAnError) {
   plvo::test::write_file(path("text.oni"), "no recording");
   const CommandResult text = plvo("live --device " + path("text.oni"));
   EXPECT_EQ(text.exit_code, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo record`: whole files whatever ends it, a full disk and Ctrl-C among them; `plvo doctor` on the
-// virtual device.
+// `plvo record` leaves complete files however it ends, including a full disk and Ctrl-C; `plvo doctor` with
+// the virtual device.
 #include <sys/mount.h>
 
 #include <nlohmann/json.hpp>
@@ -17,13 +17,13 @@ class CliRecord : public LiveCommand {
   ~CliRecord() override {
     if (mounted_) ::umount2(path("disk").c_str(), MNT_DETACH);
   }
-  // A disk of this size; false where this user may not mount one.
+  // Mounts a disk of this size; returns false if the user may not mount one.
   bool small_disk(const std::string& size) {
     std::filesystem::create_directory(path("disk"));
     mounted_ = ::mount("none", path("disk").c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
     return mounted_;
   }
-  // Frames of a folder or a file, as the program itself reads them.
+  // Number of frames of a folder or a file, as the program itself reads them.
   long playable(const std::string& recording) {
     const CommandResult r = plvo("run " + recording + " --quiet --json " + path("p"));
     EXPECT_EQ(r.exit_code, 0) << r.err;
@@ -35,8 +35,8 @@ class CliRecord : public LiveCommand {
     EXPECT_EQ(lines_in(read_file(folder + "/rgb.txt")), lines_in(read_file(folder + "/depth.txt")));
     return lines_in(read_file(folder + "/rgb.txt")) - 1;
   }
-  // Until some frames must be in it. OpenNI2 keeps what it wrote for a while before the disk sees it: for its
-  // files the test waits for more.
+  // Waits until the recording must contain some frames. OpenNI2 buffers its output before it writes to disk,
+  // so the test waits for more frames if it records to an OpenNI2 file.
   void wait_for_bytes(const std::string& recording) const {
     if (recording.ends_with(".oni")) {
       comes_true([&] {
@@ -49,7 +49,7 @@ class CliRecord : public LiveCommand {
   bool mounted_ = false;
 };
 
-TEST_F(CliRecord, AFolderOfSoManyFrames) {
+TEST_F(CliRecord, WritesAFolderWithTheGivenNumberOfFrames) {
   const CommandResult r = plvo("record " + path("walk") + " --frames 12 --mode 320x240");
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_TRUE(contains(r.out, "12 frames in")) << r.out;
@@ -58,7 +58,7 @@ TEST_F(CliRecord, AFolderOfSoManyFrames) {
   EXPECT_EQ(playable(path("walk")), 12);
 }
 
-TEST_F(CliRecord, CtrlCLeavesWholeFiles) {
+TEST_F(CliRecord, CtrlCLeavesCompleteFiles) {
   for (const std::string name : {"walk", "walk.oni"}) {
     start("record " + path(name));
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
@@ -70,7 +70,7 @@ TEST_F(CliRecord, CtrlCLeavesWholeFiles) {
   }
 }
 
-TEST_F(CliRecord, UnplugEndsAnOniFileAndAFolderGoesOn) {
+TEST_F(CliRecord, UnplugEndsAnOniFileButNotAFolder) {
   for (const std::string name : {"walk.oni", "walk"}) {
     start("record " + path(name));
     ASSERT_TRUE(says("Ctrl-C ends")) << err();
@@ -92,7 +92,7 @@ TEST_F(CliRecord, UnplugEndsAnOniFileAndAFolderGoesOn) {
   }
 }
 
-TEST_F(CliRecord, NothingIsOverwritten) {
+TEST_F(CliRecord, ExistingFilesAreNotOverwritten) {
   std::filesystem::create_directory(path("walk"));
   plvo::test::write_file(path("walk/rgb.txt"), "mine");
   plvo::test::write_file(path("mine.oni"), "mine");
@@ -108,7 +108,7 @@ TEST_F(CliRecord, NothingIsOverwritten) {
   EXPECT_FALSE(std::filesystem::exists(path("x"))) << "no sensor, no folder";
 }
 
-TEST_F(CliRecord, AFullDiskEndsItWithWhatToDoAndAWholeFolder) {
+TEST_F(CliRecord, FullDiskEndsTheRecordingWithAdviceAndACompleteFolder) {
   if (!small_disk("400k")) GTEST_SKIP() << "this user may not mount a small disk";
   const CommandResult r = plvo("record " + path("disk/walk") + " --seconds 20 --mode 320x240");
   EXPECT_EQ(r.exit_code, 1);
@@ -119,7 +119,7 @@ TEST_F(CliRecord, AFullDiskEndsItWithWhatToDoAndAWholeFolder) {
   EXPECT_TRUE(contains(r.out, std::to_string(frames) + " frames in")) << r.out;
 }
 
-TEST_F(CliRecord, AnAlmostFullDiskEndsAnOniFileThatPlays) {
+TEST_F(CliRecord, AlmostFullDiskLeavesAPlayableOniFile) {
   if (!small_disk("80m")) GTEST_SKIP() << "this user may not mount a small disk";
   const CommandResult r = plvo("record " + path("disk/walk.oni") + " --seconds 20");
   EXPECT_EQ(r.exit_code, 1);
@@ -143,7 +143,7 @@ TEST_F(CliRecord, ALimitOnTheSizeOfFilesEndsItInWholeFiles) {
   EXPECT_GE(playable(path("walk.oni")), 2);
 }
 
-TEST_F(CliRecord, DoctorLooksAtWhatComes) {
+TEST_F(CliRecord, DoctorChecksTheFrames) {
   const auto examine = [&](const std::string& commands, int& code) {
     const CommandResult r = plvo("doctor --json - --seconds 1 --mode 320x240", device(commands));
     code = r.exit_code;
@@ -155,7 +155,7 @@ TEST_F(CliRecord, DoctorLooksAtWhatComes) {
   };
   int code = -1;
   nlohmann::json json = examine("", code);
-  // A machine under load may deliver too slowly, and then the doctor must say that.
+  // On a loaded machine the frames may arrive too slowly; the doctor must then report it.
   EXPECT_EQ(code, has(json, "slow") ? 4 : 0) << json;
   EXPECT_TRUE(has(json, "capture_good") || has(json, "slow")) << json;
   EXPECT_EQ(has(json, "slow"), json["capture"]["hz"].get<double>() < 27) << json;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line, called as a function in the process of the simulated Kinect, which shows a room.
+// Runs the command line as a function in the process of the simulated Kinect, which shows a scene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ namespace plvo_test {
 
 using plvo::test::read_file;
 
-// The 11-bit disparity that libfreenect turns into this depth, with the simulated Kinect's zero plane (7.5
-// cm, 120 cm, 0.1042 mm) and shift (200): the inverse of its raw-to-millimetres formula.
+// Returns the 11-bit disparity that libfreenect converts to this depth, with the simulated Kinect's zero
+// plane (7.5 cm, 120 cm, 0.1042 mm) and shift (200). This is the inverse of its raw-to-millimetres formula.
 inline std::uint16_t disparity_of(double depth_m) {
   if (!(depth_m > 0.4)) return 2047;
   const double cm = depth_m * 100;
@@ -34,7 +34,7 @@ class KinectCommand : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // One line of the command line, as from a shell; what it printed is in out_ and err_.
+  // Runs one line of the command line, as a shell would; out_ and err_ hold its output.
   int plvo(std::vector<std::string> words) {
     words.insert(words.begin(), "plvo");
     std::vector<const char*> arguments;
@@ -49,7 +49,7 @@ class KinectCommand : public testing::Test {
   }
   nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(read_file(path(name))); }
 
-  // A walk of a few frames to and fro, as a Kinect would see it: 0 1 2 1 0 1 2 1 …
+  // A sequence of a few frames as a Kinect would observe it, played forwards and backwards: 0 1 2 1 0 1 2 1 …
   void show_a_room() {
     plvo::SimulatorOptions options;
     options.frames = 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the simulated Kinect's pictures look like to libfreenect itself, and whether this machine has the time
-// to be judged by its speed.
+// The simulated Kinect's images as libfreenect itself delivers them, and a check whether this machine is fast
+// enough for tests of speed.
 #pragma once
 
 #include <libfreenect.h>
@@ -14,7 +14,7 @@
 
 namespace plvo_test {
 
-// A sanitizer slows everything down and keeps what was freed: figures say nothing then.
+// A sanitizer slows the program down and retains freed memory, so figures of time and memory are meaningless.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kFiguresCount = false;
 #elif defined(__has_feature)
@@ -23,22 +23,22 @@ inline constexpr bool kFiguresCount = !__has_feature(address_sanitizer) && !__ha
 inline constexpr bool kFiguresCount = true;
 #endif
 
-// How long a test waits for what must come: an answer to "does it hang", not to "is it quick".
+// Time limit of a wait. It detects a hang; it does not judge speed.
 inline constexpr double kPatience_s = 120;
 
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What libfreenect itself, used directly, makes of the simulated Kinect's pictures: the reference for what
-// comes out of OpenNI2.
+// Images that libfreenect, used directly, delivers from the simulated Kinect. They are the reference for the
+// output of OpenNI2.
 struct Reference {
   std::vector<std::uint8_t> rgb[SimulatedKinect::kPictures];
   std::vector<std::uint16_t> registered[SimulatedKinect::kPictures];
   std::vector<std::uint16_t> raw_to_mm;
 
-  // Which picture the Bayer mosaic behind an RGB image is: green sites keep their value in any interpolation
-  // that deserves the name.
+  // Index of the image whose Bayer mosaic an RGB image comes from: any reasonable interpolation keeps the
+  // values of the green sites.
   static int picture_of(const std::uint8_t* rgb) {
     for (int p = 0; p < SimulatedKinect::kPictures; ++p) {
       int wrong = 0;

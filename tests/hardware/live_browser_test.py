@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Looks at `plvo live --view` in headless Chromium while the virtual device plays a simulated walk: three pages at once
-that go on getting updates in order, draw, turn, fit a phone, and show an unplugged sensor. Python's own library only: the
-browser is spoken to through the pipe of its debugging protocol. With --rate, and on an idle machine, the pages must get ten
-updates a second each while the odometry keeps its pace; without it nothing is judged by time.
+"""Tests `plvo live --view` in headless Chromium while the virtual device plays a simulated sequence: three pages at once
+receive updates in order, draw, rotate the view, fit a phone's screen, and show an unplugged sensor. The test uses only
+Python's standard library and controls the browser through the pipe of its debugging protocol. With --rate, on an idle
+machine, each page must get ten updates a second while the odometry keeps its rate; without it the test judges no timing.
 usage: live_browser_test.py [--rate] PLVO VIRTUAL_FRAMES OPENNI2_FOLDER [FOLDER FOR SCREENSHOTS]
 exit code 77: no browser, skipped
 """
@@ -18,14 +18,14 @@ import tempfile
 import time
 
 VIEWERS = 3
-UPDATES = 20  # of each page, before it is looked at
+UPDATES = 20  # updates of each page before the checks
 RATE_SECONDS = 4.0
 FRAMES = 40
-PATIENCE_S = 180  # so that what hangs fails by name; nothing is judged by it
+PATIENCE_S = 180  # time limit, so that a hang fails with a message; no timing is judged by it
 
 
 class Browser:
-    """Chromium, told what to do by JSON messages, each ended by a zero byte: it reads them from descriptor 3, answers on 4."""
+    """Chromium, controlled by JSON messages, each ended by a zero byte: it reads from descriptor 3 and answers on 4."""
 
     def __init__(self, program, folder):
         to_browser, self.write_end = os.pipe()
@@ -87,7 +87,7 @@ class Browser:
             f.write(base64.b64decode(picture))
 
     def problems(self):
-        """Whatever a page complained about."""
+        """Returns the errors that the pages have reported."""
         found = []
         for event in self.events:
             parameters = event.get("params", {})
@@ -128,7 +128,7 @@ def look(browser, address, control, screenshots):
     pages = [browser.open(address) for _ in range(VIEWERS)]
     for page in pages:
         wait_for(lambda: browser.value(page, "window.plvo && window.plvo.images > 2"), "a page shows no image")
-    # In order: what a page has never gets older.
+    # The updates arrive in order: the data of a page never get older.
     newest = [(0, 0, 0)] * VIEWERS
     while min(seen[0] for seen in newest) < UPDATES:
         for i, page in enumerate(pages):
@@ -152,14 +152,14 @@ def look(browser, address, control, screenshots):
     check(turned, "the trajectory does not turn")
     if screenshots:
         browser.screenshot(page, os.path.join(screenshots, "live.png"))
-    # A phone: nothing wider than the screen.
+    # On a phone, no element is wider than the screen.
     browser.ask("Emulation.setDeviceMetricsOverride", page, width=390, height=844, deviceScaleFactor=2, mobile=True)
     wait_for(lambda: browser.value(page, "window.innerWidth") == 390, "the page does not notice the phone")
     width = browser.value(page, "document.documentElement.scrollWidth")
     check(width <= 390, f"the page is {width} px wide on a phone of 390")
     if screenshots:
         browser.screenshot(page, os.path.join(screenshots, "live_phone.png"))
-    # The sensor goes away: the page says so.
+    # The sensor is unplugged: the page shows it.
     with open(control, "w", encoding="utf-8") as f:
         f.write("unplug\n")
     wait_for(lambda: "unplugged" in browser.value(page, "document.getElementById('camera').textContent"),
@@ -217,7 +217,8 @@ def main():
         print(f"odometry: {told['frames']} of {told['camera_frames']} frames, latency {told['latency_ms']['median']:.1f} ms median,"
               f" {told['latency_ms']['p95']:.1f} p95, CPU {told['cpu_ms']['total']['median']:.1f} ms a frame")
         if rate:
-            # The browser draws three pages on the same processors; whether the odometry waited for them shows here.
+            # The browser draws three pages on the same processors; this checks that the odometry does not wait for
+            # them.
             check(told["latency_ms"]["median"] < 100, "the viewers slow the odometry down")
             check(min(rates) >= 10, f"only {min(rates):.1f} updates per second")
     print("the live view loads, draws, turns, fits a phone and tells an unplug")

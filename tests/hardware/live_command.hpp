@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built program with the virtual device, as a user runs it: started in the background, spoken to through
-// the device's pipe and with signals, and read when it has ended.
+// Runs the built program with the virtual device, as a user does: starts it in the background, controls it
+// through the device's pipe and with signals, and reads its output after it has ended.
 #pragma once
 
 #include <fcntl.h>
@@ -27,7 +27,7 @@ using plvo::test::kPlvo;
 using plvo::test::read_file;
 using plvo::test::run_command;
 
-// So that what hangs fails by name; nothing is judged by it.
+// Time limit, so that a hang fails with a message; no timing is judged by it.
 inline constexpr double kPatience_s = 120;
 
 inline bool contains(const std::string& text, const std::string& words) {
@@ -46,7 +46,7 @@ class LiveCommand : public testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // What the virtual device shall do from the start; see virtual_device.hpp.
+  // Commands for the virtual device at start; see virtual_device.hpp.
   static std::string device(const std::string& commands, const std::string& frames = "") {
     return "PLVO_VIRTUAL_START='" + commands + "' " +
            (frames.empty() ? "" : "PLVO_VIRTUAL_FRAMES=" + frames + " ");
@@ -55,10 +55,10 @@ class LiveCommand : public testing::Test {
     return run_command(environment + kPlvo + ' ' + arguments);
   }
 
-  // before: shell commands for this process alone, such as a limit.
+  // before: shell commands for this process only, such as a limit.
   void start(const std::string& arguments, const std::string& environment = "",
              const std::string& before = "") {
-    // exec: the shell becomes the program, which then gets the signals.
+    // exec replaces the shell by the program, which then receives the signals.
     const std::string command = before + "exec env PLVO_VIRTUAL_CONTROL=" + path("control") + ' ' +
                                 environment + kPlvo + ' ' + arguments + " >" + path("out") + " 2>" +
                                 path("err") + " </dev/null";
@@ -78,7 +78,7 @@ class LiveCommand : public testing::Test {
     }
     return true;
   }
-  // Fails, instead of waiting, when the program and with it the device is gone.
+  // Fails, instead of waiting, if the program and with it the device has ended.
   void tell_device(const std::string& command) const {
     const int fd = ::open(path("control").c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     ASSERT_GE(fd, 0) << "the program has ended: " << err();
@@ -86,16 +86,16 @@ class LiveCommand : public testing::Test {
     EXPECT_EQ(::write(fd, line.data(), line.size()), static_cast<ssize_t>(line.size()));
     ::close(fd);
   }
-  // As another program would, or a terminal.
+  // Sends a signal as another program or a terminal does.
   void send(int signal) const {
-    if (pid_ > 0) ::kill(pid_, signal);  // kill(-1) would reach everybody
+    if (pid_ > 0) ::kill(pid_, signal);  // kill(-1) would signal every process
   }
-  // Ctrl-C, and how it ended; -1 if it did not within the time.
+  // Sends Ctrl-C and returns the exit code; -1 if the program does not end in time.
   int interrupt() {
     send(SIGINT);
     return wait();
   }
-  // Whether it came true in the end.
+  // Waits until the condition is true; false if this does not happen in time.
   template <typename Condition>
   static bool comes_true(Condition condition) {
     for (double waited_s = 0; waited_s < kPatience_s; waited_s += 0.01) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of OpenNI2: what the recorder writes, the camera plays, every frame of it, however slow the
-// reader is.
+// Recordings of OpenNI2: the camera plays every frame that the recorder has written, however slow the reader
+// is.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,18 +31,18 @@ class OniFileTest : public VirtualDeviceTest {
     VirtualDeviceTest::TearDown();
     std::filesystem::remove_all(folder_);
   }
-  // The format holds no stamp that both streams share (openni2_recorder.hpp): a recording that begins between
-  // the two images of a tick pairs those of different ones. So it begins where there is no tick.
+  // The format has no stamp that both streams share (openni2_recorder.hpp). A recording that begins between
+  // the two images of a tick pairs images of different ticks, so this one begins while the device is stalled.
   Status start(plvo::OpenNi2Recorder& recorder) {
     EXPECT_TRUE(device_.command("stall"));
-    // The tick that was under way still shows its images.
+    // The current tick still delivers its images.
     for (const std::int64_t over = device_.ticks() + 2; device_.ticks() < over;)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const Status status = recorder.start(camera_, path_);
     EXPECT_TRUE(device_.command("run"));
     return status;
   }
-  // Records while `count` frames are read; returns the ticks that were read.
+  // Records while it reads `count` frames; returns the ticks of these frames.
   std::vector<int> record(int count) {
     open();
     EXPECT_TRUE(next_frame().ok());
@@ -80,7 +80,7 @@ class OniFileTest : public VirtualDeviceTest {
     }
     return ticks;
   }
-  // Opens and reads until something is not ok, which must be soon. What it was.
+  // Opens the file and reads until a status is not ok, which must happen soon. Returns that status.
   Status play_to_the_end(int* opened = nullptr) {
     OpenNi2Options options;
     options.uri = path_;
@@ -109,7 +109,7 @@ class OniFileTest : public VirtualDeviceTest {
     std::ifstream file(path_, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  // 0: there is none.
+  // Process id of the only child; 0 if there is none.
   static pid_t only_child() {
     std::ifstream file("/proc/self/task/" + std::to_string(::getpid()) + "/children");
     pid_t child = 0;
@@ -120,11 +120,11 @@ class OniFileTest : public VirtualDeviceTest {
   std::string path_;
 };
 
-TEST_F(OniFileTest, PlaysWhatWasRecordedWithoutLoss) {
+TEST_F(OniFileTest, PlaysEveryRecordedFrame) {
   const std::vector<int> read = record(12);
   const std::vector<int> played = play(std::chrono::milliseconds(0));
-  // The recorder works on the sensor's pace, not on the reader's: it may hold more at either end, and nothing
-  // less in between.
+  // The recorder follows the sensor's rate, not the reader's: it may record more frames at both ends, and it
+  // records every frame in between.
   ASSERT_GE(played.size(), read.size() - 2);
   for (std::size_t i = 1; i < played.size(); ++i) EXPECT_EQ(played[i], (played[i - 1] + 1) % 256) << i;
   EXPECT_NE(std::find(played.begin(), played.end(), read[read.size() / 2]), played.end());
@@ -132,7 +132,7 @@ TEST_F(OniFileTest, PlaysWhatWasRecordedWithoutLoss) {
   EXPECT_EQ(camera_.counters().missing, 0u);
   EXPECT_EQ(camera_.recorded_frames(), static_cast<int>(played.size()));
 
-  // The end stays the end, and a slow reader gets the same frames.
+  // The end of the stream persists, and a slow reader gets the same frames.
   EXPECT_EQ(camera_.next(frame_).code(), StatusCode::kEndOfStream);
   EXPECT_EQ(play(std::chrono::milliseconds(60)), played);
 }
@@ -165,7 +165,7 @@ TEST_F(OniFileTest, UnplugEndsTheRecordingWithAValidFile) {
   EXPECT_GE(play(std::chrono::milliseconds(0)).size(), 3u);
 }
 
-TEST_F(OniFileTest, RefusalsSayWhy) {
+TEST_F(OniFileTest, RefusalsGiveTheReason) {
   plvo::OpenNi2Recorder recorder;
   EXPECT_EQ(recorder.start(camera_, path_).code(), StatusCode::kInvalidArgument) << "no camera";
   open();
@@ -191,8 +191,8 @@ TEST_F(OniFileTest, MissingAndBrokenFiles) {
   EXPECT_EQ(status.code(), StatusCode::kDamaged) << status.message();
 }
 
-// A recording that was cut off (a power failure): some status, in bounded time, and no crash.
-TEST_F(OniFileTest, TruncatedFilesEnd) {
+// A truncated recording (power failure) gives a status in bounded time and no crash.
+TEST_F(OniFileTest, TruncatedFilesGiveAStatus) {
   record(6);
   const auto whole = std::filesystem::file_size(path_);
   for (const auto part : {whole - 1, whole - 5000, whole / 2, whole / 10, std::uintmax_t{200}}) {
@@ -201,7 +201,8 @@ TEST_F(OniFileTest, TruncatedFilesEnd) {
   }
 }
 
-// OpenNI2 believes the headers of a file. Whatever they say, it is another process that crashes.
+// OpenNI2 trusts the headers of a file. Since another process reads them, a damaged header cannot crash this
+// one.
 TEST_F(OniFileTest, DamagedHeadersAreAStatus) {
   options_.width = 320;
   options_.height = 240;
@@ -214,7 +215,7 @@ TEST_F(OniFileTest, DamagedHeadersAreAStatus) {
   int crashed = 0;
   for (int i = 0; i < damages; ++i) {
     std::string bytes = whole;
-    // Mostly in the first kilobytes, where headers stand close together; sometimes anywhere.
+    // Damages mostly the first kilobytes, where headers are dense, and sometimes any place.
     const std::size_t range = i % 4 == 3 ? bytes.size() : std::min<std::size_t>(bytes.size(), 2000);
     for (std::uint32_t n = 1 + random.below(4); n > 0; --n) {
       const std::size_t at = random.below(static_cast<std::uint32_t>(range));
@@ -229,7 +230,7 @@ TEST_F(OniFileTest, DamagedHeadersAreAStatus) {
   std::cerr << damages << " damaged files: " << opened << " opened, " << crashed << " crashed the player\n";
 }
 
-// A child that dies in mid-recording, for whatever reason.
+// The child may die in the middle of a recording, for any reason.
 TEST_F(OniFileTest, ThePlayersDeathIsAStatus) {
   record(30);
   OpenNi2Options options;
@@ -260,8 +261,8 @@ TEST_F(OniFileTest, ClosingEndsThePlayer) {
   EXPECT_EQ(only_child(), 0);
 }
 
-// A program whose main() knows nothing of players must not start itself for ever.
-TEST_F(OniFileTest, AProgramThatCannotPlaySaysSo) {
+// A program whose main() does not handle the player role must not start itself endlessly.
+TEST_F(OniFileTest, ProgramWithoutAPlayerReportsIt) {
   record(2);
   OpenNi2Options options;
   options.uri = path_;
@@ -277,7 +278,8 @@ TEST_F(OniFileTest, AProgramThatCannotPlaySaysSo) {
   EXPECT_NE(std::strstr(status.message(), "play_oni_if_asked"), nullptr) << status.message();
 }
 
-// What a player whom a damaged file has taken over may do: nothing, say nonsense, hang up and stay.
+// A player that a damaged file has compromised may do nothing, send nonsense, or close the connection and
+// keep running.
 TEST_F(OniFileTest, APlayerIsNotBelieved) {
   record(2);
   OpenNi2Options options;
@@ -300,7 +302,7 @@ TEST_F(OniFileTest, APlayerIsNotBelieved) {
   plays("exec sleep 1000 <&-", "crashed (Killed)");
 }
 
-TEST_F(OniFileTest, WhatIsPlayedIsNotRecordedAsOni) {
+TEST_F(OniFileTest, PlayedFilesAreNotRecordedAsOni) {
   record(2);
   OpenNi2Options options;
   options.uri = path_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test program that plays .oni files: its child process is itself.
+// A test program that plays .oni files by starting itself as its child process.
 #include <gtest/gtest.h>
 
 #include "plvo/openni2/openni2_camera.hpp"

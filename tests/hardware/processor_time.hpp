@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much processor time this process took for a number of frames: what it can be judged by on a machine
-// that others use as well. Rates are the bench's affair.
+// Measures the processor time of this process for a number of frames, which is meaningful on a shared
+// machine. The benchmarks measure rates.
 #pragma once
 
 #include <sys/resource.h>
@@ -16,7 +16,8 @@ class ProcessorTime {
  public:
   double seconds() const { return taken_s() - start_s_; }
 
-  // Whether this machine, had nobody else used it, could have kept up with a frame each `period_s`.
+  // Returns an empty string if this machine, without other load, could process one frame per `period_s`;
+  // otherwise an error message.
   std::string judge(double frames, double period_s) const {
     const double frame_s = seconds() / std::max(frames, 1.0);
     const auto processors = static_cast<double>(::sysconf(_SC_NPROCESSORS_ONLN));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file of raw frames for the virtual device: "PLVORAW1", width, height (int32), then for each frame the two
-// stamps (int64 microseconds), width·height RGB pixels and width·height depth values in millimetres. Machine
-// byte order.
+// File format of raw frames for the virtual device: "PLVORAW1", width, height (int32), then for each frame
+// the two stamps (int64 microseconds), width·height RGB pixels and width·height depth values in millimetres.
+// The byte order is that of the machine.
 #pragma once
 
 #include <cstdint>
@@ -85,7 +85,7 @@ class RawReader {
     return true;
   }
 
-  // The frames forwards, backwards, forwards … without end and without their stamps.
+  // Plays the frames forwards, backwards, forwards … endlessly and without their stamps.
   bool read_to_and_fro(std::uint8_t* rgb, std::uint16_t* depth) {
     if (count_ < 2) return false;
     if (at_ + step_ < 0 || at_ + step_ >= count_) step_ = -step_;

@@ -24,11 +24,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr uid_t kInvalidSlot = 65534;
-// How long a reap may wait for data: without it, libusb spins, for umockdev's device files always look ready.
+// How long a reap may wait for data. Without the wait, libusb busy-loops, because umockdev's device files
+// always appear ready.
 constexpr auto kReapWait = std::chrono::milliseconds(2);
 
-// One configuration, one interface, two isochronous endpoints of 2 × 960 bytes a microframe, as the Kinect
-// has them.
+// Descriptors of the Kinect: one configuration, one interface, two isochronous endpoints of 2 × 960 bytes a
+// microframe.
 std::vector<std::uint8_t> camera_descriptors() {
   return {18, 1, 0x00, 0x02, 0,    0,    0,    64,   0x5e, 0x04, 0xae, 0x02, 0x0b, 0x01, 0, 0, 0, 1,  //
           9,  2, 32,   0,    1,    1,    0,    0xc0, 8,                                               //
@@ -114,7 +115,7 @@ void SimulatedKinect::plug(std::uint32_t ticks) {
   umockdev_testbed_uevent(testbed_, sysfs_.c_str(), "add");
 }
 
-// What is under way comes back as shut down, everything after it finds no device; the handler stays for both.
+// Pending transfers return as shut down, and later calls find no device. The handler stays for both.
 void SimulatedKinect::unplug() {
   {
     const std::lock_guard lock(mutex_);
@@ -134,8 +135,8 @@ void SimulatedKinect::unplug() {
 
 void SimulatedKinect::deny() {
   gchar* root = umockdev_testbed_get_root_dir(testbed_);
-  // Tests often run as root, who may everything: this thread becomes nobody, and all else in the mock is
-  // opened wide.
+  // Tests often run as root, who has all permissions: this thread becomes an unprivileged user, and the rest
+  // of the mock is made accessible to it.
   ::nftw(
       root,
       [](const char* name, const struct stat*, int type, FTW*) {
@@ -226,7 +227,7 @@ int SimulatedKinect::discard(usbdevfs_urb* urb) {
     done_.push_back(urb);
     return 0;
   }
-  return EINVAL;  // it is done already
+  return EINVAL;  // it is already complete
 }
 
 usbdevfs_urb* SimulatedKinect::reap(std::unique_lock<std::mutex>& lock, int& error) {
@@ -240,7 +241,8 @@ usbdevfs_urb* SimulatedKinect::reap(std::unique_lock<std::mutex>& lock, int& err
       error = ENODEV;
       return nullptr;
     }
-    // The stream whose data has been ready for longest goes first, so that a slow machine starves neither.
+    // The stream whose data have been ready for the longest time goes first, so that a slow machine starves
+    // neither.
     auto next = Clock::time_point::max();
     IsoStream* first = nullptr;
     for (IsoStream& stream : streams_) {

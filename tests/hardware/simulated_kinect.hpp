@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kinect v1 on a USB bus that is not there: umockdev answers for /sys, /dev and the ioctls of usbfs, and
-// this class is what would be at the other end of the cable. The camera speaks the protocol that the
-// OpenKinect project documented: control commands, and isochronous packets of depth (11 bits packed) and
-// colour (Bayer GRBG). Run under umockdev-wrapper, simulator and client in one process: pointers in an ioctl
-// are followed directly.
+// A Kinect v1 on a simulated USB bus: umockdev answers for /sys, /dev and the ioctls of usbfs, and this class
+// plays the device at the other end of the cable. The camera speaks the protocol that the OpenKinect project
+// documented: control commands, and isochronous packets of depth (11 bits packed) and colour (Bayer GRBG).
+// Runs under umockdev-wrapper with simulator and client in one process, so that it can dereference the
+// pointers in an ioctl.
 #pragma once
 
 #include <umockdev.h>
@@ -29,20 +29,19 @@ class SimulatedKinect {
   static constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
   static constexpr int kPictures = 4;  // frame n shows picture n mod kPictures
   static constexpr std::int64_t kFrame_ns = 33333333;
-  static constexpr std::int64_t kDepthOffset_ns =
-      5000000;  // depth frames are stamped this much after colour's
+  static constexpr std::int64_t kDepthOffset_ns = 5000000;  // offset of the depth stamps from those of colour
 
-  // What the camera sees: 11-bit disparity (2047: nothing) and the Bayer mosaic.
+  // One image of the camera: 11-bit disparity (2047: no depth) and the Bayer mosaic.
   static std::uint16_t disparity(int picture, int x, int y);
   static std::uint8_t bayer(int picture, int x, int y);
 
   struct Faults {
-    int lose_every = 0;     // the n-th packet does not arrive
-    int corrupt_every = 0;  // the n-th packet's header is rubbish
-    int error_every = 0;    // the n-th packet arrives with an error of the bus
+    int lose_every = 0;     // every n-th packet is lost
+    int corrupt_every = 0;  // every n-th packet has a corrupt header
+    int error_every = 0;    // every n-th packet arrives with a bus error
     bool colour_stops = false;
     bool depth_stops = false;
-    int claim_errno = 0;  // e.g. EBUSY: another program has the camera
+    int claim_errno = 0;  // e.g. EBUSY: another program uses the camera
   };
 
   SimulatedKinect();
@@ -50,19 +49,20 @@ class SimulatedKinect {
   SimulatedKinect(const SimulatedKinect&) = delete;
   SimulatedKinect& operator=(const SimulatedKinect&) = delete;
 
-  // Other pictures than those, one after the other; before the first plug().
+  // Replaces the images by these, shown in turn. Call it before the first plug().
   void set_pictures(const std::vector<std::uint16_t>& disparities, const std::vector<std::uint8_t>& mosaics);
 
-  // Plugs into port 1-1.3 with a new address each time; ticks: where the camera's 60 MHz clock stands.
+  // Plugs the device into port 1-1.3 with a new address each time; ticks: initial value of the camera's 60
+  // MHz clock.
   void plug(std::uint32_t ticks = 1000);
   void unplug();
-  // From here on this thread, and the threads it starts, may not open the camera. Undone by allow().
+  // After this call, this thread and the threads it starts may not open the camera. allow() undoes it.
   void deny();
   void allow();
   void set_faults(const Faults& faults);
-  // By steady_clock: when the camera's clock showed this, but for whole turns of its 32 bits.
+  // Time on steady_clock at which the camera's clock showed this value, up to multiples of its 32-bit range.
   std::int64_t host_ns(std::int64_t stamp_ns) const;
-  // The bus, and the Kinect's own hub on it, for what else hangs there.
+  // The bus and the Kinect's own hub on it, to which other devices attach.
   UMockdevTestbed* testbed() { return testbed_; }
   const std::string& hub() const { return hub_; }
   // Frames of either stream that were not sent because this machine was too slow for simulator and client
@@ -79,7 +79,7 @@ class SimulatedKinect {
     std::int64_t stamp_offset_ns = 0;
     bool on = false;
     std::chrono::steady_clock::time_point start;
-    std::int64_t first_frame = 0;  // of the camera's clock, at start: both streams count frames alike
+    std::int64_t first_frame = 0;  // on the camera's clock, at start: both streams count frames alike
     std::int64_t sent = 0;         // packets since start
     std::deque<usbdevfs_urb*> waiting;
   };

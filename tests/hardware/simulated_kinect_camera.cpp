@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated Kinect's camera: its pictures, its packets, and the commands that it understands.
+// The camera of the simulated Kinect: its images, its packets and its commands.
 #include <linux/usbdevice_fs.h>
 
 #include <algorithm>
@@ -78,8 +78,8 @@ void SimulatedKinect::fill(IsoStream& stream, usbdevfs_urb& urb) {
 }
 
 int SimulatedKinect::write_packet(IsoStream& stream, std::uint8_t* to) {
-  // A sensor does not wait for a machine that is too slow: frames that were due long ago are never sent. This
-  // one is patient, for the machine also has the sensor itself to simulate.
+  // A real sensor does not wait for a slow machine: overdue frames are never sent. This one tolerates a
+  // longer delay, because the machine also simulates the sensor.
   const std::int64_t late = (Clock::now() - due(stream, stream.sent)) / std::chrono::nanoseconds(kFrame_ns);
   if (stream.sent % stream.packets_per_frame == 0 && late > kPatience_frames) {
     stream.sent += late * stream.packets_per_frame;
@@ -108,8 +108,7 @@ int SimulatedKinect::write_packet(IsoStream& stream, std::uint8_t* to) {
   return kHeader_bytes + static_cast<int>(count);
 }
 
-// Vendor request 0: OUT carries a command, IN fetches its reply. The client asks for the reply until it is
-// there.
+// Vendor request 0: OUT carries a command, IN fetches its reply. The client asks until the reply is ready.
 int SimulatedKinect::control(const std::uint8_t* setup, std::uint8_t* data, int length) {
   if (setup[0] == 0x40 && setup[1] == 0) {
     command(data, length);
@@ -157,7 +156,7 @@ void SimulatedKinect::command(const std::uint8_t* request, int length) {
       std::memcpy(body.data() + 94, zero_plane, sizeof(zero_plane));
       break;
     }
-    case 0x16:  // algorithm parameters; all zero but the constant shift: no distortion to be registered away
+    case 0x16:  // algorithm parameters; all zero except the constant shift: registration has no distortion
       body.assign(argument(0) == 0x40 ? 118 : argument(0) == 0x41 ? 8 : 4, 0);
       if (body.size() == 4) put16(body.data() + 2, 200);
       break;
@@ -181,7 +180,7 @@ void SimulatedKinect::set_register(int number, int value) {
     if (number != (stream.endpoint == 0x81 ? 0x05 : 0x06)) continue;
     const bool on = value != 0;
     if (on && !stream.on) {
-      // Both sensors go by one clock: a stream starts with the next whole frame of it.
+      // Both sensors use the same clock: a stream starts with its next whole frame.
       const auto frames = (Clock::now() - plugged_) / std::chrono::nanoseconds(kFrame_ns) + 1;
       stream.first_frame = frames;
       stream.start = plugged_ + std::chrono::nanoseconds(frames * kFrame_ns);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo live --imu` and `plvo record --imu` over a simulated USB Kinect whose accelerometer is read through
-// the real libusb: gravity reaches the odometry with its frame, and whatever is wrong with it stops nobody.
+// `plvo live --imu` and `plvo record --imu` with a simulated USB Kinect whose accelerometer is read through
+// the real libusb: gravity reaches the odometry with its frame, and faults of the accelerometer do not stop
+// the program.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,11 +17,11 @@
 #include "plvo/replay/imu_files.hpp"
 #include "simulated_motor.hpp"
 
-// Every call of track() that the command makes comes through here (the linker's --wrap).
+// The linker's --wrap routes every call of track() through this function.
 namespace {
 struct Tracked {
   std::int64_t stamp_ns;
-  std::int64_t host_ns;  // by steady_clock, when it was tracked
+  std::int64_t host_ns;  // steady_clock at the time of the call
   plvo::MotionPrior prior;
 };
 std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
@@ -43,7 +44,7 @@ plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame&
 namespace plvo_test {
 namespace {
 
-// The tilted head of a Kinect at rest: 0.8 g up, 0.6 g forward.
+// Reading of a tilted Kinect at rest: 0.8 g up, 0.6 g forward.
 constexpr std::array<int, 3> kTilted = {0, 655, 491};
 
 long count_of(const std::string& text, const std::string& words) {
@@ -70,10 +71,10 @@ TEST_F(KinectImu, GravityComesWithTheFrames) {
   for (const Tracked& t : tracked) {
     ASSERT_FALSE(t.prior.tells_motion());
     if (!t.prior.gravity) continue;
-    // In the camera's axes, x right, y down, z forward.
+    // In the camera frame: x right, y down, z forward.
     const plvo::Vector3 down = t.prior.gravity->down.normalized();
     ASSERT_LT((down - plvo::Vector3(0, 0.8, -0.6)).norm(), 2e-3) << down.transpose();
-    // A hand's acceleration, and the time that is known to 20 ms only: 0.65 m/s² or more.
+    // The noise covers hand-held acceleration and a time error of up to 20 ms: 0.65 m/s² or more.
     EXPECT_GE(std::sqrt(t.prior.gravity->covariance(0, 0)), 0.65 / 9.81);
   }
   const nlohmann::json summary = json("j.json")["accelerometer"];
@@ -97,13 +98,13 @@ TEST_F(KinectImu, TheWorldIsLevelOnRequest) {
   EXPECT_LT((trajectory.poses[0].T_world_camera.R * down - plvo::Vector3(0, 1, 0)).norm(), 2e-3);
 }
 
-// The accelerometer's first axis tells the time of the reading. What a frame gets is the mean of the readings
-// since the frame before: by the camera's clock, that is true to the 20 ms that are stated, where a frame
-// arrives that nothing held up. On a machine that is too slow for camera and command together every frame is
-// late, and readings are stamped early by as much as the quickest of them.
+// The accelerometer's first axis encodes the time of the reading. A frame gets the mean of the readings since
+// the previous frame. On the camera's clock, this is accurate to the stated 20 ms for frames that arrive
+// without delay. On a machine that is too slow for camera and command together, every frame is late, and the
+// stamps of the readings are early by the smallest of these delays.
 TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
   constexpr double kCountsPerSecond = 50;
-  constexpr double kTurn_s = 4294967296.0 / 60e6;  // of the camera's clock
+  constexpr double kTurn_s = 4294967296.0 / 60e6;  // range of the camera's clock
   const std::int64_t start_ns = now_ns();
   show_a_room();
   kinect_.plug(123456);
@@ -160,7 +161,7 @@ TEST_F(KinectImu, AnAccelerometerThatFailsStopsNobodyAndMayComeBack) {
     for (int i = 0; i < 2; ++i) {
       motor.set_error(EPIPE);
       const int asked = motor.questions();
-      wait_for([&] { return motor.questions() > asked + 1; });  // it failed, and was tried again
+      wait_for([&] { return motor.questions() > asked + 1; });  // it failed and was retried
       motor.set_error(0);
       const int again = motor.questions();
       wait_for([&] { return motor.questions() > again + 20; });
@@ -193,7 +194,7 @@ TEST_F(KinectImu, RecordKeepsWhatItReads) {
   EXPECT_NEAR(kept.accelerometer[3].value.y(), 655 * 9.80665 / 819, 1e-12);
   EXPECT_NEAR(kept.accelerometer[3].value.z(), 491 * 9.80665 / 819, 1e-12);
   EXPECT_NE(read_file(path("walk/accelerometer.txt")).find("--imu-axes x,-y,z"), std::string::npos);
-  // Beside the frames, by one clock.
+  // The readings are recorded with the frames, on the same clock.
   std::istringstream rows(read_file(path("walk/rgb.txt")));
   std::string row;
   std::getline(rows, row);

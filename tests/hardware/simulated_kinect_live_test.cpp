@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line over a simulated USB Kinect: libusb, libfreenect, OpenNI2 and our driver are the real
-// ones. umockdev wants the bus and its client in one process, so the commands are called here as functions.
-// PLVO_KINECT_SECONDS sets how long the run at full rate lasts (5).
+// The command line with a simulated USB Kinect below the real libusb, libfreenect, OpenNI2 and our driver.
+// umockdev needs the bus and its client in one process, so the tests call the commands as functions.
+// PLVO_KINECT_SECONDS sets the duration of the run at full rate (default 5).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,7 @@
 #include "plvo/replay/recorded_camera.hpp"
 #include "processor_time.hpp"
 
-// Every call of track() that the command makes comes through here (the linker's --wrap), and its allocations
-// are counted.
+// The linker's --wrap routes every call of track() through this function, which counts its allocations.
 namespace {
 std::atomic<std::int64_t> tracks{0}, allocations{0};
 }
@@ -47,11 +46,11 @@ TEST_F(KinectCommand, LiveAtFullRateWithoutAllocationsInFlatMemory) {
   const char* given = std::getenv("PLVO_KINECT_SECONDS");
   const double seconds = given != nullptr ? std::atof(given) : 5;
   show_a_room();
-  // The clock wraps after a third of the time.
+  // The clock wraps after a third of the duration.
   kinect_.plug(static_cast<std::uint32_t>(0) - static_cast<std::uint32_t>(seconds / 3 * 60e6));
   const ProcessorTime processor;
   tracks = allocations = 0;
-  const int wanted = static_cast<int>(30 * seconds);  // as long as it takes, on a machine that others use
+  const int wanted = static_cast<int>(30 * seconds);  // frames, not time: the machine may be loaded
   ASSERT_EQ(plvo({"live", "--frames", std::to_string(wanted), "--out", path("t.txt"), "--json",
                   path("j.json"), "--stream", "unix:" + path("poses"), "--quiet"}),
             0)
@@ -64,7 +63,8 @@ TEST_F(KinectCommand, LiveAtFullRateWithoutAllocationsInFlatMemory) {
   if (kFiguresCount) {
     EXPECT_EQ(processor.judge(json["camera_frames"].get<double>(), SimulatedKinect::kFrame_ns * 1e-9), "");
   }
-  // Through the wrap of the Kinect's clock the stamps go on, each a frame of the sensor later or some.
+  // The stamps continue through the wrap of the Kinect's clock; consecutive stamps differ by one or more
+  // frame periods.
   std::istringstream rows(read_file(path("t.txt")));
   std::string row;
   std::getline(rows, row);
@@ -128,7 +128,7 @@ TEST_F(KinectCommand, LiveOutlivesAnUnplug) {
   std::thread hand([&] {
     while (tracks < 10 && !ended) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     kinect_.unplug();
-    std::this_thread::sleep_for(std::chrono::seconds(3));  // to be noticed, nothing else
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // long enough to be detected
     kinect_.plug();
   });
   const int code = plvo({"live", "--frames", "200", "--json", path("j.json"), "--stats", path("s.csv")});
@@ -156,7 +156,7 @@ TEST_F(KinectCommand, LiveSaysWhyItCannotHaveTheKinect) {
   EXPECT_NE(err_.find("another program holds the sensor"), std::string::npos) << err_;
 }
 
-// The doctor's four cases. The one without a driver is run with another OpenNI2 folder.
+// The four diagnoses of the doctor. The one without a driver runs with another OpenNI2 folder.
 class KinectDoctor : public KinectCommand {};
 
 TEST_F(KinectDoctor, NothingPluggedIn) {
@@ -180,7 +180,7 @@ TEST_F(KinectDoctor, HealthyKinect) {
   kinect_.plug();
   const int code = plvo({"doctor", "--seconds", "1"});
   EXPECT_NE(out_.find("good     The Kinect v1 camera (port 1-1.3) is ready."), std::string::npos) << out_;
-  // A machine under load may deliver too slowly; the doctor must say so then, and nothing else.
+  // On a loaded machine the frames may arrive too slowly; the doctor must then report this and nothing else.
   const bool slow = out_.find("frames came per second") != std::string::npos;
   EXPECT_EQ(code, slow ? 4 : 0) << out_;
   EXPECT_NE(slow, out_.find("good     The test capture is good") != std::string::npos) << out_;

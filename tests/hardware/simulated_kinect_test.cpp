@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated USB Kinect v1 beneath the real libusb, libfreenect and OpenNI2, and our driver and camera above
-// them. PLVO_KINECT_SECONDS sets how long the run at full rate lasts (6).
+// A simulated USB Kinect v1 below the real libusb, libfreenect and OpenNI2 and our driver and camera.
+// PLVO_KINECT_SECONDS sets the duration of the run at full rate (default 6).
 #include "simulated_kinect.hpp"
 
 #include <OpenNI.h>
@@ -50,7 +50,8 @@ class SimulatedKinectTest : public testing::Test {
     while (!status.ok() && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
-  // Calls on until the camera answers with this code, in these words (kPatience_s at most); the last answer.
+  // Repeats the call until the camera returns this code with these words (for kPatience_s at most); returns
+  // the last status.
   Status wait_for(StatusCode code, const std::string& words = "") {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
@@ -118,12 +119,12 @@ TEST_F(SimulatedKinectTest, UnregisteredDepthIsEveryPixelsDisparityInMillimetres
   EXPECT_GT(valid, kPixels * 3 / 4);
 }
 
-// Over a bounded time, through a wrap of the Kinect's clock: every stamp a tick of the sensor, processor time
-// that leaves room for its full rate, memory that does not grow.
+// Runs for a bounded time through a wrap of the Kinect's clock. Every stamp is a tick of the sensor, the
+// processor time suffices for the full rate, and memory does not grow.
 TEST_F(SimulatedKinectTest, FullRate) {
   const char* given = std::getenv("PLVO_KINECT_SECONDS");
   const double seconds = given != nullptr ? std::atof(given) : 6;
-  // The clock wraps after a third of the time.
+  // The clock wraps after a third of the duration.
   kinect_.plug(static_cast<std::uint32_t>(0) - static_cast<std::uint32_t>(seconds / 3 * 60e6));
   open();
   ASSERT_TRUE(next_frame().ok());
@@ -167,7 +168,7 @@ TEST_F(SimulatedKinectTest, FullRate) {
   }
 }
 
-TEST_F(SimulatedKinectTest, UnplugInMidStreamAndReplug) {
+TEST_F(SimulatedKinectTest, UnplugWhileStreamingAndReplug) {
   kinect_.plug();
   ASSERT_TRUE(reference_.take());
   open();
@@ -199,7 +200,7 @@ TEST_F(SimulatedKinectTest, PermissionDenied) {
   EXPECT_NE(std::string(status.message()).find("60-plvo-rgbd.rules"), std::string::npos) << status.message();
 }
 
-TEST_F(SimulatedKinectTest, AnotherProgramHoldsIt) {
+TEST_F(SimulatedKinectTest, CameraInUseByAnotherProgram) {
   kinect_.plug();
   kinect_.set_faults({.claim_errno = EBUSY});
   const Status status = camera_.open(options_);
@@ -233,7 +234,7 @@ TEST_F(SimulatedKinectTest, LostAndCorruptedPackets) {
     EXPECT_GT(frames, faults.corrupt_every == 5 ? -1 : 0) << "some frames are whole";
   }
   kinect_.set_faults({});
-  // What was torn has passed after a few frames: whole pictures again, in pairs.
+  // After a few frames the damaged images have passed: complete images arrive in pairs again.
   int good = 0;
   for (int i = 0; i < 30 && good < 3; ++i) {
     ASSERT_TRUE(next_frame().ok());
@@ -257,9 +258,9 @@ TEST_F(SimulatedKinectTest, OneStreamStops) {
   }
 }
 
-// Any OpenNI2 program may use the driver: registration before the depth stream exists, modes, properties, a
-// recording.
-TEST_F(SimulatedKinectTest, AnswersWhatOpenNi2ClientsAsk) {
+// Any OpenNI2 program may use the driver: registration before the depth stream exists, modes, properties, and
+// a recording.
+TEST_F(SimulatedKinectTest, AnswersOpenNi2Clients) {
   kinect_.plug();
   ASSERT_EQ(openni::OpenNI::initialize(), openni::STATUS_OK);
   {
@@ -280,7 +281,7 @@ TEST_F(SimulatedKinectTest, AnswersWhatOpenNi2ClientsAsk) {
     int stride = 0;
     EXPECT_EQ(colour.getProperty(openni::STREAM_PROPERTY_STRIDE, &stride), openni::STATUS_OK);
     EXPECT_EQ(stride, 1920);
-    // Switching registration while depth runs.
+    // Switches registration while depth is running.
     ASSERT_EQ(depth.start(), openni::STATUS_OK);
     EXPECT_EQ(device.setImageRegistrationMode(openni::IMAGE_REGISTRATION_OFF), openni::STATUS_OK);
     openni::VideoFrameRef image;

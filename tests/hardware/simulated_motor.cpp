@@ -13,7 +13,7 @@
 namespace plvo_test {
 namespace {
 
-constexpr int kAddress = 100;  // beyond those that the camera gets
+constexpr int kAddress = 100;  // above the camera's addresses
 
 std::vector<std::uint8_t> motor_descriptors() {
   return {18, 1, 0x00, 0x02, 0, 0, 0, 64,   0x5e, 0x04, 0xb0, 0x02, 0x07, 0x01, 0, 0, 0, 1,  //
@@ -74,7 +74,8 @@ gboolean SimulatedMotor::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* clien
   return TRUE;
 }
 
-// Vendor request 0x32: ten bytes, the accelerometer's axes in big-endian counts, the tilt in half degrees.
+// Vendor request 0x32 returns ten bytes: the accelerometer's axes in big-endian counts and the tilt in half
+// degrees.
 int SimulatedMotor::control(const std::uint8_t* setup, std::uint8_t* data, int length) {
   if (setup[0] != 0xc0 || setup[1] != 0x32 || length != 10) return -EPIPE;
   ++questions_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motor of a Kinect v1 (1414) on the hub of the simulated camera: the device that tells the tilt and what
-// the accelerometer reads.
+// The motor of a Kinect v1 (1414) on the hub of the simulated camera. The device reports the tilt and the
+// accelerometer reading.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@ namespace plvo_test {
 
 class SimulatedMotor {
  public:
-  // What the accelerometer reads now, in counts (819 a g): x right, y up, z forward.
+  // Sets the accelerometer reading in counts (819 per g): x right, y up, z forward.
   using Reads = std::function<std::array<int, 3>()>;
 
-  // The bus must outlive it.
+  // The bus must outlive this object.
   SimulatedMotor(SimulatedKinect& kinect, Reads reads) : kinect_(kinect), reads_(std::move(reads)) {}
   ~SimulatedMotor();
   SimulatedMotor(const SimulatedMotor&) = delete;
   SimulatedMotor& operator=(const SimulatedMotor&) = delete;
 
   void plug();  // into port 1-1.1, once
-  // From here on every question is answered with this error of the bus (errno); 0: with a reading again.
+  // After this call, every request fails with this bus error (errno); 0: requests return a reading again.
   void set_error(int error) { error_ = error; }
   int questions() const { return questions_; }
 

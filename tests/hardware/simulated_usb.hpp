@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What umockdev is told of a USB device on bus 1.
+// Describes a USB device on bus 1 to umockdev.
 #pragma once
 
 #include <umockdev.h>

@@ -27,7 +27,7 @@ struct Messages final : plvo::Log {
   std::string text;
 };
 
-// How long a test waits for what must come: an answer to "does it hang", not to "is it quick".
+// Time limit of a wait. It detects a hang; it does not judge speed.
 inline constexpr double kPatience_s = 120;
 
 inline double seconds_since(Clock::time_point start) {
@@ -42,8 +42,8 @@ class VirtualDeviceTest : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(openni::OpenNI::initialize(), openni::STATUS_OK) << openni::OpenNI::getExtendedError();
-    // OpenNI2 unloads its drivers when the last user leaves; a leak checker at the end could not name them
-    // any more.
+    // OpenNI2 unloads its drivers when the last user leaves; a leak checker at exit could not resolve their
+    // symbols.
     for (const char* driver : {"libOniFile.so.0", "libPlvoVirtual.so.0"}) {
       void* kept = dlopen(driver, RTLD_NOLOAD | RTLD_NODELETE | RTLD_NOW);
       if (kept != nullptr) dlclose(kept);
@@ -63,21 +63,21 @@ class VirtualDeviceTest : public testing::Test {
     const Status status = camera_.open(options_);
     ASSERT_TRUE(status.ok()) << status.message();
   }
-  // The next frame, however many timeouts lie before it (kPatience_s at most).
+  // Returns the next frame after any number of timeouts (within kPatience_s).
   Status next_frame() {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
     while (!status.ok() && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
-  // Calls on until the camera answers with this code (kPatience_s at most); the last answer.
+  // Repeats the call until the camera returns this code (for kPatience_s at most); returns the last status.
   Status wait_for(StatusCode code) {
     const Clock::time_point start = Clock::now();
     Status status = camera_.next(frame_);
     while (status.code() != code && seconds_since(start) < kPatience_s) status = camera_.next(frame_);
     return status;
   }
-  // Which tick of the pattern the colour image shows, by its first pixel (modulo 256); all of it must fit.
+  // The tick of the pattern in the colour image, from its first pixel (modulo 256); all pixels must match.
   int colour_tick() const {
     const int first = frame_.colour.data[0];
     const int index = first * 183 % 256;  // 7 · 183 = 1 (mod 256)

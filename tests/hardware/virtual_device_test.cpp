@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenNi2Camera over the real OpenNI2 and a virtual device: the right bytes in the right pairs, modes, units,
+// OpenNi2Camera with the real OpenNI2 and a virtual device: correct bytes in correct pairs, modes, units,
 // mirroring, registration and calibration.
 #include <cmath>
 #include <thread>
@@ -87,7 +87,7 @@ TEST_F(VirtualDeviceTest, TenthsOfAMillimetre) {
   ASSERT_TRUE(next_frame().ok());
   EXPECT_EQ(frame_.depth.metres_per_unit, 0.0001);
   EXPECT_GE(depth_tick(), 0);
-  // Not offered at 60 Hz: millimetres then.
+  // This unit is not offered at 60 Hz, so the camera uses millimetres.
   options_.width = 320;
   options_.height = 240;
   options_.fps = 60;
@@ -104,7 +104,7 @@ TEST_F(VirtualDeviceTest, MirroringThatStaysOnIsUndone) {
   EXPECT_GE(depth_tick(), 0);
 }
 
-TEST_F(VirtualDeviceTest, SoftwareRegistersWhereTheDeviceCannot) {
+TEST_F(VirtualDeviceTest, SoftwareRegistersDepthIfTheDeviceCannot) {
   ASSERT_TRUE(device_.command("registration 0"));
   open();
   EXPECT_FALSE(camera_.registered_by_device());
@@ -116,7 +116,7 @@ TEST_F(VirtualDeviceTest, SoftwareRegistersWhereTheDeviceCannot) {
   plvo::SoftwareRegistration registration;
   registration.reset(camera_.model().pinhole, camera_.model(), 0.001);
   bool found = false;
-  // The colour pattern tells the tick modulo 256, the depth pattern does not repeat with it.
+  // The colour pattern gives the tick modulo 256; the depth pattern has another period.
   for (int index = tick; index < 4000 && !found; index += 256) {
     for (int y = 0; y < 480; ++y) {
       for (int x = 0; x < 640; ++x) raw[static_cast<std::size_t>(y * 640 + x)] = pattern_depth(index, x, y);
@@ -128,7 +128,8 @@ TEST_F(VirtualDeviceTest, SoftwareRegistersWhereTheDeviceCannot) {
 }
 
 TEST_F(VirtualDeviceTest, PairsByStampNotByFrameIndex) {
-  // Depth is stamped nearly a frame late: its partner is the next colour image, of another frame index.
+  // Depth is stamped almost one frame late: its partner is the next colour image, which has another frame
+  // index.
   ASSERT_TRUE(device_.command("shift 30000"));
   open();
   for (int i = 0; i < 5; ++i) {
@@ -138,7 +139,7 @@ TEST_F(VirtualDeviceTest, PairsByStampNotByFrameIndex) {
   }
 }
 
-TEST_F(VirtualDeviceTest, ImagesStayUntilTheNextCall) {
+TEST_F(VirtualDeviceTest, ImagesStayValidUntilTheNextCall) {
   open();
   ASSERT_TRUE(next_frame().ok());
   const int tick = colour_tick();
@@ -147,8 +148,9 @@ TEST_F(VirtualDeviceTest, ImagesStayUntilTheNextCall) {
   EXPECT_EQ(depth_tick() % 256, tick);
 }
 
-TEST_F(VirtualDeviceTest, FramesOfASourceComeExactlyAndEnd) {
-  // What the command line test does with simulated frames: none lost, stamps and images as given.
+TEST_F(VirtualDeviceTest, FramesOfASourceArriveUnchangedUntilTheEnd) {
+  // Same set-up as the command line test with simulated frames: no frame is lost, stamps and images are
+  // unchanged.
   struct Source {
     int served = 0;
     static void serve(void* cookie, VirtualTick* tick) {
@@ -179,7 +181,7 @@ TEST_F(VirtualDeviceTest, FramesOfASourceComeExactlyAndEnd) {
     EXPECT_EQ(frame_.colour.data[3 * 640 * 240], i);
     EXPECT_EQ(frame_.depth.data[640 * 240], 1000 + i);
   }
-  ASSERT_TRUE(device_.command("allow 1"));  // for the source to say that there is none
+  ASSERT_TRUE(device_.command("allow 1"));  // lets the source signal the end
   EXPECT_EQ(wait_for(StatusCode::kUnplugged).code(), StatusCode::kUnplugged);
   camera_.close();
 }

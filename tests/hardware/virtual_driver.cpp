@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver behind virtual_device.hpp.
+// Implements the driver of virtual_device.hpp.
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -95,7 +95,7 @@ class Device : public oni::driver::DeviceBase {
   OniStatus setProperty(int id, const void* data, int size) override {
     if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != sizeof(registration_))
       return ONI_STATUS_NOT_SUPPORTED;
-    // libfreenect's own OpenNI2 driver crashes here; a test with us must see the mistake.
+    // libfreenect's own OpenNI2 driver crashes here; tests with this driver must detect the mistake.
     if (depth_ == nullptr) std::abort();
     std::memcpy(&registration_, data, sizeof(registration_));
     return ONI_STATUS_OK;
@@ -113,7 +113,7 @@ class Device : public oni::driver::DeviceBase {
     while (!quit_) {
       due += std::chrono::microseconds(tick());
       const auto now = std::chrono::steady_clock::now();
-      if (due < now) due = now;  // a machine too slow for the pace loses it instead of rushing after it
+      if (due < now) due = now;  // a machine that is too slow skips the lost time instead of catching up
       while (!quit_ && std::chrono::steady_clock::now() < due) {
         std::this_thread::sleep_until(
             std::min(due, std::chrono::steady_clock::now() + std::chrono::milliseconds(10)));
@@ -183,7 +183,7 @@ class Driver : public oni::driver::DriverBase {
       if (settings.plugged == plugged) return;
       settings.plugged = plugged;
     }
-    if (!ready_) return;  // initialize() tells OpenNI2 how things stand
+    if (!ready_) return;  // initialize() reports the current state to OpenNI2
     plugged ? deviceConnected(&info_) : deviceDisconnected(&info_);
   }
 
@@ -200,9 +200,9 @@ class Driver : public oni::driver::DriverBase {
 
 bool run_command(const std::string& line) {
   std::istringstream words(line);
-  std::string verb, what;
-  words >> verb >> what;
-  if (verb != "plug" && verb != "unplug") return change_settings(verb, what);
+  std::string verb, argument;
+  words >> verb >> argument;
+  if (verb != "plug" && verb != "unplug") return change_settings(verb, argument);
   if (driver != nullptr) driver->set_plugged(verb == "plug");
   return driver != nullptr;
 }
@@ -236,7 +236,7 @@ void Driver::start_from_environment() {
 }
 
 void Driver::listen(const std::string& pipe) {
-  // Opened for writing as well, so that the pipe never comes to an end when a writer leaves.
+  // Opened for writing as well, so that the pipe has no end of file when a writer leaves.
   const int fd = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   std::string pending;
   while (fd >= 0 && !quit_) {
@@ -312,7 +312,7 @@ void Device::hand_over(Settings& now, const VirtualTick& tick, Stream& stream) {
   }
 }
 
-// One tick of the sensor; returns how long the next one waits.
+// Runs one tick of the sensor; returns the time until the next one.
 std::int64_t Device::tick() {
   Settings now;
   {
@@ -320,8 +320,8 @@ std::int64_t Device::tick() {
     now = settings;
   }
   const std::lock_guard lock(mutex_);
-  // Like a real sensor's clock, ours only goes while somebody looks: ticks are counted from the first open
-  // stream on.
+  // Like a real sensor's clock, this clock runs only while a stream is open: ticks are counted from the first
+  // open stream.
   const bool both = colour_ != nullptr && depth_ != nullptr && colour_->running() && depth_->running();
   if (!both || !now.plugged || now.allowed == 0) return 1000;
   const OniVideoMode mode = colour_->mode();
@@ -342,7 +342,7 @@ std::int64_t Device::tick() {
   const std::lock_guard settings_lock(settings_mutex);
   settings.ticks = now.ticks + 1;
   if (settings.allowed > 0) --settings.allowed;
-  // A command may have set the clock meanwhile: that holds, then.
+  // A command may have set the clock in the meantime; its value then takes precedence.
   if (settings.clock_us == now.clock_us) settings.clock_us += period_us;
   if (settings.damage == damage) settings.damage = now.damage;
   return period_us;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every fault of a sensor as a state that ends when the fault does: OpenNi2Camera over the real OpenNI2 and a
-// virtual device.
+// OpenNi2Camera with the real OpenNI2 and a virtual device: every fault of a sensor is a state that ends with
+// the fault.
 #include <cstdlib>
 #include <thread>
 
@@ -16,9 +16,9 @@ TEST_F(VirtualDeviceTest, UnplugAndReplug) {
   ASSERT_TRUE(device_.command("unplug"));
   Status status = wait_for(StatusCode::kUnplugged);
   EXPECT_EQ(status.code(), StatusCode::kUnplugged) << status.message();
-  // Still away: each call waits its time limit and says so.
+  // The device is still absent: each call waits until its time limit and reports it.
   EXPECT_EQ(camera_.next(frame_).code(), StatusCode::kUnplugged);
-  // The device's clock starts anew; ours goes on.
+  // The device's clock restarts; the camera's stamps continue.
   ASSERT_TRUE(device_.command("clock 0"));
   ASSERT_TRUE(device_.command("plug"));
   status = next_frame();
@@ -31,7 +31,7 @@ TEST_F(VirtualDeviceTest, UnplugAndReplug) {
   EXPECT_EQ(camera_.counters().clock_jumps, 0u);
 }
 
-TEST_F(VirtualDeviceTest, NothingPluggedInSaysSo) {
+TEST_F(VirtualDeviceTest, MissingDeviceIsReported) {
   ASSERT_TRUE(device_.command("unplug"));
   const Status status = camera_.open(options_);
   EXPECT_EQ(status.code(), StatusCode::kNotFound) << status.message();
@@ -43,7 +43,7 @@ TEST_F(VirtualDeviceTest, OneStreamStops) {
   for (const char* stream : {"colour", "depth"}) {
     ASSERT_TRUE(device_.command((std::string("stop ") + stream).c_str()));
     const Clock::time_point start = Clock::now();
-    // A call that began before the stop may still have seen both streams: one after it has not.
+    // A call that began before the stop may still have received both streams; a later one has not.
     Status status;
     while (!says(status, std::string(stream) + " stream stopped") && seconds_since(start) < kPatience_s) {
       status = camera_.next(frame_);
@@ -57,7 +57,7 @@ TEST_F(VirtualDeviceTest, OneStreamStops) {
 }
 
 TEST_F(VirtualDeviceTest, StallIsATimeoutAndEnds) {
-  // PLVO_STALL_S=30 makes the stall as long as the mission asks; nothing but the waiting differs.
+  // PLVO_STALL_S=30 sets a stall of 30 s; only the waiting time differs.
   const char* given = std::getenv("PLVO_STALL_S");
   const double stall_s = given != nullptr ? std::atof(given) : 1.5;
   open();
@@ -68,7 +68,7 @@ TEST_F(VirtualDeviceTest, StallIsATimeoutAndEnds) {
   int timeouts = 0;
   while (seconds_since(start) < stall_s) {
     status = camera_.next(frame_);
-    if (status.ok()) continue;  // one that was under way
+    if (status.ok()) continue;  // a frame that was in transit
     ASSERT_EQ(status.code(), StatusCode::kTimeout) << status.message();
     ++timeouts;
   }
@@ -126,7 +126,7 @@ TEST_F(VirtualDeviceTest, StampsTooFarApartNeverPair) {
   ASSERT_TRUE(device_.command("shift 12000"));
   options_.pair_tolerance_us = 10000;
   open();
-  // Depth is 12 ms after its colour image and 21 ms before the next: neither is within 10 ms.
+  // Depth comes 12 ms after its colour image and 21 ms before the next: neither is within 10 ms.
   const Status status = camera_.next(frame_);
   EXPECT_EQ(status.code(), StatusCode::kTimeout);
   EXPECT_NE(std::string(status.message()).find("apart"), std::string::npos) << status.message();
@@ -160,7 +160,7 @@ TEST_F(VirtualDeviceTest, DamagedImageIsSkipped) {
 
 TEST_F(VirtualDeviceTest, SlowReaderGetsPairsAndLossIsCounted) {
   open();
-  // Until enough was lost: how much the device sends between two reads is the machine's affair.
+  // Reads until enough frames are lost: the number of frames between two reads depends on the machine.
   const Clock::time_point start = Clock::now();
   while ((camera_.counters().dropped_colour <= 5 || camera_.counters().missing <= 5) &&
          seconds_since(start) < kPatience_s) {

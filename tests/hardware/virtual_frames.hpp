@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same simulated frames twice: as raw frames for the virtual device and as a TUM folder for replay. Depth
-// is rounded to millimetres first, for that is what an OpenNI2 device has; so live and replay see the same
-// bytes.
+// Writes the same simulated frames twice: as raw frames for the virtual device and as a TUM folder for
+// replay. Depth is rounded to millimetres first, the unit of an OpenNI2 device, so live and replay see the
+// same bytes.
 #pragma once
 
 #include <filesystem>

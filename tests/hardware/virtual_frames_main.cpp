@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_virtual_frames RAW FOLDER FRAMES [SCENE]: 320x240 frames of the simulator for PLVO_VIRTUAL_FRAMES, and
-// the same ones as a TUM folder.
+// plvo_virtual_frames RAW FOLDER FRAMES [SCENE]: writes 320x240 simulated frames for PLVO_VIRTUAL_FRAMES, and
+// the same frames as a TUM folder.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulator's frames through the virtual device and the real OpenNI2 are, byte for byte and stamp for
-// stamp, the frames that replay reads from a folder. The device is told by the environment, as it is for a
+// The simulator's frames through the virtual device and the real OpenNI2 equal, byte for byte and stamp for
+// stamp, the frames that replay reads from a folder. The environment configures the device, as it does for a
 // program under test.
 #include "virtual_frames.hpp"
 
@@ -73,9 +73,9 @@ TEST(VirtualFrames, LiveAndReplayAreTheSameBytes) {
     }
   }
   EXPECT_EQ(replay.next(b).code(), plvo::StatusCode::kEndOfStream);
-  ASSERT_TRUE(device.command("allow 1"));  // for the source to say that there is none
+  ASSERT_TRUE(device.command("allow 1"));  // lets the source signal the end
   EXPECT_EQ(live.next(a).code(), plvo::StatusCode::kUnplugged);
-  // Commands by the pipe: it is plugged in again, but has no more frames.
+  // Commands through the pipe: the device is plugged in again, but has no more frames.
   std::ofstream(control) << "plug" << std::endl;
   plvo::Status status = live.next(a);
   for (int i = 0; i < 20 && status.code() == plvo::StatusCode::kUnplugged && live.counters().replugged == 0;

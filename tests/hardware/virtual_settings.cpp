@@ -10,8 +10,8 @@ std::mutex settings_mutex;
 std::mutex source_mutex;
 Settings settings;
 
-bool change_settings(const std::string& verb, const std::string& what) {
-  const std::int64_t n = std::atoll(what.c_str());
+bool change_settings(const std::string& verb, const std::string& argument) {
+  const std::int64_t n = std::atoll(argument.c_str());
   const std::lock_guard lock(settings_mutex);
   Settings& s = settings;
   if (verb == "reset")
@@ -20,9 +20,9 @@ bool change_settings(const std::string& verb, const std::string& what) {
     s.colour_runs = s.depth_runs = true;
   else if (verb == "stall")
     s.colour_runs = s.depth_runs = false;
-  else if (verb == "stop" && what == "colour")
+  else if (verb == "stop" && argument == "colour")
     s.colour_runs = false;
-  else if (verb == "stop" && what == "depth")
+  else if (verb == "stop" && argument == "depth")
     s.depth_runs = false;
   else if (verb == "period")
     s.period_us = n;
@@ -43,7 +43,7 @@ bool change_settings(const std::string& verb, const std::string& what) {
   else if (verb == "damage")
     s.damage = static_cast<int>(n);
   else if (verb == "after_end")
-    s.unplug_at_end = what == "unplug";
+    s.unplug_at_end = argument == "unplug";
   else if (verb == "to_and_fro")
     s.to_and_fro = n != 0;
   else if (verb == "registration")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that has the Kinect for itself: commands in order and on that thread, and an end that leaves
-// nobody behind. Built a second time with ThreadSanitizer where the compiler has it.
+// The thread that owns the Kinect runs commands in order and on that thread, and its end releases every
+// caller. Built a second time with ThreadSanitizer if the compiler supports it.
 #include "plvo/openni2/freenect_driver/command_thread.hpp"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@ namespace {
 
 const std::function<bool()> kNothing = [] { return false; };
 
-TEST(CommandThread, CarriesCommandsOutOnItself) {
+TEST(CommandThread, RunsCommandsOnItsOwnThread) {
   std::thread::id own, first, second;
   int order = 0;
   std::unique_ptr<CommandThread> thread;
   thread = std::make_unique<CommandThread>(kNothing, [&] { own = std::this_thread::get_id(); });
   EXPECT_TRUE(thread->call([&] {
     first = std::this_thread::get_id();
-    // From within a command: at once.
+    // A command that calls the thread runs at once.
     return thread->call([&] { return ++order == 1; }) && ++order == 2;
   }));
   EXPECT_FALSE(thread->call([&] {
@@ -40,14 +40,15 @@ TEST(CommandThread, IdlesBetweenCommands) {
   EXPECT_TRUE(thread.call([] { return true; }));
 }
 
-// What was taken in is carried out, what comes later is refused, and every caller returns: the thread used to
-// end between the two, and whoever had just handed a command over got an exception, or waited for ever.
+// The thread executes every accepted command and refuses later ones, and every caller returns. In an earlier
+// version the thread could end between the two, and a caller that had just handed over a command got an
+// exception or waited forever.
 TEST(CommandThread, AnEndLeavesNobodyBehind) {
   constexpr int kRounds = 200;
   constexpr int kCallers = 4;
   long accepted = 0;
   for (int round = 0; round < kRounds; ++round) {
-    // Not atomic: the commands and the end all run on the one thread.
+    // Not atomic: only the command thread runs the commands and the end function.
     int carried_out = 0;
     bool ended = false;
     auto thread = std::make_unique<CommandThread>(kNothing, [&] { ended = true; });

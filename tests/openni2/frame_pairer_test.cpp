@@ -34,9 +34,9 @@ TEST(FramePairer, PairsWithinTheToleranceOnly) {
   EXPECT_EQ(pair.depth.stamp_us, 111);
 }
 
-// Against the obvious rule on random streams: of all images so far, a colour image belongs to the depth image
-// within the tolerance, and every image ends up in one pair or as unmatched.
-TEST(FramePairer, AgreesWithTheObviousRuleOnRandomStreams) {
+// Compares the pairer with a brute-force rule on random streams: a colour image belongs to the depth image
+// within the tolerance among all images so far, and every image ends in exactly one pair or as unmatched.
+TEST(FramePairer, AgreesWithABruteForceRuleOnRandomStreams) {
   constexpr std::int64_t kSpacing = 1000;
   Random random(3);
   FramePairer pairer;
@@ -69,7 +69,7 @@ TEST(FramePairer, AgreesWithTheObviousRuleOnRandomStreams) {
   }
 }
 
-TEST(FramePairer, AFullQueueGivesUpItsOldestAndNeverWhatIsLent) {
+TEST(FramePairer, FullQueueDropsItsOldestImageButNoBorrowedOne) {
   FramePairer pairer;
   pairer.reset(8, 8, 10);
   FramePairer::Pair pair;

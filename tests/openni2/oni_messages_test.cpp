@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a player of .oni files says: whole messages out of any pieces, and nothing believed.
+// The messages of a player of .oni files: the reader reassembles them from fragments of any size and
+// validates every field.
 #include "plvo/openni2/oni_messages.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ DeviceImage image_of(FramePairer::Stream stream, std::int64_t stamp_us, const By
 
 void append(Bytes& to, const Bytes& more) { to.insert(to.end(), more.begin(), more.end()); }
 
-// Messages of `bytes`, in pieces of at most `step`; kPartial is left out.
+// Messages decoded from `bytes`, in fragments of at most `step` bytes; kPartial is omitted.
 std::vector<Message> read(OniMessageReader& reader, const Bytes& bytes, std::size_t step) {
   std::vector<Message> messages;
   for (std::size_t at = 0; at < bytes.size();) {
@@ -50,7 +51,7 @@ std::vector<Message> read(OniMessageReader& reader, const Bytes& bytes, std::siz
   return messages;
 }
 
-TEST(OniMessages, ComeBackWholeFromAnyPieces) {
+TEST(OniMessages, AreReassembledFromAnyFragments) {
   Bytes colour(36), depth(24);
   for (std::size_t i = 0; i < colour.size(); ++i) colour[i] = static_cast<std::uint8_t>(i);
   Bytes bytes = oni_hello(small());
@@ -87,8 +88,8 @@ TEST(OniMessages, CarryFailuresAndImagesWithoutPixels) {
   EXPECT_STREQ(reader.failure().message(), "broken");
 }
 
-// Found by fuzz_oni_messages: a failure is said in words, also where the player has none.
-TEST(OniMessages, AFailureWithoutWordsGetsSome) {
+// Found by fuzz_oni_messages: a failure has a message even if the player sends none.
+TEST(OniMessages, FailureWithoutTextGetsADefaultText) {
   for (const char* words : {"", "\n"}) {
     OniMessageReader reader;
     EXPECT_EQ(read(reader, oni_failure(Status(StatusCode::kIo, words)), 50),
@@ -97,7 +98,7 @@ TEST(OniMessages, AFailureWithoutWordsGetsSome) {
   }
 }
 
-TEST(OniMessages, NothingIsBelieved) {
+TEST(OniMessages, InvalidMessagesAreRefused) {
   const auto refused = [](const Bytes& bytes) {
     OniMessageReader reader;
     const std::vector<Message> messages = read(reader, bytes, 100000);
@@ -126,11 +127,12 @@ TEST(OniMessages, NothingIsBelieved) {
   image.height = 4000;
   append(larger, oni_image_head(image));
   EXPECT_TRUE(refused(larger));
-  EXPECT_TRUE(refused(oni_failure(Status())));  // a failure that is none
+  EXPECT_TRUE(refused(oni_failure(Status())));  // a failure message with an ok status
 }
 
-// Arithmetic on stamps must not overflow, whatever a file says: such an image counts as damaged.
-TEST(OniMessages, ImpossibleStampsDamageTheImage) {
+// Arithmetic on stamps must not overflow for any value in a file: an image with such a stamp counts as
+// damaged.
+TEST(OniMessages, ImagesWithImpossibleStampsCountAsDamaged) {
   const Bytes pixels(24);
   for (const std::int64_t stamp : {std::int64_t{-1}, std::int64_t{1} << 60, std::int64_t{-1} << 62}) {
     OniMessageReader reader;

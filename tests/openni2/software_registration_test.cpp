@@ -21,8 +21,8 @@ TEST(SoftwareRegistration, FieldOfViewToFocalLength) {
   EXPECT_EQ(pinhole.cy, 239.5);
 }
 
-// The same thing said plainly: every point through the core's own back-projection, projection and lens; of
-// those that meet in a pixel, the smallest depth.
+// Reference implementation: transforms every point with the core's own back-projection, projection and lens
+// model. If several points fall into a pixel, the smallest depth remains.
 std::map<int, std::uint16_t> reference(const std::vector<std::uint16_t>& depth, const Pinhole& from,
                                        const CameraModel& to) {
   std::map<int, std::uint16_t> image;
@@ -58,7 +58,8 @@ void compare(const CameraModel& colour) {
     const auto at = expected.find(i);
     different += (at == expected.end() ? 0 : at->second) != warped[static_cast<std::size_t>(i)];
   }
-  // The two round in different places: a point on the border of two pixels may fall to either side.
+  // The two implementations round at different places, so a point on the border of two pixels may fall into
+  // either.
   EXPECT_LE(different, 4);
 }
 
@@ -80,7 +81,8 @@ TEST(SoftwareRegistration, AgreesWithTheReferenceForALens) {
   compare(colour);
 }
 
-// At 1 m, 25 mm is fx · 0.025 px to the left; the nearer of two surfaces hides the farther.
+// At 1 m, 25 mm correspond to a shift of fx · 0.025 px to the left. The nearer of two surfaces hides the
+// farther.
 TEST(SoftwareRegistration, NearSurfacesMoveFartherAndHide) {
   CameraModel colour;
   colour.pinhole = {520, 520, 319.5, 239.5};

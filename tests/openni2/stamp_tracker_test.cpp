@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kPeriod = 33333;
 
-TEST(StampTracker, LeavesAGoodClockAlone) {
+TEST(StampTracker, KeepsTheStampsOfAGoodClock) {
   StampTracker tracker;
   tracker.reset(kPeriod, true);
   for (int i = 0; i < 100; ++i) {
@@ -22,7 +22,7 @@ TEST(StampTracker, LeavesAGoodClockAlone) {
   }
 }
 
-// An hour of a Kinect: 50 wraps of its counter, one stream always a little ahead of the other.
+// One hour of a Kinect: 50 wraps of its counter, with one stream always slightly ahead of the other.
 TEST(StampTracker, WrapsAreExactForAnHour) {
   StampTracker tracker;
   tracker.reset(kPeriod, true);
@@ -39,7 +39,7 @@ TEST(StampTracker, WrapsAreExactForAnHour) {
   EXPECT_EQ(wraps[1], 51);
 }
 
-TEST(StampTracker, AfterAJumpBothStreamsAgreeAgain) {
+TEST(StampTracker, BothStreamsAgreeAfterAJump) {
   for (const std::int64_t jump : {-900000000LL, -5000000LL, 800000000LL}) {
     StampTracker tracker;
     tracker.reset(kPeriod, true);
@@ -58,7 +58,7 @@ TEST(StampTracker, AfterAJumpBothStreamsAgreeAgain) {
   }
 }
 
-TEST(StampTracker, AStallIsNoJump) {
+TEST(StampTracker, StallIsNotAJump) {
   StampTracker tracker;
   tracker.reset(kPeriod, true);
   tracker.map(0, 1000000, 0);
@@ -67,7 +67,7 @@ TEST(StampTracker, AStallIsNoJump) {
   EXPECT_EQ(result.stamp_us, 31000000);
 }
 
-TEST(StampTracker, RestartGoesOnByTheHostsClock) {
+TEST(StampTracker, RestartContinuesOnTheHostClock) {
   StampTracker tracker;
   tracker.reset(kPeriod, true);
   tracker.map(0, 50000000, 100);
@@ -80,7 +80,7 @@ TEST(StampTracker, RestartGoesOnByTheHostsClock) {
   EXPECT_EQ(colour.step, StampTracker::Step::kForward);
 }
 
-TEST(StampTracker, IncreasesWhateverComes) {
+TEST(StampTracker, StampsIncreaseForAnyInput) {
   Random random(7);
   StampTracker tracker;
   tracker.reset(kPeriod, true);

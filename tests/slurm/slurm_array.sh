@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The bench's job list as an array on a real Slurm of one node, which this starts in a folder of its own and ends again: one
-# task is killed, the array is submitted once more, and the tables are those of a run without Slurm.
+# Runs the bench's job list as an array on a real Slurm with one node, which the script starts in its own folder and stops at
+# the end. It kills one task, submits the array again, and compares the tables with those of a run without Slurm.
 # usage: slurm_array.sh PLVO_BENCH; 77: skipped
 set -euo pipefail
 
@@ -29,7 +29,7 @@ fail() {
   exit 1
 }
 
-# One node, this machine; nobody to prove anything to, so without keys. Ports that nobody else is likely to have.
+# One node, this machine. It needs no authentication, so it has no keys. The ports are unlikely to be in use.
 host=$(hostname)
 port=$((20000 + $$ % 20000))
 mkdir "$work/state" "$work/spool"
@@ -64,7 +64,7 @@ daemons+=($!)
 slurmd -D -N "$host" >"$work/slurmd.log" 2>&1 &
 daemons+=($!)
 
-# wait_for WHAT COMMAND…: at most ten minutes, for whatever else the machine has to do.
+# wait_for WHAT COMMAND…: waits at most ten minutes, to allow for other load on the machine.
 wait_for() {
   local what=$1
   shift
@@ -79,14 +79,14 @@ started() { [ -e "$work/started" ]; }
 wait_for "a node that is ready" idle
 
 measure=("$bench" lighting --out "$work/results" --sites desk,bare --seeds 1 --frames 4 --systems ours)
-# The jobs that are left, as an array: a line of the list for each task.
+# Submits the remaining jobs as an array: one line of the list for each task.
 submit() {
   "${measure[@]}" --list-jobs > "$work/jobs.txt"
   sbatch --parsable --chdir "$work" --output "$work/task-%a.log" --array="1-$(wc -l < "$work/jobs.txt")" --wrap "$1"
 }
 task='sh -c "$(sed -n ${SLURM_ARRAY_TASK_ID}p jobs.txt)"'
 
-# The second task says that it runs and waits, so that it is killed in the middle, whatever the machine's pace.
+# The second task reports that it runs and then waits, so that it is killed while it runs, whatever the speed of the machine.
 array=$(submit "if [ \$SLURM_ARRAY_TASK_ID = 2 ]; then touch started; sleep 1000; fi; $task")
 [ "$(wc -l < "$work/jobs.txt")" -eq 4 ] || fail "four walks were to be measured"
 wait_for "the start of the second task" started
@@ -103,7 +103,7 @@ wait_for "the end of the second array" none_left
 
 measure[3]=$work/alone
 "${measure[@]}" >"$work/alone.log" 2>&1 || fail "the run without Slurm failed"
-# Drift and errors; the page and the raw results have times, which are not the same, nor is what else the machine does.
+# Compares drift and errors. The page and the raw results contain times, which differ between runs.
 tables() { sed 's/, load [0-9.]*;/;/' "$work/$1/lighting.md"; }
 cmp <(tables results) <(tables alone) || fail "the tables differ"
 for file in "$work"/alone/jobs/*.txt; do

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo tilt` on a simulated motor under real libusb; in this process, for umockdev wants it so.
+// `plvo tilt` with a simulated motor below the real libusb, in this process because umockdev requires it.
 #include <gtest/gtest.h>
 #include <sys/fsuid.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ namespace {
 
 const MockDeviceSpec kMotor{"1-1.1", 1, 4, 0x045e, 0x02b0, 0x0107, "12"};
 
-// The motor of model 1414: it moves for two looks, then stands where it was told to.
+// The motor of model 1414: it reports motion for two readings and then stands at the commanded tilt.
 struct FakeMotor {
   int half_degrees = 20, goal = 20, moving = 0, light = -1;
 
@@ -67,7 +67,7 @@ class CliTilt : public ::testing::Test {
   std::string out_, err_;
 };
 
-TEST_F(CliTilt, SaysWhereTheHeadStands) {
+TEST_F(CliTilt, ReportsTheTilt) {
   mock_.plug(kMotor, motor_.behaviour());
   ASSERT_EQ(tilt({}), 0) << err_;
   EXPECT_NE(out_.find("+10.0 degrees against the horizon"), std::string::npos) << out_;
@@ -77,7 +77,7 @@ TEST_F(CliTilt, SaysWhereTheHeadStands) {
   EXPECT_EQ(nlohmann::json::parse(out_)["tilt_deg"], 10.0);
 }
 
-TEST_F(CliTilt, TurnsTheHeadWaitsAndLights) {
+TEST_F(CliTilt, SetsTheTiltWaitsAndSetsTheLight) {
   mock_.plug(kMotor, motor_.behaviour());
   ASSERT_EQ(tilt({"-12.5", "--led", "blink-green"}), 0) << err_;
   EXPECT_EQ(motor_.goal, -25);
@@ -88,7 +88,7 @@ TEST_F(CliTilt, TurnsTheHeadWaitsAndLights) {
   EXPECT_NE(err_.find("from -31 to 31"), std::string::npos) << err_;
 }
 
-TEST_F(CliTilt, SaysWhatIsWrong) {
+TEST_F(CliTilt, ReportsErrors) {
   EXPECT_EQ(tilt({}), 4);
   EXPECT_NE(err_.find("plvo: error: no Kinect v1 motor"), std::string::npos) << err_;
   EXPECT_EQ(tilt({"up"}), 2);

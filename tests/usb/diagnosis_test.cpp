@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facts to findings: every trouble alone, and that each remedy names the thing to type.
+// Tests the step from facts to findings: each fault alone, and that each remedy names the command to type.
 #include "plvo/usb/diagnosis.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ const Finding* find(const std::vector<Finding>& findings, FindingCode code) {
   return at == findings.end() ? nullptr : &*at;
 }
 
-// The only problem is `code`; its text holds `in_what` and its remedy `in_remedy`.
+// Expects that `code` is the only problem, that its text contains `in_what` and its remedy `in_remedy`.
 void expect_only(const SystemFacts& facts, FindingCode code, const std::string& in_what,
                  const std::string& in_remedy) {
   const std::vector<Finding> findings = diagnose(facts);
@@ -60,7 +60,7 @@ void expect_only(const SystemFacts& facts, FindingCode code, const std::string& 
   }
 }
 
-TEST(Diagnosis, HealthyKinectIsReadyAndNothingElse) {
+TEST(Diagnosis, HealthyKinectGivesOnlyReady) {
   const std::vector<Finding> findings = diagnose(healthy_kinect());
   ASSERT_EQ(findings.size(), 1u) << findings.back().what;
   EXPECT_EQ(findings[0].code, FindingCode::kReady);
@@ -73,13 +73,13 @@ TEST(Diagnosis, NothingPluggedIn) {
   expect_only(facts, FindingCode::kNothingPluggedIn, "No known RGB-D sensor", "12 V");
 }
 
-TEST(Diagnosis, MotorWithoutCameraIsTheTwelveVolts) {
+TEST(Diagnosis, MotorWithoutCameraMeansMissingTwelveVolts) {
   SystemFacts facts = healthy_kinect();
   facts.devices.resize(1);
   expect_only(facts, FindingCode::kTwelveVolts, "no 12 V supply", "power supply");
 }
 
-TEST(Diagnosis, SecondKinectWithoutPowerIsToldBesideAHealthyOne) {
+TEST(Diagnosis, SecondKinectWithoutPowerIsReportedNextToAHealthyOne) {
   SystemFacts facts = healthy_kinect();
   facts.devices.push_back(device(0x045e, 0x02b0, "2-4.1", 12));
   const std::vector<Finding> findings = diagnose(facts);
@@ -96,7 +96,7 @@ TEST(Diagnosis, PermissionNamesTheRule) {
   EXPECT_EQ(find(diagnose(facts), FindingCode::kReady), nullptr);
   facts.udev_rule = "/etc/udev/rules.d/60-plvo-rgbd.rules";
   expect_only(facts, FindingCode::kPermission, "No permission", "does not let you in: sudo udevadm");
-  // Installed and in force, it lets in who sits at the machine, and the group.
+  // An installed and active rule admits the local user and the group.
   expect_only(facts, FindingCode::kPermission, "No permission", "usermod -aG video $USER");
 }
 
@@ -117,7 +117,7 @@ TEST(Diagnosis, WebcamDriverHoldsTheCamera) {
   expect_only(facts, FindingCode::kKernelDriver, "gspca_kinect", "modprobe -r gspca_kinect");
 }
 
-TEST(Diagnosis, SoundDriverOnTheAudioDeviceIsNoTrouble) {
+TEST(Diagnosis, SoundDriverOnTheAudioDeviceIsNotAProblem) {
   SystemFacts facts = healthy_kinect();
   facts.devices[1].kernel_driver = "snd-usb-audio";
   EXPECT_EQ(diagnose(facts).size(), 1u);
@@ -134,7 +134,7 @@ TEST(Diagnosis, SlowPorts) {
   expect_only(facts, FindingCode::kSlowPort, "needs USB 3", "blue");
 }
 
-TEST(Diagnosis, HubsOfAKinectV2AreNoCameras) {
+TEST(Diagnosis, HubsOfAKinectV2AreNotCameras) {
   SystemFacts facts = healthy_kinect();
   facts.openni.files.push_back({"libfreenect2-openni2.so.0", ""});
   facts.usbfs_memory_mb = 64;
@@ -150,7 +150,7 @@ TEST(Diagnosis, HubsOfAKinectV2AreNoCameras) {
   expect_only(facts, FindingCode::kSlowPort, "its camera is not: it needs USB 3", "blue");
 }
 
-TEST(Diagnosis, KinectV2DriverDoesNotServeAKinectV1NorTheOtherWayRound) {
+TEST(Diagnosis, KinectV1AndKinectV2NeedTheirOwnDrivers) {
   SystemFacts facts = healthy_kinect();
   facts.openni.files = {{"libfreenect2-openni2.so.0", ""}};
   expect_only(facts, FindingCode::kDriverMissing, "no driver for the Kinect v1", "libfreenect-dev");
@@ -160,7 +160,7 @@ TEST(Diagnosis, KinectV2DriverDoesNotServeAKinectV1NorTheOtherWayRound) {
   expect_only(facts, FindingCode::kDriverMissing, "no driver for the Kinect v2", "libfreenect2");
 }
 
-TEST(Diagnosis, DriverMissingMisnamedBroken) {
+TEST(Diagnosis, MissingMisnamedAndBrokenDrivers) {
   SystemFacts facts = healthy_kinect();
   facts.openni.files = {{"libPS1080.so.0", ""}};
   expect_only(facts, FindingCode::kDriverMissing, "/usr/lib/OpenNI2/Drivers", "libfreenect-dev");
@@ -175,7 +175,7 @@ TEST(Diagnosis, DriverMissingMisnamedBroken) {
   expect_only(facts, FindingCode::kDriverMisnamed, "liborbbec.so", "liborbbec.so.0");
 }
 
-TEST(Diagnosis, OpenniItself) {
+TEST(Diagnosis, MissingOpenniAndMissingDriverFolder) {
   SystemFacts facts = healthy_kinect();
   facts.openni.directory_exists = false;
   expect_only(facts, FindingCode::kDriverFolderMissing, "/usr/lib/OpenNI2/Drivers", "libopenni2-0");
@@ -201,7 +201,7 @@ TEST(Diagnosis, NotesDoNotHideReadiness) {
   EXPECT_NE(find(findings, FindingCode::kUsbfsMemory)->remedy.find("usbfs_memory_mb"), std::string::npos);
 }
 
-TEST(Diagnosis, NoUsbAtAll) {
+TEST(Diagnosis, UnavailableUsb) {
   SystemFacts facts = healthy_kinect();
   facts.devices.clear();
   facts.usb_works = false;
@@ -209,7 +209,7 @@ TEST(Diagnosis, NoUsbAtAll) {
   expect_only(facts, FindingCode::kUsbUnavailable, "Other error", "/dev/bus/usb");
 }
 
-TEST(Diagnosis, OnlyOneKindOfFileNameIsADriver) {
+TEST(Diagnosis, OnlyOneFileNamePatternIsADriver) {
   EXPECT_TRUE(is_driver_name("libPS1080.so.0"));
   for (const char* name :
        {"libPS1080.so", "libPS1080.so.0.1", "PS1080.so.0", "lib.so.0", "OniFile.ini", ""}) {
@@ -217,7 +217,7 @@ TEST(Diagnosis, OnlyOneKindOfFileNameIsADriver) {
   }
 }
 
-// Sensors see into rooms: not everybody on the machine may look through them.
+// Sensors observe private spaces, so not every user of the machine may access them.
 TEST(UdevRule, LetsInWhoSitsThereAndTheGroupAlone) {
   std::ifstream file(PLVO_UDEV_RULE);
   int rules = 0;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr uid_t kInvalidSlot = 65534;
 
-// A device with one configuration, one vendor-specific interface and one bulk endpoint either way.
+// A device with one configuration, one vendor-specific interface and one bulk endpoint in each direction.
 std::vector<std::uint8_t> descriptors(const MockDeviceSpec& s) {
   const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xff); };
   const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
@@ -82,7 +82,7 @@ std::string node_of(const MockDeviceSpec& spec) {
   return text.data();
 }
 
-// "1-1.3" lives in …/usb1/1-1/.
+// The device on port "1-1.3" has its directory in …/usb1/1-1/.
 std::string parent_folder(const std::string& port) {
   const std::string top = "/sys/devices/pci0000:00/";
   if (port.rfind("usb", 0) == 0) return top;
@@ -104,7 +104,7 @@ struct MockUsb::Device {
   std::deque<usbdevfs_urb*> done;
 };
 
-// A root hub, and the Kinect's own hub on port 1: libusb names a port by the hubs above it.
+// A root hub and the Kinect's own hub on port 1: libusb derives the name of a port from the hubs above it.
 MockUsb::MockUsb() : testbed_(umockdev_testbed_new()) {
   plug({"usb1", 1, 1, 0x1d6b, 0x0002});
   plug({"1-1", 1, 2, 0x0409, 0x005a});
@@ -171,7 +171,8 @@ void MockUsb::unplug(const std::string& port) {
 void MockUsb::deny(const std::string& port) {
   gchar* root = umockdev_testbed_get_root_dir(testbed_);
   const std::string path = std::string(root) + node_of(devices_.at(port)->spec);
-  // All else stays open to whoever the thread becomes: umockdev's own sockets live there too.
+  // All other files stay accessible to the user that the thread becomes: umockdev's own sockets are there
+  // too.
   ::nftw(
       root,
       [](const char* name, const struct stat*, int type, FTW*) {

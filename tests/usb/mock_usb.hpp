@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// USB devices that are not there, under real libusb: umockdev answers for /sys, /dev and the ioctls. The
-// programs run under umockdev-wrapper, mock and client in one process, so that the pointers in an ioctl can
-// be followed directly.
+// Simulated USB devices below the real libusb: umockdev answers for /sys, /dev and the ioctls. The programs
+// run under umockdev-wrapper with mock and client in one process, so that the mock can dereference the
+// pointers in an ioctl.
 #pragma once
 
 #include <umockdev.h>
@@ -28,12 +28,12 @@ struct MockDeviceSpec {
   const char* kernel_driver = nullptr;
 };
 
-// Answers transfers. Return ≥ 0: bytes moved; < 0: −errno.
+// Handles transfers. A return value ≥ 0 is the number of bytes moved, < 0 is −errno.
 struct MockBehaviour {
-  // setup: the 8 bytes of a control transfer; data: what follows, to read or to fill.
+  // setup: the 8 bytes of a control transfer; data: the bytes that follow, to read or to fill.
   std::function<int(const std::uint8_t* setup, std::uint8_t* data, int length)> control;
   std::function<int(unsigned endpoint, std::uint8_t* data, int length)> bulk;
-  int claim_errno = 0;  // what claiming an interface returns, 0 for success
+  int claim_errno = 0;  // result of claiming an interface, 0 for success
 };
 
 class MockUsb {
@@ -43,8 +43,8 @@ class MockUsb {
 
   void plug(const MockDeviceSpec& spec, MockBehaviour behaviour = {});
   void unplug(const std::string& port);
-  // From here on the calling thread may not open the device's file (tests often run as root, who may
-  // everything).
+  // After this call, the calling thread may not open the device's file (tests often run as root, who has all
+  // permissions).
   void deny(const std::string& port);
   void set_usbfs_memory(int megabytes);
 

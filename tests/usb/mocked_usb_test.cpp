@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real libusb on simulated devices: the doctor's four cases, the Kinect's motor, and hot-plug. Runs under
-// umockdev-wrapper.
+// The real libusb with simulated devices: the doctor's four cases, the Kinect's motor, and hot-plug. Runs
+// under umockdev-wrapper.
 #include <gtest/gtest.h>
 #include <sys/fsuid.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ class MockedUsb : public ::testing::Test {
 
   SystemFacts gather() {
     SystemFacts facts = gather_facts(bus_);
-    // The machine's own OpenNI2 is not the subject here: a folder with the Kinect's driver, or none.
+    // Replaces the facts about the machine's own OpenNI2 by a folder with or without the Kinect's driver.
     facts.openni = {};
     facts.openni.found = facts.openni.directory_exists = true;
     facts.openni.directory = "/usr/lib/OpenNI2/Drivers";
@@ -64,7 +64,7 @@ TEST_F(MockedUsb, NothingPluggedIn) {
   EXPECT_EQ(sentences().find("No known RGB-D sensor is plugged in."), 0u) << sentences();
 }
 
-TEST_F(MockedUsb, StrangersAreNotOurs) {
+TEST_F(MockedUsb, UnknownDevicesAreIgnored) {
   mock_.plug({"1-2", 1, 9, 0x046d, 0xc077});
   EXPECT_TRUE(gather().devices.empty());
 }
@@ -107,7 +107,7 @@ TEST_F(MockedUsb, KinectWithoutTwelveVolts) {
   EXPECT_NE(sentences().find("no 12 V supply"), std::string::npos) << sentences();
 }
 
-TEST_F(MockedUsb, KinectThatAnotherProgramHolds) {
+TEST_F(MockedUsb, KinectInUseByAnotherProgram) {
   mock_.plug(kMotor);
   MockBehaviour held;
   held.claim_errno = EBUSY;
@@ -115,7 +115,7 @@ TEST_F(MockedUsb, KinectThatAnotherProgramHolds) {
   EXPECT_NE(sentences().find("is busy"), std::string::npos) << sentences();
 }
 
-TEST_F(MockedUsb, KinectThatTheWebcamDriverHolds) {
+TEST_F(MockedUsb, KinectClaimedByTheWebcamDriver) {
   mock_.plug(kMotor);
   MockDeviceSpec camera = kCamera;
   camera.kernel_driver = "gspca_kinect";
@@ -137,7 +137,7 @@ TEST_F(MockedUsb, UsbfsMemoryIsRead) {
   EXPECT_EQ(gather().usbfs_memory_mb, 8);
 }
 
-TEST_F(MockedUsb, HotPlugTellsArrivalAndDeparture) {
+TEST_F(MockedUsb, HotPlugReportsArrivalAndDeparture) {
   ASSERT_TRUE(bus_.open().ok());
   EXPECT_FALSE(bus_.camera_present());
   const Status watching = bus_.watch();
@@ -162,7 +162,7 @@ TEST_F(MockedUsb, HotPlugTellsArrivalAndDeparture) {
   EXPECT_FALSE(bus_.camera_present());
 }
 
-// The motor device of model 1414 as the OpenKinect project describes it.
+// The motor device of model 1414 as documented by the OpenKinect project.
 struct FakeMotor {
   std::array<std::uint8_t, 10> state{};
   int tilt_half_degrees = 999;
@@ -188,7 +188,7 @@ struct FakeMotor {
 
 TEST_F(MockedUsb, MotorOf1414) {
   FakeMotor fake;
-  // Gravity on +y, a little on x, −z; 10 degrees; at the limit.
+  // Gravity along +y with small components along +x and −z; tilt 10 degrees; at the limit.
   fake.state = {0, 0, 0x00, 0x52, 0x03, 0x33, 0xff, 0xae, 20, 1};
   mock_.plug(kMotor, fake.behaviour());
   mock_.plug(kCamera);
@@ -235,8 +235,8 @@ TEST_F(MockedUsb, MotorWithoutPermissionNamesTheRule) {
   EXPECT_NE(std::string(status.message()).find("60-plvo-rgbd.rules"), std::string::npos) << status.message();
 }
 
-// Each Kinect has a hub of its own: the motor that is wanted hangs beside the camera that is used.
-TEST_F(MockedUsb, OfTwoKinectsTheMotorBesideTheCamera) {
+// Each Kinect has its own hub: the motor must be on the hub of the camera in use.
+TEST_F(MockedUsb, MotorOnTheHubOfTheCameraIsChosen) {
   FakeMotor first, second;
   first.state[8] = 20;
   second.state[8] = 40;
@@ -265,7 +265,7 @@ TEST_F(MockedUsb, NoMotor) {
   EXPECT_EQ(motor.read(state).code(), StatusCode::kInvalidArgument);
 }
 
-// The audio device of 1473 and Kinect for Windows: commands of five words, answers of three.
+// The audio device of model 1473 and Kinect for Windows: commands have five words, replies three.
 struct FakeAudio {
   std::deque<std::vector<std::uint8_t>> answers;
   std::uint32_t command = 0, argument = 0, length = 0, refuse = 0;

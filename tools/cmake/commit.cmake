@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes OUTPUT from INPUT with the commit that SOURCE is at, and leaves it alone when nothing has changed.
+# Writes OUTPUT from INPUT with the commit of SOURCE; does not touch OUTPUT if nothing has changed.
 # cmake -DSOURCE=<folder> -DGIVEN=<commit, if it is known> -DVERSION=… -DBUILD=… -DINPUT=… -DOUTPUT=… -P commit.cmake
 set(COMMIT "${GIVEN}")
 find_program(GIT git)

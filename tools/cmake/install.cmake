@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the public headers under include/plvo/<module>/, libplvo_core.a, the CMake package (find_package(plvo) gives
-# plvo::core and plvo::hal, and plvo::plvo, the shared library for C), what pkg-config knows of them, and the command line.
-# Components are the Debian packages of package.cmake: library, development, python, and tools, which is the default.
+# cmake --install: the public headers under include/plvo/<module>/, libplvo_core.a, the CMake package (find_package(plvo)
+# defines plvo::core, plvo::hal and plvo::plvo, the shared library for C), the files for pkg-config, and the command line.
+# The components are the Debian packages of package.cmake: library, development, python, and tools, which is the default.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -36,7 +36,7 @@ include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.3 NO_MODULE)
 include(${CMAKE_CURRENT_LIST_DIR}/plvoTargets.cmake)
 ]=] @ONLY)
-# Before 1.0 a new minor version may change the interface.
+# Before version 1.0, a new minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/plvoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/plvoConfig.cmake ${PROJECT_BINARY_DIR}/plvoConfigVersion.cmake DESTINATION ${package_dir}
   COMPONENT development)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack: four Debian packages, one for each component of install.cmake. tools/setup/package.sh configures for it (prefix /usr),
-# builds, and tries the packages in a clean root.
+# cpack: four Debian packages, one for each component of install.cmake. tools/setup/package.sh configures for it (prefix
+# /usr), builds, and tests the packages in a clean root.
 set(PLVO_PACKAGE_CONTACT "plvo maintainers <maintainers@plvo.invalid>" CACHE STRING "Whom the packages name as their maintainer")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "${PLVO_PACKAGE_CONTACT}")
 set(CPACK_PACKAGE_NAME plvo)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_SET_DESTDIR ON)  # OpenNI2's folder of drivers is an absolute path
+set(CPACK_SET_DESTDIR ON)  # the path of OpenNI2's driver folder is absolute
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_STRIP_FILES ON)
@@ -14,7 +14,8 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL library development tools)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-# What dpkg-shlibdeps says on this machine; of a folder of another architecture's packages it cannot. package.sh compares the two.
+# The output of dpkg-shlibdeps on this machine, which cannot analyse packages of another architecture. package.sh compares
+# the two.
 set(needed_by_library "libbz2-1.0, libc6 (>= 2.36), libfmt9, libgcc-s1, liblz4-1, libspng0, libstdc++6 (>= 12), libturbojpeg0,
   libyaml-cpp0.7")
 set(needed_by_tools "${needed_by_library}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
@@ -25,7 +26,7 @@ endforeach()
 if(CMAKE_CROSSCOMPILING)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "${needed_by_library}")
   set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "${needed_by_tools}")
-  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # of the toolchain file
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${debian_architecture})  # from the toolchain file
 else()
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 endif()
@@ -46,7 +47,7 @@ plvo_package(development libplvo-dev libdevel
 plvo_package(tools plvo-tools science
   "The command line tracks recordings and live sensors, evaluates and simulates.
 With a udev rule, a driver of the Kinect v1 for OpenNI2, and a service.")
-# What depends on the library, and that the system's list of libraries is renewed.
+# shlibs names the package that a program linked with the library depends on; triggers updates the system's library cache.
 file(WRITE ${PROJECT_BINARY_DIR}/packaging/shlibs "libplvo ${PLVO_ABI_VERSION} libplvo${PLVO_ABI_VERSION} (>= ${PROJECT_VERSION})\n")
 file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -68,7 +69,7 @@ if(TARGET plvo_python_odometry)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/postinst ${PROJECT_BINARY_DIR}/packaging/prerm)
 endif()
 
-# The day of the last change, so that two builds of it are the same.
+# The date of the last commit, so that two builds of it are identical.
 find_program(GIT git)
 if(GIT)
   execute_process(COMMAND ${GIT} -C ${PROJECT_SOURCE_DIR} log -1 --format=%cD OUTPUT_VARIABLE day

@@ -1,57 +1,58 @@
 # SPDX-License-Identifier: Apache-2.0
-# What every target of plvo shares: the warnings, and the switches that make the arithmetic the same on every
-# processor. The switches belong to this directory and those below it: whoever links plvo keeps his own.
+# Settings that all targets of plvo share: the warnings, and the options that make the arithmetic identical on every
+# processor. The options apply to this directory and its subdirectories only; a project that links plvo keeps its own.
 
 add_library(plvo_warnings INTERFACE)
 target_compile_options(plvo_warnings INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor $<$<BOOL:${PLVO_WERROR}>:-Werror>)
 
-# No fused multiply-add and no width-dependent vector sums: the same bits on x86-64, aarch64 and armhf. Loops in place of
-# code that Eigen writes out (math/rolled_loops.hpp), and, where the build type says so, bytes of code before time
-# (base/build.hpp): templates must be the same in all files that are linked together, so they all see both.
+# Without fused multiply-add and sums that depend on the vector width, x86-64, aarch64 and armhf give the same bits.
+# PLVO_ROLLED_LOOPS replaces code that Eigen unrolls by loops (math/rolled_loops.hpp). PLVO_SIZE_OPTIMISED prefers code size
+# to speed in build types that ask for it (base/build.hpp). Both apply to all files, since a template must be identical in
+# all files that are linked together.
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY PLVO_ROLLED_LOOPS $<$<CONFIG:MinSizeRel>:PLVO_SIZE_OPTIMISED>)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
-# The order of the sums within Eigen's functions is part of the bits: tests/golden/golden.txt was written with this one.
+# The order of the sums inside Eigen's functions affects the bits: tests/golden/golden.txt was written with this version.
 set(PLVO_GOLDEN_EIGEN 3.4.0)
 if(NOT Eigen3_VERSION VERSION_EQUAL PLVO_GOLDEN_EIGEN)
   message(STATUS "plvo: Eigen ${Eigen3_VERSION} here, ${PLVO_GOLDEN_EIGEN} where the golden run was made: "
     "golden_test says whether the bits are the same")
 endif()
 
-# How the core is compiled. Loops over pixels are vectorised (PLVO_PIXEL_SOURCES); those over the three numbers of a point are
-# not: GCC 12 takes two of them together just behind the stores that made them one by one, and every such load waits for
-# both. GCC 12's SLP vectoriser turns a product beside a sum and a difference into vfmaddsub where the
-# processor has it (-march=native, -mfma), without asking -ffp-contract: it fuses, and the last digit changes. Vectorised
-# loops do not do so. architecture_embedding holds this.
+# Compiler options of the core. Loops over pixels are vectorised (PLVO_PIXEL_SOURCES). Loops over the three coordinates of a
+# point are not: GCC 12 loads two of them together immediately after it has stored them one by one, and every such load waits
+# for both stores. GCC 12's SLP vectoriser also turns a product next to a sum and a difference into vfmaddsub if the
+# processor has it (-march=native, -mfma), in spite of -ffp-contract=off; this fuses the operations and changes the last
+# digit. Loop vectorisation does not do so. architecture_embedding tests this.
 set(PLVO_CORE_OPTIONS -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize$<SEMICOLON>-fno-tree-vectorize>)
 set(PLVO_CORE_PRECOMPILED <algorithm> <array> <limits> <span> <Eigen/Core>)
 
-# plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): read these headers once for all files of the target.
-# Where ccache launches the compiler they are left out: it would keep nothing then, and files that forget an include are
-# found.
+# plvo_precompile(<target> PRIVATE <header>… | REUSE_FROM <target>): reads these headers once for all files of the target. It
+# does nothing if ccache launches the compiler: ccache could not cache the results, and such builds detect files with a
+# missing include.
 function(plvo_precompile target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
     target_precompile_headers(${target} ${ARGN})
   endif()
 endfunction()
 
-# plvo_public_headers(<header>…): what this module of core or hal gives to those who install plvo. The lists together must
-# hold what odometry/odometry.hpp, inertial/imu_integrator.hpp and hal/ include, and nothing else; architecture_install says what
-# is missing or too much.
+# plvo_public_headers(<header>…): the headers of this module of core or hal that are installed. Together, the lists must
+# contain exactly the headers that odometry/odometry.hpp, inertial/imu_integrator.hpp and hal/ include; architecture_install
+# reports missing and superfluous ones.
 function(plvo_public_headers)
   foreach(header ${ARGN})
     set_property(GLOBAL APPEND PROPERTY PLVO_PUBLIC_HEADERS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
   endforeach()
 endfunction()
 
-# plvo_seal(<archive target>): the archive keeps its copies of inline functions and templates for itself. Otherwise the
-# linker would keep one copy of a function that both the core and its user have compiled, perhaps the user's, with the
-# user's switches, and the core's bits would depend on them. It is done where plvo is part of another project, and to what is
-# installed (install.cmake); plvo's own programs are compiled with the core's switches anyway. Builds with sanitizers or
-# link-time optimisation stay open: their objects hold more than code, and nobody installs them.
+# plvo_seal(<archive target>): makes the archive's copies of inline functions and templates local to it. Otherwise the linker
+# would keep one copy of a function that both the core and its user have compiled, perhaps the user's with the user's
+# options, and the core's bits would depend on them. It applies if plvo is part of another project, and to the installed
+# archive (install.cmake); plvo's own programs are compiled with the core's options anyway. Builds with sanitizers or
+# link-time optimisation are not sealed: their objects contain more than code, and they are not installed.
 function(plvo_seal target)
   if(PROJECT_IS_TOP_LEVEL OR CMAKE_CXX_FLAGS MATCHES "-fsanitize|-flto" OR CMAKE_INTERPROCEDURAL_OPTIMIZATION)
     return()
@@ -61,7 +62,7 @@ function(plvo_seal target)
     -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake)
 endfunction()
 
-# plvo_core_features(<core target> both|points|lines): the kinds of features that it holds.
+# plvo_core_features(<core target> both|points|lines): selects the kinds of features in the core.
 function(plvo_core_features target features)
   if(features STREQUAL points)
     target_compile_definitions(${target} PRIVATE PLVO_WITHOUT_LINES)
@@ -72,8 +73,8 @@ function(plvo_core_features target features)
   endif()
 endfunction()
 
-# plvo_core_variant(<name> <options…>): the core once more, compiled another way, for tests that compare or watch it.
-# Options come after those of the build type, so the last optimisation level counts.
+# plvo_core_variant(<name> <options…>): a second build of the core with other options, for tests that compare or instrument
+# it. The options follow those of the build type, so their optimisation level takes effect.
 function(plvo_core_variant name)
   get_target_property(sources plvo_core PLVO_SOURCES)
   add_library(${name} STATIC ${sources})

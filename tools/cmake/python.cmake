@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# For the modules that are part of the Python package: finds pybind11 in the including directory, where its targets then are,
-# and says whether the package is built (PLVO_BUILD_PYTHON).
+# Included by the modules of the Python package: finds pybind11 in the including directory, to which its targets then belong,
+# and decides whether the package is built (PLVO_BUILD_PYTHON).
 
-# The distribution's Python, which its numpy belongs to, before one that stands earlier on somebody's path.
+# Prefers the distribution's Python, to which its numpy belongs, to another one that is earlier in PATH.
 if(NOT DEFINED Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3)
 endif()
@@ -19,13 +19,14 @@ if(PLVO_BUILD_PYTHON AND NOT pybind11_FOUND)
 endif()
 
 set(PLVO_PYTHON_DIR ${PROJECT_BINARY_DIR}/python)
-# plvo_python_module(<target> <name> SOURCE.cpp…): plvo/<name>.so. No frame spends its time in here.
+# plvo_python_module(<target> <name> SOURCE.cpp…): builds plvo/<name>.so, optimised for size because a frame spends no time
+# in it.
 function(plvo_python_module target name)
   pybind11_add_module(${target} MODULE NO_EXTRAS ${ARGN})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${PLVO_PYTHON_DIR}/plvo)
   target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-Os>)
   target_link_libraries(${target} PRIVATE plvo_warnings)
-  if(CMAKE_CROSSCOMPILING)  # the interpreter that was asked for the suffix is this machine's
+  if(CMAKE_CROSSCOMPILING)  # CMake derives the suffix from this machine's interpreter
     set_target_properties(${target} PROPERTIES
       SUFFIX .cpython-${Python_VERSION_MAJOR}${Python_VERSION_MINOR}-${CMAKE_LIBRARY_ARCHITECTURE}.so)
   endif()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# Makes every weak symbol that an archive defines a local one: its objects become one, in which they still share them.
+# Makes every weak symbol that an archive defines local. It first merges the archive's objects into one, in which they still
+# share these symbols.
 # cmake -DARCHIVE=<lib.a> -DCXX=<compiler> -DFLAGS=<flags> -DNM=… -DOBJCOPY=… -DAR=… -P seal_archive.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output)
   if(NOT result EQUAL 0)
-    file(REMOVE ${ARCHIVE})  # not to be taken for a finished one
+    file(REMOVE ${ARCHIVE})  # so that an incomplete archive is not used
     message(FATAL_ERROR "failed: ${ARGN}")
   endif()
   set(output "${output}" PARENT_SCOPE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The last words of a configuration: what will be built, and what was left out for want of which package.
+# Summary of a configuration: what will be built, and which missing package excludes the rest.
 function(plvo_summary_target what target missing)
   if(TARGET ${target})
     message(STATUS "plvo:   ${what}: yes")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the command line, live cameras included, for Raspberry Pi OS from a Debian machine, against the board's own Debian
-# packages, and tries it under emulation: the virtual sensor's frames live and from files must give the same trajectory.
+# Builds the command line with live cameras for Raspberry Pi OS on a Debian machine, against the Debian packages of the
+# board's architecture, and tests it under emulation: live frames of the virtual sensor and the same frames from files must
+# give the same trajectory.
 # usage: tools/setup/board.sh raspberry-pi-64|raspberry-pi-32
 set -euo pipefail
 cd "$(dirname "$0")/../.."

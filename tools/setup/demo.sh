@@ -9,7 +9,7 @@ cd "$(dirname "$0")/../.."
 install_packages $PLVO_PACKAGES_BUILD
 
 say "building (build/release)"
-# A compiler that plvo's authors have not met may warn of what theirs do not.
+# Other compilers than GCC 12 may give warnings that it does not give.
 werror=()
 if [ "$(c++ -dumpversion | cut -d. -f1)" != 12 ]; then werror=(-DPLVO_WERROR=OFF); fi
 cmake --preset release "${werror[@]}" >&2
@@ -19,7 +19,7 @@ out=build/demo
 mkdir -p "$out"
 plvo=build/release/bin/plvo
 arguments=(run --camera sim --out "$out/trajectory.txt" --stats "$out/stats.csv" --json "$out/summary.json")
-# A report that opens in a browser, where this build can write one.
+# Writes a report for a browser if this build supports it.
 if "$plvo" run --help | grep -q -- --report; then arguments+=(--report "$out/report.html"); fi
 say "running: $plvo ${arguments[*]}"
 "$plvo" "${arguments[@]}"

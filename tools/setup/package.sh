@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo. lintian reads them. Those
-# of this machine's architecture are then tried in a clean Debian 12: installed with apt, used from C, C++ and Python, and
-# purged (as root; it fetches some 200 MB of Debian's packages). Those of a board run under emulation.
+# Builds Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo, and checks them
+# with lintian. Packages of this machine's architecture are then tested in a clean Debian 12: installed with apt, used from
+# C, C++ and Python, and purged (as root; it downloads about 200 MB of Debian packages). Packages of a board run under
+# emulation.
 # usage: tools/setup/package.sh [arm64|armhf]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -54,7 +55,7 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" simulate --out "$work/walk" --frames 6 --size 320x240 --quiet
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --imu --quiet --out "$work/imu.txt"
-  for program in 1:run 5:imu; do  # the two of the page, and what the command line says beside them
+  for program in 1:run 5:imu; do  # the two programs of the page; each must print the poses of the command line
     tools/setup/page_program.sh docs/c.md c "${program%:*}" >"$work/program.c"
     "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/program.c" -L"$work/usr/lib/$triplet" -lplvo \
       -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/program"

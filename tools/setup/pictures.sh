@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of the front page anew from what plvo itself draws: the overlays of a recorded and a simulated frame,
-# a report in a browser, and the simulated rooms. The recording is TUM's freiburg1_rpy from its frame 100 on.
+# Creates the images of the front page from plvo's own output: the overlays of a recorded and a simulated frame, a report in
+# a browser, and the simulated scenes. The recording is TUM's freiburg1_rpy from frame 100 on.
 # usage: tools/setup/pictures.sh FOLDER
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -30,7 +30,7 @@ std::byte* Arena::take_bytes(const char* who, std::size_t aligned_bytes) {
 }
 
 void Arena::record(const char* who, std::size_t aligned_bytes) {
-  // One record a name: a room that takes several arrays is one line of the table.
+  // One record per name: a module that takes several arrays is one row of the table.
   std::size_t i = 0;
   while (i < record_count_ && std::string_view(records_[i].who) != who) ++i;
   if (i == kMaxRecords) {

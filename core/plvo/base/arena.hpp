@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only memory of the core: one block that the caller owns. What lives for ever is allocated at init, from
-// the front, once; what lives for one stage is taken behind it and given back by rewinding to a mark. A
-// component states what it needs by carving: from an arena with memory it gets bytes, from one that only
-// counts (at compile time, if need be) the same code adds them up, so the two can never disagree.
+// The only memory of the core: one block that the caller owns. Permanent arrays are allocated once, at init,
+// from the front of the block. Scratch of one stage lies behind them and is released by rewinding to a mark.
+// A component states its needs in allocate(). An arena with memory returns bytes; a counting arena adds up
+// the sizes with the same code, at compile time if needed. The two therefore always agree.
 #pragma once
 
 #include <algorithm>
@@ -18,16 +18,16 @@
 
 namespace plvo {
 
-// Every take starts on this boundary: a cache line, and enough for any type of the core.
+// Every array starts on this boundary. It is one cache line, and it suffices for any type of the core.
 inline constexpr std::size_t kArenaAlignment = 64;
 
-// Saturates at the largest multiple of the alignment, which no block ever holds.
+// Saturates at the largest multiple of the alignment, which exceeds the size of any block.
 constexpr std::size_t align_up(std::size_t bytes) {
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() / kArenaAlignment * kArenaAlignment;
   return bytes > kMost ? kMost : (bytes + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
 }
 
-// Bytes of an array of `count` elements, rounded up to the alignment; saturates instead of wrapping around.
+// Bytes of an array of `count` elements, rounded up to the alignment. Saturates instead of wrapping around.
 constexpr std::size_t array_bytes(std::size_t count, std::size_t element_bytes) {
   const std::size_t most = std::numeric_limits<std::size_t>::max();
   return align_up(count > most / element_bytes ? most : count * element_bytes);
@@ -35,18 +35,19 @@ constexpr std::size_t array_bytes(std::size_t count, std::size_t element_bytes) 
 
 class Arena {
  public:
-  // Who took what before seal(): the source of docs/memory.md. Names are compared as text; those beyond the
-  // last free record share one named "others". Small code keeps no records, and no names.
+  // Bytes that each component took before seal(): the source of docs/memory.md. Names are compared as text.
+  // When the records are full, further names share one record named "others". Size-optimised code keeps no
+  // records and no names.
   struct Record {
     const char* who = nullptr;
     std::size_t bytes = 0;
   };
   static constexpr std::size_t kMaxRecords = kSizeOptimised ? 0 : 64;
 
-  Arena() = default;  // room for nothing
-  // memory: the caller's block, aligned to kArenaAlignment (a misaligned start is skipped over).
+  Arena() = default;  // capacity 0
+  // memory: the caller's block. A start that is not aligned to kArenaAlignment is skipped over.
   explicit Arena(std::span<std::byte> memory);
-  // Without memory: every array is empty, and peak() is what an Arena must hold.
+  // An arena without memory: every array is empty, and peak() is the number of bytes that a real arena needs.
   static constexpr Arena counting() {
     Arena arena;
     arena.counts_ = true;
@@ -54,25 +55,25 @@ class Arena {
     return arena;
   }
 
-  // An array of count elements, or an empty span (and exhausted() from then on) when the block is full. They
-  // are default-initialised: members with an initialiser have its value, all others hold what happened to lie
-  // there. T is trivially destructible: nothing is ever destroyed here, only rewound.
+  // Returns an array of count elements. When the block is full, returns an empty span, and exhausted() is
+  // true from then on. The elements are default-initialised: members without an initialiser hold whatever the
+  // memory held. T is trivially destructible, since the arena never calls a destructor.
   template <typename T>
   constexpr std::span<T> take(const char* who, std::size_t count) {
     static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kArenaAlignment);
     const std::size_t bytes = array_bytes(count, sizeof(T));
-    if (std::is_constant_evaluated()) {  // without memory
+    if (std::is_constant_evaluated()) {  // counts only
       add(bytes);
       return {};
     }
     return construct<T>(take_bytes(kSizeOptimised ? nullptr : who, bytes), count);
   }
 
-  // Scratch: take after mark(), give back with rewind(). Stages nest like a stack.
+  // Scratch memory: mark(), then take(), then rewind() to the mark. Stages nest like a stack.
   constexpr std::size_t mark() const { return used_; }
   constexpr void rewind(std::size_t mark) { used_ = mark; }
 
-  // Ends the carving of init: later takes are scratch and leave no record.
+  // Ends the allocation of init: later takes are scratch and leave no record.
   void seal() { sealed_ = true; }
 
   bool exhausted() const { return exhausted_; }
@@ -89,7 +90,7 @@ class Arena {
     for (std::size_t i = 0; i < count; ++i) new (first + i) T;
     return {first, count};
   }
-  // What only counts stays at its capacity.
+  // A counting arena saturates at its capacity.
   constexpr void add(std::size_t aligned_bytes) {
     used_ += std::min(aligned_bytes, capacity_ - used_);
     if (used_ > peak_) peak_ = used_;
@@ -109,7 +110,7 @@ class Arena {
   std::size_t record_count_ = 0;
 };
 
-// Rewinds the memory to where it stood, whichever way a stage is left.
+// Rewinds the arena at the end of the scope, on every path out of a stage.
 class ScratchScope {
  public:
   constexpr explicit ScratchScope(Arena& memory) : memory_(memory), mark_(memory.mark()) {}

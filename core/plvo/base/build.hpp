@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this build of the core holds, as constants: what they rule out is compiled, but not kept. CMake sets
-// them: the kinds of features for the core's own sources alone (PLVO_FEATURES), small code for all that is
-// built with them (its build type), since templates of headers ask for it.
+// The options of this build, as constants. The compiler still checks disabled code, but it does not keep it.
+// CMake sets the options: the kinds of features for the core's own sources only (PLVO_FEATURES), size
+// optimisation for everything in that build type, because templates in headers depend on it.
 #pragma once
 
 namespace plvo {
 
-// Kinds of features that are built. One that is not has no matches, and Config::validate refuses to ask for
-// it.
+// Kinds of features in this build. A kind that is not built has no matches, and Config::validate rejects a
+// configuration that requests it.
 #ifdef PLVO_WITHOUT_POINTS
 inline constexpr bool kPointsBuilt = false;
 #else
@@ -19,16 +19,16 @@ inline constexpr bool kLinesBuilt = false;
 inline constexpr bool kLinesBuilt = true;
 #endif
 
-// Bytes of code before time: a computation in place of a table, the result the same.
+// Size-optimised code: computes values instead of reading them from a table. The results are the same.
 #ifdef PLVO_SIZE_OPTIMISED
 inline constexpr bool kSizeOptimised = true;
 #else
 inline constexpr bool kSizeOptimised = false;
 #endif
 
-// Numbers side by side (base/simd.hpp) are loops, and what is made of them is the plain version: in small
-// code, and for a processor without registers for them, for which compilers write out every lane of every
-// operation. The result is the same.
+// SIMD vectors (base/simd.hpp) are plain loops, and algorithms use their scalar version. This holds for
+// size-optimised code, and for processors without SIMD registers, where compilers would expand each operation
+// lane by lane. The results are the same.
 #if defined(PLVO_SIZE_OPTIMISED) || !(defined(__SSE2__) || defined(__ARM_NEON))
 #define PLVO_SIMD_LOOPS
 inline constexpr bool kSimdLoops = true;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two pieces of work that may run at the same time, where the platform has a second core to offer
-// (plvo/hal/task_pair.hpp). Neither reads what the other writes, so that the result is the same bits whether
-// they do.
+// Two tasks that may run in parallel when the platform offers a second core (plvo/hal/task_pair.hpp). Neither
+// task reads what the other writes, so the results are bit-identical in parallel and in sequence.
 #pragma once
 
 namespace plvo {
 
-// A function and what it works on, both the caller's for the call.
+// A function and its context. The caller keeps the context alive until the call returns.
 struct Task {
   void (*call)(void* context) = nullptr;
   void* context = nullptr;
@@ -14,7 +13,7 @@ struct Task {
 };
 
 struct Executor {
-  // Returns when both are done. nullptr: one after the other, on the caller's thread.
+  // Returns when both tasks are done. nullptr: the tasks run in sequence on the caller's thread.
   void (*run)(void* runner, Task here, Task beside) = nullptr;
   void* runner = nullptr;
 
@@ -30,7 +29,7 @@ struct Executor {
     }
   }
 
-  // work(begin, end) over 0 … count, in halves.
+  // Calls work(begin, end) for the two halves of 0 … count.
   template <typename Count, typename Work>
   void halves(Count count, Work&& work) const {
     if (run == nullptr) return work(Count{0}, count);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vector over storage that somebody else owns (a span from the arena, or a std::array). It never grows: a
-// push_back into a full vector is refused and counted, so that capacity is a reported policy, not an
-// accident.
+// A vector over storage that it does not own (a span from the arena, or a std::array). It never grows:
+// push_back into a full vector is refused and counted, so overflow is always reported.
 #pragma once
 
 #include <cassert>
@@ -19,7 +18,7 @@ class FixedVector {
   constexpr FixedVector() = default;
   constexpr explicit FixedVector(std::span<T> storage) : data_(storage.data()), capacity_(storage.size()) {}
 
-  // False, and one more dropped(), when full.
+  // Returns false and increments dropped() when full.
   constexpr bool push_back(const T& value) {
     if (size_ == capacity_) {
       ++dropped_;
@@ -32,7 +31,7 @@ class FixedVector {
     size_ = 0;
     dropped_ = 0;
   }
-  // Counts elements that a selection rule of the caller's left out.
+  // Counts elements that the caller's own selection rule left out.
   constexpr void add_dropped(std::size_t count) { dropped_ += count; }
 
   constexpr std::size_t size() const { return size_; }
@@ -53,7 +52,7 @@ class FixedVector {
   constexpr T* end() { return data_ + size_; }
   constexpr const T* begin() const { return data_; }
   constexpr const T* end() const { return data_ + size_; }
-  // All that there is room for.
+  // The whole storage, up to capacity().
   constexpr std::span<T> storage() const { return {data_, capacity_}; }
   constexpr std::span<T> span() { return {data_, size_}; }
   constexpr std::span<const T> span() const { return {data_, size_}; }

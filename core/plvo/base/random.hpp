@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PCG32 (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-// Number Generation", 2014; the XSH-RR 64/32 member). Integers only, so the same sequence on every machine.
+// Number Generation", 2014; the XSH-RR 64/32 member). It uses integers only, so the sequence is the same on
+// every machine.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ class Random {
     return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
   }
 
-  // Uniform over 0 … bound-1 (bound > 0). The multiply-shift map is biased by at most bound / 2^32, in
-  // exchange for a bounded time.
+  // Uniform over 0 … bound-1 (bound > 0). The multiply-shift map takes constant time; its bias is at most
+  // bound / 2^32.
   constexpr std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>((static_cast<std::uint64_t>(next()) * bound) >> 32);
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight 16-bit integers side by side, and four of 32 bits, in the vector types of GCC and Clang: one register
-// where a processor has such, the same bits everywhere. Pass them by reference or inline: how they travel by
-// value differs between boards. What is read in parts is put together in registers: a wide load just behind
-// narrower stores waits for them. Where a processor has no such registers, and in small code, loops are in
-// their place (base/simd_loops.hpp, base/build.hpp).
+// SIMD vectors of eight 16-bit and four 32-bit integers, in the vector types of GCC and Clang. Each uses one
+// register where the processor has one; the results are the same everywhere. Pass them by reference or to
+// inlined functions, because the calling convention for vectors differs between processors. Loads from
+// several addresses are combined in registers: a wide load right after narrower stores would stall.
+// Processors without SIMD registers and size-optimised code use loops instead (base/simd_loops.hpp,
+// base/build.hpp).
 #pragma once
 
 #include <bit>
@@ -15,22 +16,22 @@
 
 namespace plvo {
 
-// Sixteen bytes side by side, for what has no loops in its place.
+// Sixteen bytes. This type has no replacement by loops.
 using Bytes = std::uint8_t __attribute__((vector_size(16)));
 
-// The first eight bytes of both in turns.
+// Interleaves the first eight bytes of a and b.
 inline __attribute__((always_inline)) Bytes in_turns(const Bytes& a, const Bytes& b) {
   return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
 }
 
-// Bit i: byte i of eight, all of whose bits are equal.
+// Returns a mask whose bit i is set if byte i is 0xff. Each of the eight bytes must be 0x00 or 0xff.
 inline __attribute__((always_inline)) unsigned gather_bytes(std::uint64_t eight) {
-  // Byte i keeps its bit i; the product's highest byte is the sum of all.
+  // Byte i keeps its bit i. The highest byte of the product is the sum of all bytes.
   static_assert(std::endian::native == std::endian::little);
   return static_cast<unsigned>((eight & 0x8040201008040201U) * 0x0101010101010101U >> 56);
 }
 
-// The same of sixteen.
+// The same for sixteen bytes.
 inline __attribute__((always_inline)) unsigned set_bytes(const Bytes& bytes) {
 #ifdef __SSE2__
   using Signed = char __attribute__((vector_size(16)));
@@ -52,10 +53,10 @@ using simd_loops::Int32x4;
 using Int16x8 = std::int16_t __attribute__((vector_size(16)));
 using Int32x4 = std::int32_t __attribute__((vector_size(16)));
 
-// Of eight bytes.
+// Widens eight bytes to 16 bits each.
 inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int16x8& lanes) {
-  // Zeros between the bytes: one instruction, of the plain conversion GCC 12 makes five, or takes it byte by
-  // byte.
+  // Interleaves the bytes with zeros: one instruction. GCC 12 compiles a plain conversion to five, or
+  // converts byte by byte.
   static_assert(std::endian::native == std::endian::little);
   using Words = std::uint64_t __attribute__((vector_size(16)));
   const Words words = {bytes, 0};
@@ -65,21 +66,22 @@ inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int1
   std::memcpy(&lanes, &wide, sizeof lanes);
 }
 
-// Of eight bytes in memory.
+// Loads eight bytes and widens them to 16 bits each.
 inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Int16x8& lanes) {
   std::uint64_t eight;
   std::memcpy(&eight, bytes, sizeof eight);
   widen_bytes(eight, lanes);
 }
 
-// Four bytes at each of four places, a lane each.
+// Loads four bytes from each of four addresses into one 32-bit lane each.
 inline __attribute__((always_inline)) void load_words(const std::uint8_t* const places[4], Int32x4& words) {
   std::int32_t four[4];
   for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
   words = Int32x4{four[0], four[1], four[2], four[3]};
 }
 
-// Of four bytes at each of four places: of the first two, and of the others.
+// Loads four bytes from each of four addresses and widens them: the first two addresses into first_two, the
+// last two into others.
 inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const places[4], Int16x8& first_two,
                                                       Int16x8& others) {
   Int32x4 words;
@@ -93,7 +95,7 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const 
   std::memcpy(&others, &high, sizeof others);
 }
 
-// Four numbers from either place.
+// Loads four numbers from each of two addresses.
 inline __attribute__((always_inline)) void load_halves(const std::int16_t* first, const std::int16_t* second,
                                                        Int16x8& lanes) {
   using Words = std::uint64_t __attribute__((vector_size(16)));
@@ -116,7 +118,7 @@ inline __attribute__((always_inline)) void store(const Int32x4& lanes, std::int3
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-// Into eight bytes, which must hold the numbers.
+// Stores the lanes as eight bytes. Each value must lie in 0 … 255.
 inline __attribute__((always_inline)) void store_bytes(const Int16x8& lanes, std::uint8_t* to) {
 #ifdef __SSE2__
   const auto packed = __builtin_ia32_packuswb128(lanes, lanes);
@@ -128,13 +130,13 @@ inline __attribute__((always_inline)) void store_bytes(const Int16x8& lanes, std
 #endif
 }
 
-// Lane by lane, low becomes the lesser and high the greater of itself and value.
+// Per lane: low = min(low, value), high = max(high, value).
 inline __attribute__((always_inline)) void take_range(const Int32x4& value, Int32x4& low, Int32x4& high) {
   low = value < low ? value : low;
   high = value > high ? value : high;
 }
 
-// Lane by lane, no less than low and no more than high.
+// Per lane: limits the value to low … high.
 inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t high, Int16x8& lanes) {
   const Int16x8 least = Int16x8{} + low;
   const Int16x8 most = Int16x8{} + high;
@@ -142,7 +144,7 @@ inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t 
   lanes = lanes > most ? most : lanes;
 }
 
-// Lane by lane a · b / 2^16, rounded down.
+// Per lane: a · b / 2^16, rounded down.
 inline __attribute__((always_inline)) void multiply_high(const Int16x8& a, const Int16x8& b, Int16x8& high) {
 #ifdef __SSE2__
   high = __builtin_ia32_pmulhw128(a, b);
@@ -153,18 +155,18 @@ inline __attribute__((always_inline)) void multiply_high(const Int16x8& a, const
 #endif
 }
 
-// Four sums of a and four of b: of the numbers that are four apart.
+// Adds the lanes that are four apart: four sums of a, then four sums of b.
 inline __attribute__((always_inline)) void add_halves(const Int16x8& a, const Int16x8& b, Int16x8& sums) {
   sums = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
          __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-// Two sums of a and two of b: of neighbours.
+// Adds adjacent lanes: two sums of a, then two sums of b.
 inline __attribute__((always_inline)) void add_pairs(const Int32x4& a, const Int32x4& b, Int32x4& sums) {
   sums = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
 }
 
-// Both into one, which must hold the numbers.
+// Joins two vectors of 32-bit values into one. The values must fit in 16 bits.
 inline __attribute__((always_inline)) void narrow(const Int32x4& first, const Int32x4& last, Int16x8& lanes) {
 #ifdef __SSE2__
   lanes = __builtin_ia32_packssdw128(first, last);
@@ -177,19 +179,19 @@ inline __attribute__((always_inline)) void narrow(const Int32x4& first, const In
 #endif
 }
 
-// a and b in turns: a[0], b[0], a[1] … b[3], and the others.
+// Interleaves a and b: first = a[0], b[0], a[1] … b[3]; last holds the rest.
 inline __attribute__((always_inline)) void interleave(const Int16x8& a, const Int16x8& b, Int16x8& first,
                                                       Int16x8& last) {
   first = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
   last = __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
 }
 
-// sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1], which must not pass 32 bits.
+// sums[i] = a[2i] b[2i] + a[2i + 1] b[2i + 1]. Each sum must fit in 32 bits.
 inline __attribute__((always_inline)) void dot_pairs(const Int16x8& a, const Int16x8& b, Int32x4& sums) {
 #ifdef __SSE2__
   sums = __builtin_ia32_pmaddwd128(a, b);
 #else
-  // Two in a lane of 32 bits: the first is the lower half.
+  // A 32-bit lane holds two values; the first is the lower half.
   static_assert(std::endian::native == std::endian::little);
   Int32x4 both_a, both_b;
   std::memcpy(&both_a, &a, sizeof both_a);
@@ -198,7 +200,7 @@ inline __attribute__((always_inline)) void dot_pairs(const Int16x8& a, const Int
 #endif
 }
 
-// Bit i: lane i is below 0.
+// Returns a mask whose bit i is set if lane i is negative.
 inline __attribute__((always_inline)) unsigned negative_mask(const Int16x8& lanes) {
 #ifdef __SSE2__
   const auto packed = __builtin_ia32_packsswb128(lanes, lanes);

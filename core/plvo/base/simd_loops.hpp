@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers side by side of base/simd.hpp and all that is done with them, as loops over plain arrays: for
-// small code, and to compare with. Each lane by itself, wrapped to its size. What is computed of several is
-// one loop: an expression is worked out, lane after lane, when it is put into lanes.
+// The SIMD vectors and operations of base/simd.hpp as loops over plain arrays, for size-optimised code and as
+// a reference for tests. Each lane is computed by itself and wraps at its size. An expression of several
+// operations is one loop: assigning it to a vector evaluates it lane by lane.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,7 @@ concept SimdLike = requires(const T& x) {
   x[0];
 };
 
-// Its operands must live until it is put into lanes: within one expression they do.
+// The operands must live until the expression is assigned to a vector. Within one expression they do.
 template <SimdLike A, typename At>
 __attribute__((always_inline)) constexpr SimdExpression<typename A::Number, A::kCount, At> each(At at) {
   return {at};
@@ -90,7 +90,7 @@ template <SimdLike A>
 __attribute__((always_inline)) constexpr auto operator>>(const A& a, int bits) {
   return each<A>([&a, bits](int i) { return a[i] >> bits; });
 }
-// Every bit of a lane where it holds, or none.
+// Sets all bits of a lane where the comparison holds, else none.
 template <SimdLike A>
 __attribute__((always_inline)) constexpr auto operator!=(const A& a, typename A::Number b) {
   return each<A>([&a, b](int i) { return a[i] != b ? -1 : 0; });

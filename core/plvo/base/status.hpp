@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Failure as a value. A Status says what went wrong and, in words a user can act on, what to do. It holds its
-// text itself, so it owns no memory, outlives whatever caused it, and can be copied across any boundary.
+// Failure as a value. A Status says what went wrong and tells the user what to do about it. It contains its
+// text, so it owns no memory, needs no other object to stay alive, and can be copied across any boundary.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,21 @@ namespace plvo {
 
 enum class StatusCode : std::uint8_t {
   kOk,
-  kInvalidArgument,  // the caller passed nonsense: a NaN, a wrong size, a null pointer
-  kOutOfMemory,      // the caller's block is too small
-  kNotFound,         // a file, folder or device is not there
-  kPermission,       // it is there, but may not be used
-  kBusy,             // somebody else holds it
-  kDamaged,          // the data is broken; the next item may be good
-  kEndOfStream,      // nothing more will come
-  kTimeout,          // nothing came in time; something may come later
-  kUnplugged,        // the device went away; it may come back
-  kUnsupported,      // understood, but this build or device cannot
-  kIo,               // the operating system refused to read or write
-  kTooFewFeatures,   // the frame offers too little to solve for a motion
+  kInvalidArgument,  // the caller passed a NaN, a wrong size or a null pointer
+  kOutOfMemory,      // the caller's memory block is too small
+  kNotFound,         // a file, folder or device does not exist
+  kPermission,       // it exists, but access is denied
+  kBusy,             // it is in use elsewhere
+  kDamaged,          // the data is corrupt; the next item may be good
+  kEndOfStream,      // no further data will come
+  kTimeout,          // no data came in time; more may come later
+  kUnplugged,        // the device was disconnected; it may come back
+  kUnsupported,      // valid, but this build or device does not support it
+  kIo,               // the operating system reported a read or write error
+  kTooFewFeatures,   // the frame has too few features to solve for a motion
   kNoConsensus,      // RANSAC found no motion that enough matches agree on
   kDegenerate,       // the constraints do not determine all six degrees of freedom
-  kNotConverged,     // an iteration reached its bound
+  kNotConverged,     // an iteration reached its limit
 };
 
 // Name of a code, for logs and tables ("ok", "invalid_argument", …).
@@ -36,14 +36,14 @@ class [[nodiscard]] Status {
   static constexpr std::size_t kCapacity = 248;
 
   constexpr Status() = default;
-  // Text beyond the capacity is cut off between two characters of UTF-8, never written past the end.
+  // Text beyond the capacity is cut off at a UTF-8 character boundary.
   constexpr Status(StatusCode code, std::string_view message) : code_(code) { append(message); }
 
   constexpr bool ok() const { return code_ == StatusCode::kOk; }
   constexpr StatusCode code() const { return code_; }
   constexpr const char* message() const { return message_; }
 
-  // Append to the message; they return *this so that a message can be built in one expression.
+  // Both overloads of append() return *this, so that one expression can build a message.
   constexpr Status& append(std::string_view text) {
     std::size_t count = text.size();
     const std::size_t room = kCapacity - 1 - length_;
@@ -55,7 +55,7 @@ class [[nodiscard]] Status {
     message_[length_] = '\0';
     return *this;
   }
-  constexpr Status& append(std::ptrdiff_t value) {  // as wide as any size, and no wider than the processor
+  constexpr Status& append(std::ptrdiff_t value) {  // as wide as a pointer
     if (value < 0) append("-");
     std::size_t rest = value < 0 ? ~static_cast<std::size_t>(value) + 1 : static_cast<std::size_t>(value);
     char digits[20] = {};

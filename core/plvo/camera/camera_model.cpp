@@ -22,7 +22,7 @@ Status CameraModel::validate() const {
         .append(" (pixels)");
   if (!(pinhole.cx >= 0 && pinhole.cx < width && pinhole.cy >= 0 && pinhole.cy < height))
     return invalid("cx and cy must lie inside the image (pixels)");
-  // To the farthest corner of the ideal image, the one that is looked at.
+  // Distance to the farthest corner of the undistorted image.
   const Vector2 corner(std::max(pinhole.cx, width - 1 - pinhole.cx) / pinhole.fx,
                        std::max(pinhole.cy, height - 1 - pinhole.cy) / pinhole.fy);
   if (const Status lens = distortion.validate(sqrt(corner.squaredNorm())); !lens.ok())
@@ -34,8 +34,9 @@ Status CameraModel::validate() const {
     return invalid("the delay of depth must lie between -0.1 and 0.1 s");
   if (!(stamp_sigma_s >= 0 && stamp_sigma_s <= 0.1))
     return invalid("the standard deviation of the stamps must lie between 0 and 0.1 s");
-  if (distortion.model == LensModel::kEquidistant) return {};  // no tangential part
-  // The lens must keep the order of the pixels: the Jacobian of the distortion keeps a positive determinant.
+  if (distortion.model == LensModel::kEquidistant) return {};  // it has no tangential part
+  // The lens must preserve the order of the pixels, so the determinant of the distortion's Jacobian must stay
+  // positive.
   constexpr int kSteps = 16;
   for (int row = 0; row <= kSteps; ++row) {
     for (int column = 0; column <= kSteps; ++column) {

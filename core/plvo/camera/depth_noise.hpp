@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth noise, equation (2): σ_d = c1 d² + c2 d + c3, d in metres. The paper's coefficients go negative below
-// 0.34 m, so σ_d is kept above a floor.
+// Depth noise, equation (2): σ_d = c1 d² + c2 d + c3, with d in metres. The paper's coefficients give
+// negative values below 0.34 m, so σ_d has a lower bound.
 #pragma once
 
 namespace plvo {
@@ -11,8 +11,8 @@ struct DepthNoise {
   double c3 = -5.8e-4;    // m
   double floor_m = 5e-4;  // smallest σ_d
 
-  // Depth and colour of a real sensor do not meet exactly: on a slope an error of so many pixels (SD) becomes
-  // one of depth. Not in the paper; 0 switches it off.
+  // Standard deviation in pixels of the registration between depth and colour. On a slope, a registration
+  // error causes a depth error. This term is not in the paper; 0 disables it.
   double registration_px = 0.5;
 
   double sigma(double depth_m) const {
@@ -21,9 +21,9 @@ struct DepthNoise {
   }
 };
 
-// The variances that the residuals show over those that the models state, one factor for each kind of
-// measurement: across the image and along the ray for points, all of it for lines and for surfaces; and for
-// what all of a frame share (nuisance_parameters.hpp).
+// Ratios of the observed variance of the residuals to the modelled variance, one factor per kind of
+// measurement: points across the image and along the ray, lines, surfaces, and the nuisance parameters that
+// all measurements of a frame share (nuisance_parameters.hpp).
 struct NoiseScales {
   double image = 1;
   double depth = 1;

@@ -14,7 +14,7 @@ Vector2 distort_rational(const Distortion& lens, const Vector2& ideal, Matrix2* 
   const double x = ideal.x();
   const double y = ideal.y();
   const double r2 = x * x + y * y;
-  // Dividing by the 1 of plumb_bob changes no bit.
+  // For plumb_bob the denominator is 1, and the division changes no bit.
   const double below = cubic(1, lens.k4, lens.k5, lens.k6, r2);
   const double radial = cubic(1, lens.k1, lens.k2, lens.k3, r2) / below;
   if (J != nullptr) {
@@ -31,7 +31,7 @@ Vector2 distort_rational(const Distortion& lens, const Vector2& ideal, Matrix2* 
           y * radial + lens.p1 * (r2 + 2 * y * y) + 2 * lens.p2 * x * y};
 }
 
-// The distance from the centre at which a ray at the angle θ is imaged, and its derivative.
+// Distance from the centre at which a ray at the angle θ is imaged, and its derivative.
 double fisheye(const Distortion& lens, double theta) {
   const double s = theta * theta;
   return theta * (1 + s * cubic(lens.k1, lens.k2, lens.k3, lens.k4, s));
@@ -44,23 +44,25 @@ double fisheye_slope(const Distortion& lens, double theta) {
 Vector2 distort_equidistant(const Distortion& lens, const Vector2& ideal, Matrix2* J) {
   const double r2 = ideal.squaredNorm();
   const double r = sqrt(r2);
-  if (!(r > 1e-9)) {  // the lens is 1 + O(r²) there
+  if (!(r > 1e-9)) {  // the distortion is 1 + O(r²) here
     if (J != nullptr) J->setIdentity();
     return ideal;
   }
   const double theta = atan2(r, 1);
   const double radial = fisheye(lens, theta) / r;
   if (J != nullptr) {
-    const double along = fisheye_slope(lens, theta) / (1 + r2);  // of the imaged distance by r
+    const double along =
+        fisheye_slope(lens, theta) / (1 + r2);  // derivative of the imaged distance with respect to r
     *J = radial * Matrix2::Identity() + (along - radial) / r2 * ideal * ideal.transpose();
   }
   return radial * ideal;
 }
 
 Vector2 undistort_rational(const Distortion& lens, const Vector2& target) {
-  // A denominator makes wide lenses, which take more steps; plumb_bob keeps its bits.
+  // Lenses with a denominator are wide and need more steps. plumb_bob keeps its count, so its results stay
+  // bit-identical.
   const int steps = lens.is_plumb_bob() ? 8 : 24;
-  constexpr double kLongest = 1;  // a step, outside of what the lens was made for
+  constexpr double kLongest = 1;  // limit of one step, for points beyond the lens's valid range
   Vector2 ideal = target;
   for (int i = 0; i < steps; ++i) {
     Matrix2 J;
@@ -80,7 +82,7 @@ Vector2 undistort_rational(const Distortion& lens, const Vector2& target) {
 Vector2 undistort_equidistant(const Distortion& lens, const Vector2& target) {
   const double distance = sqrt(target.squaredNorm());
   if (!(distance > 1e-9)) return target;
-  // Newton's method for the angle, kept between what is too small and what is too large.
+  // Newton's method for the angle, with a bracket as a safeguard.
   constexpr int kNewtonSteps = 24;
   double least = 0;
   double most = kPi / 2 - 1e-4;
@@ -100,11 +102,11 @@ Status folds_at(double theta, const char* what, const char* degrees_from_the_axi
       .append(degrees_from_the_axis);
 }
 
-constexpr int kRadialSteps = 512;     // along the radius, less than 1 px each
-constexpr double kLeastSlope = 0.02;  // of what is imaged, by r and by θ
+constexpr int kRadialSteps = 512;     // steps along the radius, less than 1 px each
+constexpr double kLeastSlope = 0.02;  // smallest slope of the imaged distance with respect to r and to θ
 
 Status check_rational(const Distortion& lens, double radius) {
-  // From step to step, so that a pole is seen too.
+  // Compares adjacent steps, which also detects a pole.
   double before = 0;
   for (int i = 1; i <= kRadialSteps; ++i) {
     const double r = radius * i / kRadialSteps;

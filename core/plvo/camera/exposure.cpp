@@ -7,8 +7,8 @@
 namespace plvo {
 namespace {
 
-// Where a point is at a constant velocity, to second order in the angle: a camera that turns by 2 rad/s errs
-// by 5e-6 rad within half a readout of 30 ms.
+// Path of a point at constant velocity, to second order in the angle. At 2 rad/s, the error within half a
+// readout of 30 ms is 5e-6 rad.
 struct Path {
   Vector3 p, rate, bend;
   Path(const Vector3& at, const Vector3& v, const Vector3& omega)
@@ -47,8 +47,8 @@ Vector3 Exposure::at_mid_exposure(const Vector3& p) const {
 
 Vector3 Exposure::as_seen(const Vector3& p_mid) const {
   if (!rolling_ || !(p_mid.z() > 0)) return p_mid;
-  // The row at which it is seen depends on when it is seen; each guess is twenty times better than the one
-  // before.
+  // The row in which the point is seen depends on the time, and the time on the row. Each iteration reduces
+  // the error by a factor of twenty.
   const Path path(p_mid, v_, omega_);
   Vector3 seen = p_mid;
   constexpr int kGuesses = 3;
@@ -63,7 +63,7 @@ Vector3 Exposure::at_depth_time(const Vector3& p, double v, double depth_v) cons
 }
 
 Vector3 Exposure::as_depth_sees(const Vector3& p, double v) const {
-  // As as_seen; of depth a tenth of a pixel is enough.
+  // Same iteration as in as_seen. For depth, a tenth of a pixel is accurate enough.
   const Path path(p, v_, omega_);
   Vector3 seen = p;
   double depth_v = v;

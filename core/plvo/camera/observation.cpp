@@ -12,7 +12,7 @@ Point3d observe_point(const Pinhole& pinhole, double u, double v, double depth_m
   const double variance_d = sigma_d_m * sigma_d_m;
   Point3d point;
   point.p = {x * depth_m, y * depth_m, depth_m};
-  // J_P diag(σ_p², σ_p², σ_d²) J_Pᵀ written out: J_P is upper triangular with one dense column.
+  // J_P diag(σ_p², σ_p², σ_d²) J_Pᵀ, expanded: J_P is upper triangular with one dense column.
   point.Sigma << sx * sx + x * x * variance_d, x * y * variance_d, x * variance_d,  //
       x * y * variance_d, sy * sy + y * y * variance_d, y * variance_d,             //
       x * variance_d, y * variance_d, variance_d;

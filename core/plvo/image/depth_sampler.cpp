@@ -14,28 +14,29 @@
 namespace plvo {
 namespace {
 
-// A jump is what neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
+// A depth jump is a difference that neither noise nor a steep surface explains: 6 σ, and 4 % of the depth.
 double jump_behind(double depth_m, const DepthNoise& noise) {
   return std::max(6 * noise.sigma(depth_m), 0.04 * depth_m);
 }
 
-// The depths of a window, in the image's own units, that belong to one surface: from `least` to `most`. The
-// sums are integers, so that any order of them has the same bits. x and y: px from the window's centre.
+// Sums over the depths of a window, in the image's units, that belong to one surface: those from `least` to
+// `most`. The sums are integers, so they do not depend on the order. x and y are in px from the window's
+// centre.
 struct SurfaceSums {
   std::int32_t least = 0, most = 0;
   std::int32_t n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  // Of the depths less `least`.
+  // Sums with d = depth − least.
   std::int64_t d = 0, dx = 0, dy = 0, dd = 0;
 };
 
-// Where the surface ends behind its nearest depth.
+// The largest depth that may belong to the surface whose nearest depth is given.
 std::int32_t farthest(std::int32_t nearest, double metres_per_unit, const DepthNoise& noise) {
   const double nearest_m = nearest * metres_per_unit;
   const double end = (nearest_m + jump_behind(nearest_m, noise)) / metres_per_unit;
   return end < 65535 ? static_cast<std::int32_t>(end) : 65535;
 }
 
-// What is read of a window, row by row; 0: none.
+// The depth readings of a window, row by row; 0: no depth.
 struct WindowReadings {
   std::array<std::uint16_t, (2 * DepthSampler::kMaxRadius + 1) * (2 * DepthSampler::kMaxRadius + 1)> units;
   int radius = 0;
@@ -43,8 +44,8 @@ struct WindowReadings {
   std::span<const std::uint16_t> all() const { return {units.data(), side() * side()}; }
 };
 
-// The nearest depth of a surface that at least three readings show, and its end: one or two may fly before
-// everything else. False when there is none.
+// Finds the nearest depth, supported by at least three readings, and the end of its surface. One or two
+// readings may be flying pixels in front of the surface. Returns false if there is no such depth.
 bool nearest_surface(const WindowReadings& readings, std::size_t count, double metres_per_unit,
                      const DepthNoise& noise, SurfaceSums& surface) {
   const std::size_t least = count < 3 ? count : 3;
@@ -85,13 +86,15 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
 
 #ifndef PLVO_SIMD_LOOPS
 
-// As nearest_surface and sum_up where the whole window belongs to one surface, which most do; else false.
-// corner: of eight columns and 2 · radius + 1 rows that are there.
+// Does the same as nearest_surface and sum_up if the whole window belongs to one surface, which is the usual
+// case; otherwise returns false. corner: top-left pixel of the window; eight columns and 2 · radius + 1 rows
+// must be readable from there.
 bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius, double metres_per_unit,
                   const DepthNoise& noise, SurfaceSums& sums) {
   constexpr std::size_t kMostRows = 2 * DepthSampler::kMaxRadius + 1;
   constexpr Int16x8 kEightColumns = {0, 1, 2, 3, 4, 5, 6, 7};
-  constexpr std::int16_t kSign = std::numeric_limits<std::int16_t>::min();  // order of unsigned as of signed
+  constexpr std::int16_t kSign =
+      std::numeric_limits<std::int16_t>::min();  // flips the sign bit: unsigned order becomes signed order
   const auto side = static_cast<std::int16_t>(2 * radius + 1);
   const Int16x8 of_window = kEightColumns < side;
   std::array<Int16x8, kMostRows> rows;
@@ -111,7 +114,7 @@ bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius
     least = std::min<std::int32_t>(least, low[i]);
     most = std::max<std::int32_t>(most, high[i]);
   }
-  constexpr std::int32_t kLargestRange = 1 << 12;  // its square, 49 times, has less than 31 bits
+  constexpr std::int32_t kLargestRange = 1 << 12;  // 49 times its square has less than 31 bits
   sums.least = least - kSign;
   if (sums.least == 0 || most - least > kLargestRange) return false;
   sums.most = farthest(sums.least, metres_per_unit, noise);
@@ -143,10 +146,11 @@ bool sum_up_whole(const std::uint16_t* corner, std::ptrdiff_t stride, int radius
 
 #endif
 
-// Depth in the image's units at (x, y) px from the window's centre, and how it changes there by the pixel:
-// of the least-squares plane in inverse depth, for there a plane of the world is one over the image, and the
-// Kinect's own noise is even. As deviations from the mean c: 1/z = (1 − e + e²) / c, with e = z/c − 1, what
-// is left out being a hundredth of the noise. Where the readings lie (nearly) on one line it is their mean.
+// Returns the depth at (x, y) px from the window's centre, in the image's units; slope receives its change
+// per pixel. Fits a least-squares plane in inverse depth, because a plane in the world is a plane over the
+// image in inverse depth, and there the Kinect's noise is uniform. The fit uses the deviation from the mean
+// c: 1/z = (1 − e + e²) / c with e = z/c − 1. The neglected terms are a hundredth of the noise. If the
+// readings lie (nearly) on one line, the result is their mean.
 double plane_depth(const SurfaceSums& s, double x, double y, double& slope) {
   const double inverse_n = 1.0 / s.n;
   const double mean_d = static_cast<double>(s.d) * inverse_n;
@@ -162,12 +166,12 @@ double plane_depth(const SurfaceSums& s, double x, double y, double& slope) {
   const double cdx = static_cast<double>(s.dx) - mean_d * s.x;
   const double cdy = static_cast<double>(s.dy) - mean_d * s.y;
   const double scale = 1 / (determinant * mean);
-  const double slope_x = (cdx * cyy - cdy * cxy) * scale;  // of e
+  const double slope_x = (cdx * cyy - cdy * cxy) * scale;  // derivative of e
   const double slope_y = (cdy * cxx - cdx * cxy) * scale;
   const double squares = static_cast<double>(s.dd) * inverse_n - mean_d * mean_d;
   const double inverse = 1 + squares / (mean * mean) - slope_x * (x - mean_x) - slope_y * (y - mean_y);
   if (!(inverse > 0)) return mean;
-  // The plane may only interpolate: beyond the depths it was fitted to it is not believed.
+  // The plane only interpolates: its depth is clamped to the range of the fitted depths.
   const double depth = std::clamp<double>(mean / inverse, s.least, s.most);
   slope = depth * depth / mean * sqrt(slope_x * slope_x + slope_y * slope_y);
   return depth;
@@ -192,7 +196,7 @@ DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located, 
 }
 
 void DepthSampler::fetch() const {
-  if constexpr (kSizeOptimised) return;  // small processors have no room to keep it
+  if constexpr (kSizeOptimised) return;  // the caches of small processors cannot hold the image
   constexpr int kCacheLine = 64 / sizeof(std::uint16_t);
   for (int y = 0; y < depth_.height; ++y) {
     const volatile std::uint16_t* const row = depth_.data + y * depth_.stride;
@@ -201,8 +205,8 @@ void DepthSampler::fetch() const {
 }
 
 bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const {
-  // What is seen where depends on its depth, which is read where it is seen. Most of the displacement is the
-  // rotation's, the same for every depth.
+  // Fixed-point iteration: the position depends on the depth, and the depth is read at the position. Most of
+  // the displacement comes from the rotation and is the same for every depth.
   const Pinhole& pinhole = exposure_.pinhole();
   const Vector3 ray = back_project(pinhole, pixel.x(), pixel.y(), 1);
   for (int i = 0; i < guesses; ++i) {
@@ -271,7 +275,7 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
         readings.units[i] = raw_units(x, y);
         count += readings.units[i++] > 0 ? 1 : 0;
       }
-    // Where half the window has no depth, the rest is a rim of bad depth.
+    // If more than half of the window has no depth, the rest is an unreliable border.
     if (2 * count < i) return {};
     sums = {};
     if (!nearest_surface(readings, count, depth_.metres_per_unit, noise_, sums)) return {};
@@ -283,7 +287,7 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
   const double sigma_d = noise_.sigma(result.depth_m);
   const double sigma_registration = slope * depth_.metres_per_unit * noise_.registration_px;
   result.sigma_m = sqrt(sigma_d * sigma_d + sigma_registration * sigma_registration);
-  // The nearer surface's own depth is less sure where the window is mixed.
+  // In a mixed window, the depth of the nearer surface is less certain.
   if (result.on_edge) result.sigma_m *= 2;
   return result;
 }

@@ -48,7 +48,7 @@ bool DepthStretch::work_out(int i, Knot& knot) {
     }
     shift_ = located - seen;
     knot.inverse_depth = 1 / depth_m_;
-    // Moving is affine: what it does to the camera's centre it does to all.
+    // The transformation is affine in the point, so its effect on the camera centre gives the constant term.
     const Vector3 ray = back_project(pinhole, located.x(), located.y(), 1);
     const Vector3 moved = exposure.at_depth_time(Vector3::Zero(), seen.y(), located.y());
     rate = {pinhole.fx * (moved.x() - ray.x() * moved.z()), pinhole.fy * (moved.y() - ray.y() * moved.z())};
@@ -87,7 +87,7 @@ void DepthStretch::next_part() {
   across_.x = units(across.x());
   across_.y = units(across.y());
   rate_squared_ = start_.rate.squaredNorm();
-  // A straight line between two places inside is inside.
+  // The image is convex: if both ends are inside, the line between them is inside.
   const Vector2 margin(1 + reach_ * magnitude(across.x()), 1 + reach_ * magnitude(across.y()));
   const auto inside = [&](const Vector2& p) {
     return p.x() > margin.x() && p.y() > margin.y() && p.x() < depth_.width - 1 - margin.x() &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One RGB-D frame. The views are borrowed: they must stay valid until track() returns and are not kept after
-// it.
+// One RGB-D frame. The views are borrowed: they must stay valid until track() returns and are not used
+// afterwards.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 namespace plvo {
 
 struct RgbdFrame {
-  std::int64_t stamp_ns = 0;        // of the colour image; strictly increasing
-  std::int64_t depth_stamp_ns = 0;  // of the depth image; equal to stamp_ns where the camera does not say
+  std::int64_t stamp_ns = 0;  // stamp of the colour image; strictly increasing
+  std::int64_t depth_stamp_ns =
+      0;  // stamp of the depth image; equal to stamp_ns if the camera does not provide one
   ColourView colour;
   DepthView depth;
 };

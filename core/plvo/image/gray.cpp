@@ -8,8 +8,8 @@
 namespace plvo {
 namespace {
 
-// Of a pixel's three bytes, 1/256. They are read, and not known where they are used: compilers would make
-// shifts and sums of the products.
+// Weights of a pixel's three bytes, in 1/256. They are run-time data on purpose: compilers would replace
+// products with constants by shifts and sums.
 struct LumaWeights {
   std::uint16_t first, second, third;
 };
@@ -30,8 +30,9 @@ Sums widened(const Bytes& eight) {
   return sums;
 }
 
-// Of sixteen pixels, 48 bytes. To lay the halves of 48 into each other takes what is at i to 2i mod 47; done
-// three times, pixel 2k's and pixel 2k + 1's channel c, at 6k + c and 6k + 3 + c, to k + 8c and k + 24 + 8c.
+// Luma of sixteen pixels, 48 bytes. Interleaving the two halves of the 48 bytes moves byte i to 2i mod 47.
+// Three such steps move channel c of pixel 2k from 6k + c to k + 8c, and that of pixel 2k + 1 from 6k + 3 + c
+// to k + 24 + 8c.
 void luma_of_sixteen(const std::uint8_t* p, LumaWeights w, std::uint8_t* out) {
   Bytes a, b, c;
   std::memcpy(&a, p, sizeof a);
@@ -44,7 +45,7 @@ void luma_of_sixteen(const std::uint8_t* p, LumaWeights w, std::uint8_t* out) {
     a = first;
     b = second;
   }
-  // At most 256 · 255 + 128, which sixteen bits hold.
+  // At most 256 · 255 + 128, which fits in 16 bits.
   const auto luma = [&](const Bytes& first, const Bytes& second, const Bytes& third) {
     return widened(first) * w.first + widened(second) * w.second + widened(third) * w.third +
            std::uint16_t{128};
@@ -62,7 +63,8 @@ void luma_row(const std::uint8_t* pixels, int width, LumaWeights w, std::uint8_t
 #ifdef __SSE2__
   for (; x + 16 <= width; x += 16) luma_of_sixteen(pixels + 3 * x, w, out + x);
 #endif
-  // Where one instruction reads every third byte, compilers make of this what is above.
+  // On processors with an instruction that loads every third byte, compilers vectorise this loop in the same
+  // way.
   for (; x < width; ++x) {
     const std::uint8_t* const p = pixels + 3 * x;
     out[x] = static_cast<std::uint8_t>((w.first * p[0] + w.second * p[1] + w.third * p[2] + 128) >> 8);

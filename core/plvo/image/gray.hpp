@@ -8,7 +8,7 @@
 
 namespace plvo {
 
-// Same size. Grey input is copied.
+// Both images have the same size. Grey input is copied.
 void to_gray(const ColourView& colour, ImageView<std::uint8_t> gray);
 
 // Mean grey level, 0 … 255, over every fourth row and column.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images that somebody else owns: a pointer, a size and a stride. Rows run top to bottom.
+// Images that the view does not own: a pointer, a size and a stride. Rows run from top to bottom.
 #pragma once
 
 #include <cassert>
@@ -13,7 +13,7 @@ struct ImageView {
   T* data = nullptr;
   int width = 0;
   int height = 0;
-  std::ptrdiff_t stride = 0;  // elements from one row to the next
+  std::ptrdiff_t stride = 0;  // elements between the starts of two rows
 
   T* row(int y) const {
     assert(y >= 0 && y < height);
@@ -31,7 +31,7 @@ using GrayView = ImageView<const std::uint8_t>;
 
 enum class PixelFormat : std::uint8_t { kGray8, kRgb8, kBgr8 };
 
-// The colour image as the camera gives it.
+// The colour image as the camera delivers it.
 struct ColourView {
   const std::uint8_t* data = nullptr;
   int width = 0;
@@ -40,7 +40,7 @@ struct ColourView {
   PixelFormat format = PixelFormat::kRgb8;
 };
 
-// The depth image, registered to the colour image, same size. 0 means "none".
+// The depth image, registered to the colour image and of the same size. 0 means "no depth".
 struct DepthView {
   const std::uint16_t* data = nullptr;
   int width = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grey image and its halvings. Position (u, v) on level l is (u, v) · 2^l on level 0.
+// A grey image and its successively halved versions. Position (u, v) on level l is (u, v) · 2^l on level 0.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class Pyramid {
     }
   }
 
-  // Sizes within those allocated.
+  // The size must not exceed the allocated one.
   void init(int width, int height) {
     for (std::size_t level = 0; level < kMaxLevels; ++level) {
       levels_[level] = {storage_[level].data(), width, height, width};
@@ -36,7 +36,7 @@ class Pyramid {
     }
   }
 
-  // Level 0, for whoever fills it; then build() makes the others.
+  // Level 0. The caller fills it and then calls build(), which computes the other levels.
   ImageView<std::uint8_t> base() { return levels_[0]; }
   void build() {
     for (std::size_t level = 1; level < kMaxLevels; ++level)

@@ -9,9 +9,9 @@
 namespace plvo {
 namespace {
 
-// Vertical pass first, into one row of 16-bit sums padded by `Pad` pixels left and right; then the horizontal
-// pass over that row. Both inner loops are straight lines over contiguous memory, which compilers vectorise
-// by themselves; integers make the result the same however they do it.
+// The vertical pass writes one row of 16-bit sums, padded left and right; the horizontal pass then reads that
+// row. Both inner loops run straight over contiguous memory, so compilers vectorise them. Integer arithmetic
+// makes the result independent of the vectorisation.
 void repeat_borders(std::uint16_t* row, int width, int pad) {
   for (int i = 1; i <= pad; ++i) {
     row[-i] = row[0];
@@ -23,13 +23,13 @@ const std::uint8_t* clamped_row(GrayView image, int y) {
   return image.row(std::clamp(y, 0, image.height - 1));
 }
 
-// Every second of the sums, weighted with its neighbours.
+// Weighted sum of s[0] and two values on either side.
 std::uint8_t binomial5(const std::uint16_t* s) {
   const std::uint32_t sum = s[-2] + s[2] + 4u * (static_cast<std::uint32_t>(s[-1]) + s[1]) + 6u * s[0];
   return static_cast<std::uint8_t>((sum + 128) >> 8);
 }
 
-// Eight of them, from sums of at most 16 · 255: sums that lie side by side are two columns of a product.
+// Eight outputs at once, from sums of at most 16 · 255. Each lane of a dot product weights two adjacent sums.
 void binomial5_of_eight(const std::uint16_t* s, std::uint8_t* out) {
   constexpr Int16x8 kBefore = {1, 4, 1, 4, 1, 4, 1, 4}, kHere = {6, 4, 6, 4, 6, 4, 6, 4},
                     kAfter = {1, 0, 1, 0, 1, 0, 1, 0};

@@ -10,11 +10,12 @@
 namespace plvo {
 namespace {
 
-constexpr int kWeightBits = 7;  // of a position's fraction in the blend
-constexpr int kLaneBits = 10;   // of a position's fraction within a row of a cell
+constexpr int kWeightBits = 7;  // fraction bits of a position in the blend
+constexpr int kLaneBits = 10;   // fraction bits of a position within a row of a cell
 constexpr int kLaneShift = 16 - kLaneBits;
-// In a row, in px: pixels at most so far from the first one, whose offset from the raw image's border counts
-// up to so much. Together they fit the lanes, and the first times the longest stride has 15 bits.
+// Limits within a row, in px: kMostWay for the distance of a pixel from the first one, kMostOutside for the
+// distance of the first one from the border of the raw image. Their sum fits in a 16-bit lane, and kMostWay
+// times the longest stride fits in 15 bits.
 constexpr std::int32_t kMostWay = 10;
 constexpr std::int32_t kMostOutside = 20;
 static_assert((kMostWay + 1 + kMostOutside) << kLaneBits < 1 << 15);
@@ -28,9 +29,9 @@ constexpr std::int16_t to_lane(std::int32_t q16) {
   return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
 }
 
-// The last bits of a cell's position, 2^-16 px in x and in y, say what it is. Plain: whole, and its rows fit
-// the lanes. Near: besides, its pixels lie in the raw image nearly as they do in this one (NearCell).
-// Shifted: besides, all of them as many whole pixels away.
+// The last bits of x and y of a cell's position (units of 2^-16 px) store its kind. Plain: the cell is
+// complete, and its rows fit the 16-bit lanes. Near: plain, and its pixels have nearly the same arrangement
+// in the raw image (NearCell). Shifted: near, and all its pixels have the same whole-pixel offset.
 constexpr std::int64_t kKinds = (std::int64_t{1} << 32) + 1;
 constexpr std::int64_t kPlain = 1;
 constexpr std::int64_t kNear = kKinds;
@@ -39,22 +40,22 @@ constexpr std::int64_t kShifted = std::int64_t{1} << 32;
 constexpr std::int16_t kWeightOne = 1 << kWeightBits;
 constexpr std::int16_t kWeightMask = kWeightOne - 1;
 
-// At (x, y), in 2^-7 px from the pixel `from`.
+// Bilinear interpolation at (x, y), in 2^-7 px relative to the pixel `from`.
 std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t x, std::int32_t y) {
   const std::uint8_t* const above = from + (y >> kWeightBits) * stride + (x >> kWeightBits);
   const std::uint8_t* const below = above + stride;
   const std::int32_t fx = x & kWeightMask;
   const std::int32_t upper = (above[0] << kWeightBits) + (above[1] - above[0]) * fx;
   const std::int32_t lower = (below[0] << kWeightBits) + (below[1] - below[0]) * fx;
-  // Half of the change first, so that it fits the lanes of blend_eight.
+  // Computes half of the change first, as blend_eight does to fit 16-bit lanes.
   const std::int32_t half = ((lower - upper) * (y & kWeightMask)) >> (kWeightBits + 1);
   return static_cast<std::uint8_t>((upper + 2 * half + kWeightOne / 2) >> kWeightBits);
 }
 
-// Two neighbours, the left one in the low byte.
+// Two adjacent pixels, the left one in the low byte.
 std::int16_t pair_at(const std::uint8_t* p) { return static_cast<std::int16_t>(p[0] | p[1] << 8); }
 
-// As blend, eight at once: of what lies above and below, blended along the row, · 2^7.
+// Vertical step of blend for eight pixels. upper and lower are the rows after horizontal blending, times 2^7.
 inline __attribute__((always_inline)) void blend_rows(const Int16x8& upper, const Int16x8& lower,
                                                       const Int16x8& fy, std::uint8_t* out) {
   Int16x8 half;
@@ -62,8 +63,8 @@ inline __attribute__((always_inline)) void blend_rows(const Int16x8& upper, cons
   store_bytes((upper + half + half + kWeightOne / 2) >> kWeightBits, out);
 }
 
-// Eight at once, each from its own column of the row `from` on: x and y in 2^-7 px, from 0 to below 2 px; to
-// below 1 px where they are shifted.
+// Blends eight adjacent pixels of the row that starts at `from`. x and y are offsets in 2^-7 px, from 0 to
+// below 2 px; to below 1 px for a shifted cell.
 template <bool kIsShifted>
 inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, std::ptrdiff_t stride,
                                                       const Int16x8& x, const Int16x8& y, std::uint8_t* out) {
@@ -81,8 +82,7 @@ inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, 
     blend_rows(along(from), along(from + stride), y, out);
     return;
   }
-  // Nothing is fetched from a place of its own: of three pixels of each of three rows all are weighed, and
-  // one has no weight.
+  // Avoids a load per pixel: reads three pixels in each of three rows. One of the three has weight 0.
   const Int16x8 beyond = x - kWeightOne;
   const Int16x8 last = beyond > 0 ? beyond : Int16x8{};
   const Int16x8 first = last - beyond;
@@ -100,7 +100,7 @@ inline __attribute__((always_inline)) void blend_near(const std::uint8_t* from, 
 #endif
 }
 
-// At eight places, in 2^-7 px from the pixel `from`.
+// Blends eight pixels at positions in 2^-7 px relative to the pixel `from`.
 void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Int16x8& x, const Int16x8& y,
                  std::uint8_t* out) {
   if constexpr (kSimdLoops) {
@@ -126,8 +126,9 @@ void blend_eight(const std::uint8_t* from, std::ptrdiff_t stride, const Int16x8&
 
 }  // namespace
 
-// A cell that the lens hardly turns or scales: each pixel is read less than 2 px right of, and below, a pixel
-// of the raw image that has the same place in a cell of its own. Where exactly, in 2^-13 px, in 16 bits.
+// A cell that the distortion hardly rotates or scales. Each pixel is read less than 2 px to the right of and
+// below the pixel with the same index in a cell of the raw image. The offsets are 16-bit integers in 2^-13
+// px.
 struct UndistortionMap::NearCell {
   static constexpr int kBits = 13;
   static constexpr int kToWeight = kBits - kWeightBits;
@@ -138,9 +139,9 @@ struct UndistortionMap::NearCell {
     return static_cast<std::int16_t>((q16 + (1 << (kShift - 1))) >> kShift);
   }
 
-  // x and y alike: of a row's pixels, and how they change from row to row.
+  // One axis, x or y: the offsets of the first row's pixels and their change per row.
   struct Axis {
-    std::int32_t base;  // the raw cell's first column, or row
+    std::int32_t base;  // first column or row of the raw cell
     std::int16_t bend;
     Int16x8 first, step;
 
@@ -153,13 +154,13 @@ struct UndistortionMap::NearCell {
               static_cast<std::int16_t>(lane(at - (base << kFractionBits)) + kRound);
       step = kSteps * lane(twist) + lane(down);
     }
-    // Where all are as many whole pixels right of theirs, or below: from there on.
+    // For a shifted cell: moves the whole-pixel part of the offsets, which all pixels share, into base.
     __attribute__((always_inline)) void shift() {
       const int whole = first[0] >> kBits;
       base += whole;
       first = first - static_cast<std::int16_t>(whole << kBits);
     }
-    // In 2^-7 px.
+    // Offsets of row j, in 2^-7 px.
     __attribute__((always_inline)) void of_row(int j, Int16x8& out) const {
       out = (first + step * static_cast<std::int16_t>(j) + static_cast<std::int16_t>(bow(j) * bend)) >>
             kToWeight;
@@ -187,7 +188,7 @@ void UndistortionMap::init(const CameraModel& camera) {
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < static_cast<int>(columns_); ++column) {
       const auto at = [&](int i, int j) {
-        // A lens that leaves the image by more than its own size there is not followed.
+        // Clamps positions that lie outside by more than the largest image size.
         const Vector2 p = distort_pixel(
             camera, {static_cast<double>(kCell * column + i), static_cast<double>(kCell * row + j)});
         return Vector2(std::clamp<double>(p.x(), -kMaxSide, 2 * kMaxSide),
@@ -238,7 +239,7 @@ bool UndistortionMap::is_near(const Cell& c, bool& shifted) const {
     near.x.of_row(j, x);
     near.y.of_row(j, y);
     for (int i = 0; i < kCell; ++i) {
-      // By the map itself: 16 bits may have been too few.
+      // Compares with the map itself, because the 16-bit values may have overflowed.
       const std::int64_t at = position(c, i, j);
       const auto close = [](std::int32_t q16, int whole, int weight) {
         const int off = (q16 >> (kFractionBits - kWeightBits)) - (whole << kWeightBits) - weight;
@@ -255,7 +256,7 @@ bool UndistortionMap::is_near(const Cell& c, bool& shifted) const {
   return true;
 }
 
-// Rows of a near cell: each is read as three rows of the raw image, as two where it is shifted.
+// Undistorts rows of a near cell. Each reads three rows of the raw image, or two if the cell is shifted.
 template <bool kIsShifted>
 void UndistortionMap::undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                                      std::ptrdiff_t out_stride) {
@@ -271,7 +272,7 @@ void UndistortionMap::undistort_near(const Cell& cell, int first, int last, Gray
     near.y.of_row(j, y);
     blend_near<kIsShifted>(from + j * raw.stride, raw.stride, x, y, out + (j - first) * out_stride);
   };
-  // Rows that are known when it is compiled: what their number is multiplied with is a constant.
+  // With constant row numbers, the products with them become constants.
   if (!kSimdLoops && first == 0 && last == kCell) {
 #pragma GCC unroll 8
     for (int j = 0; j < kCell; ++j) undistort_row(j);
@@ -280,8 +281,9 @@ void UndistortionMap::undistort_near(const Cell& cell, int first, int last, Gray
   for (int j = first; j < last; ++j) undistort_row(j);
 }
 
-// Along one axis the place of a row's first pixel, and what the eight are clamped to, from a pixel of the raw
-// image on: the one that it lies in, or the border's nearest.
+// One axis of a row of a plain cell: the position of the first pixel and the clamping limits of all eight.
+// Both are relative to the raw pixel `base`, which contains the first pixel or is the nearest pixel of the
+// border.
 struct UndistortionMap::PlainStart {
   std::int32_t base;
   std::int16_t at;         // 2^-10 px
@@ -298,10 +300,10 @@ struct UndistortionMap::PlainStart {
   }
 };
 
-// Rows of a plain cell: in each all eight pixels at once, clamped to what the camera saw.
+// Undistorts rows of a plain cell, eight pixels at once. Positions are clamped to the raw image.
 void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                                       std::ptrdiff_t out_stride) const {
-  const Cell c = cell;  // what is written cannot change it
+  const Cell c = cell;  // a local copy, which writes to out cannot alias
   constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
   constexpr int kToWeight = kLaneBits - kWeightBits;
@@ -320,7 +322,7 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
   }
 }
 
-// Rows of any cell, pixel by pixel.
+// Undistorts rows of any cell, pixel by pixel.
 void UndistortionMap::undistort_each(const Cell& cell, int first, int last, GrayView raw, int count,
                                      std::uint8_t* out, std::ptrdiff_t out_stride) const {
   const Cell c = cell;
@@ -337,7 +339,7 @@ void UndistortionMap::undistort_each(const Cell& cell, int first, int last, Gray
 }
 
 void UndistortionMap::undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const {
-  // Cell by cell: what its rows have in common is worked out once.
+  // Works cell by cell, so that values common to its rows are computed once.
   for (int top = begin - begin % kCell; top < end; top += kCell) {
     const int first = std::max(begin - top, 0);
     const int last = std::min(end - top, kCell);

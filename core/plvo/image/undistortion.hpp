@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Removes the lens (assumption a.1 of the paper) by a map made once: for every pixel of the ideal pinhole
-// image, where the camera imaged it. The map is a polynomial for each cell of 8×8 pixels, in integers: of
-// second order along either side, off by less than 1/50 px for a Kinect's lens, in a fifth of the memory that
-// a table of all pixels takes. One map serves both images, since depth is registered to colour. The grey
-// image is resampled whole, bilinearly, at positions in 1/128 px; depth must never be blended across an edge
-// and is read only where somebody asks, at the nearest pixel.
+// Removes the lens distortion (assumption a.1 of the paper) with a precomputed map. The map gives, for every
+// pixel of the ideal pinhole image, the position in the camera's image. It is an integer polynomial per cell
+// of 8×8 pixels, of second order along each axis. For a Kinect's lens, its error is below 1/50 px, and it
+// takes a fifth of the memory of a table of all pixels. Depth is registered to colour, so one map serves both
+// images. The grey image is resampled as a whole, bilinearly, at positions in 1/128 px. Depth must never be
+// blended across an edge; it is read only on demand, at the nearest pixel.
 #pragma once
 
 #include <cstdint>
@@ -26,24 +26,25 @@ class UndistortionMap {
     cells_ = memory.take<Cell>("undistortion map", cells_along(width) * cells_along(height));
   }
 
-  // For a lens without distortion the map stays unused and the images pass through untouched.
+  // For a lens without distortion the map stays unused, and the images pass through unchanged.
   void init(const CameraModel& camera);
   bool active() const { return active_; }
 
-  // ideal(x, y) ← raw at the map's position; pixels that the camera did not see repeat its border. raw's
-  // stride is at most kMaxSide.
+  // ideal(x, y) ← raw at the map's position. Pixels that the camera did not see repeat the border of raw. The
+  // stride of raw is at most kMaxSide.
   void undistort(GrayView raw, ImageView<std::uint8_t> ideal) const { undistort(raw, ideal, 0, height_); }
-  // Of ideal the rows from begin to before end.
+  // Undistorts rows begin … end − 1 of ideal.
   void undistort(GrayView raw, ImageView<std::uint8_t> ideal, int begin, int end) const;
 
-  // Where the map says that ideal pixel (x, y) was imaged. The images are read without it: it is there for
-  // who wants to know how exact the map is.
+  // The position at which the camera imaged ideal pixel (x, y), according to the map. It serves to check the
+  // accuracy of the map; undistort() does not use it.
   Vector2 position_px(int x, int y) const {
     const std::int64_t at = position(x, y);
     return Vector2(x_of(at), y_of(at)) / (1 << kFractionBits);
   }
 
-  // The raw pixel nearest to where ideal pixel (x, y) was imaged; false when the camera did not see it.
+  // The raw pixel nearest to the position at which ideal pixel (x, y) was imaged. False if the camera did not
+  // see it.
   bool raw_pixel(int x, int y, int& raw_x, int& raw_y) const {
     if (!active_) {
       raw_x = x;
@@ -53,8 +54,8 @@ class UndistortionMap {
     return nearest(position(x, y), raw_x, raw_y);
   }
 
-  // The map around one pixel as a plane: where a small window, whose centre (x, y) lies in the image, was
-  // imaged. At 3 px from the centre it is off by less than 1/20 px for a Kinect's lens.
+  // A linear approximation of the map around pixel (x, y), which must lie in the image. It maps small windows
+  // to the raw image. At 3 px from the centre, its error is below 1/20 px for a Kinect's lens.
   class Window {
    public:
     Window(const UndistortionMap& map, int x, int y) : map_(map) {
@@ -71,12 +72,13 @@ class UndistortionMap {
       right_ = c.right + j * c.twist + (kCell / 2 - i) * c.bend_right;
       down_ = c.down + i * c.twist + (kCell / 2 - j) * c.bend_down;
     }
-    // As raw_pixel(x + dx, y + dy, …).
+    // Like UndistortionMap::raw_pixel(x + dx, y + dy, …).
     bool raw_pixel(int dx, int dy, int& raw_x, int& raw_y) const {
       const bool seen = map_.nearest(at_ + dx * right_ + dy * down_, raw_x, raw_y);
       return seen || !map_.active_;
     }
-    // So many px from the centre, on the way to the raw image: how far, and to where.
+    // Maps an offset from the centre, in px, to the raw image: as an offset (step_px) and as a position
+    // (position_px).
     Vector2 step_px(const Vector2& step) const {
       constexpr double kUnit = 1.0 / (1 << kFractionBits);
       const double right = kUnit * step.x();
@@ -86,7 +88,7 @@ class UndistortionMap {
     Vector2 position_px(const Vector2& step) const {
       return Vector2(x_of(at_), y_of(at_)) / (1 << kFractionBits) + step_px(step);
     }
-    // So many px are so many of the raw image, each off by less than this share.
+    // True if a step of 1 px is 1 px in the raw image, too, with a relative error below `share` on each axis.
     bool is_straight(double share) const {
       const auto least = static_cast<std::int32_t>(share * (1 << kFractionBits));
       constexpr std::int32_t kOne = 1 << kFractionBits;
@@ -103,8 +105,8 @@ class UndistortionMap {
  private:
   static constexpr int kFractionBits = 16;
 
-  // Positions and their derivatives come in pairs, x · 2^32 + y, both in 2^-16 px: every step serves both. In
-  // a cell, i pixels to the right and j down from its first one:
+  // Positions and their derivatives are stored as pairs, x · 2^32 + y, both in 2^-16 px, so one operation
+  // serves both. In a cell, the position of the pixel i to the right of and j below the first one is
   //   at + i · right + j · down + i j · twist + B(i) · bend_right + B(j) · bend_down,   B(i) = i (8 − i) / 2.
   struct Cell {
     std::int64_t at, right, down, twist, bend_right, bend_down;
@@ -118,14 +120,14 @@ class UndistortionMap {
   static constexpr std::size_t cells_along(int pixels) {
     return static_cast<std::size_t>((pixels + kCell - 1) / kCell);
   }
-  // Of a pixel in the image, as is all that follows.
+  // The cell of a pixel. Here and in all functions below, the pixel must lie in the image.
   const Cell& cell(int x, int y) const {
     return cells_[static_cast<std::size_t>(y) / kCell * columns_ + static_cast<std::size_t>(x) / kCell];
   }
   static constexpr int within_cell(int x) { return static_cast<int>(static_cast<unsigned>(x) % kCell); }
   std::int64_t position(int x, int y) const { return position(cell(x, y), within_cell(x), within_cell(y)); }
-  // A cell's first pixel: its kind, which the last bits say, moves it by no more than 2^-16 px, and a shifted
-  // one as a near one.
+  // Position of a cell's first pixel. The kind in the last bits changes it by at most 2^-16 px. A shifted
+  // cell gets the same position as a near one.
   static constexpr std::int64_t place(const Cell& c) { return c.at | (c.at >> 32 & 1); }
   static std::int64_t position(const Cell& c, int i, int j) {
     return place(c) + i * c.right + j * (c.down + i * c.twist) + bow(i) * c.bend_right + bow(j) * c.bend_down;
@@ -139,14 +141,15 @@ class UndistortionMap {
     return static_cast<std::uint32_t>(x - 1) < static_cast<std::uint32_t>(last_x_ - 1) &&
            static_cast<std::uint32_t>(y - 1) < static_cast<std::uint32_t>(last_y_ - 1);
   }
-  // Do the rows of a whole cell fit the 16-bit lanes?
+  // True if the rows of a complete cell fit the 16-bit lanes.
   bool is_plain(const Cell& c) const;
-  // Besides, is it read nearly as it lies? And all of it as many whole pixels away?
+  // True if, in addition, the pixels have nearly the same arrangement in the raw image. shifted: all of them
+  // have the same whole-pixel offset.
   bool is_near(const Cell& c, bool& shifted) const;
   struct NearCell;
   struct PlainStart;
 
-  // The cell's rows from first to before last.
+  // These functions process rows first … last − 1 of the cell.
   template <bool kIsShifted>
   static void undistort_near(const Cell& cell, int first, int last, GrayView raw, std::uint8_t* out,
                              std::ptrdiff_t out_stride);
@@ -159,7 +162,7 @@ class UndistortionMap {
   std::size_t columns_ = 0;
   int width_ = 0;
   int height_ = 0;
-  // A bilinear read touches the next pixel too: the last position is just before the last pixel.
+  // A bilinear read also touches the next pixel, so the last position is just before the last pixel.
   std::int32_t last_x_ = 0;
   std::int32_t last_y_ = 0;
   bool active_ = false;

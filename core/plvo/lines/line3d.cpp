@@ -33,8 +33,8 @@ void whiten_all(const LineSamples& samples, double sigma_p_px, Samples& out) {
   }
 }
 
-// Along a 3D line the inverse depth is linear in t: weighted regression gives the first hypothesis, which is
-// already the answer wherever nothing is wrong with the depths.
+// The inverse depth is linear in t along a 3D line. Weighted regression therefore gives the first hypothesis;
+// without depth outliers it is already the solution.
 bool regress(const Samples& samples, double sigma_p_px, PlaneLine& line) {
   double s0 = 0, s1 = 0, s2 = 0, y0 = 0, y1 = 0;
   for (const Whitened& s : samples.span()) {
@@ -61,7 +61,7 @@ bool regress(const Samples& samples, double sigma_p_px, PlaneLine& line) {
   return true;
 }
 
-// MSAC: Σ min(r², threshold), given up once it passes `best`.
+// MSAC cost: Σ min(r², threshold). Stops once the sum exceeds `best`.
 double score(const Samples& samples, const PlaneLine& line, double threshold, double best, int& inliers) {
   const Chord chord(line);
   double cost = 0;
@@ -76,15 +76,16 @@ double score(const Samples& samples, const PlaneLine& line, double threshold, do
   return cost;
 }
 
-// Enough tries to have missed a clean pair of a fraction w of inliers with less than 1 in 1000?
+// Returns whether the probability of having missed a clean pair in `tries` draws is below 1 in 1000, for a
+// fraction w of inliers.
 bool confident(int tries, double w) {
   double miss = 1;
   for (int i = 0; i < tries; ++i) miss *= 1 - w * w;
   return miss < 1e-3;
 }
 
-// The line with the least MSAC cost of the regression and at most max_ransac_iterations pairs of samples, a
-// quarter of the set apart or more.
+// Finds the line with the least MSAC cost among the regression line and at most max_ransac_iterations lines
+// through two samples. The two samples are at least a quarter of the set apart.
 bool ransac(const Samples& samples, const Line3dConfig& config, std::uint64_t seed, PlaneLine& best) {
   const auto n = static_cast<std::uint32_t>(samples.count);
   const double threshold = config.inlier_chi_square;
@@ -126,11 +127,12 @@ int find_consensus(Samples& samples, const PlaneLine& line, double threshold) {
   return count;
 }
 
-// Small code has one solver for all: of its six parameters the last four see nothing and stay.
+// Size-optimised code shares one solver of six parameters. The last four are unobservable here and stay
+// unchanged.
 constexpr int kParameters = kSizeOptimised ? 6 : 2;
 
-// (9) for plvo's Levenberg–Marquardt: the depths (z_a, z_b) at the line's two pixels; A = z_a (t_a, 1),
-// B = z_b (t_b, 1).
+// Problem (9) for the Levenberg–Marquardt solver: the depths (z_a, z_b) at the line's two pixels; A = z_a
+// (t_a, 1), B = z_b (t_b, 1).
 struct EndDepths {
   const Samples& samples;
   PlaneLine line;
@@ -169,7 +171,7 @@ struct EndDepths {
 bool refine(const Samples& samples, PlaneLine& line, double& cost) {
   EndDepths problem{samples, line, line};
   LevenbergMarquardt<kParameters> solver;
-  // What is left is less than a hundredth of the line's own SD.
+  // The remaining error is less than a hundredth of the line's own standard deviation.
   const LmOptions options{.max_iterations = 10, .step_tolerance = 1e-6, .decrease_tolerance = 5e-5};
   const LmSummary summary = solver.solve(problem, options);
   line = problem.line;
@@ -177,13 +179,14 @@ bool refine(const Samples& samples, PlaneLine& line, double& cost) {
   return converged(summary.status) || summary.status == LmStatus::kMaxIterations;
 }
 
-// (10) in the plane, over (X_A, Z_A, X_B, Z_B), with the line's points at the feet of G_1 and G_ncon. J_w of
-// the whitened vector δ = r n̂ has two parts: n̂ dr, and r dn̂ along the line. The ends' rows G_1 − A and G_ncon
-// − B add the direction along the line, which nothing else sees.
+// Covariance (10) in the plane, over (X_A, Z_A, X_B, Z_B), with the line's points at the feet of G_1 and
+// G_ncon. The Jacobian J_w of the whitened vector δ = r n̂ has two parts: n̂ dr, and r dn̂ along the line.
+// The rows of the ends, G_1 − A and G_ncon − B, add the direction along the line, which no other row
+// observes.
 bool plane_covariance(const Samples& samples, std::size_t first, std::size_t last, const PlaneLine& line,
                       double weight, Matrix4& covariance) {
   const Chord chord(line);
-  double xx[3] = {}, xz[3] = {}, zz[3] = {};  // of the blocks AA, AB, BB
+  double xx[3] = {}, xz[3] = {}, zz[3] = {};  // blocks AA, AB, BB
   for (std::size_t i = first; i <= last; ++i) {
     if (!samples.consensus[i]) continue;
     const Distance d = distance(samples.all[i], chord);
@@ -216,9 +219,9 @@ bool plane_covariance(const Samples& samples, std::size_t first, std::size_t las
   return true;
 }
 
-// How many of the consensus set count as one independent sample, at least `least`. What the residuals show:
-// their correlation ρ from one to the next, (1 + ρ) / (1 − ρ) as for a first-order process, and their size
-// where it is above what (4) says.
+// Number of samples of the consensus set that count as one independent sample, at least `least`. It depends
+// on the residuals: on their correlation ρ from one to the next, as (1 + ρ) / (1 − ρ) for a first-order
+// process, and on their size if that exceeds the prediction of (4).
 double samples_per_independent_one(const Samples& samples, const PlaneLine& line, double least) {
   const Chord chord(line);
   double squares = 0, products = 0, before = 0;
@@ -237,11 +240,11 @@ double samples_per_independent_one(const Samples& samples, const PlaneLine& line
   return std::max(least, (1 + correlation) / (1 - correlation)) * std::max(1.0, size);
 }
 
-// Of (S_A, S_B): how well the segment is located across itself.
+// Covariance of (S_A, S_B), the position of the segment across itself.
 bool transverse_covariance(const Segment& segment, const Samples& samples, const PlaneLine& line,
                            const Line3dConfig& config, Matrix2& covariance) {
   if (config.trust_segment && segment.sigma_px > 0) {
-    // The floor holds at either end by itself.
+    // The floor applies at each end.
     const double half = 0.5 * segment.length_px();
     const double floor2 = 0.5 * config.transverse_floor_px * config.transverse_floor_px;
     const double middle = segment.sigma_px * segment.sigma_px + floor2;
@@ -268,7 +271,8 @@ bool transverse_covariance(const Segment& segment, const Samples& samples, const
   return true;
 }
 
-// From the plane to the camera's frame: M = [e n r] applied to the points and to the covariance's blocks.
+// Transforms from the plane to the camera frame: applies M = [e n r] to the points and to the blocks of the
+// covariance.
 void leave_plane(const Segment& segment, const Pinhole& pinhole, const PlaneLine& line,
                  const Matrix4& in_plane, const Matrix2& across, Line3d& out) {
   const Vector2 direction = segment.direction(), middle = segment.middle();
@@ -289,7 +293,7 @@ void leave_plane(const Segment& segment, const Pinhole& pinhole, const PlaneLine
     }
 }
 
-// The consensus set and the line that fits it best, in turns; two suffice.
+// Alternates between the consensus set and the line that fits it best. Two rounds suffice.
 constexpr int kConsensusRounds = 2;
 
 Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& config, std::uint64_t seed,
@@ -311,7 +315,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
 
 }  // namespace
 
-// Apart: the caller's samples of depth are not on the stack beside the fit's.
+// Not inlined, so that the data of the fit are not on the stack while the caller samples depths.
 [[gnu::noinline]] Line3dReport fit_line3d(const Segment& segment, const LineSamples& taken,
                                           const Pinhole& pinhole, const Line3dConfig& config,
                                           std::uint64_t seed, Line3d& out) {
@@ -319,7 +323,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
   report.asked = taken.asked;
   report.with_depth = taken.count;
   report.mixed = taken.mixed;
-  int needed = 2;  // the least integer that reaches τ n_s
+  int needed = 2;  // the smallest integer that reaches τ n_s
   while (needed < config.min_consensus * taken.asked) ++needed;
   if (taken.count < needed) return report;
   while (needed < config.min_agreement * taken.count) ++needed;
@@ -330,7 +334,7 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
   report.outcome = fit_in_plane(samples, needed, config, seed, line, report);
   if (report.outcome != Line3dOutcome::kOk) return report;
 
-  // A and B: the feet of the consensus set's two extremities.
+  // A and B are the feet of the first and the last sample of the consensus set.
   std::size_t first = 0, last = static_cast<std::size_t>(samples.count) - 1;
   while (!samples.consensus[first]) ++first;
   while (!samples.consensus[last]) --last;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box L3 of the paper: from the samples of a segment to a 3D line with covariance. RANSAC over two-sample
-// lines with the Mahalanobis distance (5)–(7), the maximum-likelihood line over the consensus set (8)(9), and
-// its covariance (10).
+// Box L3 of the paper: computes a 3D line with covariance from the samples of a segment. The steps are RANSAC
+// over lines through two samples with the Mahalanobis distance (5)–(7), the maximum-likelihood line over the
+// consensus set (8)(9), and its covariance (10).
 //
-// All samples of a segment lie, as back-projected, in one plane: that of the camera's centre and the segment.
-// With (t, s) pixels along and across the segment, from its middle, a point is M (X, S, Z), X = t d, S = s d,
-// Z = d, and M = [e n r] holds the segment's direction, its normal and its middle ray. Mahalanobis distances
-// do not change under M. A measured sample has S = 0, so (9) and (10) fall apart exactly into the plane's (X,
-// Z) and into S. In the plane, distance (7) is |r| with r = n̂ · W(A − P), W the whitener of (4) and n̂ the
-// unit normal of the whitened line. Minimising (9), the ends A and B slide along the line until they are the
-// feet (6) of G_1 and G_ncon, and its value is Σ r²: a problem in the two depths at the ends alone.
+// All back-projected samples of a segment lie in one plane, which the camera centre and the segment span. Let
+// (t, s) be pixels along and across the segment, from its middle. A point is M (X, S, Z) with (X, S, Z) =
+// (t, s, 1) d, and M = [e n r] holds the segment's direction, its normal and its middle ray. Mahalanobis
+// distances are invariant under M. A measured sample has S = 0, so (9) and (10) separate exactly into (X, Z)
+// in the plane and S. In the plane, distance (7) is |r| with r = n̂ · W(A − P), where W is the whitener of
+// (4) and n̂ the unit normal of the whitened line. At the minimum of (9), the ends A and B are the feet (6)
+// of G_1 and G_ncon, and the cost is Σ r². The only unknowns are the two depths at the ends.
 #pragma once
 
 #include <cstdint>
@@ -21,26 +21,27 @@
 
 namespace plvo {
 
-// The defaults are calibrated on rendered sequences with exact truth (tools/plvo/bench/line_match_precision);
-// paper() is Lu & Song's.
+// The defaults are calibrated on rendered sequences with exact ground truth
+// (tools/plvo/bench/line_match_precision). paper() returns the settings of Lu & Song.
 struct Line3dConfig {
-  int max_samples = 100;  // of n_s
-  // From one sample to the next: depths nearer to each other have most of their error in common (below).
+  int max_samples = 100;  // limit of n_s
+  // Distance between samples. Closer depths share most of their error (see depth_correlation_px).
   double sample_spacing_px = 3;
-  double min_consensus = 0.6;       // τ: least n_con / n_s
-  double min_agreement = 0.8;       // least n_con / samples with depth: else a second surface had a say
-  double sigma_p_px = 0.5;          // σ_p of (3), of one sample
-  double inlier_chi_square = 6.63;  // on r², one degree of freedom: 99 %
-  int max_ransac_iterations = 20;   // two-sample lines tried; 16 find a 60 % consensus with 99.9 %
+  double min_consensus = 0.6;  // τ: smallest n_con / n_s
+  double min_agreement = 0.8;  // smallest n_con / samples with depth; below it, a second surface is involved
+  double sigma_p_px = 0.5;     // σ_p of (3), for one sample
+  double inlier_chi_square = 6.63;  // limit of r², one degree of freedom: 99 %
+  int max_ransac_iterations = 20;   // limit of two-sample lines; 16 find a 60 % consensus with 99.9 %
   int side_reach_px = 3;            // see sample_segment
-  // Errors of depth readings closer than this along the segment are one error, not two: quantisation and the
-  // sensor's correlation window see to that. The in-plane information is divided by (this / sample spacing)
-  // where that is above 1; 1 is the paper's assumption of independent samples.
+  // Length along the segment within which depth errors are fully correlated, because of quantisation and the
+  // sensor's correlation window. The in-plane information is divided by (this / sample spacing) if that
+  // exceeds 1. The value 1 is the paper's assumption of independent samples.
   double depth_correlation_px = 3;
-  // Divide it by more where the residuals show more correlation than that, or are larger than (4) says.
+  // Divides the information further if the residuals are more correlated than that, or larger than (4)
+  // predicts.
   bool trust_residuals = true;
-  // Where the line lies across itself: the segment's own σ (at the middle, and of the angle) and, in
-  // quadrature, transverse_floor_px at either end. false, or where the segment states none: the paper's
+  // Takes the uncertainty across the line from the segment's own σ (at the middle, and of the angle), with
+  // transverse_floor_px added in quadrature at each end. If false, or if the segment has no σ: the paper's
   // independent σ_p per sample.
   bool trust_segment = true;
   double transverse_floor_px = 0.1;
@@ -61,26 +62,27 @@ struct Line3dConfig {
 enum class Line3dOutcome : std::uint8_t {
   kOk,
   kTooFewDepths,  // fewer than τ n_s samples have depth
-  kNoConsensus,   // the depths are not those of one straight line: an edge that only looks straight, or two
+  kNoConsensus,   // the depths do not lie on one straight line: the edge only looks straight, or has two
                   // surfaces
-  kNotConverged,  // the refinement left the half-space before the camera, or its information is singular
+  kNotConverged,  // the refinement left the half-space in front of the camera, or its information matrix is
+                  // singular
 };
 
 struct Line3dReport {
   Line3dOutcome outcome = Line3dOutcome::kTooFewDepths;
   int asked = 0;       // n_s
   int with_depth = 0;  // samples with depth
-  int mixed = 0;       // of these, those that saw two surfaces
+  int mixed = 0;       // samples with depth that saw two surfaces
   int consensus = 0;   // n_con
   double cost = 0;     // Σ r² over the consensus set
 };
 
-// The 3D line of the samples, camera frame, metres; a, b ordered as the segment's. `line` is written only on
-// kOk. seed: of RANSAC's random generator.
+// Fits a 3D line to the samples, in the camera frame, metres; a and b are ordered as in the segment. `line`
+// is written only on kOk. seed: seed of RANSAC's random generator.
 Line3dReport fit_line3d(const Segment& segment, const LineSamples& samples, const Pinhole& pinhole,
                         const Line3dConfig& config, std::uint64_t seed, Line3d& line);
 
-// Sampling and fit in one; depth as in sample_segment.
+// Samples the depths and fits the line. depth as in sample_segment.
 template <typename Depth>
 Line3dReport observe_line(const Segment& segment, const Depth& depth, const Pinhole& pinhole,
                           const DepthNoise& noise, const Line3dConfig& config, std::uint64_t seed,

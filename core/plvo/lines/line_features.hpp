@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The line features of one frame: parallel arrays, index = segment. The segments that became 3D lines come
-// first.
+// The line features of one frame: parallel arrays, indexed by segment. Segments with a 3D line come first.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +15,12 @@ namespace plvo {
 
 struct LineFeatures {
   FixedVector<Segment> segments;
-  std::span<LineDescriptor> descriptors;  // of the 3D lines
+  std::span<LineDescriptor> descriptors;  // descriptors of the 3D lines
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
-  bool lifted = false;  // 3D was looked for
+  bool lifted = false;  // 3D lines have been searched for
 
-  // No segments, and capacity for at most so many.
+  // Removes all segments and limits the capacity.
   void clear(std::size_t capacity) {
     segments = FixedVector<Segment>({segments.begin(), capacity < lines.size() ? capacity : lines.size()});
     count_3d = 0;

@@ -22,13 +22,14 @@ LinePose pose_of(const Segment& segment) {
 }
 
 constexpr float kDirectionOne = 1 << 14;
-// Of a coordinate of a unit vector; of one without direction, which matches nothing, whatever.
+// Fixed-point coordinate of a unit vector. A vector without direction may give any value, because it matches
+// nothing.
 std::int16_t fixed(float unit) {
   return unit > -1 ? unit < 1 ? round_to<std::int16_t>(unit * kDirectionOne) : 1 << 14 : -(1 << 14);
 }
 
-// Which of four current segments may point the predicted one's way: nearly all do not, so four are looked at
-// at once. Whom rounding lets through compatible() turns away.
+// Tests which of four current segments may have the direction of the predicted one. Nearly all fail, so it
+// tests four at once. Rounding makes this gate slightly too wide; compatible() repeats the test exactly.
 class AngleGate {
  public:
   AngleGate(const LinePose& predicted, float cos_angle)
@@ -45,7 +46,7 @@ class AngleGate {
   }
 
  private:
-  // Four numbers rounded by ½, times at most √2 · 2^14 between them.
+  // Error bound: each of four numbers is rounded by ½, which changes the sum by at most √2 · 2^14.
   static constexpr std::int32_t kRounding = 1 << 15;
   Int16x8 direction_;
   std::int32_t least_;
@@ -56,7 +57,7 @@ struct Gates {
   float same_cos, same_offset;
 };
 
-// Does the current segment lie where the predicted one lets it?
+// Returns whether the current segment lies within the gates around the predicted one.
 bool compatible(const LinePose& p, const LinePose& c, const Gates& gates) {
   if (p.ux * c.ux + p.uy * c.uy < gates.cos_angle) return false;
   const float dx = c.x - p.x, dy = c.y - p.y;
@@ -67,7 +68,7 @@ bool compatible(const LinePose& p, const LinePose& c, const Gates& gates) {
   return reach >= gates.min_overlap * 2 * std::min(p.half_length, c.half_length);
 }
 
-// Are they pieces of one line?
+// Returns whether both segments are fragments of one line.
 bool same_line(const LinePose& a, const LinePose& b, const Gates& gates) {
   if (a.ux * b.ux + a.uy * b.uy < gates.same_cos) return false;
   const float dx = b.x - a.x, dy = b.y - a.y;
@@ -75,12 +76,12 @@ bool same_line(const LinePose& a, const LinePose& b, const Gates& gates) {
   return across <= gates.same_offset && across >= -gates.same_offset;
 }
 
-// The best candidate of a reference segment if it is near enough and no other line comes close to it.
+// Returns the best candidate of a reference segment, if it is near enough and no other line is about as near.
 LineCandidate clear_best(std::span<const LineCandidate> candidates, std::span<const LinePose> current,
                          const Gates& gates, const LineMatchConfig& config) {
   LineCandidate best{kNoLine, config.max_distance + 1};
   for (const LineCandidate& c : candidates)
-    if (c.distance < best.distance) best = c;  // of equals the first
+    if (c.distance < best.distance) best = c;  // the first among equal ones
   if (best.index == kNoLine) return best;
   const double limit = config.max_ratio * config.max_ratio;
   for (const LineCandidate& c : candidates) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box L4 of the paper, matching: nearest neighbours in descriptor space, made robust. A pair must lie as the
-// prediction says (direction with its sign, distance, overlap), be each other's nearest, and be clearly
-// nearer than any rival. A piece of the same broken line is not a rival.
+// Box L4 of the paper, matching: robust nearest neighbours in descriptor space. A pair must agree with the
+// prediction (direction with its sign, distance, overlap), must be mutual nearest neighbours, and must be
+// clearly nearer than any rival. A fragment of the same broken line does not count as a rival.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,18 @@ namespace plvo {
 
 struct LineMatchConfig {
   double max_angle_rad = 0.2;  // between predicted and current direction
-  // Across the predicted segment, at the current one's middle; so much slack along it, too.
+  // Limit of the distance across the predicted segment, at the middle of the current one. The same slack
+  // applies along it.
   double max_offset_px = 40;
-  double min_overlap = 0.5;  // of the shorter one's length
-  int max_distance = 35000;  // of descriptors, squared
-  double max_ratio = 0.85;   // of the distances, not squared, to the best and to the next best
-  // A rival is a piece of the best one's line if it is within this distance and angle of it.
+  double min_overlap = 0.5;  // share of the shorter one's length
+  int max_distance = 35000;  // limit of the squared descriptor distance
+  double max_ratio = 0.85;   // limit of best / second best distance, not squared
+  // A rival is a fragment of the best one's line if it is within this distance and angle of it.
   double same_line_px = 3;
   double same_line_rad = 0.07;
 };
 
-// What match_lines needs of one segment.
+// Pose of one segment.
 struct LinePose {
   float x, y;         // middle
   float ux, uy;       // direction
@@ -41,7 +42,7 @@ struct LineCandidate {
 
 struct LineMatchScratch {
   std::span<LinePose> current;
-  std::span<std::int16_t> directions;  // of the current ones: ux and uy in turns, 2^-14
+  std::span<std::int16_t> directions;  // directions of the current segments: ux and uy interleaved, 2^-14
   std::span<LineCandidate> candidates, best_of_current;
   std::span<std::uint16_t> best_of_reference;
 };
@@ -54,9 +55,9 @@ constexpr LineMatchScratch take_line_match_scratch(Arena& memory, std::size_t re
           memory.take<std::uint16_t>("line match", references)};
 }
 
-// predicted: the reference segments where the motion predicts them in the current image (or where they were,
-// with wide gates). Matches come in the order of the reference segments. At most 65535 segments either side;
-// at most |predicted| · |current| descriptor distances.
+// predicted: the reference segments at their predicted positions in the current image (or at their old
+// positions, with wide gates). Matches follow the order of the reference segments. Each side has at most
+// 65535 segments. The function computes at most |predicted| · |current| descriptor distances.
 void match_lines(std::span<const Segment> predicted, std::span<const LineDescriptor> reference_descriptors,
                  std::span<const Segment> current, std::span<const LineDescriptor> current_descriptors,
                  const LineMatchConfig& config, Arena& scratch, FixedVector<Match>& matches);

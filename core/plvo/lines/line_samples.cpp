@@ -10,12 +10,13 @@ namespace {
 // Consecutive readings of one surface.
 struct Surface {
   int readings = 0;
-  int nearest_offset = 1 << 10;  // |offset| from the middle of the reading kept in depth_m
+  int nearest_offset = 1 << 10;  // smallest |offset| from the middle; depth_m holds that reading
   bool at_end = false;           // touches an end of the profile
   float depth_m = 0;
 };
 
-// A surface may be trusted if a second reading confirms it, or could do so just out of sight.
+// A surface is reliable if a second reading confirms it, or if a second reading may lie just outside of the
+// profile.
 bool confirmed(const Surface& s) { return s.readings >= 2 || s.at_end; }
 
 bool better(const Surface& s, const Surface& than) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box L2 of the paper: evenly spaced samples on a segment, each with its depth and the SD of that depth,
-// equation (2); the paper's n_s = min(100, floor(length)), one a pixel, or fewer. Assumes ideal pinhole
-// pixels.
+// Box L2 of the paper: evenly spaced samples on a segment, each with its depth and the standard deviation of
+// that depth, equation (2). The paper's n_s = min(100, floor(length)) is one per pixel; here there may be
+// fewer. Assumes ideal pinhole pixels.
 //
-// Occluding edges. A segment on the border of an object lies between two surfaces, and a Kinect's depth image
-// is displaced against the colour by a pixel or more, so the reading under the segment may belong to either.
-// The edge is the nearer surface's. So a sample reads a short profile across the segment, splits it into
-// surfaces where the depth jumps, and takes the nearer surface's reading next to the segment; see
+// Occluding edges: a segment on the border of an object lies between two surfaces. A Kinect's depth image is
+// displaced from the colour image by a pixel or more, so the reading at the segment may belong to either
+// surface. The edge belongs to the nearer one. A sample therefore reads a short profile across the segment,
+// splits it into surfaces at depth jumps, and takes the nearer surface's reading closest to the segment; see
 // nearer_surface().
 #pragma once
 
@@ -24,45 +24,46 @@ namespace plvo {
 inline constexpr int kMaxLineSamples = 100;
 inline constexpr int kMaxSideReach = 5;  // px
 
-// A segment so short that the spacing would leave fewer samples than this gets so many, but never more than
-// one a pixel.
+// A short segment gets at least this number of samples, whatever the spacing, but never more than one per
+// pixel.
 inline constexpr int kEnoughSamples = 20;
 
 struct SampleOptions {
   int max_samples = kMaxLineSamples;
   double spacing_px = 1;
-  int side_reach_px = 0;  // 0 … kMaxSideReach: how far the profile reaches to either side; 0: the paper
+  int side_reach_px = 0;  // 0 … kMaxSideReach: reach of the profile to either side; 0: as in the paper
 };
 
 struct LineSample {
-  double t_px = 0;       // along the segment, from its middle, towards b
+  double t_px = 0;       // along the segment, from its middle towards b
   double depth_m = 0;    // > 0
   double sigma_d_m = 0;  // > 0
 };
 
-// A hundred samples are 2.4 kB, meant for the stack.
+// A hundred samples are 2.4 kB and fit on the stack.
 struct LineSamples {
-  std::array<LineSample, kMaxLineSamples> sample;  // by rising t; those without depth are left out
+  std::array<LineSample, kMaxLineSamples> sample;  // by increasing t; only those with depth
   int count = 0;                                   // samples with depth
   int asked = 0;                                   // n_s
-  int mixed = 0;                                   // of the count, those that saw two surfaces
+  int mixed = 0;                                   // samples with depth that saw two surfaces
   std::span<const LineSample> with_depth() const { return {sample.data(), static_cast<std::size_t>(count)}; }
 };
 
 struct SurfaceReading {
-  double depth_m = 0;  // 0: none
-  bool mixed = false;  // two surfaces were in sight, or one beside a gap
+  double depth_m = 0;  // 0: no depth
+  bool mixed = false;  // the profile contains two surfaces, or one beside a gap
 };
 
-// The rule. profile: depths in metres (0: none) at -reach … +reach pixels across the segment, the middle one
-// on it. Readings belong to one surface until two neighbours differ by more than kJumpSigmas of the nearer
-// one's SD. One surface: its reading next to the middle. Several: of those that hold two readings, or one
-// that touches the profile's end and may go on, the nearest; of it the reading next to the middle.
+// Selects the depth of the nearer surface. profile: depths in metres (0: no depth) at -reach … +reach pixels
+// across the segment, the middle one on it. A new surface begins where adjacent readings differ by more than
+// kJumpSigmas standard deviations of the nearer one. With one surface, the result is its reading closest to
+// the middle. With several, the candidates are those with two readings, or with one at the profile's end that
+// may continue beyond it; the result is the nearest one's reading closest to the middle.
 inline constexpr double kJumpSigmas = 6;
 SurfaceReading nearer_surface(std::span<const float> profile, const DepthNoise& noise);
 
-// Do the profile's ends and middle say that there is but one? Most samples end here. (Something thinner than
-// the reach, between them, is not seen.)
+// Returns whether the ends and the middle of the profile belong to one surface. Most samples pass. (An
+// object between them that is thinner than the reach is not detected.)
 inline bool one_surface(double left, double here, double right, double sigma_here_m) {
   const double jump = kJumpSigmas * sigma_here_m;
   const double to_left = left - here;
@@ -71,15 +72,15 @@ inline bool one_surface(double left, double here, double right, double sigma_her
          to_right * to_right <= jump * jump;
 }
 
-// The SD of a mixed sample is multiplied by this: it was read up to a few pixels beside the segment.
+// Factor on the standard deviation of a mixed sample, which may be read a few pixels beside the segment.
 inline constexpr double kMixedInflation = 2;
 
-// n_s; 0 for a segment shorter than 2 px.
+// Returns n_s, or 0 for a segment shorter than 2 px.
 int sample_count(const Segment& segment, const SampleOptions& options);
 
-// On a slope across the segment, colour and depth that do not meet exactly make an error of slope ·
-// noise.registration_px, which is added to σ_d.
-// depth: a DepthSampler, or in tests something with a Stretch of its own.
+// Samples the depths of a segment. On a slope across the segment, the registration error between colour and
+// depth causes a depth error of slope · noise.registration_px, which is added to σ_d in quadrature.
+// depth: a DepthSampler, or in tests a type with its own Stretch.
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {

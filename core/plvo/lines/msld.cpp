@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kMsldRows = kMsldBands * kMsldRowsPerBand;
 constexpr std::size_t kSums = 4 * kMsldBands;
-constexpr double kClip = 0.4;  // of a normalised half's component: no single strong edge may decide
+constexpr double kClip =
+    0.4;  // limit of a component of a normalised half, so that no single strong edge dominates
 
 // exp(−x²/2) at compile time, |x| ≤ 1.
 constexpr double gaussian(double x) {
@@ -26,13 +27,13 @@ constexpr double gaussian(double x) {
   return sum;
 }
 
-// A band takes its own three rows and, falling linearly to the next band's centre, its neighbours' nearest:
-// in thirds, one of the last row before it, two of its first, three of its centre, two of its last and one of
-// the first row behind it. The Gaussian over the whole region has half its half width for SD, so that an
-// error in the segment's place changes little at the rim. A row's weight here is the Gaussian, of a centre
-// three times that, · 2^13.
+// A band sums its own three rows and the nearest row of each adjacent band, with weights that fall linearly
+// to the next band's centre. In thirds they are 1 for the last row before the band, 2 for its first row, 3
+// for its centre, 2 for its last row and 1 for the first row after it. The Gaussian over the whole region has
+// a standard deviation of half the region's half width, so that an error of the segment's position changes
+// little at the rim. The row weight here is the Gaussian · 2^13, and three times that for a centre row.
 //
-// All sums are of whole numbers, so they are the same in any order.
+// All sums are sums of integers, so they do not depend on the order.
 static_assert(kMsldRowsPerBand == 3);
 constexpr int kRowWeightBits = 13;
 using RowWeights = std::array<std::int16_t, kMsldRows>;
@@ -55,9 +56,9 @@ constexpr int kDirectionBits = 14;
 std::int32_t to_fixed(double x) { return round_to<std::int32_t>(x * (1 << kPositionBits)); }
 
 struct Region {
-  std::int32_t x, y;                      // of the first column's first row
-  std::int32_t ux, uy;                    // from a column to the next
-  std::int32_t nx, ny;                    // from a row to the next, towards the brighter side
+  std::int32_t x, y;                      // position of the first row of the first column
+  std::int32_t ux, uy;                    // step from column to column
+  std::int32_t nx, ny;                    // step from row to row, towards the brighter side
   std::int32_t direction_x, direction_y;  // unit vector along the segment · 2^14
   int columns;
 };
@@ -68,7 +69,7 @@ Region make_region(double scale, const Segment& segment) {
   Region region;
   region.columns = std::clamp(static_cast<int>(length), 1, kMsldMaxColumns);
   const double step = length / region.columns;
-  // Half a pixel is added, so that truncation rounds to the nearest pixel.
+  // Adds half a pixel, so that truncation rounds to the nearest pixel.
   const Vector2 first =
       segment.a * scale + 0.5 * step * u - 0.5 * (kMsldRows - 1.0) * kMsldRowPitch_px * n + Vector2(0.5, 0.5);
   region.x = to_fixed(first.x());
@@ -82,7 +83,7 @@ Region make_region(double scale, const Segment& segment) {
   return region;
 }
 
-// Are all samples, with the neighbours that are read along with them, inside the image?
+// Returns whether all samples, and the adjacent pixels that are read with them, are inside the image.
 bool inside(const Region& region, GrayView image) {
   for (int corner = 0; corner < 4; ++corner) {
     const int c = corner % 2 == 0 ? 0 : region.columns - 1;
@@ -94,12 +95,13 @@ bool inside(const Region& region, GrayView image) {
   return true;
 }
 
-// Of the image, in grey levels per two pixels, and what it is multiplied with.
+// A gradient of the image, in grey levels per two pixels, or a vector that it is multiplied with.
 struct Gradient {
   std::int16_t x, y;
 };
 
-// What a row's gradients are multiplied with for their weighted parts across and along the segment, · 2^13.
+// Vectors whose products with a row's gradients are the weighted components across and along the segment,
+// times 2^13.
 struct RowAxes {
   Gradient across, along;
 };
@@ -117,7 +119,7 @@ std::array<RowAxes, kMsldRows> make_axes(const Region& region) {
   return axes;
 }
 
-// Parts are kept in quarters of that: a band's sum is at most 9 · 255 · √2 · 4 and has 14 bits.
+// Components are kept in quarters of a unit: a band's sum is at most 9 · 255 · √2 · 4 and has 14 bits.
 constexpr int kPartShift = kRowWeightBits - 2;
 constexpr int kPartHalf = 1 << (kPartShift - 1);
 
@@ -130,8 +132,8 @@ Gradient gradient(GrayView image, std::int32_t x, std::int32_t y) {
           static_cast<std::int16_t>(p[image.stride] - p[-image.stride])};
 }
 
-// Of a band's four parts, over the columns: towards the brighter side, away from it, along the segment,
-// against it.
+// Sums of a band's four components over the columns: towards the brighter side, away from it, along the
+// segment, against it.
 struct BandSums {
   std::array<std::uint32_t, 4> first{};   // Σ V
   std::array<std::uint32_t, 4> second{};  // Σ V²
@@ -144,7 +146,7 @@ template <bool kInside>
 void sum_region(GrayView image, const Region& region, RegionSums& sums) {
   const std::array<RowAxes, kMsldRows> axes = make_axes(region);
   for (int c = 0; c < region.columns; ++c) {
-    // A row of zeros on both sides stands for those beyond the region.
+    // Rows of zeros at both ends replace the rows beyond the region.
     std::array<std::array<std::int32_t, 4>, kMsldRows + 2> column{};
     std::int32_t x = region.x + c * region.ux, y = region.y + c * region.uy;
     for (std::size_t r = 0; r < kMsldRows; ++r, x += region.nx, y += region.ny) {
@@ -169,7 +171,7 @@ void sum_region(GrayView image, const Region& region, RegionSums& sums) {
 
 #else
 
-// Four columns side by side: their parts across, then those along.
+// Components of four columns in parallel: first those across, then those along.
 struct Parts {
   Int16x8 positive{}, negative{};
 };
@@ -181,7 +183,7 @@ void repeat(Gradient g, Int16x8& lanes) {
   std::memcpy(&lanes, &four, sizeof lanes);
 }
 
-// Reads four columns row by row; those from `columns` on have no gradient.
+// Reads four columns row by row. Columns from `columns` on have no gradient.
 template <bool kInside>
 class FourColumns {
  public:
@@ -220,8 +222,8 @@ class FourColumns {
     load_halves(&gradients[0].x, &gradients[2].x, four);
   }
 
-  // The same at once: a lane is a place's four bytes, of which the first is its left neighbour, or the one
-  // above or below it.
+  // The same for four positions at once. A lane holds four adjacent bytes; the first of them is the left
+  // neighbour, or the pixel above or below.
   void read(Int16x8& four) const {
     constexpr int kLow = 0xffff, kByte = 0xff;
     const auto stride = static_cast<std::int16_t>(image_.stride);
@@ -259,7 +261,7 @@ class FourColumns {
   Int32x4 x_{}, y_{};
 };
 
-// Σ V and Σ V² of one sign: of two pairs of columns across, then of two along.
+// Σ V and Σ V² of one sign: first two pairs of columns across, then two along.
 struct PairSums {
   Int32x4 first{}, second{};
 
@@ -311,7 +313,7 @@ void sum_region(GrayView image, const Region& region, RegionSums& sums) {
 
 #endif
 
-// Unit norm, clipped, unit norm again, in units of 1/255.
+// Normalises to unit norm, clips, and normalises again. The output is in units of 1/255.
 void normalise(std::array<double, kSums>& half, std::uint8_t* out) {
   for (int round = 0; round < 2; ++round) {
     double squared = 0;

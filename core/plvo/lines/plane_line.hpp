@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Mahalanobis distance (5)–(7) from a back-projected sample to a line, in the plane that the camera's
-// centre and the segment span (see line3d.hpp): coordinates (X, Z) with X = t Z, t the pixel along the
-// segment. Inner loops live on these few lines: one division a sample, no root.
+// centre and the segment span (see line3d.hpp). Its coordinates are (X, Z) with X = t Z, where t is the pixel
+// along the segment. Inner loops use these functions, so they need one division per sample and no root.
 #pragma once
 
 namespace plvo {
@@ -13,7 +13,7 @@ struct PlaneLine {
   double t_b = 0, z_b = 0;
 };
 
-// The same as A and the vector A to B.
+// The same line as the point A and the vector from A to B.
 struct Chord {
   double x_a, z_a;
   double dx, dz;
@@ -33,8 +33,9 @@ inline Whitened whiten(double t_px, double depth_m, double sigma_p_px, double si
   return {t_px, depth_m, inverse * sigma_d_m, inverse * sigma_x};
 }
 
-// (6) and (7) with b = W (B − A), b⊥ its right angle: r = cross / |b|, the foot is A + λ (B − A), and
-// ∂r/∂A = (1 − λ) Wᵀb⊥ / |b|, ∂r/∂B = λ Wᵀb⊥ / |b|: the foot moves only along the line, which r does not see.
+// (6) and (7) with b = W (B − A) and b⊥ perpendicular to it: r = cross / |b|, the foot is A + λ (B − A), and
+// ∂r/∂A = (1 − λ) Wᵀb⊥ / |b|, ∂r/∂B = λ Wᵀb⊥ / |b|. The foot moves only along the line, which does not change
+// r.
 struct Distance {
   double cross;
   double lambda;
@@ -55,7 +56,7 @@ inline Distance distance(const Whitened& s, const Chord& line) {
           b_x * s.w_z - s.t * n_x};
 }
 
-// r² alone.
+// r² only.
 inline double squared_distance(const Whitened& s, const Chord& line) {
   const double a_x = (line.x_a - s.t * line.z_a) * s.w_x;
   const double a_z = (line.z_a - s.d) * s.w_z;
@@ -65,8 +66,8 @@ inline double squared_distance(const Whitened& s, const Chord& line) {
   return cross * cross / (b_x * b_x + b_z * b_z);
 }
 
-// Moves the line's two points to given pixels of the segment; false if it meets one of those rays behind the
-// camera. Along a line the inverse depth is linear in t.
+// Moves the line's two points to the given pixels of the segment. The inverse depth is linear in t along a
+// line. Returns false if the line meets one of those rays behind the camera.
 inline bool re_anchor(PlaneLine& line, double t_a, double t_b) {
   const double inverse_a = 1.0 / line.z_a, inverse_b = 1.0 / line.z_b;
   const double slope = (inverse_b - inverse_a) / (line.t_b - line.t_a);
@@ -77,7 +78,7 @@ inline bool re_anchor(PlaneLine& line, double t_a, double t_b) {
   return true;
 }
 
-// The pixel along the segment at which the foot (6) of a sample is seen.
+// The pixel along the segment at which the foot (6) of a sample projects.
 inline double foot_pixel(const Whitened& s, const Chord& line) {
   const double lambda = distance(s, line).lambda;
   return (line.x_a + lambda * line.dx) / (line.z_a + lambda * line.dz);

@@ -7,7 +7,7 @@
 namespace plvo {
 
 Matrix3 best_rotation(const Matrix3& correlation) {
-  // Horn's N for quaternions (x, y, z, w): bᵀ R(q) a summed over the pairs is qᵀ N q.
+  // Horn's matrix N for quaternions (x, y, z, w): the sum of bᵀ R(q) a over the pairs equals qᵀ N q.
   const Matrix3& S = correlation;
   Matrix4 N;
   N.block<3, 3>(0, 0) = S + S.transpose();

@@ -7,10 +7,10 @@ namespace plvo {
 
 namespace {
 
-// y^a e^-y / Γ(a + 1) with a = dof/2, y = x/2: the last term of the density, the first factor of the
-// distribution.
+// y^a e^-y / Γ(a + 1) with a = dof/2 and y = x/2. The density and the distribution function share this
+// factor.
 double front(int dof, double y) {
-  // Built up from a = 0 (y^0 / Γ(1)) or a = 1/2 (√y / Γ(3/2)) by factors y / a.
+  // Starts at a = 0 (y^0 / Γ(1)) or a = 1/2 (√y / Γ(3/2)) and multiplies by y / a.
   double a = dof % 2 == 0 ? 0 : 0.5;
   double value = dof % 2 == 0 ? 1 : sqrt(y) / (0.5 * sqrt(kPi));
   while (2 * a + 1 < dof) {
@@ -25,8 +25,8 @@ double front(int dof, double y) {
 double chi_square_cdf(int dof, double x) {
   if (!(x > 0)) return 0;
   if (x > 200) return 1;
-  // The series of the regularised incomplete gamma function (Abramowitz & Stegun 6.5.29),
-  // P(a, y) = y^a e^-y / Γ(a + 1) · Σ y^n / ((a + 1) … (a + n)); all its terms are positive.
+  // Series of the regularised incomplete gamma function (Abramowitz & Stegun 6.5.29), P(a, y) = y^a e^-y /
+  // Γ(a + 1) · Σ y^n / ((a + 1) … (a + n)). All its terms are positive.
   const double y = x / 2;
   double term = 1;
   double sum = 1;
@@ -45,8 +45,8 @@ double chi_square_quantile(int dof, double probability) {
   for (int i = 0; i < 60; ++i) {
     const double error = chi_square_cdf(dof, x) - probability;
     (error < 0 ? low : high) = x;
-    // Newton's step, the density being front · a / y / 2; halving instead wherever it would leave the
-    // bracket.
+    // Newton's step, with the density front · a / y / 2. A step that leaves the bracket is replaced by
+    // bisection.
     const double density = front(dof, x / 2) * dof / (2 * x);
     const double next = density > 0 ? x - error / density : low;
     const double previous = x;

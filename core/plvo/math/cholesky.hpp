@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cholesky factor A = L Lᵀ of a small symmetric positive definite matrix, in one fixed order of operations,
-// on the stack. Only the lower triangle of A is read.
+// Cholesky factorisation A = L Lᵀ of a small symmetric positive definite matrix, on the stack and in a fixed
+// order of operations. It reads only the lower triangle of A.
 #pragma once
 
 #include "plvo/math/matrix_size.hpp"
@@ -9,10 +9,12 @@
 
 namespace plvo {
 
-// The algorithms, over n × n entries column by column; reciprocal holds 1 / L(i, i). No two arrays overlap.
+// The algorithms. Matrices are n × n in column-major order; reciprocal holds 1 / L(i, i). No two arrays may
+// overlap.
 namespace cholesky {
 
-// A pivot at or below this fraction of its diagonal entry counts as zero: the entry has lost its last digits.
+// A pivot at or below this fraction of its diagonal entry counts as zero, because cancellation has left no
+// significant digits.
 inline constexpr double kRelativePivot = 1e-14;
 
 template <typename Size>
@@ -32,7 +34,7 @@ inline bool factor(const double* __restrict A, Size n, double* __restrict L, dou
   return true;
 }
 
-// x: b before, x after, with L x = b.
+// Solves L x' = x in place: x is the right-hand side before the call and the solution after it.
 template <typename T, typename Size>
 inline void solve_lower(const double* __restrict L, const double* __restrict reciprocal, Size n,
                         T* __restrict x) {
@@ -43,7 +45,7 @@ inline void solve_lower(const double* __restrict L, const double* __restrict rec
   }
 }
 
-// … with Lᵀ x = b.
+// Solves Lᵀ x' = x in place.
 template <typename Size>
 inline void solve_upper(const double* __restrict L, const double* __restrict reciprocal, Size n,
                         double* __restrict x) {
@@ -54,7 +56,7 @@ inline void solve_upper(const double* __restrict L, const double* __restrict rec
   }
 }
 
-// M: scratch.
+// Writes A⁻¹ to inverse. M is scratch of n × n entries.
 template <typename Size>
 inline void invert(const double* __restrict L, const double* __restrict reciprocal, Size n,
                    double* __restrict M, double* __restrict inverse) {
@@ -80,30 +82,31 @@ inline void invert(const double* __restrict L, const double* __restrict reciproc
 template <int N>
 class Cholesky {
  public:
-  // False when A is not numerically positive definite, or holds a NaN or an infinity; then nothing else may
-  // be called.
+  // Returns false if A is not numerically positive definite or contains a NaN or an infinity. In that case
+  // the other functions must not be called.
   bool factor(const Matrix<N, N>& A) { return cholesky::factor(A.data(), kN, L_.data(), reciprocal_.data()); }
 
-  // x with L x = b: "whitens" b when A is its covariance, |x|² = bᵀ A⁻¹ b.
+  // Returns x with L x = b. If A is the covariance of b, this whitens b: |x|² = bᵀ A⁻¹ b.
   Vector<N> solve_lower(Vector<N> b) const {
     cholesky::solve_lower(L_.data(), reciprocal_.data(), kN, b.data());
     return b;
   }
 
-  // The same in place, for N numbers of a type that doubles multiply: Pair solves for two at once.
+  // The same in place, for N numbers of any type that can be multiplied by a double. Pair solves for two
+  // right-hand sides at once.
   template <typename T>
   void solve_lower(T (&x)[N]) const {
     cholesky::solve_lower(L_.data(), reciprocal_.data(), kN, &x[0]);
   }
 
-  // x with A x = b.
+  // Returns x with A x = b.
   Vector<N> solve(const Vector<N>& b) const {
     Vector<N> x = solve_lower(b);
     cholesky::solve_upper(L_.data(), reciprocal_.data(), kN, x.data());
     return x;
   }
 
-  // A⁻¹, exactly symmetric.
+  // Returns A⁻¹, exactly symmetric.
   Matrix<N, N> inverse() const {
     Matrix<N, N> M, inverse;
     cholesky::invert(L_.data(), reciprocal_.data(), kN, M.data(), inverse.data());

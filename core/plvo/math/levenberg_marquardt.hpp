@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // A small dense Levenberg–Marquardt solver for N parameters (N fixed, about 1 … 12), with Nielsen's damping
 // rule (Madsen, Nielsen, Tingleff, "Methods for Non-Linear Least Squares Problems", 2004, ch. 3). The
-// workspace is the object. The solver never sees residuals or the state: a Problem holds its state and offers
-// two functions,
+// workspace is the object. The solver sees neither residuals nor the state. A Problem holds its state and
+// offers two functions:
 //
 //   double linearize(const Vector<N>& step, Matrix<N, N>& H, Vector<N>& g);
-//     Makes candidate = state ⊞ step, writes H = Σ Jᵀ Σ⁻¹ J and g = Σ Jᵀ Σ⁻¹ r at the candidate (both
-//     overwritten, H in full), and returns the cost ½ Σ rᵀ Σ⁻¹ r there; J is the derivative of r with respect
-//     to a further ⊞ step. A cost that is not finite says "outside the domain" and is handled as a step that
+//     Computes candidate = state ⊞ step. Writes H = Σ Jᵀ Σ⁻¹ J and g = Σ Jᵀ Σ⁻¹ r at the candidate (both are
+//     overwritten, H in full). Returns the cost ½ Σ rᵀ Σ⁻¹ r there. J is the derivative of r with respect to
+//     a further ⊞ step. A cost that is not finite means "outside the domain"; the solver treats the step as
 //     failed.
 //   void accept();
-//     The candidate becomes the state.
+//     Makes the candidate the state.
 //
-// One pass over the residuals per iteration thus serves both to judge a step and to take the next; and when
-// the solver stops, hessian() is that of the state it stopped at, so that its inverse is the covariance.
-// Landmarks that the problem eliminates block by block are part of its state: H and g are then the Schur
-// complement on the N parameters.
+// One pass over the residuals per iteration serves both to judge a step and to compute the next one. When the
+// solver stops, hessian() belongs to the final state, so its inverse is the covariance. Landmarks that the
+// problem eliminates block by block are part of its state: H and g are then the Schur complement on the N
+// parameters.
 #pragma once
 
 #include <cstdint>
@@ -30,36 +30,36 @@ enum class LmStatus : std::uint8_t {
   kGradientTolerance,  // converged: max |g_i| ≤ gradient_tolerance
   kStepTolerance,      // converged: max |step_i| ≤ step_tolerance
   kDecreaseTolerance,  // converged: the next step promises to lower the cost by ≤ decrease_tolerance
-  kMaxIterations,      // iterations = max_iterations; the state is the best one seen
-  kNotFinite,          // the cost, H or g at the start is NaN or infinite; the state is untouched
-  kSingular,  // H + μ D has no Cholesky factor for any μ ≤ max_damping; the state is the best one seen
-  kStalled,   // no step lowers the cost for any μ ≤ max_damping; the state is the best one seen
+  kMaxIterations,      // reached max_iterations; the state is the best one found
+  kNotFinite,          // the initial cost, H or g is NaN or infinite; the state is unchanged
+  kSingular,  // H + μ D has no Cholesky factor for any μ ≤ max_damping; the state is the best one found
+  kStalled,   // no step lowers the cost for any μ ≤ max_damping; the state is the best one found
 };
 
 constexpr bool converged(LmStatus status) { return status <= LmStatus::kDecreaseTolerance; }
 
 struct LmOptions {
-  int max_iterations = 20;            // steps tried: iterations ≤ max_iterations
+  int max_iterations = 20;            // limit of tried steps: iterations ≤ max_iterations
   double gradient_tolerance = 1e-12;  // see LmStatus; in the problem's own units
   double step_tolerance = 1e-9;       // see LmStatus; in the problem's own units
-  // See LmStatus; 0: none. Where Σ is a true covariance, a step of k standard deviations gains ½ k².
+  // See LmStatus; 0 disables it. If Σ is a true covariance, a step of k standard deviations gains ½ k².
   double decrease_tolerance = 0;
   double initial_damping = 1e-5;  // first μ, relative to D = diag(H); 0 < initial_damping ≤ max_damping
   double max_damping = 1e10;      // μ ≤ max_damping
 
-  // No step is tried: next_step() is all that comes of it.
+  // Tries no step; only next_step() is of use afterwards.
   static constexpr LmOptions one_step() { return {.max_iterations = 0}; }
 };
 
 struct LmSummary {
   LmStatus status = LmStatus::kNotFinite;
-  int iterations = 0;       // steps tried, taken or not
-  int accepted = 0;         // steps taken
+  int iterations = 0;       // tried steps, accepted or not
+  int accepted = 0;         // accepted steps
   double initial_cost = 0;  // ½ Σ rᵀ Σ⁻¹ r before the first step
-  double final_cost = 0;    // … at the state the problem is left in; never above initial_cost
+  double final_cost = 0;    // the same at the final state; at most initial_cost
 };
 
-// A problem whose type is forgotten: small code has one solver for all of N parameters.
+// A type-erased problem. With it, size-optimised code has one solver for all problems of N parameters.
 template <int N>
 class LmAnyProblem {
  public:
@@ -95,13 +95,13 @@ class LevenbergMarquardt {
     }
   }
 
-  // H and g at the state where solve() left the problem; g for proofs alone, that it is where solve() says.
+  // H and g at the final state. g serves only tests of that state.
   const Matrix<N, N>& hessian() const { return H_; }
   const Vector<N>& gradient() const { return g_; }
-  // The step from there that would have been tried next; zero where none could be made. Who takes it unseen
-  // saves a pass over the residuals.
+  // The next step from the final state; zero if there is none. A caller that applies it without evaluating
+  // the cost saves a pass over the residuals.
   const Vector<N>& next_step() const { return step_; }
-  // What that step promises to lower the cost by: ½ k² where it is k standard deviations long.
+  // The decrease of the cost that this step predicts: ½ k² for a step of k standard deviations.
   double next_decrease() const { return predicted_; }
 
  private:
@@ -140,7 +140,7 @@ class LevenbergMarquardt {
           cost = summary.final_cost = new_cost;
           H_ = H_new_;
           g_ = g_new_;
-          // Nielsen: one smooth rule instead of "halve or double"; a gain ratio of 1 divides μ by 3.
+          // Nielsen's rule is smooth, unlike "halve or double"; a gain ratio of 1 divides μ by 3.
           const double t = 2 * gain - 1;
           const double shrink = 1 - t * t * t;
           mu *= shrink > 1.0 / 3 ? (shrink < 2 ? shrink : 2) : 1.0 / 3;
@@ -161,9 +161,9 @@ class LevenbergMarquardt {
     return summary;
   }
 
-  // (H + μ D) step = −g with D = diag(H), Marquardt's scaling: the step does not depend on the parameters'
-  // units. An entry of D that is nearly zero is lifted, so that damping also holds a parameter that nothing
-  // observes.
+  // Solves (H + μ D) step = −g with D = diag(H). This is Marquardt's scaling: the step does not depend on the
+  // units of the parameters. Entries of D near zero are raised, so that damping also bounds unobservable
+  // parameters.
   bool solve_damped(double mu) {
     const double floor = 1e-12 * H_.diagonal().cwiseAbs().maxCoeff();
     damped_ = H_;
@@ -181,7 +181,7 @@ class LevenbergMarquardt {
 
   Matrix<N, N> H_, H_new_, damped_;
   Vector<N> g_, g_new_, diagonal_, step_;
-  double predicted_ = 0;  // of step_
+  double predicted_ = 0;  // the predicted decrease of step_
   Cholesky<N> cholesky_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an algorithm over matrices of several sizes is told theirs: as a constant, which makes code of its own
-// for each, or, where code shall be small, as a number, which makes one for all. The order of its operations
-// is the same.
+// The size of a matrix as an algorithm receives it. By default it is a constant, so the compiler generates
+// separate code for each size. In size-optimised code it is a number, so one function serves all sizes. The
+// order of operations is the same.
 #pragma once
 
 #include <type_traits>

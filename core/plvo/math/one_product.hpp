@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigen makes the code of a product or a long sum anew for every combination of sizes and kinds of matrices.
-// Where code shall be small, one function multiplies them all, and one for each length adds. They add as
-// Eigen does: half of the terms, then the others, each half in the same way, so the bits are the same. Made
-// for Eigen 3.4; golden_test shows whether they are.
+// Eigen instantiates products and long sums for every combination of matrix sizes and kinds. In
+// size-optimised code, one function computes all products, and one function per length computes sums. They
+// use Eigen's order of summation: first one half of the terms, then the other, each half recursively. The
+// results are therefore bit-identical. This file assumes Eigen 3.4; golden_test detects differences.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +12,13 @@
 namespace plvo::one_product {
 
 struct Strides {
-  std::uint8_t row, column;  // from an entry to the one below it, to the one on its right
+  std::uint8_t row, column;  // offset to the entry below, and to the entry on the right
 };
 
-// What is known of a product when it is compiled.
+// Compile-time description of a product.
 struct Shape {
   std::uint8_t rows, columns, depth;
-  std::int8_t sign;  // 1, −1: added to what is there, subtracted from it; 0: in its place
+  std::int8_t sign;  // 1: add to the destination; −1: subtract from it; 0: overwrite it
   Strides left, right, to;
 };
 
@@ -100,7 +100,8 @@ concept Numbers = std::is_same_v<typename T::Scalar, double> && T::SizeAtCompile
 template <typename T>
 concept InMemory = Numbers<T> && lies_in_memory<T>();
 
-// What does not lie in memory (−A, 2 A, A + B) is put there first: its entries are rounded as they would be.
+// An operand that is an expression (−A, 2 A, A + B) is evaluated into memory first; the rounding of its
+// entries is the same.
 template <typename T>
 using Stored = std::conditional_t<InMemory<T>, T, typename T::PlainObject>;
 
@@ -139,7 +140,7 @@ struct Assignment<To, Product<Left, Right, LazyProduct>, Functor, Dense2Dense> {
   }
 };
 
-// A product within an expression is worked out first, and the expression reads the result.
+// A product inside an expression is evaluated first; the expression reads the result.
 template <plvo::one_product::Numbers Left, plvo::one_product::Numbers Right>
 requires(plvo::one_product::knows_depth(
     Left::ColsAtCompileTime)) struct evaluator<Product<Left, Right, LazyProduct>>
@@ -155,7 +156,8 @@ requires(plvo::one_product::knows_depth(
   Result result_;
 };
 
-// Squared norms of matrices; what is shorter than nine entries is no longer than the call.
+// Squared norms of matrices. Sums of fewer than nine entries stay inline, because they are no larger than the
+// call.
 template <plvo::one_product::Long Entries>
 struct redux_impl<scalar_sum_op<double, double>, Entries, DefaultTraversal, CompleteUnrolling> {
   template <typename Xpr>

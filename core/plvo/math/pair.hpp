@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two doubles side by side, in the vector types of GCC and Clang. Each of the two sees the same operations in
-// the same order as if it were alone: the bits do not depend on whether a processor does both at once.
+// Two doubles in a SIMD vector, in the vector types of GCC and Clang. Each of the two undergoes the same
+// operations in the same order as a scalar would. The results are therefore bit-identical whether or not the
+// processor computes both at once.
 #pragma once
 
 namespace plvo {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigen writes an assignment of up to about a hundred operations out, entry after entry, and so it does with
-// questions about all entries. Here a loop over the entries does it instead, which the compiler may still
-// unroll: each entry is computed as before, so the bits are the same. Sums (dot products, the entries of a
-// product) stay written out: Eigen adds them in another order in a loop. Made for Eigen 3.4; golden_test
-// shows whether the bits are the same.
+// Eigen fully unrolls assignments of up to about a hundred operations, and likewise predicates over all
+// entries. These specialisations use a loop over the entries instead, which the compiler may still unroll.
+// Each entry is computed as before, so the results are bit-identical. Sums (dot products, the entries of a
+// product) stay unrolled, because Eigen adds in a different order in a loop. This file assumes Eigen 3.4;
+// golden_test detects differences.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ struct dense_assignment_loop<generic_dense_assignment_kernel<To, From, Assign, V
     : dense_assignment_loop<generic_dense_assignment_kernel<To, From, Assign, Version>, LinearTraversal,
                             NoUnrolling> {};
 
-// A triangle.
+// Assignment of a triangle.
 template <int UpLo, int Mode, int SetOpposite, typename To, typename From, typename Assign, int Version,
           unsigned int LoopMode, int Count, bool LoopSetOpposite>
 requires(Count > 0) struct triangular_assignment_loop<
@@ -39,7 +39,7 @@ requires(Count > 0) struct triangular_assignment_loop<
           Dynamic, LoopSetOpposite> {
 };
 
-// all(): hasNaN(), allFinite().
+// all(), which hasNaN() and allFinite() use.
 template <typename Mask, int Count, int Rows>
 requires(Count > 0) struct all_unroller<Mask, Count, Rows> {
   static bool run(const Mask& mask) {
@@ -49,7 +49,7 @@ requires(Count > 0) struct all_unroller<Mask, Count, Rows> {
   }
 };
 
-// The largest and the least are the same in any order.
+// The maximum and the minimum do not depend on the order.
 template <int NaN, typename Entries>
 struct redux_impl<scalar_max_op<double, double, NaN>, Entries, DefaultTraversal, CompleteUnrolling>
     : redux_impl<scalar_max_op<double, double, NaN>, Entries, DefaultTraversal, NoUnrolling> {};

@@ -33,7 +33,7 @@ Matrix3 rotation_exp(const Vector3& omega) {
 }
 
 Vector3 rotation_log(const Matrix3& R) {
-  // Through the quaternion: well conditioned at every angle, π included.
+  // Uses the quaternion, which is well conditioned at every angle, including π.
   const Quaternion q = to_quaternion(R);
   const Vector3 v(q.x, q.y, q.z);
   const double s = sqrt(v.squaredNorm());
@@ -42,7 +42,7 @@ Vector3 rotation_log(const Matrix3& R) {
 }
 
 Matrix3 renormalise(const Matrix3& R) {
-  // Newton's iteration for the polar factor, R ← (R + R^-T)/2, converges quadratically: one step squares an
+  // Newton's iteration for the polar factor, R ← (R + R^-T)/2, converges quadratically. One step squares an
   // error that rounding keeps near 1e-15.
   return 0.5 * (R + Matrix3(R.inverse()).transpose());
 }
@@ -99,7 +99,7 @@ Vector6 boxminus(const Se3& S, const Se3& T) {
 }
 
 Matrix6 compose_covariance(const Se3& T_a, const Matrix6& C_a, const Se3& T_b, const Matrix6& C_b) {
-  // (T_a ⊞ (v_a, ω_a))(T_b ⊞ (v_b, ω_b)) to first order:
+  // First-order expansion of (T_a ⊞ (v_a, ω_a))(T_b ⊞ (v_b, ω_b)):
   //   v = v_a − [R_a t_b]× ω_a + R_a v_b,   ω = ω_a + R_a ω_b.
   Matrix6 J_a = Matrix6::Identity();
   J_a.block<3, 3>(0, 3) = -skew(T_a.R * T_b.t);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eigenvalues and eigenvectors of a small symmetric matrix by cyclic Jacobi rotations (Golub & Van Loan,
-// "Matrix Computations", 4th ed., algorithm 8.5.3): fixed order, bounded sweeps, every eigenvalue accurate to
-// rounding.
+// "Matrix Computations", 4th ed., algorithm 8.5.3). The order is fixed, the number of sweeps is bounded, and
+// every eigenvalue is accurate to rounding.
 #pragma once
 
 #include "plvo/math/matrix_size.hpp"
@@ -16,9 +16,9 @@ struct SymmetricEigen {
   Matrix<N, N> vectors;  // column k belongs to values[k]; orthonormal
 };
 
-// Turns A, n × n, into a diagonal matrix, and V, the identity before, into the rotation from it. Quadratic
-// convergence makes 4 to 6 sweeps the rule; the bound of 12 is never reached by a finite matrix of these
-// sizes.
+// Diagonalises the n × n matrix A in place. V must be the identity before the call and holds the eigenvectors
+// after it. Convergence is quadratic, so 4 to 6 sweeps usually suffice. A finite matrix of these sizes never
+// reaches the limit of 12.
 template <typename Size>
 inline void diagonalise(double* A, double* V, Size n, double tiny) {
   constexpr int kMaxSweeps = 12;
@@ -31,7 +31,7 @@ inline void diagonalise(double* A, double* V, Size n, double tiny) {
       for (int q = p + 1; q < n; ++q) {
         const double entry = A[p + q * n];
         if (entry == 0) continue;
-        // The smaller of the two angles that annihilate A(p, q).
+        // The smaller of the two angles that make A(p, q) zero.
         const double tau = (A[q + q * n] - A[p + p * n]) / (2 * entry);
         const double t = (tau >= 0 ? 1 : -1) / ((tau >= 0 ? tau : -tau) + sqrt(1 + tau * tau));
         const double c = 1 / sqrt(1 + t * t);
@@ -50,7 +50,7 @@ inline void diagonalise(double* A, double* V, Size n, double tiny) {
   }
 }
 
-// A must be finite; only its lower triangle is read.
+// A must be finite. Only its lower triangle is read.
 template <int N>
 SymmetricEigen<N> symmetric_eigen(const Matrix<N, N>& matrix) {
   SymmetricEigen<N> result;

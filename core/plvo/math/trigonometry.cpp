@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Argument reduction in two parts (Cody & Waite, "Software Manual for the Elementary Functions", 1980), then
-// Taylor polynomials on an interval small enough that the first neglected term is below one unit in the last
-// place.
+// Argument reduction in two parts (Cody & Waite, "Software Manual for the Elementary Functions", 1980),
+// followed by Taylor polynomials. The reduced interval is so small that the first neglected term is below one
+// unit in the last place.
 #include "plvo/math/trigonometry.hpp"
 
 #include <array>
@@ -15,12 +15,12 @@
 namespace plvo {
 namespace {
 
-// π/2 in three parts; the first two have their low bits zero, so that k·part is exact for |k| < 2^20.
+// π/2 in three parts. The low bits of the first two are zero, so that k·part is exact for |k| < 2^20.
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00;
 constexpr double kHalfPiMiddle = 6.07710050630396597660e-11;
 constexpr double kHalfPiLow = 2.02226624879595063154e-21;
 
-// Beyond it the reduction would lose digits, and at last the conversion to an integer would not be defined.
+// Above this angle the reduction loses digits; far above it, the conversion to an integer is undefined.
 constexpr double kLargestAngle = 1e6;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -93,7 +93,7 @@ double atan_small(double x) {  // 0 ≤ x ≤ 1
   return kPi / 4 + atan_polynomial((x - 1) / (1 + x));
 }
 
-// The sine, so many quadrants further on.
+// Sine, advanced by a number of quadrants.
 double sin_ahead(double radians, int quadrants) {
   if (!in_range(radians)) return kNoNumber;
   const Reduced r = reduce(radians);
@@ -114,7 +114,7 @@ double atan2(double y, double x) {
   if (y == 0 && x == 0) return 0;
   const double ay = y < 0 ? -y : y;
   const double ax = x < 0 ? -x : x;
-  // Divide the smaller by the larger: never an overflow.
+  // Divides the smaller by the larger, so the quotient cannot overflow.
   double angle = ay <= ax ? atan_small(ay / ax) : kPi / 2 - atan_small(ax / ay);
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;
@@ -130,7 +130,7 @@ double exp(double x) {
   if (x != x) return kNoNumber;
   if (x > 709.0) return std::numeric_limits<double>::infinity();
   if (x < -745.0) return 0;
-  // x = k ln 2 + r, |r| ≤ ln 2 / 2; exp r by its series, then scaled by 2^k.
+  // x = k ln 2 + r with |r| ≤ ln 2 / 2. exp r comes from its series and is then scaled by 2^k.
   constexpr double kLn2High = 6.93147180369123816490e-01;
   constexpr double kLn2Low = 1.90821492927058770002e-10;
   const double turns = x * 1.44269504088896338700;
@@ -138,7 +138,7 @@ double exp(double x) {
   const double r = (x - k * kLn2High) - k * kLn2Low;
   double sum = 1;
   for (int n = 16; n >= 1; --n) sum = 1 + sum * r / n;
-  // In two steps, so that results below 2^-1022 round once and do not vanish early.
+  // Scales in two steps, so that results below 2^-1022 round only once and do not underflow early.
   const int first = k / 2;
   k -= first;
   return sum * from_bits(static_cast<std::uint64_t>(first + 1023) << 52) *

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The few matrix types of plvo. DontAlign keeps their layout the same whatever vector flags a user's own
-// program is compiled with: Eigen's alignment would otherwise change with them and break the ABI.
+// The matrix types of plvo. DontAlign makes their layout independent of the vector flags of the user's
+// program. Eigen's own alignment depends on these flags and would break the ABI.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
 
-// In plvo's own files alone (tools/cmake/plvo.cmake): a user's Eigen stays as it is.
+// Applies only to plvo's own files (tools/cmake/plvo.cmake); the user's Eigen stays unchanged.
 #ifdef PLVO_ROLLED_LOOPS
 #include "plvo/math/rolled_loops.hpp"
 #endif
@@ -33,7 +33,7 @@ using Matrix3 = Matrix<3, 3>;
 using Matrix4 = Matrix<4, 4>;
 using Matrix6 = Matrix<6, 6>;
 
-// Eigen leaves the entries of a matrix without an initialiser as they were.
+// Returns matrices set to zero. Eigen leaves entries uninitialised by default.
 template <std::size_t Count>
 std::array<Matrix6, Count> zero_matrices() {
   std::array<Matrix6, Count> matrices;

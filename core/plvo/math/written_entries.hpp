@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// M << a, b, … as Eigen has it asks at run time, for every entry, where it belongs: a call each. Where code
-// shall be small, each is stored where it belongs when that is compiled. Made for Eigen 3.4, for single
-// numbers alone.
+// Eigen's M << a, b, … computes the position of every entry at run time, with one call each. In
+// size-optimised code, this specialisation computes the positions at compile time. It assumes Eigen 3.4 and
+// supports scalars only.
 #pragma once
 
 #include <Eigen/Core>

@@ -20,14 +20,14 @@ Matrix6 common_mode_error(const ReferenceInformation& information, const Matrix6
   const Matrix6 T = whiten.transpose().lazyProduct(eigen.vectors);
   const Matrix6 T_inverse = T.transpose().lazyProduct(J);
   Matrix6 d = T_inverse.lazyProduct(D).eval().lazyProduct(T_inverse.transpose());
-  Vector6 k, anew;
+  Vector6 k, added;
   for (int i = 0; i < 6; ++i) {
     k[i] = std::clamp(eigen.values[i], 0.0, 1.0);
-    const double cannot_hold = share * (1 - k[i]) * (1 + k[i] * d(i, i));  // k s share (1 − k)
-    anew[i] = 2 * std::min(k[i] * share, sqrt(std::max(0.0, k[i] * cannot_hold)));
+    const double bound = share * (1 - k[i]) * (1 + k[i] * d(i, i));  // k s share (1 − k)
+    added[i] = 2 * std::min(k[i] * share, sqrt(std::max(0.0, k[i] * bound)));
   }
   for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) d(i, j) = k[i] * d(i, j) * k[j] + (i == j ? anew[i] : 0);
+    for (int j = 0; j < 6; ++j) d(i, j) = k[i] * d(i, j) * k[j] + (i == j ? added[i] : 0);
   const Matrix6 sum = T.lazyProduct(d).eval().lazyProduct(T.transpose());
   return 0.5 * (sum + sum.transpose());
 }

@@ -11,11 +11,11 @@
 namespace plvo {
 namespace {
 
-// A segment must be longer than this many SDs of its ends, or its direction is not known well enough to
+// Minimum length of a segment in SDs of its ends. The direction of a shorter one is too uncertain to
 // linearise.
 constexpr double kMinLengthSigmas = 4;
-// The squared distance of a match's four offsets, 99 % quantile of χ²(4): what lies farther off is no noise,
-// and tells nothing of the noise along the line.
+// Limit of the squared Mahalanobis distance of a match's four offsets, the 99 % quantile of χ²(4). A larger
+// offset is not noise, so it holds no information about the noise along the line.
 constexpr double kFarthestNoise = 13.3;
 
 bool is_measurement(const Line3d& line) {
@@ -26,7 +26,7 @@ bool is_measurement(const Line3d& line) {
          (line.b - line.a).squaredNorm() > kMinLengthSigmas * kMinLengthSigmas * trace / 6;
 }
 
-// A measured segment as seen from an infinite line through q with the frame G = [U d].
+// A measured segment relative to an infinite line through q with the frame G = [U d].
 struct EndOffsets {
   Vector4 e;          // across the line: Uᵀ (A − q), Uᵀ (B − q)
   Vector2 lambda;     // along the line: dᵀ (A − q), dᵀ (B − q)
@@ -40,7 +40,8 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   const Vector3 b = G.transpose().lazyProduct(line.b - q);
   offsets.e << a.x(), a.y(), b.x(), b.y();
   offsets.lambda << a.z(), b.z();
-  // Λ [U 0; 0 U] first: of Gᵀ Λ G only the columns across the line are wanted, both of an end at once.
+  // Computes Λ [U 0; 0 U] first, since only those columns of Gᵀ Λ G that lie across the line are needed. The
+  // two columns of one end are computed at once.
   const Pair U[3] = {{G(0, 0), G(0, 1)}, {G(1, 0), G(1, 1)}, {G(2, 0), G(2, 1)}};
   for (int j = 0; j < 2; ++j) {
     Pair right[6];
@@ -59,7 +60,7 @@ EndOffsets observe(const Line3d& line, const Vector3& q, const Matrix3& G) {
   return offsets;
 }
 
-// Linear interpolation from displacements at two stations on the line to those at two others, N ⊗ I₂.
+// Linear interpolation of displacements from two stations on the line to two others, N ⊗ I₂.
 struct Interpolation {
   double n[2][2];
   Interpolation(const Vector2& from, const Vector2& to) {
@@ -101,14 +102,15 @@ struct Interpolation {
   }
 };
 
-// A line through q along d, in reference coordinates, and what the offsets of the segments from it weigh in
-// each frame, which places their ends along it: w_current = W c and w_reference = −Nᵀ W c.
+// A line through q along d in reference coordinates, and the weighted offsets of the segments in each frame,
+// w_current = W c and w_reference = −Nᵀ W c. The weighted offsets determine the positions of the ends along
+// the line.
 struct Landmark {
   Vector3 q, d;
   Vector4 w_reference, w_current;
 };
 
-// One match at (T, landmark). The weights only so far as the offsets may be noise.
+// One match at (T, landmark). The weighted offsets are limited to what can be noise (kFarthestNoise).
 struct Observed {
   Cholesky<4> W;         // factor of C' + N C Nᵀ
   Vector4 offset;        // N e
@@ -120,14 +122,15 @@ struct Observed {
   Matrix3 G, G_current;  // line frames
 };
 
-// first: the reference's, in the line frame at.G.
+// first: offsets of the reference segment in the line frame at.G. Returns false if the covariance has no
+// Cholesky factor.
 bool observe_both(const EndOffsets& first, const Line3d& current, const Se3& T, const Landmark& landmark,
                   Observed& at) {
   at.G_current = T.R.lazyProduct(at.G);
   const EndOffsets second = observe(current, T * landmark.q, at.G_current);
 
-  // The best positions along the line are the measured ones corrected by what the offsets say through Λ's
-  // correlations: λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference.
+  // The optimal positions along the line are the measured ones, corrected through the correlation of λ and e:
+  // λ* = λ − C_le C⁻¹ e. At the landmark's optimum C'⁻¹ e' = w_current and C⁻¹ e = w_reference.
   at.stations = first.lambda - Vector2(first.C_le.lazyProduct(landmark.w_reference));
   at.ends = second.lambda - Vector2(second.C_le.lazyProduct(landmark.w_current));
   const Interpolation N(at.stations, at.ends);
@@ -159,7 +162,7 @@ Landmark moved(const Landmark& landmark, const Observed& at) {
   return result;
 }
 
-// Columns of the motion, of the shared errors, and of the residual: an even number.
+// Columns of the motion, of the nuisance parameters and of the residual. Their number is even.
 constexpr int kColumnPairs = (JointInformation::kSize + 1) / 2;
 static_assert(JointInformation::kSize % 2 == 1);
 using Columns = Matrix<4, 2 * kColumnPairs>;
@@ -175,7 +178,7 @@ void whiten_columns(const Cholesky<4>& L, const Columns& columns, int pairs,
   }
 }
 
-// H += weight · Aᵀ A, A whitened columns; of its lower triangle at least.
+// H += weight · Aᵀ A, with A the whitened columns. Fills at least the lower triangle.
 void add_products(const Pair (&A)[4][kColumnPairs], int pairs, double weight,
                   Pair (&H)[2 * kColumnPairs][kColumnPairs]) {
   for (int r = 0; r < 2 * pairs; ++r) {
@@ -227,7 +230,7 @@ Primitive LineConstraints::primitive(std::size_t i) const {
   primitive.p_current = 0.5 * (current.a + current.b);
   primitive.d_reference = reference.frame.col(2);
   primitive.d_current = d_current / length_current;
-  // Bounds of the worst direction across the line, from traces there: of the mean of the two ends, and of
+  // Upper bounds of the variance across the line, from the traces there: for the mean of the two ends and for
   // their difference.
   const Matrix4& C = reference.C;
   const double ends = C.trace();
@@ -255,7 +258,7 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
   const Vector3 a = G.transpose().lazyProduct(current.a - q);
   const Vector3 b = G.transpose().lazyProduct(current.b - q);
   const Interpolation N(Vector2(-reference.half_length, reference.half_length), Vector2(a.z(), b.z()));
-  // As for points, the trace bounds the largest eigenvalue: here of C' + N C Nᵀ.
+  // As for points, the trace bounds the largest eigenvalue, here that of C' + N C Nᵀ.
   const double squared_norm = a.head<2>().squaredNorm() + b.head<2>().squaredNorm();
   double N_squared = 0;
   for (const auto& row : N.n) N_squared += row[0] * row[0] + row[1] * row[1];
@@ -281,13 +284,13 @@ bool LineConstraints::hold(std::size_t i, const Se3& T, const NuisanceParameters
     current.a -= shared.shift(current.a);
     current.b -= shared.shift(current.b);
   }
-  // From the measured line one Gauss–Newton step to the best one: another would move it by the square of the
-  // first over the segment's length.
+  // One Gauss–Newton step leads from the measured line to the optimal one. A second step would move it only
+  // by the square of the first step over the segment's length.
   const Reference& own = references_[i];
   Landmark landmark{own.q, own.frame.col(2), Vector4::Zero(), Vector4::Zero()};
   Observed at;
   at.G = own.frame;
-  // From its own line the reference's segment is nowhere off.
+  // The reference segment has no offset from its own line.
   EndOffsets first{Vector4::Zero(), {-own.half_length, own.half_length}, own.C, Matrix<2, 4>::Zero()};
   if (!observe_both(first, current, T, landmark, at)) return false;
   landmark = moved(landmark, at);
@@ -315,8 +318,8 @@ double LineConstraints::linearize(const Se3& T, const NuisanceParameters& shared
     if (inliers_[i] == 0) continue;
     const Held& held = held_[i];
     const Line3d& current = current_[matches_[i].current];
-    // −∂c/∂(ξ, β), one row per end and direction u across: [uᵀ, (S × u)ᵀ, uᵀ F], S the end's place on the
-    // line less t; and c.
+    // −∂c/∂(ξ, β) and c, one row per end and direction u across the line: [uᵀ, (S × u)ᵀ, uᵀ F]. S is the
+    // position of the end on the line minus t.
     Columns columns;
     columns.col(2 * pairs - 1).setZero();
     for (int end = 0; end < 2; ++end) {

@@ -10,15 +10,15 @@
 namespace plvo {
 namespace {
 
-// How many SDs a side, an angle or a residual may be off, and a triangle must be high.
+// Largest deviation of a side, an angle or a residual, and smallest height of a triangle, in SDs.
 constexpr double kConsistencySigmas = 4;
 constexpr double kHeightSigmas = 4;
-// Two directions closer than this (sine, 6°) are parallel however well they are known.
+// Two directions closer than this (sine of 6°) count as parallel, whatever their uncertainty.
 constexpr double kMinSine = 0.1;
 
 struct PointPair {
   Vector3 reference, current;
-  double variance;  // of their difference, along any one axis, m²
+  double variance;  // of the difference along any one axis, m²
 };
 using Primitives = std::array<Primitive, 3>;
 using PointPairs = std::array<PointPair, 3>;
@@ -33,8 +33,8 @@ PointPair pair_of(const Primitive& point) {
 PointPair foot(const PointPair& point, const Primitive& line) {
   const double along = line.d_reference.dot(point.reference - line.p_reference);
   const double along_current = line.d_current.dot(point.current - line.p_current);
-  // The foot moves with the line across it, with the point along it, and with the line's direction by its
-  // lever arm.
+  // The error of the foot has three parts: that of the line across it, that of the point along it, and that
+  // of the line's direction times the lever arm.
   const double lever = line.sigma_d_rad * along;
   return {line.p_reference + along * line.d_reference, line.p_current + along_current * line.d_current,
           line.sigma_p_m * line.sigma_p_m + point.variance + lever * lever};
@@ -78,9 +78,9 @@ MinimalSetStatus solve_points(const PointPairs& pairs, Se3& T) {
   return MinimalSetStatus::kSolved;
 }
 
-// Translation that brings three lines with known rotation together, least squares across the lines: the
-// second step of Zhang & Faugeras [38]. False when they are parallel, or do not meet within their
-// uncertainty.
+// Computes the translation that aligns three lines under a known rotation, by least squares across the lines:
+// the second step of Zhang & Faugeras [38]. Returns false if the lines are parallel or do not meet within
+// their uncertainty.
 bool translation_of_lines(const Primitives& lines, const Matrix3& R, double sigma_rotation, Vector3& t) {
   Matrix3 A = Matrix3::Zero();
   Vector3 b = Vector3::Zero();
@@ -94,8 +94,9 @@ bool translation_of_lines(const Primitives& lines, const Matrix3& R, double sigm
   t = cholesky.solve(b);
   const Vector3 centre = (lines[0].p_reference + lines[1].p_reference + lines[2].p_reference) / 3;
   for (const Primitive& line : lines) {
-    // The middles of the two segments may lie apart along the line: the direction's error acts over that
-    // lever, and the rotation's over the distance from the centre, which the translation cannot take up.
+    // The midpoints of the two segments may lie apart along the line. The error of the direction acts over
+    // that lever arm. The error of the rotation acts over the distance from the centre; the translation
+    // cannot compensate it.
     const Vector3 between = R * line.p_reference + t - line.p_current;
     const double lever = line.sigma_d_rad * line.d_current.dot(between);
     const double variance = line.sigma_p_m * line.sigma_p_m + lever * lever +
@@ -109,8 +110,8 @@ bool translation_of_lines(const Primitives& lines, const Matrix3& R, double sigm
 MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected, Se3& T) {
   double largest_sine_squared = 0;
   double sigma = 0;
-  // What the unsigned directions already say of the signs: +1 or −1 where the two frames agree on one, 0
-  // where the pair is too close to perpendicular.
+  // Relative sign of each pair of directions: +1 or −1 if both frames determine it, 0 if the pair is too
+  // close to perpendicular.
   double sign_of_pair[3] = {};
   for (std::size_t i = 0; i < 3; ++i) {
     const Primitive& a = lines[i];
@@ -132,7 +133,7 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
   const double least_sine = kHeightSigmas * sigma > kMinSine ? kHeightSigmas * sigma : kMinSine;
   if (!(largest_sine_squared > least_sine * least_sine)) return MinimalSetStatus::kDegenerate;
 
-  constexpr double kBelowAnyTrace = -4;  // of a rotation
+  constexpr double kBelowAnyTrace = -4;  // the trace of a rotation is at least −1
   double best_trace = kBelowAnyTrace;
   for (unsigned signs = 0; signs < 8; ++signs) {
     double s[3];
@@ -166,7 +167,7 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
 MinimalSetStatus solve_minimal_set(const Primitives& set, const Matrix3& R_expected, Se3& T) {
   if constexpr (!kLinesBuilt) return solve_points({pair_of(set[0]), pair_of(set[1]), pair_of(set[2])}, T);
   if constexpr (!kPointsBuilt) return solve_lines(set, R_expected, T);
-  // Points first, so that four cases remain.
+  // Sorts points first, so that only four cases remain.
   std::size_t order[3];
   std::size_t points = 0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -180,7 +181,7 @@ MinimalSetStatus solve_minimal_set(const Primitives& set, const Matrix3& R_expec
   if (points == 1) return solve_points({first, foot(first, set[order[1]]), foot(first, set[order[2]])}, T);
   const PointPair second = pair_of(set[order[1]]);
   if (points == 3) return solve_points({first, second, pair_of(set[order[2]])}, T);
-  // Two points and a line: project the point that is farther from it, which makes the larger triangle.
+  // Two points and a line: projecting the point farther from the line gives the larger triangle.
   const Primitive& line = set[order[2]];
   const bool swap = squared_distance_to_line(second.reference, line.p_reference, line.d_reference) >
                     squared_distance_to_line(first.reference, line.p_reference, line.d_reference);

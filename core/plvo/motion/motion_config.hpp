@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user may set of boxes 5 and 6 of the paper: RANSAC, the joint estimate, and when it is believed.
+// Settings of boxes 5 and 6 of the paper: RANSAC, the joint estimate, and the conditions under which it is
+// accepted.
 #pragma once
 
 namespace plvo {
 
 struct MotionConfig {
-  double inlier_probability = 0.99;  // of a true match to pass the χ² test, for every kind; 0 < p < 1
-  double ransac_confidence = 0.999;  // to have drawn a set of true matches before stopping; 0 < p < 1
-  // Non-degenerate sets drawn: iterations ≤ max_ransac_iterations, draws ≤ 4 max_ransac_iterations.
+  double inlier_probability = 0.99;  // that a true match of any kind passes the χ² test; 0 < p < 1
+  double ransac_confidence = 0.999;  // that a set of true matches was drawn before stopping; 0 < p < 1
+  // Iterations count non-degenerate sets only: iterations ≤ max_ransac_iterations, draws ≤ 4
+  // max_ransac_iterations.
   int max_ransac_iterations = 300;
-  // kNoConsensus with fewer inliers than this, all kinds together, or than this share of the usable matches.
+  // The estimate fails with kNoConsensus below this number of inliers of all kinds together, or below this
+  // share of the usable matches.
   int min_inliers = 10;
   double min_inlier_ratio = 0.1;
-  // Huber's loss in the maximum-likelihood refinement: robust where the covariances are too optimistic,
-  // honest where they are right (robust_kernel.hpp). false: the paper's least squares.
+  // true: Huber's loss in the maximum-likelihood refinement. It is robust where the covariances are too
+  // optimistic, and the resulting covariance stays consistent where they are right (robust_kernel.hpp).
+  // false: the paper's least squares.
   bool robust = true;
-  // kDegenerate when the SD of the translation (rotation) in its worst direction exceeds this.
+  // The estimate fails with kDegenerate if the SD of the translation (rotation) in its worst direction
+  // exceeds this.
   double max_sigma_m = 0.1;
   double max_sigma_rad = 0.1;
 };

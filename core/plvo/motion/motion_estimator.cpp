@@ -7,27 +7,29 @@
 namespace plvo {
 namespace {
 
-// The consensus is solved over twice, first with wider χ² thresholds: a match far more precise than the
-// motion so far would otherwise fail the test for the motion's error, and never get to correct it. Wider by
-// the first factor around a motion that RANSAC found and refined, by the second around one that the caller
+// The consensus is solved twice, first with wider χ² thresholds. A match far more precise than the current
+// motion would otherwise fail the test because of the motion's error, and could never correct it. The first
+// factor applies to a motion that RANSAC found and refined, the second one to a motion that the caller
 // estimated.
 constexpr double kWiderThanRefined = 4;
 constexpr double kWiderThanEstimated = 9;
-// Where the wide round led more SDs away than this it is made again, from there: what matches were judged by
-// is not where the motion is, and a consensus at the thresholds would leave out good ones for good.
+// If the wide round moves the motion by more SDs than this, it is repeated from the new motion. The matches
+// were then judged at a wrong motion, and a consensus at the final thresholds would exclude good matches
+// permanently.
 constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
-// Below this ratio of the eigenvalues of the information (scaled to a unit diagonal) an inverse is rounding
-// error.
+// Smallest ratio of the eigenvalues of the information matrix (scaled to a unit diagonal). Below it the
+// inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
 
 double largest_eigenvalue(const Matrix3& C) { return symmetric_eigen<3>(C).values.maxCoeff(); }
 
-// C = H⁻¹, or false when H does not determine all six degrees of freedom, by the two rules stated in the
+// C = H⁻¹. Returns false if H does not determine all six degrees of freedom by the two rules stated in the
 // header.
 bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C) {
   if (!H.allFinite() || !(H.diagonal().minCoeff() > 0)) return false;
-  // To a unit diagonal first: metres and radians then weigh alike, and the eigenvalues mean something.
+  // Scales H to a unit diagonal, so that metres and radians are comparable and the eigenvalues are
+  // meaningful.
   Vector6 scale;
   for (int i = 0; i < 6; ++i) scale[i] = 1 / sqrt(H(i, i));
   Matrix6 unit;
@@ -46,13 +48,14 @@ bool invert_information(const Matrix6& H, const MotionConfig& config, Matrix6& C
          largest_eigenvalue(C_rotation) <= config.max_sigma_rad * config.max_sigma_rad;
 }
 
-// These two are apart, for an estimate on the stack would else be there while the next one is made.
+// reset() and forget_motion() are separate functions, because a temporary estimate would otherwise stay on
+// the stack during the next estimate.
 [[gnu::noinline]] void reset(MotionEstimate& estimate) {
-  // In place: 3 kB less of stack than another one to copy from.
+  // Constructs in place, which saves the 3 kB of stack of a temporary.
   ::new (static_cast<void*>(&estimate)) MotionEstimate;
 }
 
-// What a failure leaves of an estimate: how it came to it.
+// Resets an estimate after a failure; keeps only its diagnostics.
 void forget_motion(MotionEstimate& estimate) {
   const StatusCode status = estimate.status;
   const RansacSummary ransac = estimate.ransac;
@@ -93,7 +96,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   MotionProblem& problem = solving.problem;
   LevenbergMarquardt<6>& solver = solving.solver;
   NuisanceParameters shared = start.shared;
-  // From T, over the inliers that are flagged.
+  // Refines T over the flagged inliers.
   const auto refine = [&](const LmOptions& options) {
     if (!consensus()) return StatusCode::kNoConsensus;
     problem.start(sets, solving.references, shared, kernels, T);
@@ -107,7 +110,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     shared.value = estimate.shared.value;
     return StatusCode::kOk;
   };
-  // Leaves the inliers at the thresholds flagged.
+  // On return the inliers at the final thresholds are flagged.
   const auto approach = [&](double scale) {
     for (int round = 0; round < kMaxWideRounds; ++round) {
       ransac.judge(T, scale);
@@ -126,7 +129,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
     if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
   }
   if (!start.estimated || !consensus()) {
-    // What an estimate that nothing agrees with made of them is forgotten.
+    // The matches do not support the caller's estimate; its references and nuisance parameters are discarded.
     solving.references = references;
     shared = start.shared;
     if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
@@ -138,11 +141,11 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
     estimate.information[kind] = problem.information(kind);
   estimate.references = problem.references();
-  // What is not determined does not converge either: say the cause, not the symptom.
+  // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
       !invert_information(solver.hessian(), config, estimate.C_H))
     return StatusCode::kDegenerate;
-  // kStalled is as good as converged: no step in any direction lowers the cost any more.
+  // kStalled counts as converged: no step lowers the cost any further.
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
     return StatusCode::kNotConverged;
   estimate.T_current_reference = T;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Box 5 and box 6 of the paper: putative matches of any kinds in, the motion between two frames and its
-// covariance out. RANSAC over mixed minimal sets finds the consensus (ransac.hpp), the joint
+// Boxes 5 and 6 of the paper: estimates the motion between two frames and its covariance from putative
+// matches of any kinds. RANSAC over mixed minimal sets finds the consensus (ransac.hpp); the joint
 // maximum-likelihood estimate refines it.
 #pragma once
 
@@ -27,16 +27,16 @@ struct MotionEstimate {
   // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
   Se3 T_current_reference;   // X' = R X + t, equation (11)
-  MotionsToCurrent motions;  // that, and those of the other references, whose poses are estimated with it
-  // C_H (23) of the ⊞-perturbation (v, ω) of T_current_reference, with the robust weights: (Σ w Jᵀ Σ⁻¹ J)⁻¹.
-  // m², m rad, rad².
+  MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
+  // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
+  // Σ⁻¹ J)⁻¹; m², m rad, rad².
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  // Per kind, in the order of the sets, of the first of them: C_P⁻¹ (14), C_L⁻¹ (19), …; their sum is C_H⁻¹
-  // (26). Zero for an empty kind.
+  // Information matrices of the first kInformedKinds sets, in the order of the sets: C_P⁻¹ (14), C_L⁻¹ (19),
+  // …; their sum is C_H⁻¹ (26). Zero for an empty set.
   std::array<Matrix6, kInformedKinds> information = zero_matrices<kInformedKinds>();
-  ReferenceInformation references;                 // of all kinds, the shared errors taken for known
+  ReferenceInformation references;                 // information of all kinds, given the nuisance parameters
   NuisanceEstimate shared;                         // zero unless kOk
-  std::array<int, kMaxConstraintKinds> inliers{};  // flags are in each set's inliers()
+  std::array<int, kMaxConstraintKinds> inliers{};  // the flags are in each set's inliers()
   std::array<int, kMaxConstraintKinds> usable{};
   RansacSummary ransac;
   LmSummary lm;
@@ -44,9 +44,9 @@ struct MotionEstimate {
   static constexpr double kUnknownVariance = 1e6;
 };
 
-// What is thought of the motion, and of what the current frame's features share, before anything is
-// estimated. estimated: the prediction is an estimate from these frames already; hypotheses are drawn only
-// where the matches do not agree with it.
+// Initial values of the motion and of the nuisance parameters of the current frame. estimated: the prediction
+// was already estimated from these frames; hypotheses are then drawn only if the matches do not agree with
+// it.
 struct MotionStart {
   MotionStart(const Se3* T_predicted, const NuisanceParameters& nuisance_parameters = {},
               bool is_estimated = false)
@@ -59,17 +59,18 @@ struct MotionStart {
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all
-// zero unless kOk). references: the frames that they match with; the motion is that from the base, reference
-// 0. start.prediction, if any, is tried as hypothesis number zero, and decides between rotations that
-// perpendicular lines cannot tell apart. The same arguments give the same bits. Scratch (take_ransac_scratch,
-// take_solver) is taken from the arena and given back; an arena without room for it is kOutOfMemory.
-// kDegenerate also when the information (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or
-// when no minimal set of the consensus is free of degeneracy: all lines parallel, all points on a line, …
+// zero unless kOk). references: the frames that the sets match with; the result is the motion from the base,
+// reference 0. start.prediction, if any, is the first hypothesis, and it decides between rotations that
+// perpendicular lines cannot distinguish. The result is bitwise reproducible. Scratch memory
+// (take_ransac_scratch, take_solver) is taken from the arena and returned; if the arena is too small, the
+// status is kOutOfMemory. The status is also kDegenerate if the information matrix (scaled to a unit
+// diagonal) has an eigenvalue ratio below 1e-10, or if every minimal set drawn from the consensus is
+// degenerate: all lines parallel, all points on a line, …
 void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                      const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
                      const MotionStart& start, Arena& arena, MotionEstimate& estimate);
 
-// The same where there is stack enough for what it returns.
+// The same, with the result returned on the stack.
 inline MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets,
                                       const MotionReferences& references, const MotionConfig& config,
                                       const LmOptions& lm, std::uint64_t seed, const MotionStart& start,
@@ -83,8 +84,8 @@ constexpr std::span<MotionSolver> take_solver(Arena& memory) {
   return memory.take<MotionSolver>("motion: solver", 1);
 }
 
-// What points, lines, surfaces (of each reference), a sensed motion and estimate_motion take between mark and
-// rewind, for sizing.
+// Allocates what points, lines and surfaces (of each reference), a propagated prior and estimate_motion take
+// between mark and rewind. Used to compute the size of the arena.
 constexpr void size_motion(Arena& memory, std::size_t references, std::size_t max_points,
                            std::size_t max_lines, std::size_t max_surfaces = 0) {
   const ScratchScope scope(memory);

@@ -9,8 +9,8 @@ namespace {
 constexpr double kLeastVariance = 1e-16, kMostVariance = 1e6;
 constexpr double kFarthest_m = 1000;
 
-Status refuse(const char* part, const char* what) {
-  return Status(StatusCode::kInvalidArgument, "prior: ").append(part).append(" ").append(what);
+Status refuse(const char* part, const char* requirement) {
+  return Status(StatusCode::kInvalidArgument, "prior: ").append(part).append(" ").append(requirement);
 }
 
 bool is_positive_definite_covariance(const Matrix3& C) {

@@ -27,14 +27,14 @@ namespace {
 constexpr int kJointSize = JointInformation::kSize;
 using Joint = Matrix<kJointSize, kJointSize>;
 
-// What a set's n inliers weigh, as a share of what n independent ones would (ConstraintSet::set_reference).
+// Weight of a set's n inliers relative to n independent ones (ConstraintSet::set_reference).
 double share_of(const ConstraintSet& set) {
   int n = 0;
   for (const std::uint8_t flag : set.inliers()) n += flag;
   return set.weight() * (n > 1 ? 1 / (1 + (n - 1) * set.correlation()) : 1);
 }
 
-// Lower Cholesky factor with zero columns where there is nothing.
+// Lower Cholesky factor of a semidefinite matrix. Columns with a pivot of zero are zero.
 Matrix6 root(const Matrix6& S) {
   Matrix6 L = Matrix6::Zero();
   for (int j = 0; j < 6; ++j) {
@@ -126,8 +126,9 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   return cost;
 }
 
-// What a reference says of its own motion, as what it says of the base's. Apart from add_kinds: its matrices
-// and those of a set's linearisation would otherwise be on the stack at the same time.
+// Transforms the information about a reference's own motion into information about the base's motion. A
+// separate function from add_kinds: otherwise its matrices and those of a set's linearisation would be on the
+// stack at the same time.
 [[gnu::noinline]] double MotionProblem::bring_to_base(std::size_t r, const Se3& T) {
   const Matrix3 Q = skew(T.R * references_[r].T_reference_base.t);
   Matrix6 B = Matrix6::Zero();
@@ -135,9 +136,10 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   B.block<3, 3>(0, 3) = Q * T.R;
   B.block<3, 3>(3, 3) = T.R;
   double cost = 0;
-  // T_current_reference moves by −B, where T_reference_base moves by one.
+  // −B is the derivative of T_current_reference with respect to the perturbation of T_reference_base.
   if (references_[r].covariance.trace() > 0) cost = eliminate_pose(r, -B.lazyProduct(root_[r]));
-  // Aᵀ H A with A the identity but for Q above the diagonal: a shift of columns, then of rows.
+  // Aᵀ H A, where A is the identity with Q added above the diagonal: an update of the columns, then of the
+  // rows.
   Joint& H = of_reference_.H;
   H.block<kJointSize, 3>(0, 3) += H.block<kJointSize, 3>(0, 0).lazyProduct(Q).eval();
   H.block<3, kJointSize>(3, 0) += Q.transpose().lazyProduct(H.block<3, kJointSize>(0, 0)).eval();
@@ -145,8 +147,8 @@ double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
   return cost;
 }
 
-// With the prior, at the pose's best for this motion: H ← (H⁻¹ + L Lᵀ)⁻¹ on the motion's part, the gradient
-// and the cost with it.
+// Eliminates the pose of a reference together with its prior, at its optimum for this motion: H ← (H⁻¹ + L
+// Lᵀ)⁻¹ on the motion's block; updates the gradient accordingly and returns the change of the cost.
 double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   JointInformation& sum = of_reference_;
   const Vector6& moved = references_[r].moved;
@@ -166,13 +168,15 @@ double MotionProblem::eliminate_pose(std::size_t r, const Matrix6& L) {
   return 0.5 * moved.squaredNorm() - 0.5 * g.dot(step);
 }
 
-// With the prior, at the shared errors' best value for this motion.
+// Eliminates the nuisance parameters together with their prior, at their optimum for this motion. Returns the
+// change of the cost.
 [[gnu::noinline]] double MotionProblem::eliminate_shared() {
   constexpr int n = NuisanceParameters::kCount;
   double cost = 0;
   for (int k = 0; k < n; ++k) {
     const double sigma = shared_.sigma(k);
-    // A kind that there is not has no derivative either: any information holds it where it is.
+    // The derivative by a parameter that is not modelled is zero, so any positive information keeps its
+    // value.
     const double information = sigma > 0 ? 1 / (sigma * sigma) : 1;
     sum_.H(6 + k, 6 + k) += information;
     sum_.g[6 + k] += information * shared_.value[k];

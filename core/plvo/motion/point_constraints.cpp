@@ -35,7 +35,7 @@ Symmetric3 sum_of_covariances(const Matrix3& R, const Matrix3& Sigma, const Matr
   return {entry(0, 0), entry(1, 0), entry(2, 0), entry(1, 1), entry(2, 1), entry(2, 2)};
 }
 
-// By cofactors: one division, and covariances of measurements are far from singular.
+// Inverse by cofactors. It needs one division, and covariances of measurements are far from singular.
 inline Symmetric3 inverse(const Symmetric3& m) {
   const double xx = m.yy * m.zz - m.yz * m.yz;
   const double xy = m.xz * m.yz - m.xy * m.zz;
@@ -84,8 +84,8 @@ double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double
   const Point3d& reference = reference_[matches_[i].reference];
   const Point3d& current = current_[matches_[i].current];
   const Vector3 e = current.p - T * reference.p;
-  // No eigenvalue of the covariance exceeds its trace: s ≥ |e|² / trace, which spares most outliers the
-  // inverse.
+  // No eigenvalue of the covariance exceeds its trace, so s ≥ |e|² / trace. Most outliers are rejected by
+  // this bound without an inverse.
   const double squared_norm = e.squaredNorm();
   const double trace = reference.Sigma.trace() + current.Sigma.trace();
   if (squared_norm > cutoff * trace) return squared_norm / trace;
@@ -94,11 +94,11 @@ double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double
 
 namespace {
 
-// The part of β in the sums of one set, J_ξ = [I, −[q]×]. Of the depth's errors all columns of F are
-// multiples of p, so each of their products is one of `along` with a number.
+// The β part of the sums of one set, with J_ξ = [I, −[q]×]. The depth columns of F are multiples of p, so
+// each product with them is `along` times a scalar.
 class SharedSums {
  public:
-  // W, We: the match's information, and times its residual.
+  // W: information matrix of the match. We: W times its residual.
   void add(const NuisanceField& F, const Matrix3& W, const Vector3& We, const Vector3& q) {
     const Vector3 Wp = W.lazyProduct(F.p);
     const Vector3 moved = q.cross(Wp);
@@ -135,14 +135,14 @@ class SharedSums {
       for (int k = 0; k <= i; ++k) sum.H(kAlong + i, kAlong + k) += squares_[i][k / 2][k % 2];
       sum.g[kAlong + i] += along_[kFactors - 1][i / 2][i % 2];
     }
-    // The upper triangle of these rows and columns from the lower one.
+    // Mirrors the lower triangle of these rows and columns.
     for (int r = 6; r < JointInformation::kSize; ++r)
       for (int c = 0; c < r; ++c) sum.H(c, r) = sum.H(r, c);
   }
 
  private:
   static constexpr int kAngularRate = NuisanceField::kAngularRate, kDepth = NuisanceField::kDepth;
-  static constexpr int kFactors = 6 + kAngularRate + 1;  // the motion, angular_rate, and the gradient
+  static constexpr int kFactors = 6 + kAngularRate + 1;  // motion, angular rate and gradient
   static constexpr int kPairs = kDepth / 2;
   Pair along_[kFactors][kPairs] = {};
   Pair squares_[kDepth][kPairs] = {};

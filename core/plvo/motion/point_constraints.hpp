@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point matches as constraints on the motion: equations (12)–(14) of the paper. The landmark X_i of a match
+// Point matches as constraints on the motion, equations (12)–(14) of the paper. The landmark X_i of a match
 // enters linearly, so its 3×3 block is eliminated in closed form. With e = P' − R P − t and W = (R Σ Rᵀ +
-// Σ')⁻¹ the best landmark for a given T leaves
+// Σ')⁻¹, the optimal landmark for a given T gives
 //   cost ½ eᵀ W e,   R X* + t = P' − Σ' W e,   Schur complement J_ξᵀ W J_ξ,   gradient −J_ξᵀ W e,
-// with J_ξ = [I, −[R X*]×]. This is exact (the matrix inversion lemma; the gradient because X* is optimal),
-// not an approximation of the joint problem; tests/motion compares it with a dense joint solve.
+// with J_ξ = [I, −[R X*]×]. This elimination is exact: the Schur complement by the matrix inversion lemma,
+// the gradient because X* is optimal. tests/motion compares it with a dense joint solve.
 #pragma once
 
 #include "plvo/base/arena.hpp"

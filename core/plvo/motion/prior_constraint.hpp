@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A motion that other sensors tell, as one more kind of constraint: a set of one, without landmark, that no
-// minimal set is drawn from. Its residual is r = T ⊟ T_propagated, translation before rotation; ½ ρ(rᵀ C⁻¹ r)
-// joins the cost (21). It is always an inlier: in a direction that vision leaves open a hypothesis may lie
-// anywhere. Where it contradicts what is seen, Huber's loss bounds its pull.
+// The propagated prior of other sensors as a constraint: a set of one match that has no landmark and does not
+// take part in minimal sets. Its residual is r = T ⊟ T_propagated, translation before rotation; it adds ½
+// ρ(rᵀ C⁻¹ r) to the cost (21). It is always an inlier, because a hypothesis is arbitrary in directions that
+// vision does not determine. If it contradicts the images, Huber's loss bounds its influence.
 #pragma once
 
 #include "plvo/math/cholesky.hpp"
@@ -12,8 +12,8 @@ namespace plvo {
 
 class PriorConstraint final : public ConstraintSet {
  public:
-  // covariance: of the ⊞-perturbation of T_propagated; without a Cholesky factor the set is not usable. flag:
-  // one byte that outlives the set.
+  // covariance: of the ⊞-perturbation of T_propagated; if it has no Cholesky factor, the set is not usable.
+  // flag: one byte that must outlive the set.
   PriorConstraint(const Se3& T_propagated, const Matrix6& covariance, std::span<std::uint8_t> flag);
 
   std::size_t size() const override { return 1; }

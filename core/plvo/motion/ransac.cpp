@@ -8,17 +8,18 @@
 namespace plvo {
 namespace {
 
-// A local refinement looks at every n-th match so that there are about this many: enough for a motion far
-// more precise than a match, at a cost that does not grow with the frame.
+// A local refinement uses every n-th match, about this many in total. The resulting motion is far more
+// precise than a single match, and the cost does not grow with the number of matches.
 constexpr std::size_t kRefinementMatches = 96;
-// A motion from three matches is less precise than a match: the first rounds forgive it three and two times
-// the distance.
+// Scales of the thresholds in the refinement rounds. A motion from three matches is less precise than a
+// match, so the first rounds accept three and two times the distance.
 constexpr double kRoundScales[] = {9, 4, 1};
-// A fresh hypothesis is scored with thresholds this much wider, and must beat every fresh one before it and
-// reach this share of what the best refined one scores so.
+// A hypothesis that is not yet refined is scored with thresholds scaled by kFreshScale. To be refined it must
+// beat all previous unrefined ones and reach kFreshShare of the best refined one's score at the same
+// thresholds.
 constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
-// Sets drawn from the consensus until one is not degenerate.
+// Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
@@ -73,8 +74,8 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   return true;
 }
 
-// Three different matches of the first n, n ≥ 3, without a loop: numbers below n, n − 1 and n − 2 that step
-// over those already drawn.
+// Draws three different matches of the first n, n ≥ 3, without a loop: random numbers below n, n − 1 and n −
+// 2 that skip those already drawn.
 std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
   const std::uint32_t a = random.below(n);
   std::uint32_t b = random.below(n - 1);
@@ -100,7 +101,7 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
   std::uint32_t n = 0;
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (sets_[candidates_[k].kind]->inliers()[candidates_[k].index] == 0) continue;
-    if (k >= samplable_) return true;  // a kind that minimal sets know nothing of: left to its covariance
+    if (k >= samplable_) return true;  // a kind without minimal sets: its covariance decides
     const RansacCandidate inlier = candidates_[k];
     candidates_[k] = candidates_[n];
     candidates_[n++] = inlier;
@@ -114,7 +115,8 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
   return false;
 }
 
-// Scores a hypothesis; if it promises to be the best so far, refines it; if it is, keeps it and returns true.
+// Scores a hypothesis and refines it if it may become the best. If it does, stores it in `best` and returns
+// true.
 bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   ++summary.hypotheses;
   const double fresh_score = score(T, fresh_to_beat_);
@@ -146,7 +148,7 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   return true;
 }
 
-// The score of a fresh hypothesis, or 0 as soon as it cannot exceed to_beat.
+// Score of an unrefined hypothesis, or 0 as soon as it cannot exceed to_beat.
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
@@ -155,7 +157,7 @@ double Ransac::score(const Se3& T, double to_beat) const {
     const double threshold = kFreshScale * threshold_[candidate.kind];
     const ConstraintSet& set = *sets_[candidate.kind];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
-    // A gain of threshold − s instead of threshold: what is still possible shrinks by s.
+    // The match gains threshold − s instead of threshold, so the upper bound shrinks by s.
     possible -= s < threshold ? s : threshold;
     if (possible <= to_beat) return 0;
   }
@@ -168,7 +170,7 @@ void Ransac::refine(Se3& T) {
   for (const double scale : kRoundScales) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
-    // A hypothesis needs no honest weights: the references' poses are taken for exact.
+    // A hypothesis does not need exact weights, so the references' poses are treated as exact.
     solver_.problem.start(sets_, references_, {}, kernels_, T, stride, true);
     (void)solver_.solve(LmOptions::one_step());
     T = solver_.problem.T_current_reference();
@@ -195,7 +197,7 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 
 int Ransac::iterations_needed() const {
   if (inliers_ < 3) return config_.max_ransac_iterations;
-  // 1 − (1 − w³)^k ≥ confidence, w the share of inliers among the matches.
+  // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;
   if (all_good > 1 - 1e-9) return 1;

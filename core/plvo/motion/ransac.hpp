@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// RANSAC over mixed minimal sets (section 5.1 of the paper), for any kinds of constraints.
+// RANSAC over mixed minimal sets (section 5.1 of the paper) for any kinds of constraints.
 //
-// Sampling: three different matches, uniformly over all usable matches of all kinds; the kinds drawn decide
-// which of the four solvers runs. Every match is as likely to be good as any other as far as we know before
-// the first test, so this makes the kinds appear in proportion to how much of the evidence they are, and a
-// scene of one kind needs no special case. Scoring is MSAC (Torr & Zisserman 2000): a match at squared
-// Mahalanobis distance s below its threshold gains threshold − s, its log-likelihood ratio against the
-// threshold; the threshold is the quantile of χ²(dof) at one probability for all kinds. A hypothesis is
-// dropped as soon as all its remaining matches together cannot bring it to the best score: this loses
-// nothing. A new best is refined on its inliers by a few steps of the maximum-likelihood problem (LO-RANSAC,
-// Chum, Matas & Kittler 2003).
+// Sampling: three different matches, uniformly over all usable matches of all kinds. The kinds drawn decide
+// which of the four solvers runs. Before the first test all matches are equally likely to be good, so each
+// kind is drawn in proportion to its number of matches, and a scene of one kind needs no special case.
+// Scoring is MSAC (Torr & Zisserman 2000): a match at squared Mahalanobis distance s below its threshold
+// gains threshold − s, its log-likelihood ratio against the threshold; the threshold is the quantile of
+// χ²(dof) at one probability for all kinds. A hypothesis is dropped as soon as its remaining matches together
+// cannot raise it to the best score; this does not change the result. A new best hypothesis is refined on its
+// inliers by a few steps of the maximum-likelihood problem (LO-RANSAC, Chum, Matas & Kittler 2003).
 #pragma once
 
 #include <array>
@@ -27,10 +26,10 @@ namespace plvo {
 
 struct RansacSummary {
   int draws = 0;       // sets drawn
-  int iterations = 0;  // of these, not degenerate
-  int hypotheses = 0;  // of these, rigid within their uncertainty, hence solved and scored
+  int iterations = 0;  // draws that are not degenerate
+  int hypotheses = 0;  // iterations whose set is rigid within its uncertainty, hence solved and scored
   int refinements = 0;
-  double score = 0;  // of the best one; 0 when there is none
+  double score = 0;  // score of the best hypothesis; 0 if there is none
 };
 
 // A match that may be an inlier.
@@ -45,34 +44,34 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::siz
 
 class Ransac {
  public:
-  // scratch holds a RansacCandidate for every match of all sets; what does not fit is not looked at. solver:
-  // for the refinements, between which it may be used otherwise. The references must outlive it.
+  // scratch: one RansacCandidate for every match of all sets; matches that do not fit are ignored. solver:
+  // used by the refinements; the caller may use it between them. references must outlive this object.
   Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
          const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch, MotionSolver& solver);
 
-  // Usable matches, all of them, and those that may form minimal sets.
+  // Number of all usable matches, and of those that may form minimal sets.
   std::size_t usable() const { return usable_; }
   std::size_t samplable() const { return samplable_; }
 
-  // The best motion found; false when no hypothesis scored at all.
+  // Writes the best motion to T. Returns false if no hypothesis has a score above zero.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
-  // Sets the inlier flag of every match by the χ² test under T, with the thresholds scaled by `scale`.
+  // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
   int inliers() const { return inliers_; }
 
-  // False when no minimal set of the flagged inliers fixes the motion: all lines parallel, all points on a
-  // line. The covariance cannot tell: noise in the directions of parallel lines looks like information.
-  // Reorders the scratch.
+  // Returns false if no minimal set drawn from the flagged inliers determines the motion: all lines parallel,
+  // all points on a line. The covariance does not reveal this, since noise in the directions of parallel
+  // lines looks like information. Reorders the scratch.
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
-  // Brings T nearer by a part of the matches that agree with it, and writes the inlier flags.
+  // Refines T on a subset of the matches that agree with it, and writes the inlier flags.
   void refine(Se3& T);
-  // Of every stride-th match; clears the other flags.
+  // Judges every stride-th match and clears the flags of the others.
   void judge(const Se3& T, double scale, std::size_t stride);
   int iterations_needed() const;
 
@@ -81,7 +80,7 @@ class Ransac {
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
   MotionSolver& solver_;
-  std::span<RansacCandidate> candidates_;  // those that may form minimal sets first
+  std::span<RansacCandidate> candidates_;  // first those that may form minimal sets
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;
   int inliers_ = 0;

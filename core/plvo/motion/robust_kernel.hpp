@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a large residual is worth. The refinement minimises ½ Σ ρ(s), s the squared Mahalanobis norm of one
-// match's residual; iteratively re-weighted with w = ρ'(s), and the covariance uses the same weights: C = (Σ
-// w Jᵀ Σ⁻¹ J)⁻¹.
+// Robust loss of the refinement. It minimises ½ Σ ρ(s), where s is the squared Mahalanobis norm of one
+// match's residual, by iterative re-weighting with w = ρ'(s). The covariance uses the same weights: C = (Σ w
+// Jᵀ Σ⁻¹ J)⁻¹.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,8 @@ namespace plvo {
 enum class RobustLoss : std::uint8_t {
   // ρ(s) = s: the paper's maximum likelihood for Gaussian noise.
   kNone,
-  // ρ(s) = s up to k², 2 k √s − k² beyond. k² is the 95 % quantile of χ²(dof), so that 19 of 20 good matches
-  // keep weight 1 whatever their kind: C stays honest under Gaussian noise, and the problem stays convex
-  // where it was.
+  // ρ(s) = s up to k², 2 k √s − k² beyond. k² is the 95 % quantile of χ²(dof), so 19 of 20 good matches of
+  // any kind keep weight 1. C stays consistent under Gaussian noise, and the loss preserves convexity.
   kHuber,
 };
 

@@ -11,7 +11,7 @@
 namespace plvo {
 namespace {
 
-// Beyond so many σ it is another surface.
+// A match with a residual of more σ than this is on another surface.
 constexpr double kGateSigmas = 5;
 constexpr int kShared = NuisanceParameters::kCount;
 constexpr int kJoint = JointInformation::kSize;
@@ -26,7 +26,7 @@ double normalised(const SurfaceMatch& match, const Vector3& e) {
   return r * r / match.variance;
 }
 
-// Sums over (ξ, β, γ); of H the lower triangle.
+// Sums over (ξ, β, γ). Only the lower triangle of H is filled.
 struct Sums {
   double H[kAll][kAll] = {};
   double g[kAll] = {};
@@ -43,8 +43,8 @@ void add_to(double* two, const Pair& pair) {
   std::memcpy(two, &sum, sizeof sum);
 }
 
-// One match's A. p: homogeneous, what the motion's columns are made of: entry (i, j) of T moves e by p_j
-// along axis i. others: the other columns, the last of which is e at the start.
+// A of one match. p: the homogeneous point, which defines the motion's columns: entry (i, j) of T moves e by
+// p_j along axis i. others: the other columns; the last one is e at the start.
 struct ErrorColumns {
   double p[4];
   Eigen::Matrix<double, 3, kOthers, Eigen::RowMajor> others;
@@ -55,7 +55,7 @@ struct ErrorColumns {
   }
 };
 
-// One match's part of the form's lower triangle, column by column. Where code shall be small.
+// Adds one match to the form's lower triangle, column by column. Used in size-optimised code.
 [[maybe_unused]] void add_each(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
   for (int a = 0; a < kSize; ++a) {
     double Mv[3];
@@ -64,14 +64,14 @@ struct ErrorColumns {
   }
 }
 
-// The same without the motion's zeros, two columns at once; an entry beyond the diagonal may be off.
+// The same without the motion's zeros, two columns at once. Entries above the diagonal may be wrong.
 void add(const ErrorColumns& A, const Matrix3& M, SurfaceForm& form) {
   if constexpr (kSizeOptimised) return add_each(A, M, form);
   static_assert(kOthers % 2 == 0);
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k <= i; ++k)
       for (int j = 0; j < 4; ++j) {
-        const double scaled = M(k, i) * A.p[j];  // M is symmetric but for rounding: as add_each reads it
+        const double scaled = M(k, i) * A.p[j];  // M is symmetric up to rounding; index order as in add_each
         for (int l = 0; l < 4; l += 2) add_to(&form.Q[4 * i + j][4 * k + l], scaled * pair_at(A.p + l));
       }
   const auto& others = A.others;
@@ -98,7 +98,8 @@ void mirror(SurfaceForm& form) {
     for (int b = 0; b < a; ++b) form.Q[b][a] = form.Q[a][b];
 }
 
-// How T's entries follow ξ = (υ, ω): υ moves the last column, ω turns the others, d(R p) = ω × R p.
+// Derivative of T's entries with respect to ξ = (υ, ω): υ moves the last column, ω rotates the others, d(R p)
+// = ω × R p.
 struct Tangent {
   double d[6][kMotion] = {};
   explicit Tangent(const Matrix3& R) {
@@ -119,7 +120,7 @@ struct Tangent {
   }
 };
 
-// Takes γ out of the sums: their Schur complement, added to `sum`. Returns what the cost loses.
+// Eliminates γ from the sums and adds their Schur complement to `sum`. Returns the reduction of the cost.
 double eliminate_common(const Sums& sums, int size, JointInformation& sum) {
   const double aa = sums.H[kJoint][kJoint] + 1;
   const double ab = sums.H[kJoint + 1][kJoint];

@@ -16,20 +16,20 @@
 namespace plvo {
 namespace {
 
-// Eight columns and nine rows: a row of 16-bit numbers fills a vector register of any board.
+// Eight columns and nine rows. Eight 16-bit numbers fill one SIMD register.
 constexpr int kColumns = kWindowColumns;
 constexpr int kRows = kWindowRows;
 constexpr int kPixels = kColumns * kRows;
 constexpr int kLeastPixels = kPixels / 3;
-// After the first step a patch that is there leaves no more than so many times the variance that it may end
-// with: of ten thousand that end well three do on the way, at most.
+// Early rejection: after the first step, the residual of a visible patch is at most this multiple of the
+// final limit. At most three in ten thousand patches that end well exceed it on the way.
 constexpr double kHopeless = 3;
 constexpr int kFractionBits = 5;  // positions are read on a grid of 1/32 px
-constexpr int kTaps = 4;          // of the cubic B-spline
+constexpr int kTaps = 4;          // taps of the cubic B-spline
 
-// The spline's weights at every fraction, in 1/128. Their sum is 128 and their centre the fraction itself,
-// both exactly: the outer two are rounded, the inner two follow from them. A centre beside the fraction would
-// move all points that are read there by as much.
+// The spline's weights at every fraction, in 1/128. Their sum is exactly 128 and their centroid exactly the
+// fraction: the outer two are rounded, and the inner two follow from them. A wrong centroid would move all
+// points that are read at that fraction.
 using Weights = std::array<std::int16_t, kTaps>;
 constexpr std::array<Weights, 1 << kFractionBits> make_weights() {
   std::array<Weights, 1 << kFractionBits> table{};
@@ -47,20 +47,19 @@ constexpr std::array<Weights, 1 << kFractionBits> make_weights() {
 }
 constexpr auto kWeights = make_weights();
 
-// The four regressors of the smoothed template, in 1/16 of a grey level: 2·∂T/∂x, 2·∂T/∂y, T less its mean;
-// and one. All zero where the mask is. And their normal equations, in grey levels.
+// The four regressors of the smoothed template, in 1/16 of a grey level: 2·∂T/∂x, 2·∂T/∂y, T minus its mean,
+// and the constant one. All are zero outside of the mask. normal: their normal equations, in grey levels.
 struct Template {
   std::array<std::int16_t, kPixels> gx, gy, value, one;
   Matrix4 normal;
 };
 constexpr double kValueUnit = 1.0 / 16;
 
-// A patch that is stretched or shrunk by more is no longer the same to look at.
+// Largest stretch or shrinkage of a patch. Beyond it, the patch no longer looks the same.
 constexpr double kMostStretch = 3;
 
-// Eight bits of a grey level and the weights' seven are rounded to four bits after the first pass, and again
-// after the second.
-// Eight pixels at once: no weighted sum passes 255 · 128.
+// Horizontal pass, eight pixels at once. Grey levels have eight bits and the weights seven. The first pass
+// rounds to four fraction bits, and so does the second. No weighted sum exceeds 255 · 128.
 void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
   Int16x8 tap[kTaps];
   for (int i = 0; i < kTaps; ++i) load_bytes(p + i, tap[i]);
@@ -73,9 +72,9 @@ void blend_across(const std::uint8_t* p, const Weights& w, std::int16_t* out) {
       (p[0] * w[0] + p[stride] * w[1] + p[2 * stride] * w[2] + p[3 * stride] * w[3] + 64) >> 7);
 }
 
-// Of eight columns at once, in 32 bits.
+// Vertical pass over eight columns at once, in 32 bits.
 struct DownWeights {
-  Int16x8 upper, lower;  // of neighbouring taps, in pairs
+  Int16x8 upper, lower;  // weights of adjacent taps, in pairs
   explicit DownWeights(const Weights& w)
       : upper{w[0], w[1], w[0], w[1], w[0], w[1], w[0], w[1]}, lower{w[2], w[3], w[2], w[3],
                                                                      w[2], w[3], w[2], w[3]} {}
@@ -102,8 +101,8 @@ int pixels_of(const WindowMask& mask) {
   return count_bits(eight_rows) + count_bits(mask[8]);
 }
 
-// Where the pixels of a slightly warped window lie in the template: at (W⁻¹ − I) (dx, dy) from where they are
-// in the window. In 2^-kMoveBits px for each pixel from the centre.
+// Maps the pixels of a slightly warped window to the template: pixel (dx, dy) of the window is displaced by
+// (W⁻¹ − I) (dx, dy). The coefficients are in 2^-kMoveBits px per pixel from the centre.
 class WindowMove {
  public:
   explicit WindowMove(const Matrix2& W) {
@@ -117,8 +116,9 @@ class WindowMove {
 
   bool is_none() const { return across_x_ == 0 && down_x_ == 0 && across_y_ == 0 && down_y_ == 0; }
 
-  // To first order, of a row of the window: by twice the gradient, in the unit of the values. Of 255 · 16 the
-  // sum stays within 4800: where a neighbour pulls it up, it was down itself.
+  // Adds the first-order change to a row of the window. gx and gy are twice the gradient, in the unit of the
+  // values. A value of at most 255 · 16 stays within 4800: a pixel that is raised by a neighbour was itself
+  // low.
   void add_change(std::size_t row, const Int16x8& gx, const Int16x8& gy, Int16x8& values) const {
     constexpr Int16x8 kAcross = {-4, -3, -2, -1, 0, 1, 2, 3};
     static_assert(kWindowReach == 4);
@@ -143,8 +143,8 @@ class WindowMove {
   std::int16_t across_x_, down_x_, across_y_, down_y_;
 };
 
-// The patch as the spline reads it at whole pixels, and the spline's own gradient there: smoothed either way,
-// and along itself the difference of the neighbours, unsmoothed.
+// Computes the patch as the spline reads it at whole pixels, and the spline's gradient there. The gradient is
+// the difference of the two neighbours along its own direction, smoothed across it.
 Template make_template(const Patch& patch, const WindowMask& mask, const WindowMove& move) {
   constexpr const Weights& kWhole = kWeights[0];
   static_assert(kWhole[0] == kWhole[2] && kWhole[3] == 0);
@@ -163,7 +163,7 @@ Template make_template(const Patch& patch, const WindowMask& mask, const WindowM
   constexpr Int16x8 kBits = {1, 2, 4, 8, 16, 32, 64, 128};
   Int32x4 total = {};
   for (std::size_t y = 0; y < kRows; ++y) {
-    const Int16x8 on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // every bit of a number, or none
+    const Int16x8 on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // all bits of a lane, or none
     const Int16x8 one = on & std::int16_t{1};
     const Int16x8 gx =
         ((difference[y] + difference[y + 2]) * kWhole[0] + difference[y + 1] * kWhole[1] + std::int16_t{4}) >>
@@ -181,7 +181,7 @@ Template make_template(const Patch& patch, const WindowMask& mask, const WindowM
     store(value, &t.value[first]);
     store(one, &t.one[first]);
   }
-  // About their mean, the grey levels are orthogonal to the constant: gain and offset separate well.
+  // With the mean removed, the grey levels are orthogonal to the constant, so gain and offset separate well.
   const auto mean = static_cast<std::int16_t>((total[0] + total[1] + total[2] + total[3]) / pixels_of(mask));
   for (std::size_t k = 0; k < kPixels; ++k)
     t.value[k] = static_cast<std::int16_t>((t.value[k] - mean) * t.one[k]);
@@ -219,7 +219,7 @@ struct Moments {
 using Window = std::array<std::int16_t, kPixels>;
 constexpr std::int32_t kOnePixel = 1 << kFractionBits;
 
-// (x, y): the position of the patch's centre, in 1/32 px; the window must lie inside the image.
+// (x, y): the position of the patch's centre, in 1/32 px. The window must lie inside the image.
 Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
   const Weights& across = kWeights[static_cast<std::size_t>(x & (kOnePixel - 1))];
   const Weights& down = kWeights[static_cast<std::size_t>(y & (kOnePixel - 1))];
@@ -246,14 +246,14 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
   return values;
 }
 
-// Where the window's pixels lie from the patch's centre, in 1/32 px, once it is warped.
+// Offsets of the warped window's pixels from the patch's centre, in 1/32 px.
 struct WarpedWindow {
   std::array<std::int16_t, kPixels> x, y;
-  int reach = kWindowReach;  // the farthest of them, px
+  int reach = kWindowReach;  // upper bound of the offsets, px
 };
 
 std::int16_t rounded(double offset) {
-  constexpr int kBeyond = 1 << 14;  // no offset is as far: what is cut off is a fraction
+  constexpr int kBeyond = 1 << 14;  // larger than any offset, so that truncation rounds down
   return static_cast<std::int16_t>(static_cast<int>(offset + 0.5 + kBeyond) - kBeyond);
 }
 
@@ -273,8 +273,8 @@ std::int16_t rounded(double offset) {
   return window;
 }
 
-// The same: a multiple of a power of two is the same before or after a sum, and the farthest is a corner,
-// since no rounding turns an order around.
+// Same result as warp_each. Scaling by a power of two commutes with the sum, and the largest offset is at a
+// corner because rounding is monotonic.
 WarpedWindow warp_window(const PatchWarp& warp) {
   if constexpr (kSimdLoops) return warp_each(warp);
   WarpedWindow window;
@@ -298,7 +298,7 @@ WarpedWindow warp_window(const PatchWarp& warp) {
   return window;
 }
 
-// Each pixel at a fraction of its own: down its four columns, then across.
+// Reads each pixel at its own fraction: down its four columns, then across.
 [[maybe_unused]] Window read_each(GrayView image, const WarpedWindow& window, std::int32_t x,
                                   std::int32_t y) {
   Window values;
@@ -321,7 +321,7 @@ WarpedWindow warp_window(const PatchWarp& warp) {
   return values;
 }
 
-// Every weight four times: for the four columns of a pixel.
+// Each weight four times, once for each of a pixel's four columns.
 alignas(16) constexpr auto kColumnWeights = [] {
   std::array<std::array<std::array<std::int16_t, kTaps>, kTaps>, 1 << kFractionBits> table{};
   for (std::size_t i = 0; i < table.size(); ++i)
@@ -329,7 +329,8 @@ alignas(16) constexpr auto kColumnWeights = [] {
   return table;
 }();
 
-// A pixel's column sums, of rows that are two apart; alike for a neighbour. Then of both all, across.
+// Reads two pixels. Each column sum adds rows that are two apart, then both halves; the weights across
+// follow. halves: two partial sums per pixel.
 inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[2], std::ptrdiff_t stride,
                                                     const std::int16_t* across, const std::int16_t* down,
                                                     Int32x4& halves) {
@@ -351,7 +352,7 @@ inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[
   dot_pairs(sum, weights, halves);
 }
 
-// As read_each, a row of the window at once.
+// Same result as read_each, one row of the window at a time.
 Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
   if constexpr (kSimdLoops) return read_each(image, window, x, y);
   constexpr std::int16_t kFraction = kOnePixel - 1;
@@ -402,7 +403,8 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
 }
 
 Moments correlate(const Template& t, const Window& values) {
-  // 72 products of at most 4080 with a template's 4800: below 2^31. Squares too, 72 · 4080².
+  // 72 products of at most 4080 with a template value of at most 4800 stay below 2^31. So do 72 squares of
+  // 4080.
   std::int32_t with_gx = 0;
   std::int32_t with_gy = 0;
   std::int32_t with_value = 0;
@@ -424,8 +426,8 @@ Moments correlate(const Template& t, const Window& values) {
 
 }  // namespace
 
-// No pixel of the window moves by more, along x or y. To first order what is left out is then a twentieth of
-// the second derivative, at the rim.
+// Limit of the displacement of any pixel of the window along x or y. Within it, the error of the first-order
+// approximation is at most a twentieth of the second derivative, at the rim.
 bool PatchWarp::is_slight() const {
   constexpr double kMost_px = 0.3;
   return (W - Matrix2::Identity()).cwiseAbs().rowwise().sum().maxCoeff() * kWindowReach < kMost_px;
@@ -455,7 +457,7 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
   const double most_residual = options.max_residual * options.max_residual * variance * (pixels - 4);
   bool converged = false;
   while (!converged && result.iterations < options.max_iterations) {
-    // Floor, then the read touches one pixel before the window and two behind it.
+    // After rounding down, the read touches one pixel before the window and two after it.
     const int first = window.reach + 2;
     if (!(result.x >= first && result.y >= first && result.x < image.width - first - 1 &&
           result.y < image.height - first - 1))
@@ -481,7 +483,8 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     const double dx = result.x - start_x;
     const double dy = result.y - start_y;
     if (!(dx * dx + dy * dy <= max_shift_squared)) return result;
-    // Not the regression's own step: that one starts on the grid of 1/32 px, not where the last one ended.
+    // Compares two solutions. The step of the regression itself starts on the grid of 1/32 px, not at the
+    // last solution.
     const double step_x = result.x - before_x;
     const double step_y = result.y - before_y;
     converged = step_x * step_x + step_y * step_y < options.tolerance_px * options.tolerance_px;
@@ -489,8 +492,8 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
 
     if (!(residual <= most_here)) return result;
     const double residual_variance = (residual > 0 ? residual : 0) / (pixels - 4) / (gain * gain);
-    // Covariance of (c_x, c_y): the noise of one pixel through the inverse of the normal equations, so that
-    // what gain and offset take of the gradients' information is not counted. Regressors are twice the
+    // Covariance of (c_x, c_y): the noise of one pixel times the inverse of the normal equations. The inverse
+    // accounts for the information that gain and offset take from the gradients. The regressors are twice the
     // gradients.
     Matrix2 C;
     C.col(0) = factor.solve(Vector4::Unit(0)).head<2>();
@@ -500,8 +503,8 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     const double half_difference = 2 * (C(0, 0) - C(1, 1));
     const double cross = 4 * C(1, 0);
     const double largest = half_sum + sqrt(half_difference * half_difference + cross * cross);
-    // The spline leaves a quarter of white noise's variance but all of its strength where the gradients are,
-    // at low frequencies: neighbouring residuals are alike, and one in four counts.
+    // The spline leaves a quarter of the variance of white noise, but all of its strength at low frequencies,
+    // where the gradients are. Adjacent residuals are therefore correlated, and only one in four counts.
     result.sigma_px = sqrt(4 * residual_variance * largest);
     result.ok = true;
   }

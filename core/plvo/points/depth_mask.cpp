@@ -11,18 +11,19 @@
 namespace plvo {
 namespace {
 
-// Pixels of the keypoint's level by which the own surface is shrunk: one for the gradient's reach, one for
-// what colour and depth are apart.
+// Erosion of the mask in pixels of the keypoint's level: one for the reach of the gradient, one for the
+// registration error between colour and depth.
 constexpr int kRim = 2;
-// A surface as steep as this changes so much of its depth over a window; what differs by more is another one.
+// Relative depth tolerance. A steep surface changes its depth by this much over a window; pixels that differ
+// more belong to another surface.
 constexpr double kSameSurface = 0.06;
 
 constexpr int kSurfaceReach = kWindowReach + kRim;
 constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
 constexpr int kSurfaceRows = kWindowRows + 2 * kRim;
-using Row = std::uint16_t;  // a bit a column, kRim to either side of the window
+using Row = std::uint16_t;  // one bit per column, kRim columns to either side of the window
 
-// The depths that belong to it, in units of the image: 0 means none.
+// The depths that belong to the keypoint's surface, in units of the image. 0 means no depth.
 struct Range {
   std::int32_t first, last;
 };
@@ -34,14 +35,14 @@ Range range_around(double units) {
 
 #ifndef PLVO_SIMD_LOOPS
 
-// A bit for each of eight readings, `step` apart, that is in the range.
+// Returns one bit for each of eight readings, `step` apart. A bit is set if the reading is in the range.
 std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range) {
   Int16x8 units;
   if (step == 1)
     std::memcpy(&units, readings, sizeof units);
   else
     for (int i = 0; i < 8; ++i) units[i] = static_cast<std::int16_t>(readings[i * step]);
-  // Unsigned as signed: both less 2^15.
+  // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
   const auto first = static_cast<std::int16_t>(range.first - 32768);
   const auto last = static_cast<std::int16_t>(range.last - 32768);
   units ^= std::numeric_limits<std::int16_t>::min();
@@ -93,7 +94,7 @@ WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double d
     }
     own[static_cast<std::size_t>(r)] = static_cast<Row>(bits);
   }
-  // Erosion by kRim in either direction: along the rows by shifts, then over neighbouring rows.
+  // Erosion by kRim in both directions: along the rows by shifts, then over adjacent rows.
   for (Row& row : own) {
     Row shrunk = row;
     for (int i = 1; i <= 2 * kRim; ++i) shrunk &= static_cast<Row>(row >> i);

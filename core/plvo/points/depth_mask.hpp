@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels around a keypoint lie on its own surface. Beside a depth edge a patch sees two surfaces that
-// move differently, and registering both together underestimates the parallax: measured on rendered sequences
-// with exact truth, near points lag by a tenth of a pixel and far ones run ahead. So only the keypoint's own
-// surface is registered, less a rim: colour and depth do not meet exactly at an edge, and gradients reach
-// across it.
+// Depth mask: the pixels around a keypoint that lie on its own surface. Near a depth edge, a patch contains
+// two surfaces that move differently. Registering both together underestimates the parallax: on rendered
+// sequences with exact ground truth, near points lag by a tenth of a pixel and far points lead. Only the
+// keypoint's own surface is therefore registered. Its rim is excluded, because colour and depth are not
+// aligned exactly at an edge and gradients reach across it.
 #pragma once
 
 #include "plvo/image/depth_sampler.hpp"
@@ -11,9 +11,9 @@
 
 namespace plvo {
 
-// centre: where the depth image shows the keypoint (DepthSample::located); depth_m: its depth, as sampled;
-// level: of the pyramid, at which the window's pixels are counted. A pixel without depth is taken to be
-// another surface: beside an edge it is, in a Kinect's shadow.
+// centre: position of the keypoint in the depth image (DepthSample::located). depth_m: its sampled depth.
+// level: pyramid level of the window's pixels. A pixel without depth counts as another surface; next to an
+// edge, it lies in the Kinect's shadow.
 WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double depth_m, int level);
 
 }  // namespace plvo

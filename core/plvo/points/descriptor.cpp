@@ -13,8 +13,8 @@ struct PixelPair {
   std::int8_t ax, ay, bx, by;
 };
 
-// A near-Gaussian integer of SD 6 within ±kDescriptorRadius: the sum of six uniform ones on 0 … 8 has
-// variance 40, less what the bound cuts off.
+// Draws a near-Gaussian integer with a standard deviation of 6, within ±kDescriptorRadius. The sum of six
+// uniform integers on 0 … 8 has variance 40; the bound reduces it.
 constexpr std::int8_t draw_offset(Random& random) {
   for (;;) {
     int sum = -24;
@@ -27,7 +27,7 @@ constexpr std::array<PixelPair, 256> make_pattern() {
   std::array<PixelPair, 256> pattern{};
   Random random(2015);
   for (PixelPair& pair : pattern) {
-    // A comparison of neighbours says little but noise: at least three pixels apart.
+    // Comparisons of close pixels contain mostly noise, so the pixels are at least three pixels apart.
     int distance_squared = 0;
     do {
       pair = {draw_offset(random), draw_offset(random), draw_offset(random), draw_offset(random)};

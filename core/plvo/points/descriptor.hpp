@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Box P4 of the paper, with a binary descriptor in place of SURF's, after BRIEF (Calonder, Lepetit, Strecha &
-// Fua, ECCV 2010): 256 comparisons of two pixels of a smoothed patch of 31×31, at places drawn once from a
-// Gaussian about its centre. A comparison does not change under any increasing map of the grey levels, so
-// neither gain nor offset of the light matters. It is not turned with the image: between the frames of one
-// motion the roll is small, and docs/maths.md gives the measured rate of matches over roll and scale. Scale
-// is the pyramid level's.
+// Fua, ECCV 2010). It consists of 256 comparisons of two pixels of a smoothed 31×31 patch, at positions drawn
+// once from a Gaussian around its centre. Comparisons are invariant to any increasing map of the grey levels,
+// and hence to gain and offset of the illumination. The descriptor is not rotated with the image, because the
+// roll between two frames is small; docs/maths.md gives the measured matching rate over roll and scale. The
+// pyramid level determines the scale.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ namespace plvo {
 
 inline constexpr int kDescriptorRadius = 15;
 
-// Describes the keypoints of one level.
+// Computes the descriptors of one level's keypoints.
 class Describer {
  public:
-  // smoothed: the level after smooth_binomial7, which must outlive the describer.
+  // smoothed: the level after smooth_binomial7. It must outlive the describer.
   explicit Describer(GrayView smoothed);
-  // (x, y) at least kDescriptorRadius from the border.
+  // (x, y) must be at least kDescriptorRadius away from the border.
   Descriptor operator()(int x, int y) const;
 
  private:
-  // Of the two pixels of each comparison from the keypoint's.
+  // Memory offsets of the two pixels of a comparison, relative to the keypoint.
   struct Offsets {
     std::int32_t a, b;
   };
@@ -37,7 +37,7 @@ class Describer {
 // Number of differing bits, 0 … 256.
 int hamming_distance(const Descriptor& a, const Descriptor& b);
 
-// The raw pixels around (x, y).
+// Copies the raw pixels around (x, y).
 Patch cut_patch(GrayView image, int x, int y);
 
 }  // namespace plvo

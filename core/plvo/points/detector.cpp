@@ -22,16 +22,16 @@ struct Cell {
   int x0, y0, x1, y1;  // pixels of its level, half open
 };
 
-constexpr int kBytes = sizeof(Bytes);  // scores, or grey levels, side by side
+constexpr int kBytes = sizeof(Bytes);  // scores or grey levels in one vector
 
-// All bits of byte i where column x + i is one of the cell's.
+// All bits of byte i are set if column x + i belongs to the cell.
 Bytes columns_of(const Cell& cell, int x) {
   constexpr Bytes kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const auto columns = static_cast<std::uint8_t>(std::min(cell.x1 - x, kBytes));
   return kPlaces < columns ? ~Bytes{} : Bytes{};
 }
 
-// Threshold to start from: an eighth of the range of grey levels in the cell, of every second pixel.
+// Initial threshold: an eighth of the range of grey levels in the cell, over every second pixel.
 [[maybe_unused]] int contrast_threshold_each(GrayView image, const Cell& cell) {
   int low = 255;
   int high = 0;
@@ -45,7 +45,8 @@ Bytes columns_of(const Cell& cell, int x) {
   return (high - low) / 8;
 }
 
-// The same, sixteen columns at once. What lies beyond the cell is in the image, by the keypoints' margin.
+// The same, sixteen columns at once. Columns beyond the cell are still in the image, because of the keypoint
+// margin.
 int contrast_threshold(GrayView image, const Cell& cell) {
   if constexpr (kSimdLoops) return contrast_threshold_each(image, cell);
   static_assert(kKeypointMargin >= kBytes);
@@ -74,37 +75,37 @@ int contrast_threshold(GrayView image, const Cell& cell) {
   return (highest - lowest) / 8;
 }
 
-// Of bytes of at most 128.
+// Sum of the bytes of a word. Each byte is at most 128.
 template <typename Word>
 Word sum_of_bytes(Word bytes) {
   constexpr Word kPairs = ~Word{0} / 0xffff;  // … 00010001: the lowest bit of every two bytes
   return ((bytes & 255 * kPairs) + (bytes >> 8 & 255 * kPairs)) * kPairs >> (8 * sizeof(Word) - 16);
 }
 
-// The segment test's scores of one row of cells and a rim of one pixel around it. Those up to the noise floor
-// are not exact: no threshold is below it.
+// Scores of the segment test for one row of cells and a rim of one pixel around it. Scores up to the noise
+// floor are not exact, because no threshold is below it.
 class Band {
  public:
   explicit Band(std::span<std::uint8_t> storage) : scores_(storage) {}
 
-  // Cells from row y0 to before row y1, from column x0 to before column x1.
+  // Computes the scores of the cells that `band` covers.
   void fill(GrayView image, const Cell& band, int noise_floor) {
     x0_ = band.x0 - 1;
     y0_ = band.y0 - 1;
-    // Whole vectors: the pixels beyond the rim are computed and not looked at. The keypoints' margin keeps
-    // them in the image's memory.
+    // Computes whole vectors; pixels beyond the rim are not used. The keypoint margin keeps them in the
+    // image's memory.
     stride_ = (band.x1 - band.x0 + 2 + 15) / 16 * 16;
     for (int y = y0_; y <= band.y1; ++y)
       segment_test_row(image.row(y) + x0_, image.stride, stride_, static_cast<std::uint8_t>(noise_floor),
                        scores_.data() + (y - y0_) * stride_);
   }
 
-  // Pixels of the cell that pass at this threshold, 0 … 127.
+  // Number of pixels of the cell that pass at this threshold, 0 … 127.
   int count_above(const Cell& cell, int threshold) const {
     if constexpr (kSimdLoops) return count_above_by_words(cell, threshold);
     int count = 0;
     for (int x = cell.x0; x < cell.x1; x += kBytes) {
-      Bytes counts = {};  // of a column in each byte: a cell has at most kMaxCell rows
+      Bytes counts = {};  // one column per byte: a cell has at most kMaxCell rows
       for (int y = cell.y0; y < cell.y1; ++y) counts -= read(x, y) > splat(threshold);
       counts &= columns_of(cell, x);
       std::uint64_t halves[2];
@@ -114,11 +115,11 @@ class Band {
     return count;
   }
 
-  // So many pixels from x on, of a row, are looked at together.
+  // Number of pixels of a row that are processed together.
   static constexpr int kAtOnce = kSimdLoops ? sizeof(std::size_t) : kBytes;
 
-  // Bit i: the pixel (x + i, y) is in the cell, passes, and is a local maximum. Of equal neighbours the first
-  // is the maximum: the suppression has a total order.
+  // Bit i is set if pixel (x + i, y) is in the cell, passes, and is a local maximum. Among equal neighbours
+  // the first one is the maximum, so the suppression has a total order.
   unsigned maxima(const Cell& cell, int x, int y, int threshold) const {
     if constexpr (kSimdLoops) return maxima_by_words(cell, x, y, threshold);
     const Bytes centre = read(x, y);
@@ -134,7 +135,7 @@ class Band {
  private:
   const std::uint8_t* at(int x, int y) const { return scores_.data() + (y - y0_) * stride_ + (x - x0_); }
 
-  // What lies beyond the cell is not looked at; there is still memory of the band's.
+  // Scores beyond the cell are not used, but they still lie in the band's memory.
   Bytes read(int x, int y) const {
     Bytes scores;
     std::memcpy(&scores, at(x, y), sizeof scores);
@@ -143,9 +144,9 @@ class Band {
   static Bytes splat(int level) { return Bytes{} + static_cast<std::uint8_t>(level); }
   static Bytes higher(const Bytes& a, const Bytes& b) { return a > b ? a : b; }
 
-  // The same without registers for bytes: scores side by side in a word of the processor, a byte each.
+  // The same for processors without SIMD registers: a processor word holds one score per byte.
   using Word = std::size_t;
-  static constexpr Word kHighest = ~Word{0} / 255 * 128;  // of every byte
+  static constexpr Word kHighest = ~Word{0} / 255 * 128;  // highest bit of every byte
 
   int count_above_by_words(const Cell& cell, int threshold) const {
     Word count = 0;
@@ -157,7 +158,8 @@ class Band {
     return static_cast<int>(count);
   }
 
-  // Of the kAtOnce pixels from x on, those of the cell that pass: the highest bit of a byte each.
+  // Marks the cell's pixels that pass among the kAtOnce pixels from x on, in the highest bit of one byte
+  // each.
   Word above(const Cell& cell, int x, int y, int threshold) const {
     Word scores = 0;
     std::memcpy(&scores, at(x, y), sizeof scores);
@@ -185,10 +187,10 @@ class Band {
   }
 
   std::span<std::uint8_t> scores_;
-  int x0_ = 0, y0_ = 0, stride_ = 0;  // of the rim's first pixel, and from row to row
+  int x0_ = 0, y0_ = 0, stride_ = 0;  // position of the rim's first pixel, and row stride
 };
 
-// The strongest of a cell, strongest first; a later equal never overtakes.
+// The strongest candidates of a cell, strongest first. Among equal ones, the earlier stays ahead.
 class BestOfCell {
  public:
   void insert(const Candidate& candidate) {
@@ -222,7 +224,7 @@ struct Search {
   int found = 0;
 };
 
-// Candidates of a cell that wait for their depth, which is in no cache yet: several are fetched at once.
+// Candidates of a cell that wait for their depth. It is not cached yet, so several are prefetched at once.
 class DepthQueue {
  public:
   DepthQueue(const DepthSampler& depth, BestOfCell& best) : depth_(depth), best_(best) {}
@@ -237,7 +239,7 @@ class DepthQueue {
     waiting_[size_++] = {place, candidate};
     if (size_ == waiting_.size()) settle();
   }
-  // In the order they came in.
+  // Processes the candidates in the order in which they came.
   void settle() {
     for (std::size_t i = 0; i < size_; ++i)
       if (*waiting_[i].place * depth_.metres_per_unit() > 0) best_.insert(waiting_[i].candidate);
@@ -257,7 +259,7 @@ class DepthQueue {
 
 void search_cell(Search& search, const Band& band, int level, const Cell& cell) {
   const GrayView image = search.pyramid.level(level);
-  // Half the threshold and half again, while the cell has too few: at most seven times.
+  // Halves the threshold while the cell has too few pixels, at most seven times.
   int threshold = std::max(search.config.noise_floor, contrast_threshold(image, cell));
   constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
   while (threshold > search.config.noise_floor && band.count_above(cell, threshold) < kEnoughPixels)
@@ -319,11 +321,11 @@ Keypoint refine(const Pyramid& pyramid, const Candidate& candidate) {
   return keypoint;
 }
 
-// Moves the candidates of each rank to the front in turn; the rank that no longer fits whole gives its
-// strongest.
+// Moves the selected candidates to the front, rank by rank; of the rank that does not fit completely, the
+// strongest are selected. Returns their number.
 std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t capacity) {
   if (candidates.size() <= capacity) return candidates.size();
-  // Ranks beyond that one need no order.
+  // Ranks after last_rank need no sorting.
   std::array<std::size_t, kKeypointsPerCell> of_rank{};
   for (const Candidate& candidate : candidates) ++of_rank[candidate.rank];
   std::size_t last_rank = 0;
@@ -331,7 +333,8 @@ std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t c
   Candidate* const first = candidates.begin();
   Candidate* const end = std::partition(
       first, candidates.end(), [&](const Candidate& candidate) { return candidate.rank <= last_rank; });
-  // Rank, then strength, then place: a total order, so that the sort's algorithm cannot show.
+  // Orders by rank, then strength, then position. The order is total, so the result does not depend on the
+  // sorting algorithm.
   heap_sort(first, end, [](const Candidate& a, const Candidate& b) {
     if (a.rank != b.rank) return a.rank < b.rank;
     if (a.strength != b.strength) return a.strength > b.strength;
@@ -347,7 +350,7 @@ std::size_t select_best_spread(FixedVector<Candidate>& candidates, std::size_t c
 double corner_strength(GrayView image, int x, int y) {
   constexpr int kRadius = 3;
   constexpr int kSide = 2 * kRadius + 1;
-  constexpr Int16x8 kCounts = {-1, -1, -1, -1, -1, -1, -1, 0};  // of a row of eight the last counts nothing
+  constexpr Int16x8 kCounts = {-1, -1, -1, -1, -1, -1, -1, 0};  // ignores the last of eight columns
   Int32x4 sums[3] = {};
   for (int r = 0; r < kSide; ++r) {
     const std::uint8_t* row = image.data + (y + r - kRadius) * image.stride + x - kRadius;
@@ -370,7 +373,7 @@ double corner_strength(GrayView image, int x, int y) {
   const std::int32_t xx = total(sums[0]);
   const std::int32_t xy = total(sums[1]);
   const std::int32_t yy = total(sums[2]);
-  // Central differences are twice the gradient, hence the 4.
+  // Central differences are twice the gradient, hence the factor 4.
   constexpr double kScale = 1.0 / (4 * kSide * kSide);
   const double half_sum = 0.5 * (xx + yy);
   const double half_difference = 0.5 * (xx - yy);

@@ -12,14 +12,13 @@ namespace {
 
 using Byte = std::uint8_t;
 
-// Everything here is written on bytes, without a branch and without an array: that is what lets compilers
-// turn the loop over a row into vector code.
+// This code works on bytes, without branches or arrays, so that compilers vectorise the loop over a row.
 constexpr Byte least(Byte a, Byte b) { return a < b ? a : b; }
 constexpr Byte most(Byte a, Byte b) { return a > b ? a : b; }
 
-// The best, over all runs of nine on the circle, of the worst within the run. Runs of eight that start at odd
-// places are shared: the nine that start one before and the nine that end one after it differ from it by one
-// pixel, and the better of these two decides.
+// For every run of nine contiguous circle pixels takes the worst value, and returns the best of these. Runs
+// of eight that start at odd positions are shared. Two runs of nine extend such a run, by the pixel before or
+// the pixel after it; the better of these two pixels decides.
 template <Byte (*Worse)(Byte, Byte), Byte (*Better)(Byte, Byte)>
 inline Byte best_run_of_nine(Byte p0, Byte p1, Byte p2, Byte p3, Byte p4, Byte p5, Byte p6, Byte p7, Byte p8,
                              Byte p9, Byte p10, Byte p11, Byte p12, Byte p13, Byte p14, Byte p15) {
@@ -51,14 +50,14 @@ inline Byte best_run_of_nine(Byte p0, Byte p1, Byte p2, Byte p3, Byte p4, Byte p
                 Better(Better(run8, run10), Better(run12, run14)));
 }
 
-// By how much all of one run are brighter than the centre, or darker: differences that stop at zero.
+// How much brighter, or darker, a whole run is than the centre. Differences saturate at zero.
 inline Byte contrast(Byte centre, Byte brightest, Byte darkest) {
   const auto above = static_cast<Byte>(most(brightest, centre) - centre);
   const auto below = static_cast<Byte>(centre - least(darkest, centre));
   return most(above, below);
 }
 
-// Bit after bit around the circle: are nine of them set that follow each other?
+// Returns whether nine contiguous bits of the circle are set.
 bool holds_a_run(std::uint32_t circle) {
   circle |= circle << 16;
   circle &= circle >> 1;
@@ -67,11 +66,13 @@ bool holds_a_run(std::uint32_t circle) {
   return (circle & circle >> 1) != 0;
 }
 
-// The same in loops, a third of the code, of those pixels that pass; the others have at most the floor.
+// Computes the same in loops, with a third of the code, for the pixels that pass. All others get at most the
+// floor.
 void score_passing(const Byte* row, std::ptrdiff_t stride, int width, Byte floor, Byte* scores) {
   constexpr int kCircle = 16, kRun = 9, kAround = kCircle + kRun;
   static constexpr std::int8_t kAcross[kCircle] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
-  std::ptrdiff_t offset[kCircle];  // clockwise from the top: down is across of a quarter of a turn before
+  std::ptrdiff_t
+      offset[kCircle];  // clockwise from the top; the row offset is the column offset a quarter turn earlier
   for (int i = 0; i < kCircle; ++i) offset[i] = kAcross[i] + kAcross[(i + 12) % kCircle] * stride;
   for (int x = 0; x < width; ++x) {
     if (scores[x] <= floor) continue;
@@ -86,7 +87,7 @@ void score_passing(const Byte* row, std::ptrdiff_t stride, int width, Byte floor
     }
     if (!holds_a_run(brighter) && !holds_a_run(darker)) continue;
     for (int i = 0; i < kAround; ++i) circle[i] = low[i] = high[i] = circle[i % kCircle];
-    // The least and the most of two, of four, of eight from there on.
+    // Least and greatest of two, four and eight pixels from i on.
     for (int step = 1; step < kRun - 1; step *= 2)
       for (int i = 0; i + step < kAround; ++i) {
         low[i] = least(low[i], low[i + step]);
@@ -123,8 +124,8 @@ inline __attribute__((always_inline)) void score_pixels(const Byte* row, std::pt
   }
 }
 
-// At most so much: nine contiguous pixels hold one of the top and the bottom, and one of the left and the
-// right.
+// Upper bound of the scores. Nine contiguous pixels contain the top or the bottom pixel, and the left or the
+// right one.
 inline __attribute__((always_inline)) void bound_pixels(const Byte* row, std::ptrdiff_t stride, int width,
                                                         Byte* __restrict bounds) {
   const Byte* up3 = row - 3 * stride;
@@ -150,7 +151,7 @@ inline __attribute__((always_inline)) bool any_above(Byte floor, const Byte* sco
   return set_bytes(above) != 0;
 }
 
-// Only where a pixel may pass, scores.
+// Computes the scores only if a pixel of the block may pass.
 inline __attribute__((always_inline)) void score_block(const Byte* row, std::ptrdiff_t stride, int size,
                                                        Byte floor, Byte* __restrict scores) {
   bound_pixels(row, stride, size, scores);
@@ -166,7 +167,7 @@ inline __attribute__((always_inline)) void score_block(const Byte* row, std::ptr
 void segment_test_row(const std::uint8_t* row, std::ptrdiff_t stride, int width, std::uint8_t floor,
                       std::uint8_t* __restrict scores) {
   int x = 0;
-  // What is compiled for a whole block's size is faster.
+  // Code compiled for the constant size of a whole block is faster.
   if constexpr (!kSimdLoops)
     for (; x + kBlock <= width; x += kBlock) score_block(row + x, stride, kBlock, floor, scores + x);
   for (; x < width; x += kBlock) score_block(row + x, stride, std::min(kBlock, width - x), floor, scores + x);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A keypoint of one pyramid level and what the other frame needs to find it again. The feature set of a frame
-// owns no image: a reference can be kept for as long as one likes at a fixed price.
+// A keypoint of one pyramid level, with the data needed to find it in another frame. The features of a frame
+// do not refer to its image, so a reference can be kept indefinitely at a fixed memory cost.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace plvo {
 
 struct Keypoint {
   float u = 0, v = 0;         // level-0 pixels, sub-pixel
-  std::int16_t x = 0, y = 0;  // the whole pixel of its level that it was found at
+  std::int16_t x = 0, y = 0;  // whole pixel of its level at which it was found
   std::uint8_t level = 0;
   float strength = 0;  // smaller eigenvalue of the mean structure tensor, (grey levels / px)²
 };
@@ -23,20 +23,20 @@ struct Keypoint {
 // 256 comparisons, see descriptor.hpp.
 using Descriptor = std::array<std::uint64_t, 4>;
 
-// Raw pixels around (x, y) on the keypoint's level: what alignment.hpp compares with, and a rim for its
+// Raw pixels around (x, y) on the keypoint's level: the window that alignment.hpp compares, and a rim for its
 // smoothing and its gradients.
 inline constexpr int kPatchRadius = 5;
 inline constexpr int kPatchSide = 2 * kPatchRadius + 1;
 using Patch = std::array<std::uint8_t, kPatchSide * kPatchSide>;
 
-// The part of a patch that is registered, columns −4 … 3 and rows −4 … 4 about its centre, and which of its
-// pixels show the keypoint's own surface: a byte a row, a bit a column (depth_mask.hpp).
+// The registered part of a patch: columns −4 … 3 and rows −4 … 4 around its centre. The mask marks the pixels
+// on the keypoint's own surface: one byte per row, one bit per column (depth_mask.hpp).
 inline constexpr int kWindowReach = 4;
 inline constexpr int kWindowColumns = 2 * kWindowReach;
 inline constexpr int kWindowRows = 2 * kWindowReach + 1;
 using WindowMask = std::array<std::uint8_t, kWindowRows>;
 
-// The point features of one frame: parallel arrays, index = keypoint.
+// The point features of one frame: parallel arrays, indexed by keypoint.
 struct PointFeatures {
   FixedVector<Keypoint> keypoints;
   std::span<Descriptor> descriptors;
@@ -46,7 +46,7 @@ struct PointFeatures {
   bool looked_for = false;
   bool described = false;
 
-  // Not looked for yet: no keypoints, and capacity for at most so many.
+  // Resets to "not detected yet": no keypoints, and at most the given capacity.
   void clear(std::size_t capacity) {
     looked_for = described = false;
     keypoints =

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint16_t kNone = 0xffff;
 
-// Keypoint indices by bucket (counting sort; the order within a bucket is that of the keypoints).
+// Keypoint indices by bucket (counting sort; within a bucket, in the order of the keypoints).
 class Buckets {
  public:
   Buckets(const FixedVector<Keypoint>& keypoints, int width, int height, Arena& scratch)
@@ -22,7 +22,7 @@ class Buckets {
     for (const Keypoint& k : keypoints) ++starts_[bucket(k) + 1];
     for (std::size_t i = 1; i < starts_.size(); ++i)
       starts_[i] = static_cast<std::uint16_t>(starts_[i] + starts_[i - 1]);
-    // Fill from the back, so that the starts end up where they belong.
+    // Fills from the back, which moves every start to its final value.
     for (std::size_t i = keypoints.size(); i-- > 0;)
       order_[--starts_[bucket(keypoints[i]) + 1]] = static_cast<std::uint16_t>(i);
     for (std::size_t b = 0; b + 1 < starts_.size(); ++b) starts_[b] = starts_[b + 1];
@@ -56,7 +56,8 @@ class Buckets {
   std::span<std::uint16_t> starts_;
 };
 
-// Best match of reference keypoint i, or kNone when none is near enough in both senses or a rival is as good.
+// Best match of reference keypoint i. Returns kNone if no keypoint is near enough in position and descriptor,
+// or if the second best is as good.
 BestMatch find_best(const PointFeatures& reference, std::size_t i, const Prediction& prediction,
                     const PointFeatures& current, const Buckets& buckets, const PointMatchConfig& config) {
   const Descriptor& descriptor = reference.descriptors[i];
@@ -71,7 +72,7 @@ BestMatch find_best(const PointFeatures& reference, std::size_t i, const Predict
     const double dv = candidate.v - prediction.v;
     if (du * du + dv * dv > radius_squared) return;
     const int distance = hamming_distance(descriptor, current.descriptors[j]);
-    // Equal distances: the smaller index, whatever the order of the buckets.
+    // For equal distances, takes the smaller index, so the order of the buckets does not matter.
     if (distance < best.distance || (distance == best.distance && j < best.index)) {
       second = best.distance;
       best = {j, static_cast<std::uint16_t>(distance)};
@@ -79,7 +80,7 @@ BestMatch find_best(const PointFeatures& reference, std::size_t i, const Predict
       second = distance;
     }
   });
-  // A rival that is just as good refuses the match even at distance 0, where every ratio holds.
+  // An equally good second match rejects the match, even at distance 0, where every ratio test passes.
   if (best.distance > config.max_distance || best.distance >= second ||
       best.distance > config.max_ratio * second)
     best.index = kNone;
@@ -98,8 +99,8 @@ void match_points(const PointFeatures& reference, std::span<const Prediction> pr
   const std::span<BestMatch> backward = scratch.take<BestMatch>("point match", current.keypoints.size());
   if (forward.size() < reference.keypoints.size() || backward.size() < current.keypoints.size()) return;
 
-  // Mutual: a current keypoint goes to the nearest of the reference keypoints that chose it; first come where
-  // equal.
+  // Mutual matching: a current keypoint is assigned to the nearest of the reference keypoints that chose it;
+  // among equal ones, to the first.
   std::fill(backward.begin(), backward.end(), BestMatch{kNone, 257});
   for (std::size_t i = 0; i < forward.size(); ++i) {
     forward[i] = {kNone, 257};

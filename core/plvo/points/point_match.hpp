@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Putative point matches: nearest neighbour in Hamming distance, near where the motion prediction puts the
-// reference keypoint; mutual, and clearly better than the second best.
+// Putative point matches: nearest neighbours in Hamming distance near the predicted position of the reference
+// keypoint. A match must be mutual and clearly better than the second best.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@
 namespace plvo {
 
 struct PointMatchConfig {
-  double radius_px = 30;    // level-0 pixels around the prediction; a second search, when it fails, is wider
-  int max_distance = 64;    // Hamming, of 256 bits
-  double max_ratio = 0.85;  // best distance / distance of the best one elsewhere
+  double radius_px = 30;  // level-0 pixels around the prediction; if the search fails, a second one is wider
+  int max_distance = 64;  // Hamming, of 256 bits
+  double max_ratio = 0.85;  // best distance / second best distance
 };
 
-// Where a reference keypoint is expected; not visible: outside the image or behind the camera.
+// Predicted position of a reference keypoint. It is not visible if outside the image or behind the camera.
 struct Prediction {
   float u = 0, v = 0;  // level-0 pixels
   bool visible = false;
@@ -30,14 +30,15 @@ struct BestMatch {
   std::uint16_t distance;
 };
 
-// The current keypoints are sorted into square buckets of this side, so that a search touches only a few.
+// Side of the square buckets into which the current keypoints are sorted, so that a search touches only a
+// few.
 inline constexpr int kBucketPx = 32;
 constexpr std::size_t point_match_buckets(int width, int height) {
   return static_cast<std::size_t>((width + kBucketPx - 1) / kBucketPx) *
          static_cast<std::size_t>((height + kBucketPx - 1) / kBucketPx);
 }
 
-// Scratch of match_points for so many keypoints a frame and this image size.
+// Reserves the scratch of match_points for this number of keypoints per frame and this image size.
 constexpr void reserve_point_match(Arena& memory, int keypoints, int width, int height) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(keypoints);
@@ -47,8 +48,8 @@ constexpr void reserve_point_match(Arena& memory, int keypoints, int width, int 
   memory.take<BestMatch>("point match", n);
 }
 
-// predictions: one for each keypoint of the reference. Only keypoints of the same pyramid level are compared.
-// `out` is filled in the order of the reference's keypoints.
+// predictions: one per keypoint of the reference. Only keypoints of the same pyramid level are compared.
+// `out` follows the order of the reference's keypoints.
 void match_points(const PointFeatures& reference, std::span<const Prediction> predictions,
                   const PointFeatures& current, int width, int height, const PointMatchConfig& config,
                   Arena& scratch, FixedVector<Match>& out);

@@ -10,10 +10,11 @@ namespace plvo {
 namespace {
 
 constexpr int kAlignmentReach = kAlignmentSide / 2;
-constexpr double kUnits = 8;  // of a grey level
-// SD of a grey level that no motion explains. A window whose own SD is below it shows nothing.
+constexpr double kUnits = 8;  // units per grey level
+// Standard deviation of the noise of a grey level. A window with a smaller standard deviation has no usable
+// texture.
 constexpr double kGreyNoise = 2;
-// A residual of this share of a window's contrast halves its say.
+// Residual, as a share of the window's contrast, that halves its weight.
 constexpr double kAlike = 0.1;
 constexpr double kLeastGain = 0.3;
 constexpr double kMostGain = 3;
@@ -34,12 +35,12 @@ std::int32_t dot(const Numbers& a, const Numbers& b) {
   return sum;
 }
 
-// Σ a b about the means.
+// Σ a b with the means removed.
 double about_means(const Numbers& a, double sum_a, const Numbers& b, double sum_b) {
   return dot(a, b) - sum_a * sum_b / kAlignmentPixels;
 }
 
-// False for a window that shows nothing.
+// Returns false for a window without texture.
 bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
   constexpr std::int16_t kEighths = static_cast<std::int16_t>(kUnits);
   for (int row = 0; row < kAlignmentSide; ++row) {
@@ -69,7 +70,8 @@ bool make_window(GrayView image, int x, int y, AlignmentWindow& window) {
   return true;
 }
 
-// (x, y): the window's whole pixel, in 1/16 px. Bilinear, in 1/8 of a grey level: no product passes 2^15.
+// (x, y): position of the window's whole pixel, in 1/16 px. Interpolates bilinearly, in 1/8 of a grey level;
+// no product exceeds 2^15.
 void read_window(GrayView image, int x, int y, Numbers& values) {
   constexpr int kOne = 1 << kReadBits;
   const auto fx = static_cast<std::int16_t>(x & (kOne - 1));
@@ -89,7 +91,7 @@ void read_window(GrayView image, int x, int y, Numbers& values) {
   }
 }
 
-// What a window says of where it is: how far it was read from there, and with what weight.
+// The displacement between the values that were read and the window, with its weight.
 struct Displacement {
   Vector2 weighted;  // information · displacement, px of the level
   double weight = 0;
@@ -112,12 +114,12 @@ Displacement displacement(const AlignmentWindow& window, const Numbers& values) 
   return result;
 }
 
-// On a level, px of it.
+// Position on a level, in px of that level.
 Vector2 position(const Keypoint& keypoint, int level) {
   return Vector2(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v)) / (1 << level);
 }
 
-// make(i, window) says whether there is one around keypoint i.
+// make(i, window) returns whether keypoint i has a window.
 template <typename Make>
 std::span<AlignmentWindow> cut(const PointFeatures& features, std::span<AlignmentWindow> capacity,
                                const Make& make) {
@@ -196,7 +198,8 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     const Displacement found = displacement(window, values);
     if (found.agrees) ++step.agreeing;
     if (!(found.weight > 0)) continue;
-    // From where it is expected, on the image: what was read lies `weighted` beyond the window, on the grid.
+    // Desired shift from the expected position, times the information: the offset of the grid position minus
+    // the displacement measured there.
     const Vector2 grid = Vector2(x, y) / kGrid - expected;
     const Vector2 wanted = window.information * grid - found.weighted;
     const Matrix<2, 3> D = scale * project_derivative(pinhole, q);
@@ -207,7 +210,8 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     H += J.transpose().lazyProduct(weighted);
     g += found.weight * (J.transpose() * wanted);
   }
-  // Nothing can be told from a few; and what they leave open stays as it was predicted.
+  // A few windows do not determine the motion. In directions that the windows leave open, the damping keeps
+  // the prediction.
   constexpr int kLeastSeenWindows = 6;
   constexpr double kDamping = 1e-6;
   for (int k = 0; k < 6; ++k) H(k, k) *= 1 + kDamping;

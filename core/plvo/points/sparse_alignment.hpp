@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sparse image alignment: the motion that takes small windows of one frame's image to where they are in
-// another's, all of them at once (Forster, Pizzoli, Scaramuzza, "SVO: Fast semi-direct monocular visual
-// odometry", ICRA 2014, section IV.A). One window alone finds its way over a pixel or two; a hundred that
-// move as one rigid scene find it over many. First on a coarse level of the pyramid, for the motion may be
-// predicted badly, then on the keypoints' own. Each window has a gain and an offset of its own, since the
-// light on one place may change while that on another does not. The result says where to register the
-// features (alignment.hpp) and is no measurement itself.
+// Sparse image alignment: estimates the motion that maps small windows of one image to another, all windows
+// at once (Forster, Pizzoli, Scaramuzza, "SVO: Fast semi-direct monocular visual odometry", ICRA 2014,
+// section IV.A). A single window converges from a distance of a pixel or two; a hundred windows that move as
+// one rigid scene converge from many pixels. Alignment starts on a coarse pyramid level, because the
+// predicted motion may be poor, and continues on the keypoints' own levels. Each window has its own gain and
+// offset, because the illumination may change locally. The result predicts where to register the features
+// (alignment.hpp); it is not a measurement itself.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@
 
 namespace plvo {
 
-// Columns and rows −4 … 3 about a whole pixel next to a keypoint.
+// Columns and rows −4 … 3 around a whole pixel at the keypoint.
 inline constexpr int kAlignmentSide = 8;
 inline constexpr int kAlignmentPixels = kAlignmentSide * kAlignmentSide;
 inline constexpr std::size_t kMostAlignmentWindows = 128;
-// A step is trusted when so many windows, three or so for each of the motion's parameters, look as they did;
-// and when most do: what the others show has gone or was never where it seemed to be.
+// A step is trusted if this many windows agree, about three per motion parameter, and if most of the visible
+// windows agree. The scene of the others has changed, or their position was wrong.
 inline constexpr int kLeastAgreeingWindows = 20;
 inline constexpr double kLeastAgreeingShare = 0.5;
 
@@ -36,16 +36,17 @@ struct AlignmentWindow {
   std::array<std::int16_t, kAlignmentPixels> value, gx, gy;
   int level;
   double sum_value, sum_gx, sum_gy;
-  // With gain and offset eliminated: the information about the position, and what the gain takes of it.
+  // With gain and offset eliminated: the information matrix of the position, and the correlation of gradients
+  // and grey levels, which is the part that the gain takes.
   Matrix2 information;
   Vector2 with_gain;
   double contrast;       // Σ (value − mean)²
-  Vector2 centre;        // the keypoint relative to the whole pixel, px of the level
+  Vector2 centre;        // keypoint relative to the whole pixel, px of the level
   std::size_t keypoint;  // index
 };
 
-// What a step found: windows inside the image, those of them that look as they did, and the step itself
-// (m and rad, the largest component).
+// Result of one step: the number of windows inside the image, the number of those that agree with their
+// appearance in the reference, and the largest component of the step (m or rad).
 struct AlignmentStep {
   int seen = 0;
   int agreeing = 0;
@@ -67,12 +68,13 @@ class SparseAlignment {
     return memory.take<AlignmentWindow>("alignment windows", kMostAlignmentWindows);
   }
 
-  // The image that windows are cut from, until the next call: of the frame with this stamp.
+  // Copies the image of the frame with this stamp. Windows are cut from it until the next call.
   void keep(const Pyramid& pyramid, std::int64_t stamp_ns);
   bool holds(std::int64_t stamp_ns) const { return image_.data != nullptr && stamp_ns == stamp_ns_; }
 
-  // Windows around keypoints of that frame, evenly as many of them as there is capacity for: of that image,
-  // or of the keypoints' patches. Those that lie at the border or show nothing are left out.
+  // Cuts windows around the keypoints of that frame, or around every n-th if they exceed the capacity:
+  // cut_coarse from the kept image, cut_fine from the keypoints' patches. Windows at the border or without
+  // texture are left out.
   std::span<AlignmentWindow> cut_coarse(const PointFeatures& features,
                                         std::span<AlignmentWindow> capacity) const;
   static std::span<AlignmentWindow> cut_fine(const PointFeatures& features,
@@ -85,8 +87,9 @@ class SparseAlignment {
   std::int64_t stamp_ns_ = 0;
 };
 
-// One Gauss–Newton step of T_current_reference, which is replaced. points: of the keypoints, at the
-// reference's mid-exposure. False, and T is untouched, when the windows that are seen do not determine it.
+// One Gauss–Newton step. Replaces T_current_reference by the improved motion. points: those of the keypoints,
+// at the reference's mid-exposure. Returns false and leaves T unchanged if the visible windows do not
+// determine it.
 bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3d> points,
                 const Pinhole& pinhole, const Exposure& exposure, const Pyramid& pyramid,
                 Se3& T_current_reference, AlignmentStep& step);

@@ -16,16 +16,16 @@ constexpr int kStride = 3;  // px
 constexpr int kReadings = kPlaneSide * kPlaneSide;
 constexpr int kSumOfSquares =
     kPlaneReach * (kPlaneReach + 1) * kPlaneSide / 3;  // of −kPlaneReach … kPlaneReach
-// Fewer of them than this show an edge or a hole.
+// With fewer readings, the window contains an edge or a hole.
 constexpr int kLeastReadings = 45;
-// SD of the readings from the plane, at most so many σ_d: real and rendered noise is half of one.
+// Limit of the readings' standard deviation from the plane, in σ_d. Real and rendered noise is half of it.
 constexpr double kMaxRms = 1;
-// Of the ray times the normal, for a ray with z = 1.
+// Limit of the ray (with z = 1) times the normal.
 constexpr double kLeastSteepness = 0.15;
 
-constexpr int kPlanePairs = (kPlaneSide + 1) / 2;  // of a row; the last holds one reading
+constexpr int kPlanePairs = (kPlaneSide + 1) / 2;  // pairs in a row; the last one holds a single reading
 
-// What a window reads, row by row, in the image's own units; 0: none.
+// Readings of a window, row by row, in the image's units; 0: no depth.
 struct PlaneReadings {
   std::array<std::array<std::uint16_t, 2 * kPlanePairs>, kPlaneSide> units;
   int missing = 0;
@@ -48,8 +48,8 @@ void read_plane(const DepthSampler& depth, const DepthSampler::Place& place, Pla
   }
 }
 
-// The sums that the plane of the readings takes; x and y in strides from the middle. Inverse depths are
-// counted from that of the first reading.
+// Sums for the plane fit. x and y are in strides from the middle. Inverse depths are relative to `from`, that
+// of the first reading.
 struct PlaneSums {
   int n, x, y, xx, xy, yy;
   double from, q, qx, qy, qq;
@@ -70,7 +70,7 @@ void leave_out_missing(const PlaneReadings& window, PlaneSums& s) {
     }
 }
 
-// At least one reading is there.
+// At least one reading must have depth.
 PlaneSums add_up(const PlaneReadings& window) {
   PlaneSums s = {kReadings, 0, 0, kPlaneSide * kSumOfSquares, 0, kPlaneSide * kSumOfSquares, 0, 0, 0, 0, 0};
   if (window.missing > 0) leave_out_missing(window, s);
@@ -78,7 +78,7 @@ PlaneSums add_up(const PlaneReadings& window) {
     const int reading = window.units[i / kPlaneSide][i % kPlaneSide];
     if (reading > 0) s.from = 1.0 / reading;
   }
-  // Down the columns, two side by side.
+  // Sums down the columns, two columns in parallel.
   for (int pair = 0; pair < kPlanePairs; ++pair) {
     const auto left = static_cast<std::size_t>(2 * pair);
     Pair q{}, qy{}, qq{};
@@ -98,10 +98,10 @@ PlaneSums add_up(const PlaneReadings& window) {
   return s;
 }
 
-// q(x, y) = q0 + slope_x x + slope_y y, least squares.
+// q(x, y) = q0 + slope_x x + slope_y y, by least squares.
 struct InversePlane {
   double q0, slope_x, slope_y;
-  double sum_xx;            // of x² about the mean
+  double sum_xx;            // Σ x² about the mean
   double residual_squared;  // mean
 };
 
@@ -141,7 +141,7 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   InversePlane plane;
   if (kReadings - window.missing < kLeastReadings || !fit(add_up(window), plane)) return false;
 
-  // In 1/m, by the pixel of the raw image.
+  // Slope in 1/m per pixel of the raw image.
   const double per_m = 1 / depth.metres_per_unit();
   const Vector2 raw_slope(plane.slope_x * (per_m / kStride), plane.slope_y * (per_m / kStride));
   const double q = plane.q0 * per_m + raw_slope.dot(place.beside);
@@ -151,7 +151,7 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   const double sigma_q = sigma_d * q * q;
   const double most = kMaxRms * depth.metres_per_unit() * sigma_q;
   if (!(plane.residual_squared <= most * most)) return false;
-  // By the pixel of the image without a lens.
+  // Slope per pixel of the undistorted image.
   const double slope_x = raw_slope.dot(place.map.step_px({1, 0}));
   const double slope_y = raw_slope.dot(place.map.step_px({0, 1}));
   const Vector3 m(slope_x * pinhole.fx, slope_y * pinhole.fy,

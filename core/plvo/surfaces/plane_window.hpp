@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sample of a surface: a plane through 7×7 readings of the depth image, every third pixel. In inverse
-// depth a plane of the world is one over the image, 1/Z = m · (x, y, 1), and m is its normal over its
+// A surface sample: a plane fitted to 7×7 readings of the depth image, every third pixel. In inverse depth, a
+// plane in the world is a plane over the image: 1/Z = m · (x, y, 1), where m is its normal divided by its
 // distance.
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace plvo {
 
-// The surface that colour pixel (u, v), inside the image, shows. False where nearly all of the window must
-// have depth and does not, where it is no plane within the noise (an edge, a curve), or is seen at less than
-// about 9°. noise_scale: of the variances, over σ_d² of (2). expected_m: as DepthSampler::locate takes it.
-// depth_row, when asked for: where it was read.
+// Observes the surface at colour pixel (u, v), which must be inside the image. Returns false unless
+// nearly all readings of the window have depth and fit a plane within the noise (no edge, no curve), and the
+// surface is seen at more than about 9°. noise_scale: factor of the variances over σ_d² of (2).
+// expected_m: as in DepthSampler::locate. depth_row, if given, receives the row of the depth image that was
+// read.
 bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u, double v,
                      double noise_scale, SurfaceSample& sample, double expected_m = DepthSampler::kUnknown,
                      double* depth_row = nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a frame's surfaces, from depth alone: what a bare wall shows where there is neither a point nor
-// a line. A sample says where its surface is along the surface's normal, and nothing else.
+// Samples of a frame's surfaces, from depth alone. They constrain the motion at bare walls without points or
+// lines. A sample measures the position of its surface along the normal, and nothing else.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 namespace plvo {
 
 struct SurfaceSample {
-  Vector3 p = Vector3::Zero();       // camera frame, at the time of colour's row, m
+  Vector3 p = Vector3::Zero();       // camera frame, at the exposure time of its colour row, m
   Vector3 normal = Vector3::Zero();  // unit, towards the camera
-  double variance = 0;               // of p along the normal, m²
-  double normal_variance = 0;        // of the normal, in any direction across it, rad²
+  double variance = 0;               // variance of p along the normal, m²
+  double normal_variance = 0;        // variance of the normal, in any direction across it, rad²
 };
 
 struct SurfaceFeatures {

@@ -10,7 +10,7 @@
 namespace plvo {
 namespace {
 
-constexpr int kBins = 7;  // of x and of y of the normal, each
+constexpr int kBins = 7;  // for each of x and y of the normal
 constexpr auto kAllBins = static_cast<std::size_t>(kBins * kBins);
 
 std::size_t bin_of(const Vector3& normal) {
@@ -21,15 +21,15 @@ std::size_t bin_of(const Vector3& normal) {
   return bin(normal.y()) * kBins + bin(normal.x());
 }
 
-// In an order that prefers no part of the image.
+// Shuffles the samples, so that their order favours no part of the image.
 void shuffle(FixedVector<SurfaceSample>& samples) {
   Random random;
   for (std::size_t i = samples.size(); i > 1; --i)
     std::swap(samples[i - 1], samples[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-// The first of every bin, then the second of every bin, … turns: how many of its bin come before each,
-// scratch.
+// Takes the first sample of every bin, then the second of every bin, and so on. turns: scratch; receives the
+// number of earlier samples in the same bin.
 void take_in_turns(const FixedVector<SurfaceSample>& from, std::span<std::uint16_t> turns,
                    FixedVector<SurfaceSample>& to) {
   std::array<std::uint16_t, kAllBins> seen{};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses a frame's samples of its surfaces. Of a grid over the image, where there is a plane; when these are
-// more than there is room for, as many from each direction that surfaces face as from any other, as far as
-// there are (normal-space sampling: Rusinkiewicz & Levoy, "Efficient variants of the ICP algorithm", 2001):
-// a small piece of floor holds what a large wall leaves open.
+// Selects the surface samples of a frame. Candidates are the positions of a grid over the image where there
+// is a plane. If there are more candidates than capacity, the selection takes equal numbers from all
+// directions of the normal, as far as available (normal-space sampling: Rusinkiewicz & Levoy, "Efficient
+// variants of the ICP algorithm", 2001). A small patch of floor constrains what a large wall leaves open.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@
 
 namespace plvo {
 
-// Of the whole image, width × height. Scratch: see below.
+// Samples the whole image, width × height, and fills features up to its capacity. Scratch: see
+// reserve_surface_sampling.
 void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int width, int height,
                      double noise_scale, Arena& scratch, SurfaceFeatures& features);
 

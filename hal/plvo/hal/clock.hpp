@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time for whoever must wait or measure. The core itself reads no clock: its results depend on the frames
-// alone.
+// Time for waiting and measuring. The core itself reads no clock; its results depend only on the frames.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@ class Clock {
   virtual void sleep_until_ns(std::int64_t monotonic_ns) = 0;
 
  protected:
-  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  // Never deleted through the interface: a virtual destructor would require operator delete on every board.
   ~Clock() = default;
 };
 

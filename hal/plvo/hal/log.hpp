@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where messages go. The text is borrowed for the call only.
+// Receives messages. The text is valid only during the call.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class Log {
   virtual void write(LogLevel level, std::string_view message) = 0;
 
  protected:
-  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  // Never deleted through the interface: a virtual destructor would require operator delete on every board.
   ~Log() = default;
 };
 

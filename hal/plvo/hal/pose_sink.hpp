@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where poses go: a file, a socket, a robot's message bus.
+// Receives poses and writes them to a file, a socket or a robot's message bus.
 #pragma once
 
 #include "plvo/base/status.hpp"
@@ -9,13 +9,13 @@ namespace plvo {
 
 class PoseSink {
  public:
-  // Called once a frame, lost ones included, on the thread of the odometry: must not wait for whoever reads.
-  // What is not ok ends the output (a full disk), not the odometry; a reader that merely cannot keep up is
-  // not an error.
+  // Called once per frame, including lost ones, on the thread of the odometry. It must not wait for a reader.
+  // A status that is not ok (a full disk) ends the output, but not the odometry. A slow reader is not an
+  // error.
   virtual Status write(const TrackResult& result) = 0;
 
  protected:
-  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  // Never deleted through the interface: a virtual destructor would require operator delete on every board.
   ~PoseSink() = default;
 };
 

@@ -8,7 +8,7 @@
 
 namespace plvo {
 
-// Whether a camera can be asked again after its next() has come to this.
+// Returns whether next() may be called again after it has returned this code.
 constexpr bool goes_on_after(StatusCode code) {
   return code == StatusCode::kOk || code == StatusCode::kDamaged || code == StatusCode::kTimeout ||
          code == StatusCode::kUnplugged;
@@ -16,20 +16,20 @@ constexpr bool goes_on_after(StatusCode code) {
 
 class RgbdCamera {
  public:
-  // The calibration that the frames of this camera obey, as known after the camera was opened.
+  // The calibration of this camera's frames, as known once the camera is open.
   virtual CameraModel model() const = 0;
 
-  // Waits for the next frame. The views in `frame` stay valid until the next call. What else may come back:
-  //   kDamaged      this frame is lost (the message says why); the next call goes on after it
-  //   kTimeout      nothing came in the camera's time limit; call again
-  //   kUnplugged    the device is gone; call again to wait for it to come back
-  //   kEndOfStream  nothing more will come
-  //   anything else the camera cannot go on
-  // Stamps of frames that come back ok are strictly increasing.
+  // Waits for the next frame. The views in `frame` stay valid until the next call. Other results:
+  //   kDamaged      this frame is lost (the message says why); the next call continues after it
+  //   kTimeout      no frame came within the camera's time limit; call again
+  //   kUnplugged    the device was disconnected; call again to wait for it to come back
+  //   kEndOfStream  no further frames will come
+  //   anything else the camera cannot continue
+  // Stamps of frames that are returned with kOk are strictly increasing.
   virtual Status next(RgbdFrame& frame) = 0;
 
  protected:
-  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  // Never deleted through the interface: a virtual destructor would require operator delete on every board.
   ~RgbdCamera() = default;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second core for the odometry. Without one it does one thing after the other; its results are the same
-// bits.
+// A second core for the odometry. Without it, the tasks run in sequence; the results are bit-identical.
 #pragma once
 
 #include "plvo/base/executor.hpp"
@@ -9,18 +8,18 @@ namespace plvo {
 
 class TaskPair {
  public:
-  // Does both and returns when both are done, `here` on the calling thread. Called by one thread at a time,
-  // several times a frame.
+  // Runs both tasks, `here` on the calling thread, and returns when both are done. It is called by one thread
+  // at a time, several times per frame.
   virtual void run(Task here, Task beside) = 0;
 
-  // For Config::executor; the pair must live as long as the odometry that it is given to.
+  // The value for Config::executor. The pair must outlive the odometry that uses it.
   Executor executor() {
     return {[](void* pair, Task here, Task beside) { static_cast<TaskPair*>(pair)->run(here, beside); },
             this};
   }
 
  protected:
-  // Never deleted through the interface: a virtual destructor would ask every board for operator delete.
+  // Never deleted through the interface: a virtual destructor would require operator delete on every board.
   ~TaskPair() = default;
 };
 

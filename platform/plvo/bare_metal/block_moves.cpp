@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The five functions of the C library that any compiler may call, on a machine that has no C library.
-// Compiled so that their loops are not recognised as calls of themselves.
+// The five functions of the C library that a compiler may call implicitly, for machines without a C library.
+// This file is compiled such that the compiler does not replace their loops by calls of the same functions.
 #include <cstddef>
 #include <cstdint>
 
@@ -29,7 +29,7 @@ void* memcpy(void* to, const void* from, std::size_t count) {
 void* memmove(void* to, const void* from, std::size_t count) {
   auto* out = static_cast<unsigned char*>(to);
   const auto* in = static_cast<const unsigned char*>(from);
-  if (out <= in) return memcpy(to, from, count);  // which copies upwards
+  if (out <= in) return memcpy(to, from, count);  // memcpy copies upwards
   while (count-- > 0) out[count] = in[count];
   return to;
 }

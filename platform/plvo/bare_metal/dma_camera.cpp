@@ -14,7 +14,8 @@ DmaCamera::DmaCamera(const CameraModel& model, const DmaLayout& layout,
 
 void DmaCamera::on_frame_complete(std::int64_t stamp_ns) {
   stamps_ns_[writing_] = stamp_ns;
-  // The release makes stamp and pixels visible before the number; what comes back is free to be written.
+  // The release order makes stamp and pixels visible before the buffer's number. The returned buffer is free
+  // for writing.
   const auto number = static_cast<std::uint8_t>(writing_ | kFresh);
   writing_ = complete_.exchange(number, std::memory_order_acq_rel) & 3;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the symbols of a linked program for a board: nothing of a heap, of exceptions, of run-time types, of text output, of
-a mathematics library or of an operating system may be in it. linked_symbols.py PROGRAM [--nm NM] [--expect NAME…]"""
+"""Checks the symbols of a linked program for a board: it must not contain code for a heap, exceptions, run-time types, text
+output, a mathematics library or an operating system. Usage: linked_symbols.py PROGRAM [--nm NM] [--expect NAME…]"""
 import argparse
 import re
 import subprocess

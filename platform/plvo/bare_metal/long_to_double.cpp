@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the compiler calls to make a double of a 64-bit integer. Its own library has it in one piece with the
-// sums of processors without floating point, ten times as long. Exact but for the one rounding of the sum, as
-// there.
+// The functions that the compiler calls to convert a 64-bit integer to double. The compiler's own library
+// links them together with the software addition for processors without floating point, which is ten times as
+// large. The result is exact except for one rounding of the sum, as in that library.
 #include <cstdint>
 
 extern "C" {

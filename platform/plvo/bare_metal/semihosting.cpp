@@ -4,7 +4,7 @@
 namespace plvo::bare_metal {
 namespace {
 
-// The operations of the specification that are used here.
+// The used operations of the specification.
 enum Operation : std::uint32_t {
   kOpen = 0x01,
   kClose = 0x02,
@@ -13,7 +13,7 @@ enum Operation : std::uint32_t {
   kExitExtended = 0x20
 };
 constexpr std::uint32_t kOpenBinary = 1;     // fopen's "rb"
-constexpr std::uint32_t kOpenTextWrite = 4;  // fopen's "w"; of ":tt": the standard output
+constexpr std::uint32_t kOpenTextWrite = 4;  // fopen's "w"; with the name ":tt" the standard output
 constexpr std::uint32_t kApplicationExit = 0x20026;
 
 std::int32_t call(Operation operation, const std::uint32_t* block) {
@@ -56,7 +56,7 @@ bool HostFile::read(std::span<std::byte> bytes) {
   if (!ok()) return false;
   const std::uint32_t block[] = {static_cast<std::uint32_t>(handle_), address(bytes.data()),
                                  static_cast<std::uint32_t>(bytes.size())};
-  return call(kRead, block) == 0;  // the number of bytes that were not read
+  return call(kRead, block) == 0;  // the result is the number of bytes not read
 }
 
 void exit(int code) {

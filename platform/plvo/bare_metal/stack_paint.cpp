@@ -11,14 +11,14 @@ namespace plvo::bare_metal {
 namespace {
 
 constexpr std::uint32_t kPaint = 0xa5c3f00d;
-// Left alone above the painter's own frame.
+// Bytes that are not painted, next to paint_stack's own frame.
 constexpr std::size_t kMargin = 64;
 
 }  // namespace
 
 [[gnu::noinline]] void paint_stack() {
   std::uint32_t* const here = static_cast<std::uint32_t*>(__builtin_frame_address(0));
-  // volatile: the compiler may not make this a call of memset, whose frame would lie in what is painted.
+  // volatile keeps the compiler from calling memset, whose frame would lie in the painted area.
   for (volatile std::uint32_t* word = plvo_stack_bottom; word < here - kMargin / sizeof *word; ++word)
     *word = kPaint;
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How deep the stack has been: painted at the start, read when asked. The bytes that still carry the paint
-// were never used.
+// Measures the stack usage. The stack is filled with a pattern at the start; bytes that still contain it were
+// never used.
 #pragma once
 
 #include <cstddef>
 
 namespace plvo::bare_metal {
 
-// From the stack's end up to here; whatever was used before counts as unused.
+// Paints from the stack's end up to the caller; bytes used before this call count as unused.
 void paint_stack();
 
 // Bytes from the stack's top down to the lowest one that was written since it was painted.
@@ -16,7 +16,7 @@ std::size_t deepest_stack_bytes();
 // Bytes from the stack's top down to the caller.
 std::size_t current_stack_bytes();
 
-// The whole of it, as the linker script has it.
+// Size of the whole stack, from the linker script.
 std::size_t stack_bytes();
 
 }  // namespace plvo::bare_metal

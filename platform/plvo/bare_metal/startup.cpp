@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From reset to main() on a Cortex-M7: floating point on, variables set, the stack painted, and a way out.
-// There is no heap and nothing to destroy.
+// Startup code from reset to main() on a Cortex-M7: enables floating point, initialises variables, paints the
+// stack, and exits after main(). There is no heap, and no objects are destroyed.
 #include <cstddef>
 #include <cstdint>
 
@@ -9,7 +9,7 @@
 
 extern "C" {
 
-// From the linker script.
+// Defined in the linker script.
 extern std::uint32_t plvo_data_load[], plvo_data_begin[], plvo_data_end[];
 extern std::uint32_t plvo_bss_begin[], plvo_bss_end[];
 extern std::uint32_t plvo_stack_top[];
@@ -19,7 +19,7 @@ extern void (*plvo_init_array_end[])();
 int main();
 
 [[noreturn]] void plvo_start() {
-  // Full access to the floating-point unit (coprocessors 10 and 11), before any instruction of its own.
+  // Enables full access to the floating-point unit (coprocessors 10 and 11) before its first instruction.
   *reinterpret_cast<volatile std::uint32_t*>(0xe000ed88) |= 0xfU << 20;
   asm volatile("dsb\n isb" ::: "memory");
   for (std::uint32_t *to = plvo_data_begin, *from = plvo_data_load; to != plvo_data_end; ++to, ++from)
@@ -32,18 +32,18 @@ int main();
 
 [[noreturn]] void plvo_reset() { plvo_start(); }
 
-// Any exception of the processor: an access that no memory answers, an instruction that it does not know.
+// Handles all processor exceptions, e.g. an access to unmapped memory or an undefined instruction.
 [[noreturn]] void plvo_fault() {
   plvo::bare_metal::write_text("stopped by a fault of the processor\n");
   plvo::bare_metal::exit(3);
 }
 
-// The system timer's interrupt; systick_clock.cpp has one for who uses that clock.
+// The system timer's interrupt; systick_clock.cpp overrides it in programs that use that clock.
 [[gnu::weak]] void plvo_systick() { plvo_fault(); }
 
-// A pure virtual function that is called is a mistake of the program's.
+// A call of a pure virtual function is a programming error.
 [[noreturn]] void __cxa_pure_virtual() { plvo_fault(); }
-// Named by the tables for unwinding that the compiler's own library brings and the linker script leaves out.
+// Referenced by the unwinding tables of the compiler's own library, which the linker script discards.
 void __aeabi_unwind_cpp_pr0() {}
 
 }  // extern "C"

@@ -18,12 +18,12 @@ volatile std::uint32_t milliseconds_high = 0;
 SystickClock::SystickClock(std::uint32_t processor_hz) : ticks_per_ms_(processor_hz / 1000) {
   reg(kReload) = ticks_per_ms_ - 1;
   reg(kCurrent) = 0;
-  reg(kControl) = 7;  // the processor's clock, with interrupts, running
+  reg(kControl) = 7;  // processor clock, interrupts enabled, running
 }
 
 std::int64_t SystickClock::monotonic_ns() const {
   std::uint32_t high = 0, low = 0, left = 0;
-  do {  // again when an interrupt came between
+  do {  // repeats if an interrupt occurred in between
     high = milliseconds_high;
     low = milliseconds_low;
     left = reg(kCurrent);
@@ -40,7 +40,7 @@ void SystickClock::sleep_until_ns(std::int64_t wake_ns) {
 
 }  // namespace plvo::bare_metal
 
-// The interrupt: named in the vector table of startup.cpp.
+// The interrupt handler, referenced by the vector table of startup.cpp.
 extern "C" void plvo_systick() {
   using namespace plvo::bare_metal;
   const std::uint32_t next = milliseconds_low + 1;

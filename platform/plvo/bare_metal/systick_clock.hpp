@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Clock on the SysTick timer that every Cortex-M has: a thousand interrupts a second, and what the timer
-// counts between them. One object at a time.
+// A Clock on the SysTick timer of the Cortex-M: it counts 1000 interrupts per second and reads the timer
+// between them. Only one object may exist at a time.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace plvo::bare_metal {
 
 class SystickClock final : public Clock {
  public:
-  // processor_hz: what the timer counts, 1 kHz … 16 GHz; starts it.
+  // Starts the timer. processor_hz: frequency of the timer, 1 kHz … 16 GHz.
   explicit SystickClock(std::uint32_t processor_hz);
 
   std::int64_t monotonic_ns() const override;

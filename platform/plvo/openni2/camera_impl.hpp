@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What OpenNi2Camera is made of. Internal to this room.
+// Implementation of OpenNi2Camera. Internal to this module.
 #pragma once
 
 #include <array>
@@ -35,9 +35,9 @@ struct OpenNi2Camera::Impl {
   void log(LogLevel level, const Status& status) const;
 
   OpenNi2Options options;
-  std::shared_ptr<OpenNi2Runtime> runtime;  // null for a recording, which another process plays
+  std::shared_ptr<OpenNi2Runtime> runtime;  // null for a recording, which another process reads
   std::unique_ptr<ImageDevice> device;      // null while unplugged
-  OpenNi2Device* sensor = nullptr;          // the device, where it is one in this process
+  OpenNi2Device* sensor = nullptr;          // the device, if it is opened in this process
   OpenNi2DeviceInfo info;
   CameraModel model;
   FramePairer pairer;
@@ -52,7 +52,7 @@ struct OpenNi2Camera::Impl {
   double metres_per_unit = 0.001;
   bool warp = false;
   bool unplugged = false;
-  bool after_gap = false;  // frames lost while unplugged are not counted as missing
+  bool after_gap = false;  // frames lost while the device is unplugged do not count as missing
   std::array<int, 2> last_index = {-1, -1};
   std::array<bool, 2> seen_in_call{};
 };

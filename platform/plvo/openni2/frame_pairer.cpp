@@ -47,7 +47,7 @@ std::span<std::uint8_t> FramePairer::next_buffer(Stream stream) {
     if (queue.count == kSlots) drop_oldest(queue);
     std::size_t index = 0;
     while (queue.used[index])
-      ++index;  // kSlots may wait and one may be lent at most: one of kBuffers is free
+      ++index;  // at most kSlots buffers wait and one is lent, so one of kBuffers is free
     queue.used[index] = true;
     queue.filling = index;
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour and depth joined by time. Each stream writes into its own fixed buffers; the oldest colour and the
-// oldest depth whose stamps differ by no more than the tolerance are a pair. With a tolerance of half a frame
-// at most (the caller sees to that) no later image can fit better, so nothing waits for one. An image that
-// can find no partner any more is counted and its buffer used again. Memory is taken in reset() and never
-// after.
+// Pairs colour and depth images by their stamps. Each stream writes into its own fixed buffers. The oldest
+// colour image and the oldest depth image whose stamps differ by no more than the tolerance form a pair. The
+// caller must set a tolerance of at most half a frame; then no later image can fit better, and no pair has to
+// wait for one. An image that can no longer be paired is counted and its buffer is reused. Memory is
+// allocated only in reset().
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace plvo {
 
 class FramePairer {
  public:
-  // How late one stream may run behind the other: kSlots - 1 frames (230 ms at 30 Hz).
+  // One stream may lag behind the other by kSlots - 1 frames (230 ms at 30 Hz).
   static constexpr std::size_t kSlots = 8;
   enum Stream : std::uint8_t { kColour = 0, kDepth = 1 };
 
@@ -30,26 +30,26 @@ class FramePairer {
 
   void reset(std::size_t colour_bytes, std::size_t depth_bytes, std::int64_t tolerance_us);
 
-  // Forgets what is waiting (after a replug); what was lent stays valid until release().
+  // Discards the waiting images (after a replug); a lent pair stays valid until release().
   void clear();
 
-  // The buffer that the next image of a stream goes into; commit() puts it in the queue. Where no buffer is
-  // free, the oldest waiting image of that stream gives its own up and is counted as unmatched.
+  // Returns the buffer for the next image of a stream; commit() puts it into the queue. If no buffer is free,
+  // the oldest waiting image of that stream is discarded and counted as unmatched.
   std::span<std::uint8_t> next_buffer(Stream stream);
   void commit(Stream stream, std::int64_t stamp_us);
 
-  // The next pair, lent until release(). False when there is none yet.
+  // Takes the next pair, lent until release(). Returns false if there is none yet.
   bool take(Pair& pair);
   void release();
 
   std::uint64_t unmatched(Stream stream) const { return queues_[stream].unmatched; }
   std::size_t waiting(Stream stream) const { return queues_[stream].count; }
-  // By how much the last image without a partner missed the nearest image of the other stream; 0: none did
-  // yet.
+  // Time between the last unmatched image and the nearest image of the other stream; 0 if every image was
+  // matched.
   std::int64_t last_miss_us() const { return last_miss_us_; }
 
  private:
-  // One more buffer than may wait: the one that is lent.
+  // One buffer more than the waiting ones: the lent buffer.
   static constexpr std::size_t kBuffers = kSlots + 1;
   static constexpr std::size_t kNone = kBuffers;
   struct Queue {

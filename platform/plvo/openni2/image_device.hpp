@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where OpenNi2Camera gets its images from: a sensor in this process, or a recording that another process
-// plays. Internal to this room.
+// Image source of OpenNi2Camera: a sensor in this process, or a recording that another process reads.
+// Internal to this module.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct StreamFormat {
   int width = 0, height = 0, fps = 0;
   ImageFormat format = ImageFormat::kRgb888;
   double fov_x_rad = 0, fov_y_rad = 0;
-  bool mirrored = false;  // the driver would not turn it off: rows are turned round when copied
+  bool mirrored = false;  // the driver cannot disable mirroring: rows are reversed when copied
 
   std::size_t row_bytes() const { return static_cast<std::size_t>(width) * bytes_per_pixel(format); }
   std::size_t image_bytes() const { return row_bytes() * static_cast<std::size_t>(height); }
@@ -30,10 +30,10 @@ struct StreamFormat {
 
 struct DeviceImage {
   FramePairer::Stream stream = FramePairer::kColour;
-  int index = 0;  // the device's count of this stream's images
+  int index = 0;  // the device's frame index of this stream
   int width = 0, height = 0;
   std::int64_t stamp_us = 0;
-  const std::uint8_t* data = nullptr;  // null: not of the stream's size and format, or not whole
+  const std::uint8_t* data = nullptr;  // null: incomplete, or not of the stream's size and format
   std::ptrdiff_t stride_bytes = 0;
 };
 
@@ -42,13 +42,13 @@ class ImageDevice {
   enum class Wait : std::uint8_t {
     kImage,
     kTimeout,
-    kError,   // nothing for the moment: gone() or a later call says more
-    kBroken,  // it cannot go on: failure() says why
+    kError,   // temporary failure: gone() or a later call gives the reason
+    kBroken,  // permanent failure: failure() gives the reason
   };
   virtual ~ImageDevice() = default;
 
   virtual Status start() = 0;
-  // The image is lent until the next call.
+  // The image is valid until the next call.
   virtual Wait wait(int timeout_ms, DeviceImage& image) = 0;
   virtual Status failure() const { return {}; }
 

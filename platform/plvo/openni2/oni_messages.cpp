@@ -12,7 +12,7 @@
 namespace plvo {
 namespace {
 
-// Both ends are the same program on the same machine: numbers go as they lie in memory.
+// Both ends are the same program on the same machine, so numbers are sent in their memory representation.
 enum Kind : std::uint32_t { kHello = 1, kImage = 2, kEnd = 3, kFailure = 4 };
 constexpr std::uint32_t kMark = 0x504c564f;
 
@@ -20,7 +20,7 @@ struct Head {
   std::uint32_t mark, kind, body_bytes, stream;
   std::int32_t width, height;
   std::int64_t stamp_us;
-  std::uint64_t code;  // of a failure
+  std::uint64_t code;  // status code of a failure
 };
 static_assert(sizeof(Head) == OniMessageReader::kHeadBytes && std::is_trivially_copyable_v<Head>);
 
@@ -37,7 +37,8 @@ struct Hello {
 };
 static_assert(std::is_trivially_copyable_v<Hello>);
 
-constexpr std::int64_t kLongest_us = 1'000'000'000'000'000;  // 31 years: no arithmetic on stamps can overflow
+constexpr std::int64_t kLongest_us =
+    1'000'000'000'000'000;  // 31 years; keeps arithmetic on stamps from overflowing
 constexpr std::size_t kMaxFailureBytes = Status::kCapacity;
 
 std::vector<std::uint8_t> message(const Head& head, const void* body = nullptr) {
@@ -60,7 +61,7 @@ void put(std::array<char, 256>& to, const std::string& text) {
   std::copy_n(text.begin(), std::min(text.size(), to.size() - 1), to.begin());
 }
 
-// Up to the first zero, without what a terminal would take for commands.
+// The text up to the first zero byte, without terminal control characters.
 std::string text_of(const char* begin, std::size_t size) {
   std::string text(begin, std::find(begin, begin + size, '\0'));
   std::replace_if(
@@ -79,7 +80,7 @@ bool from_wire(const WireFormat& wire, bool colour, StreamFormat& f) {
   return true;
 }
 
-// What opening and playing a file can come to; anything else is no answer.
+// True for a status that opening or playing a file can return. Any other code is invalid.
 bool is_failure(std::uint64_t code) {
   constexpr std::array kCodes = {StatusCode::kNotFound,    StatusCode::kPermission,     StatusCode::kBusy,
                                  StatusCode::kDamaged,     StatusCode::kUnsupported,    StatusCode::kIo,
@@ -177,7 +178,7 @@ OniMessageReader::Message OniMessageReader::begin_image() {
   image_.width = head.width;
   image_.height = head.height;
   image_.stamp_us = head.stamp_us;
-  // A stamp that no recording reaches is a damage of this image.
+  // An image with a stamp out of range is damaged.
   const bool usable_stamp = head.stamp_us >= 0 && head.stamp_us <= kLongest_us;
   if (!usable_stamp) image_.stamp_us = 0;
   if (head.body_bytes == 0) return Message::kImage;

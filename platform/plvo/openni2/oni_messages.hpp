@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the process that plays an .oni file says to the one that asked for it, over a socket: once what the
-// recording is, then image after image, then how it ended. The reader believes nothing: the player works on a
-// file that may be damaged on purpose, so whatever it sends is checked against limits before it is used or
-// allocated. Internal to this room.
+// Messages from the process that plays an .oni file to its parent, over a socket: one description of the
+// recording, then the images, then the final result. The reader does not trust the sender: the file may be
+// maliciously damaged, so every value is checked against limits before it is used or memory is allocated.
+// Internal to this module.
 #pragma once
 
 #include <cstddef>
@@ -22,27 +22,27 @@ struct OniRecording {
   int frames = 0;  // pairs
 };
 
-// Bytes of messages, to be written to the socket one after the other.
+// The bytes of each message, to be written to the socket in sequence.
 std::vector<std::uint8_t> oni_hello(const OniRecording& recording);
-// An image whose data is null has no pixels after its head.
+// If the image's data is null, no pixels follow the head.
 std::vector<std::uint8_t> oni_image_head(const DeviceImage& image);
 std::vector<std::uint8_t> oni_end();
 std::vector<std::uint8_t> oni_failure(const Status& status);
 
-// Puts messages together from bytes that come as they like. Memory: the two images' sizes, known (and
-// bounded) from the first message on.
+// Assembles messages from bytes that arrive in blocks of any size. Memory: the sizes of the two images, known
+// (and bounded) after the first message.
 class OniMessageReader {
  public:
   enum class Message : std::uint8_t {
     kPartial,  // more bytes are needed
     kHello,    // recording() is known
-    kImage,    // image(): until the next call
-    kEnd,      // the recording is over
-    kFailure,  // failure(): what the player said
-    kInvalid,  // not what a player says: failure() names it, and nothing more can be read
+    kImage,    // image() is valid until the next call
+    kEnd,      // end of the recording
+    kFailure,  // failure() is the player's status
+    kInvalid,  // not a valid message: failure() describes it, and reading cannot continue
   };
 
-  // Where the next bytes go: never empty. Then advance() by as many as came.
+  // The memory for the next bytes, never empty. Call advance() with the number of bytes received.
   std::span<std::uint8_t> space();
   Message advance(std::size_t bytes);
 
@@ -51,8 +51,8 @@ class OniMessageReader {
   const Status& failure() const { return failure_; }
 
  private:
-  Message begin();     // a head is complete
-  Message complete();  // a body is complete
+  Message begin();     // called when a head is complete
+  Message complete();  // called when a body is complete
   Message read_hello();
   Message begin_image();
   Message read_failure();
@@ -60,8 +60,8 @@ class OniMessageReader {
 
   std::vector<std::uint8_t> head_ = std::vector<std::uint8_t>(kHeadBytes);
   std::vector<std::uint8_t> body_;
-  std::size_t filled_ = 0;  // of the head, or of the body once in_body_
-  std::size_t wanted_ = 0;  // of the body
+  std::size_t filled_ = 0;  // bytes of the head received, or of the body if in_body_
+  std::size_t wanted_ = 0;  // size of the body
   bool in_body_ = false;
   bool over_ = false;
   std::optional<OniRecording> recording_;

@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A process whose socket is closed is about to end, or up to something.
+// Time limit for the end of a process that has closed its socket.
 constexpr std::chrono::milliseconds kLastMoments(5000);
 
 Status check_file(const std::string& path) {
@@ -53,7 +53,7 @@ Status OniPlayer::open(const std::string& path, const std::string& program,
       case OniMessageReader::Message::kHello: return {};
       case OniMessageReader::Message::kPartial:
         if (!closed_by_child_ && Clock::now() < last_heard_ + patience_) continue;
-        // Nothing was read yet: it is the file that is wrong.
+        // No image was read yet, so the file itself is invalid.
         failure_ = closed_by_child_
                        ? obituary()
                        : Status(StatusCode::kIo, "OpenNI2 does not come to an end with ").append(path);
@@ -75,13 +75,14 @@ Status OniPlayer::spawn(const std::string& path, const std::string& program) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_adddup2(&files, sockets[1], STDIN_FILENO);
-  // OpenNI2 and the C library's last words about a damaged file are said better here.
+  // The output of OpenNI2 and of the C library about a damaged file is discarded; the Status replaces it.
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
 #if defined(__GLIBC__) && __GLIBC_PREREQ(2, 34)
   posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
 #endif
-  // A process group of its own: Ctrl-C is for this program, which then ends the child in order.
+  // The child has its own process group, so Ctrl-C reaches only this program, which then ends the child
+  // properly.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none, all;
@@ -114,7 +115,8 @@ Status OniPlayer::spawn(const std::string& path, const std::string& program) {
       .append(std::strerror(error));
 }
 
-// One message, or kPartial when there is none by the deadline, or none any more (closed_by_child_).
+// Receives one message. Returns kPartial if none arrives by the deadline or the child closed the socket
+// (closed_by_child_).
 OniMessageReader::Message OniPlayer::receive(Clock::time_point deadline) {
   for (;;) {
     const std::span<std::uint8_t> space = reader_.space();
@@ -153,7 +155,7 @@ ImageDevice::Wait OniPlayer::wait(int timeout_ms, DeviceImage& image) {
         return Wait::kTimeout;
       }
       return Wait::kBroken;
-    case OniMessageReader::Message::kHello: break;  // the reader takes only one
+    case OniMessageReader::Message::kHello: break;  // the reader accepts only one
     case OniMessageReader::Message::kFailure:
     case OniMessageReader::Message::kInvalid: break_off(reader_.failure()); break;
   }
@@ -161,12 +163,12 @@ ImageDevice::Wait OniPlayer::wait(int timeout_ms, DeviceImage& image) {
 }
 
 void OniPlayer::break_off(const Status& failure) {
-  // Never kDamaged, after which a caller goes on: there will be nothing more.
+  // Never kDamaged, because a caller continues after kDamaged, but no more images follow.
   failure_ =
       Status(failure.code() == StatusCode::kDamaged ? StatusCode::kIo : failure.code(), failure.message());
 }
 
-// How the child ended.
+// Waits for the end of the child and returns its cause.
 Status OniPlayer::obituary() {
   int how = 0;
   pid_t ended = 0;

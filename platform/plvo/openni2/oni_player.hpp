@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An .oni recording played by a child process, as a device. The child is this program once more (or the one
-// named), started with nothing open but a socket; when it crashes, hangs or says what no player says, that is
-// a Status here. Internal to this room; oni_player_process.cpp is the child's side.
+// A device that plays an .oni recording in a child process. The child is another instance of this program (or
+// the named program), started with only a socket open. If it crashes, hangs or sends an invalid message, this
+// class returns a Status. Internal to this module; oni_player_process.cpp is the child's side.
 #pragma once
 
 #include <sys/types.h>
@@ -14,8 +14,8 @@
 
 namespace plvo {
 
-// How the child knows what it is: argv[0], and a variable that keeps a program without play_oni_if_asked()
-// from starting itself again and again.
+// Mark the child process: its argv[0], and an environment variable that keeps a program without
+// play_oni_if_asked() from starting itself recursively.
 inline constexpr const char* kOniPlayerName = "plvo-oni-player";
 inline constexpr const char* kOniPlayerVariable = "PLVO_ONI_PLAYER";
 
@@ -26,9 +26,9 @@ class OniPlayer final : public ImageDevice {
   OniPlayer(const OniPlayer&) = delete;
   OniPlayer& operator=(const OniPlayer&) = delete;
 
-  // program: empty for this one. patience: how long it may be silent before it counts as hanging. kNotFound,
-  // kInvalidArgument (not a regular file), kDamaged (also where the reader crashes on it), or what opening
-  // the recording came to in the child.
+  // program: empty for this program. patience: longest silence before the child counts as hanging. Returns
+  // kNotFound, kInvalidArgument (not a regular file), kDamaged (also if the reader crashes on the file), or
+  // the child's error on opening the recording.
   Status open(const std::string& path, const std::string& program, std::chrono::milliseconds patience);
   void close();
 

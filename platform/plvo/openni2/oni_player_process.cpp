@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child's side of OniPlayer: opens the recording with OpenNI2 and sends what it finds. Here the damaged
-// file does its damage, so the process takes little with it: one socket, no files to write, bounded memory.
+// The child's side of OniPlayer: opens the recording with OpenNI2 and sends its images. A damaged file can
+// crash this process, so the process has few resources: one socket, no files to write, bounded memory.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kSocket = STDIN_FILENO;
 constexpr int kSlice_ms = 20;
-constexpr int kSilence_ms = 10000;  // OpenNI2 reads a file: where nothing comes for so long, nothing will
+constexpr int kSilence_ms = 10000;  // OpenNI2 reads a file; after so long a silence no more images will come
 
 void limit(int resource, rlim_t most) {
   const rlimit value{most, most};
@@ -33,13 +33,13 @@ void limit(int resource, rlim_t most) {
 void limit_self() {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which map terabytes
-  limit(RLIMIT_DATA, kMostReaderBytes);  // what it may write to, not what malloc keeps addresses for
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers map terabytes
+  limit(RLIMIT_DATA, kMostReaderBytes);  // the writable memory, not the addresses that malloc reserves
 #endif
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
 }
 
-// Ends the process where the one that asked is gone, also while OpenNI2 turns in circles.
+// Ends the process if its parent is gone, even while OpenNI2 is in an endless loop.
 void end_with_parent() {
   std::thread([] {
     char byte = 0;
@@ -54,12 +54,12 @@ void send(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(kSocket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) ::_exit(1);  // nobody listens any more
+    if (sent <= 0) ::_exit(1);  // the parent has closed the socket
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
   }
 }
 
-// Rows without gaps.
+// Sends an image with its rows without gaps.
 void send(const DeviceImage& image, const StreamFormat& format) {
   send(oni_image_head(image));
   if (image.data == nullptr) return;
@@ -79,7 +79,7 @@ void play(const char* path) {
   if (status.ok()) status = device.start();
   if (!status.ok()) {
     send(oni_failure(status));
-    ::_exit(0);  // nothing is cleaned up in what a damaged file may have damaged
+    ::_exit(0);  // no cleanup: a damaged file may have corrupted the memory
   }
   send(oni_hello({device.colour_format(), device.depth_format(), device.info(), device.recorded_frames()}));
   for (int silent_ms = 0; silent_ms < kSilence_ms;) {

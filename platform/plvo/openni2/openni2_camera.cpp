@@ -16,14 +16,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long one wait in OpenNI2 may last: an unplug is noticed within this time.
+// Longest single wait in OpenNI2; an unplug is noticed within this time.
 constexpr int kWaitSlice_ms = 20;
 
 std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
-// Copies rows, turned round where the driver would not switch mirroring off.
+// Copies rows, reversed if the driver cannot disable mirroring.
 template <std::size_t pixel_bytes>
 void copy_rows(const DeviceImage& from, std::uint8_t* to, bool mirrored) {
   const std::uint8_t* source = from.data;
@@ -161,7 +161,7 @@ Status OpenNi2Camera::Impl::choose_model(const StreamFormat& colour) {
   model.width = colour.width;
   model.height = colour.height;
   model.pinhole = pinhole_from_fov(colour.width, colour.height, colour.fov_x_rad, colour.fov_y_rad);
-  const bool kinect = info.uri.rfind("freenect://", 0) == 0;  // our driver serves nothing else
+  const bool kinect = info.uri.rfind("freenect://", 0) == 0;  // our driver supports only Kinects
   model.readout_s = options.readout_s.value_or(kinect ? kKinectReadout_s : 0);
   Status warning(StatusCode::kInvalidArgument,
                  "no calibration given: intrinsics guessed from the field of view (fx ");
@@ -201,7 +201,7 @@ Status OpenNi2Camera::Impl::next(RgbdFrame& frame) {
         if (device->at_end()) return {StatusCode::kEndOfStream, "the recording is over"};
         break;
       case ImageDevice::Wait::kError:
-        // OpenNI2 refuses for a moment while a device goes away: its event follows.
+        // OpenNI2 returns errors while a device is being removed; the event follows.
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         break;
       case ImageDevice::Wait::kBroken: return device->failure();
@@ -232,7 +232,7 @@ Status OpenNi2Camera::Impl::take(const DeviceImage& image) {
   }
 
   const StampTracker::Result stamp = tracker.map(stream, image.stamp_us, now_us());
-  // One event of the device's clock is seen on both streams: count it on one.
+  // A step of the device's clock appears on both streams; it is counted on one.
   if (is_colour && stamp.step == StampTracker::Step::kWrap) ++counters.clock_wraps;
   if (is_colour && stamp.step == StampTracker::Step::kJump) {
     ++counters.clock_jumps;
@@ -246,7 +246,7 @@ Status OpenNi2Camera::Impl::take(const DeviceImage& image) {
 void OpenNi2Camera::Impl::count_dropped(FramePairer::Stream stream, int index) {
   int& last = last_index[stream];
   const int lost = index - last - 1;
-  // A recording is delivered whole; a counter that restarts says nothing about loss.
+  // A recording is delivered completely; a counter that restarts does not indicate a loss.
   if (last >= 0 && lost > 0 && !device->is_file()) {
     (stream == FramePairer::kColour ? counters.dropped_colour : counters.dropped_depth) +=
         static_cast<std::uint64_t>(lost);
@@ -262,7 +262,7 @@ void OpenNi2Camera::Impl::deliver(const FramePairer::Pair& pair, RgbdFrame& fram
   frame.depth_stamp_ns = pair.depth.stamp_us * 1000;
   frame.colour = {pair.colour.bytes.data(), width, height, static_cast<std::ptrdiff_t>(width) * (rgb ? 3 : 1),
                   rgb ? PixelFormat::kRgb8 : PixelFormat::kGray8};
-  // The buffers start on the allocator's boundary and depth images have even sizes, so the cast is aligned.
+  // The buffers have the allocator's alignment and depth images have even sizes, so the cast is aligned.
   const auto* depth = reinterpret_cast<const std::uint16_t*>(pair.depth.bytes.data());
   if (warp) {
     registration.warp(depth, registered.data());
@@ -313,7 +313,7 @@ Status OpenNi2Camera::Impl::lose() {
   return status;
 }
 
-// The device at the URI that was asked for or, where a new plug gives a new URI, of the same make.
+// Finds the device at the requested URI or, if it has a new URI at another port, one of the same make.
 bool OpenNi2Camera::Impl::find_again(std::string& uri) const {
   openni::Array<openni::DeviceInfo> infos;
   openni::OpenNI::enumerateDevices(&infos);
@@ -352,7 +352,7 @@ Status OpenNi2Camera::Impl::replug(Clock::time_point deadline) {
         log(LogLevel::kInfo, Status(StatusCode::kOk, info.name).append(" is back"));
         return {};
       }
-      // A device just plugged in may not be ready, or udev has not set its permissions yet: try again.
+      // A device just plugged in may not be ready, or udev may not have set its permissions yet; try again.
       status = Status(StatusCode::kUnplugged, "it is back but does not open yet: ").append(opened.message());
     }
     if (Clock::now() >= deadline) return status;

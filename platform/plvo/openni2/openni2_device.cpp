@@ -18,7 +18,7 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-// What OpenNI2 and its drivers say, as one line.
+// The error text of OpenNI2 and its drivers as one line.
 std::string extended_error() {
   std::string line;
   std::istringstream words(openni::OpenNI::getExtendedError());
@@ -26,7 +26,7 @@ std::string extended_error() {
   return line;
 }
 
-// OpenNI2 knows one error code for almost everything; the driver's words say more.
+// OpenNI2 has one error code for almost all errors; the driver's text is more specific.
 Status open_error(const std::string& uri) {
   const std::string text = extended_error();
   if (uri.empty() && contains(text, "no devices found")) {
@@ -66,7 +66,7 @@ Status mode_error(openni::SensorType sensor, const OpenNi2Options& options,
   return status;
 }
 
-// The mode asked for, in the first of two pixel formats that the stream has.
+// Finds the requested mode in the first of two pixel formats that the stream supports.
 bool find_mode(const openni::Array<openni::VideoMode>& modes, const OpenNi2Options& options,
                openni::PixelFormat first, openni::PixelFormat second, openni::VideoMode& found) {
   for (const openni::PixelFormat format : {first, second}) {
@@ -82,7 +82,7 @@ bool find_mode(const openni::Array<openni::VideoMode>& modes, const OpenNi2Optio
   return false;
 }
 
-// False for a format that plvo does not read from such a stream.
+// Returns false for a format that plvo does not support on this stream.
 bool to_format(openni::SensorType sensor, openni::PixelFormat from, ImageFormat& format) {
   const bool colour = sensor == openni::SENSOR_COLOR;
   if (colour && from == openni::PIXEL_FORMAT_RGB888) {
@@ -116,7 +116,8 @@ Status OpenNi2Runtime::acquire(std::shared_ptr<OpenNi2Runtime>& runtime) {
 }
 
 OpenNi2Runtime::~OpenNi2Runtime() {
-  // OpenNI2 counts its own initialisations: another runtime that starts meanwhile only raises the count.
+  // OpenNI2 counts its initialisations, so another runtime that starts concurrently only increments the
+  // count.
   openni::OpenNI::shutdown();
 }
 
@@ -130,7 +131,7 @@ Status OpenNi2Device::open(const std::string& uri, const OpenNi2Options& options
   if (uri.ends_with(".oni") && !std::filesystem::exists(uri)) {
     return Status(StatusCode::kNotFound, "there is no file ").append(uri);
   }
-  // Listen first: a device that goes away while it is being opened must not be missed.
+  // The listeners are added first, so that the removal of a device during open() is not missed.
   openni::OpenNI::addDeviceDisconnectedListener(this);
   openni::OpenNI::addDeviceStateChangedListener(this);
   listening_ = true;
@@ -152,15 +153,14 @@ Status OpenNi2Device::open(const std::string& uri, const OpenNi2Options& options
     return Status(StatusCode::kUnsupported, "colour and depth differ in size in ").append(info_.uri);
   }
   if (is_file_) {
-    // Manual playback: a record is delivered when it is asked for, so none is lost however slow the reader
-    // is.
+    // Manual playback delivers records on request, so a slow reader loses none.
     openni::PlaybackControl* playback = device_.getPlaybackControl();
     if (playback != nullptr) {
       playback->setSpeed(-1.0f);
       playback->setRepeatEnabled(false);
     }
   } else {
-    // OpenNI2's own synchronisation pairs by frame index and withholds what it cannot pair; we pair by stamp.
+    // OpenNI2's own synchronisation pairs by frame index and withholds unpaired images; plvo pairs by stamp.
     device_.setDepthColorSyncEnabled(false);
   }
   set_registration(options);
@@ -188,7 +188,7 @@ Status OpenNi2Device::create_stream(openni::VideoStream& stream, openni::SensorT
     openni::VideoMode mode;
     const openni::Array<openni::VideoMode>& modes = stream.getSensorInfo().getSupportedVideoModes();
     if (!find_mode(modes, options, first, second, mode)) return mode_error(sensor, options, modes);
-    // Set even when it is the default: PS1080 sensors start in 320x240.
+    // The mode is set even if it is the default, because PS1080 sensors start in 320x240.
     if (stream.setVideoMode(mode) != openni::STATUS_OK) return mode_error(sensor, options, modes);
     stream.setMirroringEnabled(false);
     if (stream.isCroppingSupported()) stream.resetCropping();
@@ -238,7 +238,7 @@ OpenNi2Device::Wait OpenNi2Device::wait(int timeout_ms, DeviceImage& image) {
   if (status == openni::STATUS_TIME_OUT) return Wait::kTimeout;
   if (status != openni::STATUS_OK) return Wait::kError;
   const bool is_colour = ready == 0;
-  // Where it cannot be read it has just gone away: an event follows.
+  // If the frame cannot be read, the device was just removed; an event follows.
   if (streams[ready]->readFrame(&lent_) != openni::STATUS_OK || !lent_.isValid()) return Wait::kError;
   const StreamFormat& format = is_colour ? colour_format_ : depth_format_;
   image = {};
@@ -275,7 +275,7 @@ void OpenNi2Device::close() {
   const bool streams = colour_.isValid() || depth_.isValid();
   if (colour_.isValid()) colour_.stop();
   if (depth_.isValid()) depth_.stop();
-  // Some drivers (OpenNI2's own Dummy) do not join their thread in stop(): let it run out.
+  // Some drivers (OpenNI2's own Dummy) do not join their thread in stop(); this wait lets it finish.
   if (streams && !is_file_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   colour_.destroy();
   depth_.destroy();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One OpenNI2 device with its colour and its depth stream, opened in the one order that no known driver trips
-// over (the depth stream exists before registration is asked for; libfreenect's driver crashes otherwise).
-// Internal to this room: the only header here that includes OpenNI.h.
+// One OpenNI2 device with its colour and depth streams. They are opened in an order that all known drivers
+// support: the depth stream is created before registration is requested, since libfreenect's driver crashes
+// otherwise. Internal to this module; the only header here that includes OpenNI.h.
 #pragma once
 
 #include <OpenNI.h>
@@ -17,7 +17,7 @@
 
 namespace plvo {
 
-// OpenNI2 is initialised while one of these lives. Holding it twice is fine.
+// OpenNI2 is initialised while an object of this class exists. Several may exist.
 class OpenNi2Runtime {
  public:
   ~OpenNi2Runtime();
@@ -41,7 +41,7 @@ class OpenNi2Device final : public ImageDevice,
   void close();
 
   Wait wait(int timeout_ms, DeviceImage& image) override;
-  // For the recorder.
+  // Used by the recorder.
   openni::VideoStream& colour() { return colour_; }
   openni::VideoStream& depth() { return depth_; }
   const StreamFormat& colour_format() const override { return colour_format_; }
@@ -67,7 +67,7 @@ class OpenNi2Device final : public ImageDevice,
   openni::VideoFrameRef lent_;
   StreamFormat colour_format_;
   StreamFormat depth_format_;
-  OpenNi2DeviceInfo info_;  // written in open() under mutex_, for the listeners read it from other threads
+  OpenNi2DeviceInfo info_;  // written in open() under mutex_, because the listeners read it on other threads
   std::mutex mutex_;
   bool is_file_ = false;
   bool registered_ = false;

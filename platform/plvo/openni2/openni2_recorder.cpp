@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Enough for what OpenNI2 still holds in memory, and for the index that it writes last.
+// Reserve for the data that OpenNI2 still holds in memory and for the index that it writes last.
 constexpr std::uintmax_t kReserve_bytes = 64u << 20;
 
 // Bytes that may still be added to the file; the most there are where that is not known.
@@ -65,7 +65,7 @@ Status OpenNi2Recorder::start(OpenNi2Camera& camera, const std::string& path) {
   auto impl = std::make_unique<Impl>();
   impl->camera = &source;
   impl->path = path;
-  // Lossless: lossy compression would change what the odometry sees.
+  // Lossless, because lossy compression would change the input of the odometry.
   if (impl->recorder.create(path.c_str()) != openni::STATUS_OK ||
       impl->recorder.attach(source.sensor->depth(), false) != openni::STATUS_OK ||
       impl->recorder.attach(source.sensor->colour(), false) != openni::STATUS_OK ||

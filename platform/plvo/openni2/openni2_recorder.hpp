@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records what an open OpenNi2Camera receives into an .oni file. OpenNI2 writes on its own threads as images
-// arrive, read or not. Two things the format loses: each stream's stamps start at zero (the offset between
-// colour and depth is gone, less than a frame), and whether depth was registered (it is, unless the camera
-// was opened otherwise).
+// Records what an open OpenNi2Camera receives into an .oni file. OpenNI2 writes all images on its own threads
+// as they arrive, whether they are read or not. The format loses two facts: the offset between colour and
+// depth (less than a frame), because each stream's stamps start at zero, and whether depth is registered (it
+// is, unless the camera was opened otherwise).
 #pragma once
 
 #include <memory>
@@ -21,13 +21,13 @@ class OpenNi2Recorder {
   OpenNi2Recorder(const OpenNi2Recorder&) = delete;
   OpenNi2Recorder& operator=(const OpenNi2Recorder&) = delete;
 
-  // path ends in .oni (it is replaced if it exists). The camera must stay open while recording: closing it,
-  // or an unplug, ends the recording with a valid file. kUnsupported while a camera registers in software
-  // (the file would hold the unregistered depth), kIo when the folder cannot be written to.
+  // path must end in .oni; an existing file is replaced. The camera must stay open while recording: closing
+  // or unplugging it ends the recording with a valid file. Returns kUnsupported if the camera registers in
+  // software (the file would contain the unregistered depth), and kIo if the folder is not writable.
   Status start(OpenNi2Camera& camera, const std::string& path);
 
-  // Call now and then: kIo, after having ended the recording with a valid file, when the disk is about to be
-  // full (OpenNI2 itself does not notice and would leave a file that cannot be opened).
+  // To be called regularly. If the disk is almost full, ends the recording with a valid file and returns kIo
+  // (OpenNI2 itself does not notice and would leave a file that cannot be opened).
   Status check();
 
   // Ends the recording; the file is complete when this returns.

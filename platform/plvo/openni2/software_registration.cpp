@@ -43,7 +43,8 @@ void SoftwareRegistration::warp(const std::uint16_t* depth, std::uint16_t* regis
       const double x = x_[static_cast<std::size_t>(u)] - kBaseline_m / (d * metres_per_unit_);
       Vector2 px(colour_.pinhole.fx * x + colour_.pinhole.cx,
                  colour_.pinhole.fy * y_[static_cast<std::size_t>(v)] + colour_.pinhole.cy);
-      // Far outside, the lens polynomial may fold back in: only what the pinhole sees nearby is imaged.
+      // Far outside the image the lens polynomial may fold back into it, so only points near the image of the
+      // pinhole are used.
       if (!(px.x() > -width && px.x() < 2 * width && px.y() > -height && px.y() < 2 * height)) continue;
       if (lens) px = distort_pixel(colour_, px);
       if (!(px.x() >= -0.5 && px.x() < width - 0.5 && px.y() >= -0.5 && px.y() < height - 0.5)) continue;

@@ -7,8 +7,8 @@
 namespace plvo {
 namespace {
 
-// How far a stamp may lie from where the host's clock expects it: buffering in the driver and a busy machine
-// delay whole frames, a clock that was set or wrapped is off by far more.
+// Largest difference between a stamp and the value expected from the host's clock. Buffering in the driver
+// and a busy machine delay whole frames; a clock that was set or wrapped differs by far more.
 constexpr std::int64_t kSlack_us = 2000000;
 
 }  // namespace
@@ -34,7 +34,8 @@ StampTracker::Result StampTracker::map(int stream_index, std::int64_t raw_us, st
   Result result;
 
   if (!stream.seen) {
-    // The first stamp of all: as the device says, or as the other stream reads the same clock by now.
+    // The first stamp of this stream: the device's value plus the offset of the other stream, if that is
+    // known.
     stream.offset_us = other.seen ? other.offset_us : 0;
     result.stamp_us = raw_us + stream.offset_us;
   } else {
@@ -45,12 +46,12 @@ StampTracker::Result StampTracker::map(int stream_index, std::int64_t raw_us, st
     result.stamp_us = as_before_us;
 
     if (stream.fresh || as_before_us <= stream.last_us || leaps) {
-      const bool other_knows =
+      const bool other_plausible =
           !other.fresh && plausible(raw_us + other.offset_us, expected_us, stream.last_us);
       if (plausible(as_before_us + kKinectWrap_us, expected_us, stream.last_us)) {
         result = {as_before_us + kKinectWrap_us, Step::kWrap};
       } else {
-        result = {other_knows ? raw_us + other.offset_us : expected_us, Step::kJump};
+        result = {other_plausible ? raw_us + other.offset_us : expected_us, Step::kJump};
       }
       if (stream.fresh) result.step = Step::kForward;
       stream.offset_us = result.stamp_us - raw_us;

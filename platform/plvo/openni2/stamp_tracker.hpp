@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera's clock made fit for use: strictly increasing microseconds per stream, whatever the device's
-// counter does. The Kinect v1 counts 60 MHz ticks in 32 bits and wraps every 71.58 s; drivers restart at zero
-// after a replug; a sensor that resets jumps back. Both streams of a device share one clock: when one has
-// been seen to step, the other is mapped with the same offset as soon as it makes the same step, so colour
-// and depth stay comparable.
+// Converts a camera's stamps to strictly increasing microseconds per stream, whatever the device's counter
+// does. The Kinect v1 counts 60 MHz ticks in 32 bits and wraps every 71.58 s; drivers restart at zero after a
+// replug; a sensor that resets jumps back. Both streams of a device share one clock. If one stream has made a
+// step, the other is mapped with the same offset as soon as it makes the same step, so colour and depth stay
+// comparable.
 #pragma once
 
 #include <array>
@@ -21,11 +21,12 @@ class StampTracker {
   static constexpr int kStreams = 2;
   static constexpr std::int64_t kKinectWrap_us = 71582788;  // 2^32 / 60 MHz
 
-  // period_us: from one frame to the next. live: the host's clock says how much time really went by, so a
-  // leap forward is seen as well; for a recording it says nothing and leaps forward are taken at their word.
+  // period_us: frame period. live: the host's clock measures the elapsed time, so forward steps are detected
+  // as well. For a recording it gives no information, and forward steps are accepted.
   void reset(std::int64_t period_us, bool live);
 
-  // After a replug or a restart: the next stamp of each stream may be anything and is no fault.
+  // To be called after a replug or a restart: the next stamp of each stream may have any value and does not
+  // count as a step.
   void restart();
 
   // raw_us: the driver's stamp; now_us: the host's monotonic clock at arrival. stream: 0 or 1.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three floats: a point, a direction or a linear colour. The renderer traces millions of rays, also in debug
-// builds, where a matrix library's expression templates would cost ten times as much as these plain
+// builds. There the expression templates of a matrix library would take ten times as long as these plain
 // functions.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers that are a function of where they are asked for (a pixel, a lattice node), not of the order
-// of asking: that is what makes a picture independent of the number of threads. The integer hash is the PCG
-// member recommended by Jarzynski & Olano, "Hash Functions for GPU Rendering", JCGT 2020.
+// Random numbers as a function of position (a pixel, a lattice node), not of the order of calls. An image
+// therefore does not depend on the number of threads. The integer hash is the PCG variant recommended by
+// Jarzynski & Olano, "Hash Functions for GPU Rendering", JCGT 2020.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ constexpr float gaussian(std::uint32_t a, std::uint32_t b) {
 }
 constexpr float gaussian(std::uint32_t h) { return gaussian(h, hash(h ^ 0x9e3779b9U)); }
 
-// Smooth noise in [−1, 1] over the plane: hashed values on the integer lattice, cubic interpolation.
+// Smooth noise in [−1, 1] over the plane: hashed values on the integer lattice with cubic interpolation.
 inline float value_noise(float x, float y, std::uint32_t seed) {
   const float floor_x = static_cast<float>(static_cast<int>(x) - (x < 0 ? 1 : 0));
   const float floor_y = static_cast<float>(static_cast<int>(y) - (y < 0 ? 1 : 0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of an image shared out among threads, in bands, to whoever is free. The work must not depend on who
-// does it.
+// Distributes bands of image rows over threads; each free thread takes the next band. The result of the work
+// must not depend on the thread.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace plvo::sim {
 
-constexpr int kThreadRows = 16;  // rows a thread takes at a time
+constexpr int kThreadRows = 16;  // rows that a thread takes at a time
 
-// Calls work(begin, end) for bands of at most `band` rows that cover 0 … rows−1 once.
+// Calls work(begin, end) for bands of at most `band` rows; the bands cover 0 … rows−1 exactly once.
 template <typename Work>
 void for_rows(int threads, int rows, int band, const Work& work) {
   std::atomic<int> next{0};
@@ -26,7 +26,7 @@ void for_rows(int threads, int rows, int band, const Work& work) {
     try {
       helpers.emplace_back(run);
     } catch (const std::system_error&) {
-      break;  // the machine has no thread to spare: the ones there are do the work
+      break;  // no further thread is available: the existing ones do the work
     }
   }
   run();

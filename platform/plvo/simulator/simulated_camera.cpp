@@ -23,7 +23,7 @@ std::int64_t since_start_us(int frame, double fps) {
   return static_cast<std::int64_t>(frame * 1e6 / fps + 0.5);
 }
 
-// Is each pixel's depth taken at the moment of its colour?
+// True if the depth and the colour of each pixel are exposed at the same time.
 bool with_colour(const SimulatorOptions& options) {
   const DepthSchedule& timing = options.depth_schedule;
   return timing.delay_s == 0 && timing.stamp_offset_s == 0 &&
@@ -48,7 +48,7 @@ struct SimulatedCamera::Parts {
     if (!with_colour(chosen)) depth_caster.emplace(*scene, chosen.camera, chosen.threads);
   }
 
-  // T_world_camera of each row, where `middle` is that at middle_s, the moment of the middle row.
+  // T_world_camera of each row. `middle` is the pose at middle_s, the time of the middle row.
   std::vector<Se3> row_poses(double middle_s, const Se3& middle, double readout_s) const {
     const int height = options.camera.height;
     std::vector<Se3> poses(static_cast<std::size_t>(height), middle);
@@ -57,7 +57,7 @@ struct SimulatedCamera::Parts {
     return poses;
   }
 
-  // What the depth camera meets in its own time.
+  // Hits of the depth camera at its own exposure time.
   ImageView<const sim::PixelHit> depth_hits(int frame) {
     if (!depth_caster) return renderer.hits();
     const DepthSchedule& timing = options.depth_schedule;
@@ -68,7 +68,7 @@ struct SimulatedCamera::Parts {
     return depth_caster->hits();
   }
 
-  // What a covered lens sees; made when it is first.
+  // Black image of a covered lens, allocated on first use.
   const std::uint8_t* black() {
     black_pixels.resize(exact.size() * 3);
     return black_pixels.data();
@@ -85,7 +85,7 @@ struct SimulatedCamera::Parts {
   sim::Renderer renderer;
   sim::Film film;
   sim::DepthClock clock;
-  std::optional<sim::RayCaster> depth_caster;  // none: depth is taken with the colour
+  std::optional<sim::RayCaster> depth_caster;  // none: depth and colour are exposed together
   sim::KinectDepth sensor;
   std::vector<float> exact;
   std::vector<std::uint8_t> black_pixels;
@@ -100,7 +100,7 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
   std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed);
   if (scene == nullptr)
     return Status(StatusCode::kInvalidArgument, "simulator: the scene is none of those there are");
-  // From the first frame's stamp to the last one's.
+  // From the stamp of the first frame to that of the last frame.
   const double duration_s = (options.frames - 1) / options.fps;
   sim::Trajectory trajectory;
   if (options.trajectory_file.empty()) {
@@ -147,7 +147,7 @@ Se3 SimulatedCamera::ground_truth(std::int64_t stamp_ns) const {
 }
 
 Se3 SimulatedCamera::pose(int frame) const {
-  // A closed walk ends where it began to the last bit, although stamps are whole microseconds.
+  // A closed trajectory ends exactly at its first pose, although stamps are whole microseconds.
   if (frame > 0 && frame + 1 == parts_->options.frames && parts_->options.trajectory_file.empty())
     return pose(0);
   return ground_truth(stamp_ns(frame));
@@ -163,7 +163,7 @@ void SimulatedCamera::inertial_samples(std::vector<ImuSample>& gyro,
   const double first_s = -0.1;
   const auto count = static_cast<std::uint32_t>((last_s + 0.01 - first_s) * options.inertial.rate_hz) + 1;
   for (std::uint32_t k = 0; k < count; ++k) {
-    // Files keep whole microseconds.
+    // Files store whole microseconds.
     const auto since_start_us = static_cast<std::int64_t>((first_s + k / options.inertial.rate_hz) * 1e6);
     const std::int64_t stamp = (kFirstStamp_us + since_start_us) * 1000;
     const double t_s = static_cast<double>(since_start_us) * 1e-6;

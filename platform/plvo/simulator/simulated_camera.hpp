@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that exists only in the computer: it is carried through a ray-cast room under a light, and knows
-// exactly where it was. The same options give the same bytes, whatever the number of threads.
+// A simulated RGB-D camera that moves through a ray-cast room and provides its exact pose. The same options
+// give the same bytes for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ namespace plvo {
 
 class SimulatedCamera final : public RgbdCamera {
  public:
-  // kInvalidArgument for options out of range; what Trajectory::from_tum says for a trajectory file.
+  // Returns kInvalidArgument for options out of range, or the error of Trajectory::from_tum for a trajectory
+  // file.
   static Status create(const SimulatorOptions& options, std::unique_ptr<SimulatedCamera>& camera);
   ~SimulatedCamera();
 
@@ -27,22 +28,21 @@ class SimulatedCamera final : public RgbdCamera {
   Status next(RgbdFrame& frame) override;
 
   const SimulatorOptions& options() const;
-  // How many frames there will be: options.frames, or fewer if the recorded trajectory ends earlier.
+  // Total number of frames: options.frames, or fewer if the recorded trajectory ends earlier.
   int frames() const;
-  // Stamp of frame k: 1 600 000 000 s + k / fps, in whole microseconds, so that a TUM folder keeps it
-  // exactly.
+  // Stamp of frame k: 1 600 000 000 s + k / fps, in whole microseconds, which a TUM folder stores exactly.
   std::int64_t stamp_ns(int frame) const;
-  // Stamp that frame k's depth image bears (options().depth_schedule), in whole microseconds too.
+  // Stamp of frame k's depth image (options().depth_schedule), also in whole microseconds.
   std::int64_t depth_stamp_ns(int frame) const;
-  // T_world_camera, exact: of frame k, and at any stamp (of the walk itself, not interpolated between
-  // frames).
+  // Exact T_world_camera of frame k, and at any stamp (evaluated on the trajectory itself, not interpolated
+  // between frames).
   Se3 pose(int frame) const;
   Se3 ground_truth(std::int64_t stamp_ns) const;
-  // What the gyro and the accelerometer beside the camera read, from a tenth of a second before the first
-  // frame to after the last one; stamps are those of the frames' clock, axes those of the camera.
+  // Samples of the gyro and the accelerometer beside the camera, from 0.1 s before the first frame until
+  // after the last one. The stamps use the clock of the frames, the axes are those of the camera.
   void inertial_samples(std::vector<ImuSample>& gyro, std::vector<ImuSample>& accelerometer) const;
-  // Exact depth (metres along the optical axis, 0: nothing) of the last frame's pixels at the moment of their
-  // colour, whatever the depth sensor made of it, and when.
+  // Exact depth of the last frame's pixels (metres along the optical axis, 0: no surface) at the time of
+  // their colour exposure, independent of the depth sensor and its schedule.
   ImageView<const float> exact_depth() const;
 
  private:

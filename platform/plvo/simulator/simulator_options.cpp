@@ -36,7 +36,7 @@ Status validate_timing(const DepthSchedule& timing, double colour_fps) {
     return invalid("the depth stamp offset must be at most half a frame: another frame would be nearer");
   if (timing.fps && !(*timing.fps >= colour_fps && *timing.fps <= 1000))
     return invalid("the depth camera must take at least as many images per second as the colour camera");
-  // The noise is at most 4.9 standard deviations: stamps keep their order.
+  // The noise is at most 4.9 standard deviations, so stamps keep their order.
   if (!(timing.stamp_jitter_s >= 0 && timing.stamp_jitter_s <= 0.1 / timing.fps.value_or(colour_fps)))
     return invalid("the jitter of the depth stamps must be at most a tenth of a frame");
   return {};

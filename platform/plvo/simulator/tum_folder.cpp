@@ -18,7 +18,7 @@ Status write_tum_folder(SimulatedCamera& camera, const std::string& name, const 
     if (written == 0) {
       Calibration calibration;
       calibration.camera = camera.model();
-      // Its unit is a whole number per metre; the inverse alone need not be one to the last bit.
+      // The format has a whole number of units per metre; the inverse is rounded because it may not be exact.
       calibration.depth_units_per_metre = std::round(1 / frame.depth.metres_per_unit);
       calibration.depth_scale_given = calibration.readout_given = true;
       if (status = folder.open(name, calibration); !status.ok()) return status;

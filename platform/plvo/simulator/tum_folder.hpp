@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what a simulated camera sees as a folder in the layout of the TUM RGB-D benchmark, by replay's
-// TumWriter, with the exact poses in groundtruth.txt, and what a gyro and an accelerometer beside the camera
-// read in gyroscope.txt and accelerometer.txt.
+// Writes the frames of a simulated camera to a folder in the layout of the TUM RGB-D benchmark, using
+// replay's TumWriter. groundtruth.txt contains the exact poses; gyroscope.txt and accelerometer.txt contain
+// the samples of the inertial sensors.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,12 @@
 
 namespace plvo {
 
-// Called after each frame: frames written so far, frames there will be. Returning false stops, with an ok
+// Called after each frame with the number of frames written and the total. Returning false stops with an ok
 // status.
 using WriteProgress = std::function<bool(int written, int total)>;
 
-// Creates `folder` if it is missing. kInvalidArgument when it holds another recording, kIo (no permission,
-// disk full and the like) with the operating system's reason; what was written so far is valid.
+// Creates `folder` if it is missing. Returns kInvalidArgument if it contains another recording, and kIo (no
+// permission, disk full, …) with the reason of the operating system; the frames written so far remain valid.
 Status write_tum_folder(SimulatedCamera& camera, const std::string& folder,
                         const WriteProgress& progress = {});
 

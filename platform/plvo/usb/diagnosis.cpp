@@ -14,8 +14,7 @@ constexpr const char* kRule = "60-plvo-rgbd.rules";
 constexpr const char* kReplug =
     "sudo udevadm control --reload && sudo udevadm trigger, then plug the sensor in again";
 
-// The rule lets in whoever sits at the machine; who comes over the network, or starts with the system, needs
-// the group.
+// The rule gives access to the local user. Remote users and services need the group.
 constexpr const char* kGroup = "Over ssh and for services: sudo usermod -aG video $USER, then log in again.";
 
 std::string install_rule() {
@@ -28,7 +27,7 @@ std::string where(const UsbDeviceFacts& device) {
   return std::string(device.known.name) + " (port " + device.port + ")";
 }
 
-// The port of the hub that a device hangs on: the three parts of one Kinect share it.
+// The port of the hub that a device is connected to. The three parts of one Kinect share it.
 std::string hub_of(const UsbDeviceFacts& device) {
   const std::size_t cut = device.port.find_last_of(".-");
   return cut == std::string::npos ? device.port : device.port.substr(0, cut);
@@ -68,7 +67,7 @@ void judge_power(const SystemFacts& facts, Findings& out) {
   }
 }
 
-// False if nobody can use the device as things stand.
+// Returns false if the device is not usable in its current state.
 bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& out) {
   switch (device.access) {
     case UsbAccess::kNotTried:
@@ -103,7 +102,7 @@ bool judge_access(const UsbDeviceFacts& device, bool rule_installed, Findings& o
   return false;
 }
 
-// The hubs of a Kinect v2 show themselves on any port, its camera on USB 3 alone.
+// The hubs of a Kinect v2 appear on any port, its camera only on USB 3.
 void judge_hubs(const SystemFacts& facts, Findings& out) {
   const auto shows = [&facts](SensorPart part) {
     return std::any_of(facts.devices.begin(), facts.devices.end(), [part](const UsbDeviceFacts& device) {
@@ -174,7 +173,7 @@ bool judge_driver(SensorFamily family, const OpenniFacts& openni, Findings& out)
   return false;
 }
 
-// False if OpenNI2 itself is of no use.
+// Returns false if OpenNI2 itself is not usable.
 bool judge_openni(const OpenniFacts& openni, Findings& out) {
   if (!openni.built_in) {
     out.push_back({Severity::kProblem, FindingCode::kOpenniNotBuilt, "This plvo was built without OpenNI2.",
@@ -275,7 +274,7 @@ std::vector<Finding> diagnose(const SystemFacts& facts) {
   const bool openni_usable = judge_openni(facts.openni, out);
   std::set<SensorFamily> with_driver, without_driver;
   for (const UsbDeviceFacts& device : facts.devices) {
-    if (device.known.part == SensorPart::kHub) continue;  // the system's, which keeps it
+    if (device.known.part == SensorPart::kHub) continue;  // the kernel's hub driver holds it
     bool usable = judge_access(device, !facts.udev_rule.empty(), out);
     if (device.known.part != SensorPart::kCamera) continue;
     const SensorFamily family = device.known.family;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From facts to findings: everything that usually goes wrong between an RGB-D sensor and its pictures, each
-// with what to do about it. A pure function, so that every case is a test. Permissions, 12 V, gspca_kinect,
-// USB speed, usbfs memory and the names of OpenNI2's drivers are the known troubles of libfreenect's and
-// OpenNI2's users.
+// Derives findings from facts: the usual problems with RGB-D sensors, each with a remedy. It is a pure
+// function, so every case has a test. Permissions, 12 V, gspca_kinect, USB speed, usbfs memory and the names
+// of OpenNI2's drivers are the known problems of libfreenect's and OpenNI2's users.
 #pragma once
 
 #include <string>
@@ -42,12 +41,12 @@ struct Finding {
   Severity severity = Severity::kGood;
   FindingCode code = FindingCode::kReady;
   std::string what;    // one or two sentences
-  std::string remedy;  // what to type or to do; empty where nothing is needed
+  std::string remedy;  // command to type or action to take; empty if none is needed
 };
 
 std::vector<Finding> diagnose(const SystemFacts& facts);
 
-// True for a file name that OpenNI2 loads as a driver: lib*.so.0 and nothing else.
+// True for a file name that OpenNI2 loads as a driver: only lib*.so.0.
 bool is_driver_name(const std::string& name);
 
 }  // namespace plvo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fact-gatherers: libusb, sysfs, the folder of OpenNI2's drivers. They judge nothing; see diagnosis.hpp.
+// Gathers facts from libusb, sysfs and the folder of OpenNI2's drivers. diagnosis.hpp judges them.
 #include <dlfcn.h>
 #include <libusb.h>
 #include <link.h>
@@ -40,7 +40,7 @@ UsbAccess to_access(int error) {
   }
 }
 
-// Opens, claims the first interface without disturbing a kernel driver, and gives it back.
+// Opens the device, claims its first interface without detaching a kernel driver, and releases it.
 int try_device(libusb_device* device, bool kernel_holds_it) {
   libusb_device_handle* handle = nullptr;
   int error = libusb_open(device, &handle);
@@ -69,7 +69,7 @@ void try_access(UsbBus& bus, UsbDeviceFacts& facts) {
   if (devices != nullptr) libusb_free_device_list(devices, 1);
 }
 
-// "[Drivers] Repository=" of the ini file; empty when it is not set.
+// "[Drivers] Repository=" of the ini file; empty if it is not set.
 std::string repository_setting() {
   std::ifstream ini("/etc/openni2/OpenNI.ini");
   for (std::string line; std::getline(ini, line);) {

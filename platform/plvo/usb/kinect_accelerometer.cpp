@@ -66,7 +66,7 @@ void KinectAccelerometer::run(const std::string& camera_port) {
     } else {
       keep({asked_ns + (answered_ns - asked_ns) / 2, state.acceleration});
     }
-    // After a delay the rhythm begins anew.
+    // After a delay the period restarts from now.
     next_ns = std::max(next_ns + kPeriod_ns, answered_ns);
   } while (wait_until(next_ns));
 }

@@ -58,7 +58,7 @@ int light_on_motor(KinectLight light) {
   return 0;
 }
 
-// The audio device knows fewer lights: the nearest one.
+// The audio device has fewer lights; this is the most similar one.
 std::uint32_t light_on_audio(KinectLight light) {
   switch (light) {
     case KinectLight::kOff: return 1;
@@ -71,7 +71,7 @@ std::uint32_t light_on_audio(KinectLight light) {
   return 1;
 }
 
-// "1-1.1" and "1-1.3" hang on 1-1.
+// True for ports of one hub: "1-1.1" and "1-1.3" both belong to 1-1.
 bool same_hub(const std::string& port, const std::string& camera_port) {
   const std::size_t hub = camera_port.find_last_of(".-");
   return hub == std::string::npos || port.substr(0, port.find_last_of(".-")) == camera_port.substr(0, hub);
@@ -118,7 +118,7 @@ Status KinectMotor::open(const UsbBus& bus, const std::string& camera_port) {
   }
   if (list != nullptr) libusb_free_device_list(list, 1);
   if (error == 0 && through_audio_) {
-    // A sound driver may sit on it: it gets the device back when the interface is released.
+    // A sound driver may hold the interface; it gets it back when the interface is released.
     libusb_set_auto_detach_kernel_driver(handle_, 1);
     error = libusb_claim_interface(handle_, 0);
     if (error != 0) libusb_close(handle_);
@@ -209,7 +209,7 @@ Status KinectMotor::read(KinectState& state) {
       Vector3(get_be16(&data[2]), get_be16(&data[4]), get_be16(&data[6])) * (kStandardGravity / kCountsPerG);
   state.moving = data[9] == 4;
   state.at_limit = data[9] == 1;
-  // While it moves the angle reads −128.
+  // While the motor moves, the angle reads −128.
   state.tilt_rad = static_cast<double>(static_cast<std::int8_t>(data[8])) / 2 * kRadPerDegree;
   return {};
 }

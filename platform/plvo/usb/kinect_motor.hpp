@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Kinect v1's motor, light and accelerometer. Model 1414 has a USB device of its own for them (control
-// transfers); 1473 and Kinect for Windows take commands on the audio device (bulk transfers), and only once
-// the audio firmware runs. The protocols are those that the OpenKinect project documented.
+// The Kinect v1's motor, light and accelerometer. Model 1414 has a separate USB device for them (control
+// transfers). Model 1473 and Kinect for Windows accept commands on the audio device (bulk transfers), and
+// only while the audio firmware runs. The protocols are those documented by the OpenKinect project.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ enum class KinectLight : std::uint8_t { kOff, kGreen, kRed, kYellow, kBlinkGreen
 
 struct KinectState {
   Vector3 acceleration =
-      Vector3::Zero();  // m/s², the Kinect's axes: x right, y up, z forward; at rest it shows gravity
-  double tilt_rad = 0;  // of the head against the horizon, up positive; meaningless while moving
+      Vector3::Zero();  // m/s², the Kinect's axes: x right, y up, z forward; at rest the reaction to gravity
+  double tilt_rad = 0;  // angle of the head to the horizon, up positive; invalid while moving
   bool moving = false;
   bool at_limit = false;
 };
@@ -34,13 +34,13 @@ class KinectMotor {
   KinectMotor(const KinectMotor&) = delete;
   KinectMotor& operator=(const KinectMotor&) = delete;
 
-  // The motor of the Kinect v1 whose camera is at this port ("1-1.3"), beside which it sits on the Kinect's
-  // own hub; of the first one on the bus where no port is named. kNotFound, kPermission, kBusy say what to
-  // do.
+  // Opens the motor of the Kinect v1 whose camera is at this port ("1-1.3"); both are on the Kinect's
+  // internal hub. Without a port, opens the first motor on the bus. Returns kNotFound, kPermission or kBusy
+  // with a remedy in the message.
   Status open(const UsbBus& bus, const std::string& camera_port = {});
   void close();
 
-  // Clamped to ±31°. Returns at once; read() tells when the head has arrived.
+  // Clamped to ±31°. Returns immediately; read() reports when the head has arrived.
   Status set_tilt(double tilt_rad);
   Status set_light(KinectLight light);
   Status read(KinectState& state);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The RGB-D sensors that plvo knows by their USB ids, and what each one needs: which OpenNI2 driver
-// serves it and how fast a port it wants.
+// The RGB-D sensors known to plvo by USB id, with their requirements: the OpenNI2 driver and the port speed.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,8 @@ namespace plvo {
 enum class SensorFamily : std::uint8_t { kKinectV1, kKinectV2, kPrimeSense, kAstra };
 enum class SensorPart : std::uint8_t { kCamera, kMotor, kAudio, kHub };
 
-// One USB function of a sensor. A Kinect v1 shows three of them behind a hub of its own; a Kinect v2 a
-// camera, and a hub on either bus of its USB 3 port, which is no trouble on the slow one.
+// One USB function of a sensor. A Kinect v1 has three of them behind an internal hub. A Kinect v2 has a
+// camera, and a hub on each of the two buses of its USB 3 port; the hub on the slow bus is not a problem.
 struct KnownUsbDevice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
@@ -24,16 +23,16 @@ struct KnownUsbDevice {
 
 struct SensorNeeds {
   const char* name = "";
-  const char* driver_mark = "";    // what the file name of an OpenNI2 driver for it contains, lower case
+  const char* driver_mark = "";    // lower-case substring of the file name of its OpenNI2 driver
   const char* driver_remedy = "";  // how to get that driver
   int min_speed_mbps = 480;        // USB 2: 480, USB 3: 5000
 };
 
 std::span<const KnownUsbDevice> known_usb_devices();
-const KnownUsbDevice* find_known(std::uint16_t vendor, std::uint16_t product);  // nullptr: not ours
+const KnownUsbDevice* find_known(std::uint16_t vendor, std::uint16_t product);  // nullptr: unknown device
 const SensorNeeds& needs_of(SensorFamily family);
 
-// bcdDevice of the camera of Kinect model 1414. The later ones (1473, Kinect for Windows) drive motor and LED
+// bcdDevice of the camera of Kinect model 1414. Later models (1473, Kinect for Windows) control motor and LED
 // through the audio device.
 inline constexpr std::uint16_t kKinect1414Bcd = 0x010b;
 

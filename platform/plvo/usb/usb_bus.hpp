@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The USB as plvo needs it: which known sensors are there, and a word when one arrives or leaves.
-// libusb 1.0. OpenNI2 over libfreenect raises no event when a Kinect is unplugged, it merely times out: this
-// tells.
+// Lists the known sensors on the USB and reports when one is plugged in or unplugged, by libusb 1.0. It is
+// needed because OpenNI2 over libfreenect raises no event when a Kinect is unplugged; it only times out.
 #pragma once
 
 #include <memory>
@@ -29,21 +28,21 @@ class UsbBus {
   UsbBus(const UsbBus&) = delete;
   UsbBus& operator=(const UsbBus&) = delete;
 
-  // Must come first; kIo with libusb's own word when there is no USB to talk to (a container, a missing
-  // kernel module).
+  // Must be called first. Returns kIo with libusb's error name if USB is not accessible (in a container, or
+  // without the kernel module).
   Status open();
 
-  // The known sensors that are plugged in now. Opens nothing.
+  // The known sensors that are currently plugged in. Opens no device.
   std::vector<UsbDeviceFacts> list() const;
 
   // True if a camera of a known sensor is plugged in.
   bool camera_present() const;
 
-  // From here on arrivals and departures are collected. kUnsupported where the platform has no hot-plug
-  // events; then list() again from time to time.
+  // Starts to collect hot-plug events. Returns kUnsupported if the platform has none; then poll list()
+  // instead.
   Status watch();
 
-  // Waits up to timeout_ms for events of known devices; returns those that came since the last call.
+  // Waits up to timeout_ms for events of known devices; returns the events since the last call.
   std::vector<UsbEvent> poll(int timeout_ms);
 
   libusb_context* context() const { return context_; }
@@ -54,7 +53,7 @@ class UsbBus {
   std::unique_ptr<Watch> watch_;
 };
 
-// "1-1.2", the name that the kernel gives the port.
+// The kernel's name of the port, e.g. "1-1.2".
 std::string port_name(libusb_device* device);
 
 }  // namespace plvo

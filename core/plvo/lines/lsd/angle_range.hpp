@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which angles are the same as another up to a tolerance: what grows a region, and what counts a rectangle's
-// aligned pixels. Eight at once.
+// Tests and sums of angles, eight pixels at once. They serve to grow a region and to count a rectangle's
+// aligned pixels.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace plvo::lsd {
 
-// Of a byte: not every processor counts bits in one instruction.
+// Number of set bits of a byte. Not every processor has an instruction for it.
 inline constexpr auto kOnes = [] {
   std::array<std::uint8_t, 256> ones{};
   for (unsigned i = 0; i < 256; ++i) ones[i] = static_cast<std::uint8_t>(count_bits(i));
   return ones;
 }();
 
-// All bits of lane i where bit i is set.
+// Sets all bits of lane i if bit i is set.
 inline Int16x8 chosen(unsigned bits) {
   return ((Int16x8{} + static_cast<std::int16_t>(bits)) & Int16x8{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
@@ -32,13 +32,13 @@ class AngleRange {
       : least_(static_cast<Angle>(middle - tolerance)),
         beyond_(static_cast<std::uint16_t>(2 * tolerance + 1)) {
 #ifndef PLVO_SIMD_LOOPS
-    // Int16x8 have a sign: there the range begins at the least number of 16 bits.
+    // SIMD lanes are signed, so the range is shifted to begin at the least 16-bit number.
     origins_ = Int16x8{} + static_cast<Angle>(least_ - INT16_MIN);
     ends_ = Int16x8{} + static_cast<Angle>(INT16_MIN + beyond_);
 #endif
   }
   bool holds(Angle angle) const { return static_cast<std::uint16_t>(angle - least_) < beyond_; }
-  // Bit i: the angle eight[i] is in it.
+  // Bit i is set if the angle eight[i] is in the range.
   unsigned holding(const Angle* eight) const {
 #ifdef PLVO_SIMD_LOOPS
     unsigned held = 0;
@@ -61,11 +61,11 @@ class AngleRange {
 #endif
 };
 
-// Sums what pixels' angles are beyond one angle.
+// Sums the differences between pixels' angles and a given angle.
 class AngleSum {
  public:
   explicit AngleSum(Angle from) : from_(from) {}
-  // Of eight pixels, those whose bit is set.
+  // Adds those of eight pixels whose bit is set.
   void add(const Angle* eight, unsigned bits) {
     if constexpr (kSimdLoops) {
       for (unsigned rest = bits; rest != 0; rest &= rest - 1)
@@ -86,7 +86,7 @@ class AngleSum {
   Int32x4 minus_{};
 };
 
-// The sum of their squares.
+// Sum of the squared differences, over the pixels whose bit is set.
 inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits) {
   if constexpr (kSimdLoops) {
     std::int64_t sum = 0;
@@ -101,7 +101,7 @@ inline std::int64_t squares_beyond(Angle from, const Angle* eight, unsigned bits
   const Int16x8 beyond = (angles - from) & chosen(bits);
   Int32x4 pairs;
   dot_pairs(beyond, beyond, pairs);
-  // Of two half turns the sum is 2^31.
+  // The sum for two half turns is 2^31, which needs an unsigned number.
   const auto sum_of = [&](int i) { return std::int64_t{static_cast<std::uint32_t>(pairs[i])}; };
   return sum_of(0) + sum_of(1) + sum_of(2) + sum_of(3);
 }

@@ -12,39 +12,42 @@ namespace {
 
 constexpr int kMaxProfiles = 32;
 constexpr int kMinProfiles = 4;
-constexpr int kReach = 3;  // pixels to either side in which the steepest place is looked for
+constexpr int kReach = 3;  // pixels to either side in which the steepest position is searched
 constexpr double kMaxShift_px = 1.5;
-// What a peak's place is uncertain by even on a clean edge: the parabola is not the edge's true shape.
+// Uncertainty of a peak's position even on a clean edge, because the parabola is not the true shape of the
+// edge.
 constexpr double kPeakFloor_px = 0.05;
 
-// One profile: the offset of the edge from the segment along the profile, at place `along` of the major axis.
+// One profile: the offset of the edge from the segment along the profile, at position `along` of the major
+// axis.
 struct Peak {
   double along = 0;
   double offset = 0;
   double weight = 0;
 };
 
-// The image seen so that the segment runs along u, less than 45° off; v is across.
+// View of the image in which the segment runs along u, with a deviation below 45°; v is across.
 struct Axes {
   const std::uint8_t* data = nullptr;
   std::ptrdiff_t step_u = 0;
   std::ptrdiff_t step_v = 0;
   int size_u = 0;
   int size_v = 0;
-  int brighter = 1;  // the sign of the change along v
+  int brighter = 1;  // sign of the change along v
 };
 
 bool find_peak(const Axes& axes, int u, double v, Peak& peak) {
   const int centre = static_cast<int>(v + 0.5);
   if (u < 1 || u > axes.size_u - 2 || centre < kReach + 1 || centre > axes.size_v - kReach - 2) return false;
-  // Three neighbours along the edge are summed against noise: a blur along it moves nothing across it.
+  // Sums three adjacent pixels along the edge to reduce noise. A blur along the edge does not shift it
+  // across.
   const std::uint8_t* const at = axes.data + u * axes.step_u + centre * axes.step_v;
   const auto sum = [&](int across) {
     const std::uint8_t* const middle = at + across * axes.step_v;
     return middle[-axes.step_u] + middle[0] + middle[axes.step_u];
   };
   const auto change = [&](int across) { return axes.brighter * (sum(across + 1) - sum(across - 1)); };
-  // Uphill from the middle: a stronger edge behind a valley is somebody else's.
+  // Climbs from the middle. A stronger edge behind a valley belongs to another segment.
   const int uphill = change(1) > change(-1) ? 1 : -1;
   int place = 0;
   int behind = change(-uphill), best = change(0), ahead = change(uphill);
@@ -61,8 +64,8 @@ bool find_peak(const Axes& axes, int u, double v, Peak& peak) {
   const double shift = 0.5 * (uphill * (ahead - behind)) / curvature;
   peak.along = u;
   peak.offset = centre + static_cast<double>(place) + shift - v;
-  // The variance of a peak's place goes with noise² / curvature²; a cap keeps one strong profile from being
-  // all.
+  // The variance of a peak's position is proportional to noise² / curvature². The cap keeps one strong
+  // profile from dominating.
   const double strength = std::min(curvature, 300);
   peak.weight = strength * strength;
   return true;
@@ -77,7 +80,7 @@ struct LineFit {
   double sd = 0;  // of one peak of mean weight
 };
 
-// Weighted least squares. At least three peaks, not all at one place.
+// Weighted least squares. Needs at least three peaks, not all at one position.
 LineFit fit(std::span<const Peak> peaks) {
   double w = 0, wu = 0, wv = 0;
   for (const Peak& p : peaks) {
@@ -109,8 +112,8 @@ LineFit fit(std::span<const Peak> peaks) {
   return line;
 }
 
-// Weighs the fit against where the segment was before, offset and slope 0 with the prior's uncertainty: a
-// short or weak segment whose few profiles scatter stays near it.
+// Combines the fit with the prior, which is the previous position (offset and slope 0) with its uncertainty.
+// A short or weak segment whose few profiles scatter stays near it.
 void shrink_to_prior(double position_sd_px, double length_px, LineFit& line) {
   const double prior_offset = position_sd_px * position_sd_px;
   const double prior_slope = 4 * prior_offset / (length_px * length_px);
@@ -122,7 +125,7 @@ void shrink_to_prior(double position_sd_px, double length_px, LineFit& line) {
   line.variance_slope *= keep_slope;
 }
 
-// Drops the peaks further than 2.5 SD (at least half a pixel) from the line; true if any was.
+// Drops the peaks farther than 2.5 SD (at least half a pixel) from the line. Returns true if it dropped any.
 bool drop_outliers(const LineFit& line, std::span<Peak>& peaks) {
   const double limit = std::max(2.5 * line.sd, 0.5);
   std::size_t kept = 0;
@@ -173,7 +176,7 @@ bool localise(GrayView image, double position_sd_px, Segment& segment) {
     if (!enough()) return false;
     line = fit(peaks);
   }
-  // Profiles less than three pixels apart share some of their pixels, and so their noise.
+  // Profiles less than three pixels apart share some of their pixels, and therefore noise.
   const double shared = std::max(1.0, 3.0 * profiles / (du < 0 ? -du : du));
   line.variance_offset *= shared;
   line.variance_slope *= shared;
@@ -183,7 +186,7 @@ bool localise(GrayView image, double position_sd_px, Segment& segment) {
   const double shift_b = shift_at(segment.b[major]);
   if (std::max(shift_a * shift_a, shift_b * shift_b) > kMaxShift_px * kMaxShift_px) return false;
 
-  // The ends slide to their feet on the new line.
+  // The ends move to their feet on the new line.
   const double new_slope = slope + line.slope;
   const double v_mean = segment.a[1 - major] + slope * (line.mean_along - segment.a[major]) + line.offset;
   Vector2 middle = Vector2::Zero();

@@ -14,21 +14,22 @@
 namespace plvo::lsd {
 namespace {
 
-// A gradient of at most rho = q / sin(tau) may be turned by more than tau by an error of q. Rounding to
-// integers moves each of four pixels by at most 1/2, so a component by at most 1 and the vector by at most
-// √2; the paper takes q = 2 for noise's sake, at full resolution. Squared, in half grey levels: (2 · √2 /
-// sin 22.5°)².
+// An error of q may rotate a gradient of magnitude rho = q / sin(tau) or less by more than tau. Rounding to
+// integers changes each of four pixels by at most 1/2, hence a component by at most 1 and the vector by at
+// most √2. The paper takes q = 2 because of noise, at full resolution. The constant is the squared limit, in
+// half grey levels: (2 · √2 / sin 22.5°)².
 constexpr int kMinMagnitudeSquared = 55;
 
 // Bins of 3/8 grey level: 962 up to the greatest magnitude, 8 · 510 · √2. Bin 0 holds the strongest.
 constexpr std::int16_t kBins = 1024;
-constexpr std::int16_t kBinsPerUnit_q16 = 65536 / 6 + 1;  // a quotient below 2^15 is the same
+constexpr std::int16_t kBinsPerUnit_q16 = 65536 / 6 + 1;  // exact for numbers below 2^15
 
-// atan(r) / r in angles for 0 ≤ r ≤ 1, a polynomial of r² whose greatest error is 0.12 of an angle (least
-// squares weighted until all its extremes are equal).
+// atan(r) / r in units of Angle for 0 ≤ r ≤ 1: a polynomial in r² with a greatest error of 0.12 units (least
+// squares, weighted until all its extremes are equal).
 constexpr float kArcTangent[5] = {10428.9841F, -3445.2039F, 1879.1296F, -888.21295F, 217.42242F};
 
-// Whole numbers decide on the octant, so that a compiler can do several side by side. Of nothing it is 0.
+// Selects the octant with integers, so that compilers can vectorise the function. For a zero gradient, both
+// results are 0.
 inline __attribute__((always_inline)) PolarGradient polar(int gx, int gy) {
   const int ax = gx < 0 ? -gx : gx, ay = gy < 0 ? -gy : gy;
   const int major = ax > ay ? ax : ay, minor = ax > ay ? ay : ax;
@@ -49,8 +50,8 @@ struct BlockGradients {
   std::int16_t gx[kBlockPixels], gy[kBlockPixels];
 };
 
-// Which of the eight entries have a magnitude above the quantisation noise. above and below can be read nine
-// bytes on.
+// Computes the gradients of eight entries. Returns a mask of those whose magnitude exceeds the quantisation
+// noise. Nine bytes must be readable from above and from below.
 unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, BlockGradients& out) {
   Int16x8 a, b, c, d;
   load_bytes(above, a);
@@ -73,8 +74,8 @@ unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, Bl
   return negative_mask(first) | negative_mask(last) << 4;
 }
 
-// Calls with_bin(i, bin) for a block's pixels: those that have an angle, first to last. Where lanes are worth
-// it, for the others too, with bins from kBins on: no branch can foresee which they are.
+// Calls with_bin(i, bin) for the pixels of a block that have an angle, first to last. With SIMD vectors, it
+// is also called for the other pixels, with bins from kBins on, because a branch on them is unpredictable.
 constexpr std::size_t kAllBins = kSimdLoops ? kBins : 2 * kBins;
 template <typename WithBin>
 void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_bin) {
@@ -88,7 +89,7 @@ void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_
   Int16x8 bins;
   load(magnitudes, bins);
   multiply_high(bins, Int16x8{} + kBinsPerUnit_q16, bins);
-  // Where there is no angle, −1 + 1 is not 0.
+  // chosen() + 1 is 0 for pixels with an angle and 1 for the others.
   bins = (chosen(bits) + std::int16_t{1}) * kBins + std::int16_t{kBins - 1} - bins;
   for (int i = 0; i < kBlockPixels; ++i) with_bin(i, static_cast<std::uint16_t>(bins[i]));
 }
@@ -103,7 +104,7 @@ void compute_field(GrayView image, LevelLineField& field) {
   std::uint8_t* const open = field.open();
   Angle* const angles = field.angles();
   std::int16_t* const magnitudes = field.magnitude_and_releases.data();
-  std::array<std::uint32_t, kAllBins> places{};  // how many, at first
+  std::array<std::uint32_t, kAllBins> places{};  // counts first, then positions
   const int blocks = field.stride - 1;
   for (int y = 0; y < field.height; ++y) {
     const std::uint8_t* above = image.row(y);
@@ -117,7 +118,7 @@ void compute_field(GrayView image, LevelLineField& field) {
       if (left > kBlockPixels) {
         bits = make_gradients(above + x, below + x, gradients);
       } else {
-        // What is behind the row may be behind the image.
+        // The bytes after the end of the row may lie outside of the image.
         std::uint8_t ends[2][kBlockPixels + 1] = {};
         std::memcpy(ends[0], above + x, static_cast<std::size_t>(left + 1));
         std::memcpy(ends[1], below + x, static_cast<std::size_t>(left + 1));
@@ -132,7 +133,7 @@ void compute_field(GrayView image, LevelLineField& field) {
         angle[i] = gradient.angle;
         magnitude[i] = gradient.magnitude;
       };
-      // Side by side, those that have no angle too.
+      // With SIMD vectors, computes the pixels without an angle, too.
       if constexpr (!kSimdLoops)
         for (int i = 0; i < kBlockPixels; ++i) make_polar(i);
       else
@@ -141,7 +142,8 @@ void compute_field(GrayView image, LevelLineField& field) {
     }
     directed[field.index(blocks, y)] = 0;
   }
-  // Where each bin begins; once all are in their places, where it ends.
+  // Converts the counts to the start of each bin. After all pixels are placed, each entry is the end of its
+  // bin.
   std::uint32_t before = 0;
   for (std::uint32_t& of_bin : places) before += std::exchange(of_bin, before);
   Run* const seeds = field.seeds.data();

@@ -17,7 +17,7 @@ namespace {
 
 std::int32_t to_fixed(double value, double one) { return round_to<std::int32_t>(value * one); }
 
-// Of one run, about its block: sums of the pixels' magnitudes, by themselves, times x, and times x².
+// Sums over one run, relative to its block: the pixels' magnitudes, the magnitudes times x, and times x².
 struct PieceMass {
   std::int32_t m, mx, mxx;
 };
@@ -52,7 +52,7 @@ struct Range {
   std::int32_t low, high;
 };
 
-// Two numbers of 16 bits as one of 32, and four such as lanes.
+// Packs two 16-bit numbers into one of 32 bits, and reads four of those as lanes.
 std::int32_t pair_of(int x, int y) {
   return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xffffU) | static_cast<std::uint32_t>(y)
                                                                                    << 16);
@@ -63,8 +63,8 @@ Int16x8 pairs(const Int32x4& four) {
   return lanes;
 }
 
-// Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px: of a run, those of its first and
-// its last pixel.
+// Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px. For each run, its first and its last
+// pixel suffice.
 void range_along_and_across(std::span<const Run> runs, std::int32_t dx, std::int32_t dy, Range& along,
                             Range& across) {
   const std::int32_t axis = pair_of(dx, dy), normal = pair_of(-dy, dx);
@@ -83,7 +83,7 @@ void range_along_and_across(std::span<const Run> runs, std::int32_t dx, std::int
   across = {std::min(low[2], low[3]), std::max(high[2], high[3])};
 }
 
-// From the centre, 2^-8 px, and the centre itself.
+// Range relative to the centre, 2^-8 px. It includes the centre itself.
 Range about(Range range, std::int64_t centre_q22) {
   const auto offset = [&](std::int64_t q14) {
     return static_cast<std::int32_t>((q14 * 256 - centre_q22) >> Rectangle::kDirectionBits);
@@ -97,12 +97,12 @@ void GradientMass::add(const LevelLineField& field, Run seed, Run run) {
   const PieceMass of = weigh(field.magnitude_and_releases.data() + field.index(run) * kBlockPixels, run.bits);
   const std::int64_t x = run.block * kBlockPixels - first_x(seed);
   const std::int64_t y = run.row - seed.row;
-  const std::int64_t piece_mx = of.m * x + of.mx;
+  const std::int64_t run_mx = of.m * x + of.mx;
   m += of.m;
-  mx += piece_mx;
+  mx += run_mx;
   my += of.m * y;
-  mxx += (piece_mx + of.mx) * x + of.mxx;
-  mxy += piece_mx * y;
+  mxx += (run_mx + of.mx) * x + of.mxx;
+  mxy += run_mx * y;
   myy += of.m * y * y;
 }
 
@@ -122,21 +122,21 @@ GradientMass weigh(const LevelLineField& field, const Region& region) {
 }
 
 Rectangle fit_rectangle(const Region& region, const GradientMass& mass) {
-  // The centre, from the seed, and the moments about it.
+  // The centre relative to the seed, and the moments about it.
   const auto m = static_cast<double>(mass.m);
   const double x = static_cast<double>(mass.mx) / m;
   const double y = static_cast<double>(mass.my) / m;
   const double xx = static_cast<double>(mass.mxx) - x * static_cast<double>(mass.mx);
   const double xy = static_cast<double>(mass.mxy) - x * static_cast<double>(mass.my);
   const double yy = static_cast<double>(mass.myy) - y * static_cast<double>(mass.my);
-  // The first principal axis is at angle φ with tan 2φ = 2 xy / (xx − yy); half-angle formulas give it
-  // without one.
+  // The first principal axis has the angle φ with tan 2φ = 2 xy / (xx − yy). Half-angle formulas give its
+  // direction without computing the angle.
   const double difference = xx - yy;
   const double h = sqrt(difference * difference + 4 * xy * xy);
   double dx = 1;
   double dy = 0;
   if (h > 0) {
-    // Of cos φ and sin φ take the larger from its square root, the other from sin 2φ = 2 sin φ cos φ.
+    // Computes the larger of cos φ and sin φ from its square root, the other from sin 2φ = 2 sin φ cos φ.
     if (difference >= 0) {
       dx = sqrt(0.5 * (1 + difference / h));
       dy = xy / (h * dx);
@@ -145,7 +145,7 @@ Rectangle fit_rectangle(const Region& region, const GradientMass& mass) {
       dx = xy / (h * dy);
     }
   }
-  // The brighter side, where the gradients point, is on the right.
+  // The brighter side, to which the gradients point, is on the right.
   const double angle = region.angle() / kAnglePerRadian;
   if (sin(angle) * dx < cos(angle) * dy) {
     dx = -dx;
@@ -156,7 +156,7 @@ Rectangle fit_rectangle(const Region& region, const GradientMass& mass) {
   r.y_q8 = to_fixed(region.seed.row + y, 256);
   r.dx = to_fixed(dx, 1 << Rectangle::kDirectionBits);
   r.dy = to_fixed(dy, 1 << Rectangle::kDirectionBits);
-  // The smaller principal moment; rounding may take it below 0.
+  // The smaller principal moment. Rounding may make it negative.
   r.across_sd = to_fixed(sqrt(std::max(0.0, 0.5 * (xx + yy - h) / m)), 256);
   const std::int64_t x_q8 = r.x_q8;
   const std::int64_t y_q8 = r.y_q8;

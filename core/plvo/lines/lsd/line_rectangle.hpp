@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rectangle that stands for a region (LSD, section 2.4): centred where the gradient magnitude has its
-// centre of mass, along the first principal axis of that mass, just large enough for all pixels of the
-// region. From then on everything is fixed-point, so that "inside" and "aligned" mean the same on every
-// machine.
+// The rectangle that approximates a region (LSD, section 2.4). Its centre is the centre of mass of the
+// gradient magnitude, its direction is the first principal axis of that mass, and its size just covers all
+// pixels of the region. All further steps use fixed-point numbers, so that "inside" and "aligned" mean the
+// same on every machine.
 #pragma once
 
 #include <algorithm>
@@ -20,23 +20,24 @@ struct Rectangle {
   // Centre in the field's grid, 2^-8 pixels.
   std::int32_t x_q8 = 0;
   std::int32_t y_q8 = 0;
-  // Unit vector · 2^14, the brighter side on its right; that side's direction is (−dy, dx).
+  // Direction: a unit vector · 2^14 with the brighter side on its right. The direction towards that side is
+  // (−dy, dx).
   std::int32_t dx = 1 << kDirectionBits;
   std::int32_t dy = 0;
-  // Extent along it and across it (towards the brighter side), from the centre, 2^-8 pixels.
+  // Extent along the direction and across it (towards the brighter side), from the centre, 2^-8 pixels.
   std::int32_t along_min = 0;
   std::int32_t along_max = 0;
   std::int32_t across_min = 0;
   std::int32_t across_max = 0;
-  // Standard deviation of the gradient's mass across it, 2^-8 pixels.
+  // Standard deviation of the gradient's mass across the direction, 2^-8 pixels.
   std::int32_t across_sd = 0;
 
   std::int32_t length_q8() const { return along_max - along_min; }
-  std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel, as fitted
+  std::int32_t width_q8() const { return across_max - across_min; }  // at least 1 pixel after fit_rectangle
 };
 
-// The sums of a region's magnitudes, by themselves and times x, y, x², x y and y² from its seed: whole
-// numbers, so that runs may come and go in any order.
+// Sums of a region's magnitudes, and of their products with x, y, x², x y and y² relative to its seed. They
+// are integers, so runs can be added and removed in any order.
 struct GradientMass {
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
   void add(const LevelLineField& field, Run seed, Run run);
@@ -44,23 +45,23 @@ struct GradientMass {
 };
 GradientMass weigh(const LevelLineField& field, const Region& region);
 
-// region: at least one pixel.
+// region must have at least one pixel.
 Rectangle fit_rectangle(const Region& region, const GradientMass& mass);
 
-// Does the region fill at least 70 % of its rectangle?
+// Returns whether the region fills at least 70 % of its rectangle.
 bool is_dense(const Rectangle& rectangle, std::int32_t region_size);
 
-// Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle: from x = first
-// to x = last. Inside is what has (256 x − x_q8) dx + (256 y − y_q8) dy, rounded down to 2^-8 pixels, from
-// along_min to along_max, and alike across, by (−dy, dx).
+// Calls visit(y, first, last) for every row of the field that has pixels inside the rectangle, from x = first
+// to x = last. A pixel is inside if (256 x − x_q8) dx + (256 y − y_q8) dy, rounded down to 2^-8 pixels, lies
+// in along_min … along_max, and likewise across, with (−dy, dx).
 template <typename Visit>
 void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit) {
-  // a · (256 x − x_q8) + b · (256 y − y_q8) is a whole number, from least to most inside. A row enters and
-  // leaves halfway before and behind these, so that no rounding decides.
+  // a · (256 x − x_q8) + b · (256 y − y_q8) is an integer, between `least` and `most` inside. The limits of a
+  // row lie halfway to the next integers outside, so that rounding does not decide.
   struct Strip {
-    double enters, leaves, step;  // columns + 1, and by how much both change to the next row
+    double enters, leaves, step;  // columns + 1, and the change of both per row
     Strip(const Rectangle& r, int row, std::int32_t a, std::int32_t b, std::int32_t min, std::int32_t max) {
-      // A row along the strip is in it or beyond, far to either side.
+      // A row parallel to the strip is completely inside or outside of it; its limits are then far away.
       constexpr double kAlong = 1e-9;
       const double inverse = 1 / (256 * (a != 0 ? a : kAlong));
       const double of_row = static_cast<double>(std::int64_t{b} * (row * 256 - r.y_q8));
@@ -77,7 +78,7 @@ void for_each_row(const LevelLineField& field, const Rectangle& r, Visit&& visit
       leaves += step;
     }
   };
-  // The corners bound the rows.
+  // The rectangle's corners bound the rows.
   constexpr double kPixel_q22 = 256 << Rectangle::kDirectionBits;
   const double dx = r.dx / kPixel_q22, dy = r.dy / kPixel_q22;
   const double up = (dy >= 0 ? r.along_min : r.along_max) * dy + (dx >= 0 ? r.across_min : r.across_max) * dx;

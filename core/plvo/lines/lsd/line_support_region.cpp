@@ -9,10 +9,10 @@ namespace plvo::lsd {
 
 namespace {
 
-// Of `fit`, one byte or two with zeros between them, what is in one row of ones with any of `seeds`, which is
-// part of it.
+// Returns the bits of `fit` that are in one sequence of ones with any bit of `seeds`. `fit` is one byte, or
+// two with zeros between them; `seeds` is a subset of it.
 unsigned spread(unsigned seeds, unsigned fit) {
-  // Upwards a sum carries through ones; downwards by steps of one, two and four.
+  // Upwards, a sum carries through the ones; downwards, shifts by one, two and four spread the bits.
   const unsigned up = fit & ~(fit + seeds);
   unsigned down = seeds, through = fit;
   down |= through & down >> 1;
@@ -23,7 +23,8 @@ unsigned spread(unsigned seeds, unsigned fit) {
   return up | down;
 }
 
-// No pixel beside this one is open: many are left over so. At a block's ends it is not looked for.
+// Returns whether no pixel adjacent to this one is open, which is frequent. For pixels at the ends of a block
+// it returns false.
 bool is_alone(const std::uint8_t* open, std::ptrdiff_t stride, unsigned bit) {
   const unsigned beside = bit << 1 | bit >> 1;
   const unsigned open_around = (open[0] & beside) | ((open[-stride] | open[stride]) & (beside | bit));
@@ -33,7 +34,8 @@ bool is_alone(const std::uint8_t* open, std::ptrdiff_t stride, unsigned bit) {
 }  // namespace
 
 Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> storage) {
-  // Plain pointers: the compiler must not fear that a write to what is open changes where the arrays are.
+  // Local pointers: otherwise the compiler must assume that a write to the flags changes the arrays'
+  // addresses.
   std::uint8_t* const open = field.open();
   const Angle* const angles = field.angles();
   Run* const runs = storage.data();
@@ -41,22 +43,22 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
   const Angle seed_angle = angles[field.pixel(first_x(seed), seed.row)];
   AngleRange range(seed_angle, tolerance);
   AngleSum sum(seed_angle);
-  std::size_t piece_count = 0;
-  std::int32_t count = 0;  // of the pixels whose runs have had their turn
+  std::size_t run_count = 0;
+  std::int32_t count = 0;  // pixels of the runs processed so far
   std::int32_t renew = 0;
-  // Of a block, what touches: is open, and in the range. That it is nothing cannot be foreseen, so nothing
-  // branches on it.
+  // Takes the pixels of a block that touch the region, are open, and are in the range. Whether there are any
+  // is unpredictable, so the code does not branch on it.
   const auto take = [&](std::ptrdiff_t at, int row, int block, unsigned touching) {
     const unsigned free = open[at];
-    if (kSimdLoops && (free & touching) == 0) return;  // eight looks cost more than the branch
+    if (kSimdLoops && (free & touching) == 0) return;  // testing eight angles costs more than the branch
     const unsigned fit = free & range.holding(angles + at * kBlockPixels);
     const unsigned taken = spread(fit & touching, fit);
     open[at] = static_cast<std::uint8_t>(free & ~taken);
-    runs[piece_count] = {static_cast<std::uint16_t>(row), static_cast<std::uint8_t>(block),
-                         static_cast<std::uint8_t>(taken)};
-    piece_count += taken != 0 ? 1 : 0;
+    runs[run_count] = {static_cast<std::uint16_t>(row), static_cast<std::uint8_t>(block),
+                       static_cast<std::uint8_t>(taken)};
+    run_count += taken != 0 ? 1 : 0;
   };
-  // The same of the blocks above and below one, together: one's bits, and from bit 16 on the other's.
+  // The same for the blocks above and below, together: one's bits from bit 0 on, the other's from bit 16 on.
   const auto take_above_and_below = [&](std::ptrdiff_t at, Run of, unsigned touching) {
     const std::ptrdiff_t above = at - stride, below = at + stride;
     const unsigned free = open[above] | unsigned{open[below]} << 16;
@@ -66,13 +68,13 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
     const unsigned left = free & ~taken;
     open[above] = static_cast<std::uint8_t>(left);
     open[below] = static_cast<std::uint8_t>(left >> 16);
-    runs[piece_count] = {static_cast<std::uint16_t>(of.row - 1), of.block, static_cast<std::uint8_t>(taken)};
-    piece_count += (taken & 0xffU) != 0 ? 1 : 0;
-    runs[piece_count] = {static_cast<std::uint16_t>(of.row + 1), of.block,
-                         static_cast<std::uint8_t>(taken >> 16)};
-    piece_count += taken >> 16 != 0 ? 1 : 0;
+    runs[run_count] = {static_cast<std::uint16_t>(of.row - 1), of.block, static_cast<std::uint8_t>(taken)};
+    run_count += (taken & 0xffU) != 0 ? 1 : 0;
+    runs[run_count] = {static_cast<std::uint16_t>(of.row + 1), of.block,
+                       static_cast<std::uint8_t>(taken >> 16)};
+    run_count += taken >> 16 != 0 ? 1 : 0;
   };
-  // The seed is taken, whether it was open or has been given back too often.
+  // The seed is always taken, even if it was released too often to be open.
   const std::ptrdiff_t at_seed = field.index(seed);
   open[at_seed] = static_cast<std::uint8_t>(open[at_seed] | seed.bits);
   if (is_alone(open + at_seed, stride, seed.bits)) {
@@ -81,7 +83,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
     return {storage.first(1), 1, seed, seed_angle, 0};
   }
   take(at_seed, seed.row, seed.block, seed.bits);
-  for (std::size_t next = 0; next < piece_count; ++next) {
+  for (std::size_t next = 0; next < run_count; ++next) {
     const Run run = runs[next];
     const std::ptrdiff_t at = field.index(run);
     const unsigned bits = run.bits;
@@ -98,7 +100,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
     } else {
       take_above_and_below(at, run, touching);
     }
-    // Beside a block hardly anything is open: there a branch pays.
+    // Adjacent blocks rarely have open pixels, so a branch pays off.
     const auto take_beside = [&](int right, unsigned touching_there) {
       for (int down = -1; down <= 1; ++down) {
         const std::ptrdiff_t there = at + down * stride + right;
@@ -109,7 +111,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
     if ((bits & 0x01U) != 0) take_beside(-1, 0x80U);
     if ((bits & 0x80U) != 0) take_beside(1, 0x01U);
   }
-  return {storage.first(piece_count), count, seed, seed_angle, sum.beyond()};
+  return {storage.first(run_count), count, seed, seed_angle, sum.beyond()};
 }
 
 void release(LevelLineField& field, Run run) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Region growing (LSD, section 2.3): pixels that touch and whose gradient points the same way up to a
-// tolerance. A region grows by runs of rows: of the blocks around a run, those pixels that touch it, and
-// in their blocks what touches them beside. The region's angle is the mean of those pixels whose runs have
-// had their turn, renewed whenever these have become an eighth more. (The paper's is that of the sum of their
-// unit vectors, which is nearly the same where all point nearly the same way.) A pixel belongs to one region
-// at a time and is given back at most kMaxReleases times in its life, so that all growing together takes a
-// bounded number of looks per pixel of the image.
+// Region growing (LSD, section 2.3): connects touching pixels whose gradients have the same direction up to a
+// tolerance. A region grows by runs of rows: in the blocks around a run, it takes the pixels that touch the
+// run, and the pixels of the same block that are connected to them. The region's angle is the mean over the
+// pixels of the runs processed so far; it is updated whenever their number has grown by an eighth. (The paper
+// uses the angle of the sum of their unit vectors, which is nearly the same for nearly parallel vectors.) A
+// pixel belongs to one region at a time and is released at most kMaxReleases times. The growing of all
+// regions therefore takes a bounded time per pixel of the image.
 #pragma once
 
 #include <cstddef>
@@ -17,25 +17,25 @@
 namespace plvo::lsd {
 
 inline constexpr Angle kTau = 4096;  // 22.5°
-// Angles are off by up to 0.004°: with less, pixels of one direction would not hold together.
+// Angles have errors up to 0.004°. A smaller tolerance would separate pixels of one direction.
 inline constexpr Angle kLeastTolerance = 3;
 
 struct Region {
-  std::span<Run> runs;    // no pixel is in two
+  std::span<Run> runs;    // disjoint
   std::int32_t size = 0;  // pixels
   Run seed{};             // one pixel
-  // What its pixels' angles are beyond one of them, summed.
+  // Sum of the differences between the pixels' angles and `from`.
   Angle from = 0;
   std::int32_t beyond = 0;
 
   Angle angle() const { return static_cast<Angle>(from + beyond / size); }  // the mean
 };
 
-// Grows from seed, one pixel, which is taken whether it is open or not, into storage (capacity: every pixel
-// of the field and one more) and marks what it takes.
+// Grows a region from a seed of one pixel, which is taken whether it is open or not. storage receives the
+// runs (capacity: every pixel of the field and one more). The taken pixels are no longer open.
 Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> storage);
 
-// Gives pixels back, but for those that have been given back kMaxReleases times.
+// Makes the pixels of a run open again, except those that have been released kMaxReleases times.
 void release(LevelLineField& field, Run run);
 
 }  // namespace plvo::lsd

@@ -17,7 +17,7 @@ std::int32_t squared_distance(int x, int y, Run seed) {
   return dx * dx + dy * dy;
 }
 
-// Which pixels of the run's block are at most so far from the seed.
+// Returns which pixels of the run's block are within a distance of the seed.
 unsigned within(std::int32_t squared_px, Run seed, Run run) {
   const Int16x8 x =
       Int16x8{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(run.block * kBlockPixels - first_x(seed));
@@ -31,7 +31,7 @@ unsigned within(std::int32_t squared_px, Run seed, Run run) {
   return ~(negative_mask(most - squared_first) | negative_mask(most - squared_last) << 4);
 }
 
-// Twice the standard deviation of the angles within a rectangle's width of the seed, and never above kTau.
+// Twice the standard deviation of the angles within a rectangle's width of the seed, limited to kTau.
 Angle spread_near_seed(const LevelLineField& field, const Region& region, const Rectangle& rectangle) {
   const auto reach =
       static_cast<std::int32_t>(std::int64_t{rectangle.width_q8()} * rectangle.width_q8() / 65536);
@@ -53,7 +53,7 @@ Angle spread_near_seed(const LevelLineField& field, const Region& region, const 
   return spread >= kTau ? kTau : std::max(kLeastTolerance, static_cast<Angle>(spread));
 }
 
-// Keeps of each run the pixels that keep(run) has as bits; gives the rest back.
+// Keeps the pixels of each run that are set in keep(run), and releases the others.
 template <typename Keep>
 void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& keep) {
   std::size_t kept = 0;
@@ -78,7 +78,7 @@ void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& ke
   mass -= lost_mass;
 }
 
-// What is at most `reach` (2^-8 px) to either side of a rectangle's axis.
+// The pixels within `reach` (2^-8 px) to either side of a rectangle's axis.
 class Strip {
  public:
   Strip(const Rectangle& r, std::int32_t reach)
@@ -87,7 +87,7 @@ class Strip {
         centre_(static_cast<std::int32_t>((std::int64_t{r.y_q8} * r.dx - std::int64_t{r.x_q8} * r.dy) >> 8)),
         reach_(reach << (Rectangle::kDirectionBits - 8)) {}
   unsigned holding(Run run) const {
-    // From the axis, 2^-14 px.
+    // Distance from the axis, 2^-14 px.
     const Int32x4 first =
         Int32x4{0, 1, 2, 3} * -dy_ + (run.row * dx_ - run.block * kBlockPixels * dy_ - centre_);
     const Int32x4 last = first + -4 * dy_;
@@ -101,13 +101,13 @@ class Strip {
   std::int32_t dx_, dy_, centre_, reach_;
 };
 
-// A region whose gradient spreads further across than this is not one edge with whiskers but bent, or several
-// edges.
+// Largest standard deviation of the gradient's mass across a region. Beyond it, the region is not one edge
+// with whiskers; it is bent or consists of several edges.
 constexpr std::int32_t kMaxAcrossSd_q8 = 192;
 
-// Noise beside an edge grows onto it as whiskers, which make the rectangle wide and empty without moving the
-// edge. Cuts them off, beyond twice the standard deviation of the gradient's mass (at least a pixel), at most
-// twice; true if that makes the region dense.
+// Noise beside an edge attaches to it as whiskers, which make the rectangle wide and empty without moving the
+// edge. This function cuts them off beyond twice the standard deviation of the gradient's mass (at least a
+// pixel), at most twice. Returns true if the region is dense afterwards.
 bool trim(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
           std::int32_t min_size) {
   for (int i = 0; i < 2 && !is_dense(rectangle, region.size); ++i) {
@@ -121,7 +121,7 @@ bool trim(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& 
   return is_dense(rectangle, region.size);
 }
 
-// How many of a row's pixels from x = first to x = last have an angle in the range.
+// Number of pixels of a row from x = first to x = last whose angle is in the range.
 int count_held(const LevelLineField& field, const AngleRange& range, int y, int first, int last) {
   int held = 0;
   const int last_block = last / kBlockPixels;
@@ -168,7 +168,7 @@ double meaningfulness(const LevelLineField& field, const FalseAlarms& false_alar
                       const Rectangle& rectangle) {
   int n = 0;
   int k = 0;
-  // A gradient points across its edge, to the brighter side.
+  // A gradient is perpendicular to its edge and points to the brighter side.
   const AngleRange across(
       static_cast<Angle>(round_to<std::int32_t>(atan2(rectangle.dx, -rectangle.dy) * kAnglePerRadian)), kTau);
   for_each_row(field, rectangle, [&](int y, int first, int last) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCellColumns = 6;
 constexpr int kCellRows = 4;
-// How well a rectangle's axis is known before it is placed on the full image, in pixels of the reduced one.
+// Uncertainty of a rectangle's axis before localisation in the full image, in pixels of the reduced one.
 constexpr double kAxisSd_px = 0.15;
 
 std::size_t cell_of(const Vector2& middle, int width, int height) {
@@ -65,8 +65,8 @@ SegmentDetector::Candidate SegmentDetector::describe(const lsd::Rectangle& recta
 }
 
 std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t capacity) const {
-  // Found in a fixed order, so the place in it settles every tie. While none has a rank, the most meaningful
-  // comes first.
+  // Candidates are found in a fixed order, which resolves all ties. Before ranks are assigned, the most
+  // meaningful comes first.
   for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].order = static_cast<std::int32_t>(i);
   const auto sort = [](std::span<Candidate> some) {
     heap_sort(some.data(), some.data() + some.size(), [](const Candidate& p, const Candidate& q) {

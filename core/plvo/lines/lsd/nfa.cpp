@@ -21,7 +21,7 @@ FalseAlarms::FalseAlarms(int width, int height) {
 
 double FalseAlarms::log_factorial(int n) const {
   if (n < static_cast<int>(kTable)) return log_factorials_[static_cast<std::size_t>(n)];
-  // Stirling's series; from n = 256 on the first term left out is below 1e-15.
+  // Stirling's series. From n = 256 on, the first neglected term is below 1e-15.
   const double x = n;
   const double inverse = 1 / x;
   constexpr double kHalfLog2Pi = 0.91893853320467274178;
@@ -33,8 +33,9 @@ double FalseAlarms::meaningfulness(int n, int k) const {
   if (8 * k <= n) return -log10_tests_;
   const double log_first =
       log_factorial(n) - log_factorial(k) - log_factorial(n - k) - k * kLn8 + (n - k) * (kLn7 - kLn8);
-  // Each term of the tail is the one before times a ratio that falls, and is below 1 from k on: what is left
-  // out is below a geometric series. At most n − k terms; in fact a small multiple of √n.
+  // Each term of the tail is the previous one times a ratio that decreases and is below 1 from k on. The
+  // remainder is therefore below a geometric series. There are at most n − k terms, in practice a small
+  // multiple of √n.
   constexpr double kOdds = 1.0 / 7;  // p / (1 − p)
   double sum = 1;
   double term = 1;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kRest(5);
 
-// Whose commands this thread carries out.
+// The CommandThread that runs on this thread, if any.
 thread_local const CommandThread* current = nullptr;
 
 }  // namespace
@@ -29,7 +29,7 @@ bool CommandThread::call(const std::function<bool()>& command) {
   wake_.notify_one();
   changed_.wait(lock, [&] { return mine.done; });
   --callers_;
-  changed_.notify_all();  // under the lock: stop() must not be through before this is
+  changed_.notify_all();  // under the lock, so that stop() cannot return before this call ends
   return mine.result;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread that alone touches something which is not made for several: others hand it commands and wait for
-// them. Between commands it does what the thing needs to live. When it ends, every command that was taken in
-// has been carried out, every later one is refused, and nobody waits any more.
+// A thread with exclusive access to an object that is not thread-safe. Other threads pass commands to it and
+// wait for their results. Between commands it runs the periodic work of the object. When it ends, every
+// accepted command has been executed, later commands are refused, and no thread waits any longer.
 #pragma once
 
 #include <condition_variable>
@@ -14,19 +14,19 @@ namespace plvo {
 
 class CommandThread {
  public:
-  // idle: called again and again; false when there was nothing to do, and the thread rests a little. at_end:
-  // the last thing that the thread does. Both run on the thread, and what they use must outlive it.
+  // idle: called repeatedly; if it returns false, there was no work and the thread pauses briefly. at_end:
+  // called before the thread ends. Both run on the thread, and all that they use must outlive it.
   CommandThread(std::function<bool()> idle, std::function<void()> at_end);
   ~CommandThread() { stop(); }
   CommandThread(const CommandThread&) = delete;
   CommandThread& operator=(const CommandThread&) = delete;
 
-  // Carries `command` out on the thread and returns its result; false, without having carried it out, once
-  // stop() was called. From within a command, or from idle, it is carried out at once.
+  // Executes `command` on the thread and returns its result. After stop() it returns false without executing
+  // it. A call from within a command or from idle executes it directly.
   bool call(const std::function<bool()>& command);
 
-  // Returns when the thread has ended and whoever waited in call() has left it. Not to be called on the
-  // thread itself, and by one thread only.
+  // Returns when the thread has ended and all waiting calls of call() have returned. Must not be called on
+  // the thread itself, and only by one thread.
   void stop();
 
  private:

@@ -18,7 +18,7 @@ OniStatus answer(const T& value, void* data, int* size) {
   return ONI_STATUS_OK;
 }
 
-// A value of the property's type out of the caller's memory, which need not be aligned for it.
+// Reads a value of the property's type from the caller's memory, which need not be aligned.
 template <typename T>
 bool read(const void* data, int size, T& value) {
   if (data == nullptr || size < static_cast<int>(sizeof(T))) return false;
@@ -50,7 +50,7 @@ OniStatus DriverStream::getProperty(int id, void* data, int* size) {
   const OniVideoMode now = mode();
   const bool is_depth = sensor_ == ONI_SENSOR_DEPTH;
   const int units_per_mm = now.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_100_UM ? 10 : 1;
-  // What a 16-bit image can hold bounds it as well.
+  // The range of the 16-bit image is also a limit.
   const int max_value = std::min(kMaxDepth_mm * units_per_mm, 65535);
   switch (id) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE: return answer(now, data, size);
@@ -111,7 +111,7 @@ OniBool DriverStream::isPropertySupported(int id) {
   }
 }
 
-// The recorder calls this to learn what to write into the file.
+// The recorder calls this to get the properties that it writes into the file.
 void DriverStream::notifyAllProperties() {
   const OniVideoMode now = mode();
   const OniBool mirrored = mirrored_ ? TRUE : FALSE;

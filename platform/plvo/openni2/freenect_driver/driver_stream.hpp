@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver's side of one OpenNI2 stream: its video modes and the properties that every OpenNI2 client asks
-// for. A stream must answer for cropping even though it cannot crop: OpenNI2's recorder asks, and writes a
-// file that plays nothing when it hears no answer. Written from OniDriverAPI.h alone.
+// The driver's side of one OpenNI2 stream: its video modes and the properties that every OpenNI2 client
+// reads. A stream must answer the cropping property although it cannot crop; otherwise OpenNI2's recorder
+// writes a file that plays no frames. Written from OniDriverAPI.h only.
 #pragma once
 
 #include <atomic>
@@ -38,14 +38,14 @@ class DriverStream : public oni::driver::StreamBase {
   bool mirrored() const { return mirrored_; }
   static int bytes_per_pixel(OniPixelFormat format);
 
-  // A frame of the stream's mode with everything but its pixels and stamps filled in, or null while OpenNI2
-  // has no buffer. Give it back with deliver() or drop().
+  // Returns a frame of the stream's mode with all fields but pixels and stamps filled in, or null while
+  // OpenNI2 has no free buffer. The frame must be returned with deliver() or drop().
   OniFrame* acquire();
   void deliver(OniFrame* frame);
   void drop(OniFrame* frame);
 
  protected:
-  // Whether the driver can turn images round. Where it cannot, the property stays as it is.
+  // Returns true if the driver can mirror images. Otherwise the property is unchanged.
   virtual bool set_mirrored(bool /*mirrored*/) { return false; }
   std::atomic<bool> mirrored_ = false;
 

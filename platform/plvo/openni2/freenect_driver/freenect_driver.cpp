@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenNI2 driver for the Kinect v1 (models 1414 and 1473, and Kinect for Windows), over Debian's
-// libfreenect. Colour and depth come in 640x480 at 30 Hz, depth in millimetres, registered to colour by
-// libfreenect with the sensor's own calibration when asked. The driver watches the bus itself and tells
-// OpenNI2 of plugging and unplugging. Written from OniDriverAPI.h and libfreenect.h.
+// The OpenNI2 driver for the Kinect v1 (models 1414 and 1473, and Kinect for Windows), based on Debian's
+// libfreenect. It delivers colour and depth in 640x480 at 30 Hz, depth in millimetres. On request libfreenect
+// registers depth to colour with the sensor's own calibration. The driver watches the bus itself and reports
+// plugging and unplugging to OpenNI2. Written from OniDriverAPI.h and libfreenect.h.
 #include <libusb.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 constexpr char kScheme[] = "freenect://";
 constexpr auto kWatch_ms = std::chrono::milliseconds(100);
 
-// Nominal fields of view of the Kinect v1, the values that OpenNI2's other driver for it gives.
+// Nominal fields of view of the Kinect v1, as reported by the other OpenNI2 driver for it.
 constexpr float kRadians = 3.14159265f / 180.0f;
 constexpr FieldOfView kDepthFov{58.5f * kRadians, 45.6f * kRadians};
 constexpr FieldOfView kColourFov{62.0f * kRadians, 48.6f * kRadians};
@@ -39,7 +39,7 @@ class KinectStream : public DriverStream {
   OniStatus start() override;
   void stop() override;
 
-  // On the Kinect's thread.
+  // Called on the Kinect's thread.
   void take(const void* pixels, std::uint64_t stamp_us) {
     if (!running()) return;
     OniFrame* frame = acquire();
@@ -68,7 +68,7 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
     if (sensor != ONI_SENSOR_DEPTH && sensor != ONI_SENSOR_COLOR) return nullptr;
     const std::lock_guard lock(mutex_);
     std::shared_ptr<KinectStream>& slot = sensor == ONI_SENSOR_DEPTH ? depth_ : colour_;
-    if (slot != nullptr) return nullptr;  // OpenNI2 shares one stream among its clients by itself
+    if (slot != nullptr) return nullptr;  // OpenNI2 itself shares one stream among its clients
     slot = std::make_shared<KinectStream>(*this, sensor);
     return slot.get();
   }
@@ -97,7 +97,7 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }
-  // Before or after the depth stream exists, running or not: any order will do.
+  // May be called before or after the depth stream exists, whether it is running or not.
   OniStatus setProperty(int id, const void* data, int size) override {
     if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_SUPPORTED;
     if (size != sizeof(registration_)) return ONI_STATUS_BAD_PARAMETER;
@@ -118,8 +118,8 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
   }
 
  private:
-  // A stream may be destroyed by another thread at this moment: it is kept for as long as the image needs it,
-  // and destroyStream() waits for this thread. No lock is held meanwhile, for whoever gets the image may call
+  // Another thread may destroy the stream at the same time. keep() holds it while the image is delivered, and
+  // destroyStream() waits for this thread. No lock is held during delivery, because the receiver may call
   // back.
   void on_depth(const std::uint16_t* depth_mm, std::uint64_t stamp_us) override {
     if (const auto stream = keep(depth_)) stream->take(depth_mm, stamp_us);
@@ -139,7 +139,7 @@ class KinectDevice : public oni::driver::DeviceBase, private KinectListener {
   OniVideoMode depth_mode_ = kDepthMode;
   OniVideoMode colour_mode_ = kColourMode;
   OniSensorInfo sensors_[2] = {{ONI_SENSOR_DEPTH, 1, &depth_mode_}, {ONI_SENSOR_COLOR, 1, &colour_mode_}};
-  Kinect kinect_{*this};  // last: its thread uses all of the above
+  Kinect kinect_{*this};  // last member: its thread uses all members above
 };
 
 OniStatus KinectStream::start() {
@@ -149,7 +149,7 @@ OniStatus KinectStream::start() {
   return ONI_STATUS_ERROR;
 }
 
-// Also where it does not run: when this returns, no image of it is on its way.
+// Also if the stream is not running: when this returns, no image of it is being delivered.
 void KinectStream::stop() {
   DriverStream::stop();
   device_.stop(sensor());
@@ -196,7 +196,7 @@ class FreenectDriver : public oni::driver::DriverBase {
   }
 
  private:
-  // libfreenect has no hot-plug, and OpenNI2 only knows what its drivers tell it.
+  // libfreenect has no hot-plug events, and OpenNI2 depends on its drivers for them.
   void look() {
     const std::vector<KinectPlug> now = list_kinects(usb_);
     const auto has = [](const std::vector<KinectPlug>& list, const KinectPlug& plug) {

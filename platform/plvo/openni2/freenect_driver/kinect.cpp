@@ -12,7 +12,8 @@ constexpr std::uint16_t kMicrosoft = 0x045e;
 constexpr std::uint16_t kKinectCamera = 0x02ae;
 constexpr std::uint16_t kKinectForWindowsCamera = 0x02bf;
 
-// What libfreenect had to say last on this thread: its log callback carries no pointer of ours.
+// The last log message of libfreenect on this thread. A thread_local variable, because its log callback has
+// no user pointer.
 thread_local std::string last_message;
 
 void keep_message(freenect_context* /*context*/, freenect_loglevel level, const char* message) {
@@ -27,7 +28,7 @@ std::string port_of(libusb_device* device) {
   return text;
 }
 
-// Calls visit(device, descriptor, index) for each camera, index as libfreenect counts.
+// Calls visit(device, descriptor, index) for each camera, with the index used by libfreenect.
 template <typename Visit>
 void for_each_camera(libusb_context* usb, Visit visit) {
   libusb_device** devices = nullptr;
@@ -43,12 +44,13 @@ void for_each_camera(libusb_context* usb, Visit visit) {
   if (count >= 0) libusb_free_device_list(devices, 1);
 }
 
-// libfreenect does not say why it cannot open a camera; trying the two steps that fail in practice does.
+// libfreenect does not report why it cannot open a camera. This function repeats the two steps that fail in
+// practice to find the reason.
 std::string try_out(libusb_device* device) {
   libusb_device_handle* handle = nullptr;
   int error = libusb_open(device, &handle);
   if (error == 0) {
-    libusb_set_auto_detach_kernel_driver(handle, 1);  // gspca_kinect takes every Kinect for a webcam
+    libusb_set_auto_detach_kernel_driver(handle, 1);  // gspca_kinect claims every Kinect as a webcam
     error = libusb_claim_interface(handle, 0);
     if (error == 0) libusb_release_interface(handle, 0);
     libusb_close(handle);
@@ -73,7 +75,7 @@ Kinect::Kinect(KinectListener& listener)
 bool Kinect::process_events() {
   if (device_ == nullptr || !(depth_runs_ || colour_runs_)) return false;
   timeval wait{0, 10000};
-  // An error here means that the device is gone: the driver's watch says so to OpenNI2.
+  // An error here means that the device is gone; the driver's bus watch reports this to OpenNI2.
   return freenect_process_events_timeout(freenect_, &wait) >= 0;
 }
 
@@ -104,7 +106,7 @@ std::string Kinect::open_here(const std::string& port) {
   if (error.empty()) {
     freenect_set_log_callback(freenect_, keep_message);
     freenect_set_log_level(freenect_, FREENECT_LOG_ERROR);
-    // Motor and microphones are left to whoever wants them (plvo tilt, for one).
+    // The motor and the microphones stay free for other programs (for example plvo tilt).
     freenect_select_subdevices(freenect_, FREENECT_DEVICE_CAMERA);
     last_message.clear();
     if (freenect_open_device(freenect_, &device_, found) < 0) {
@@ -192,12 +194,11 @@ void Kinect::stop_colour() {
   });
 }
 
-// 60 MHz ticks in 32 bits, which wrap every 71.58 s, to 64-bit microseconds. Both streams read one clock, and
-// each image lies within half a wrap of the newest one of either.
+// Converts 60 MHz ticks in 32 bits, which wrap every 71.58 s, to 64-bit microseconds. Both streams use one
+// clock, and each stamp lies within half a wrap of the newest stamp of either stream.
 std::uint64_t Kinect::to_us(std::uint32_t ticks) {
   if (ticks_ == 0) {
-    ticks_ =
-        (std::uint64_t{1} << 32) + ticks;  // so that an earlier stamp of the other stream is not negative
+    ticks_ = (std::uint64_t{1} << 32) + ticks;  // an earlier stamp of the other stream then is not negative
     return ticks_ / 60;
   }
   const auto step = static_cast<std::int32_t>(ticks - static_cast<std::uint32_t>(ticks_));

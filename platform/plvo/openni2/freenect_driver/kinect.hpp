@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Kinect v1 over libfreenect's public C interface. libfreenect is not made for several threads, so
-// everything that touches it runs on one thread of the Kinect's own; other threads hand over what they want
-// and wait for it. Images come to the listener on that thread.
+// One Kinect v1, accessed through libfreenect's public C interface. libfreenect is not thread-safe, so all
+// calls of it run on one dedicated thread. Other threads pass their commands to it and wait for the results.
+// The listener receives images on that thread.
 #pragma once
 
 #include <libfreenect.h>
@@ -16,17 +16,16 @@ struct libusb_context;
 
 namespace plvo {
 
-// Where a Kinect's camera is plugged in. The same plug gives the same name again: "1-1.3" is bus 1, port 1,
-// port 3.
+// The USB port of a Kinect's camera. The name depends only on the port: "1-1.3" is bus 1, port 1, port 3.
 struct KinectPlug {
   std::string port;
-  int address = 0;  // changes with each plugging in
+  int address = 0;  // changes each time it is plugged in
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   bool operator==(const KinectPlug&) const = default;
 };
 
-// The cameras of all Kinects v1 that the context sees, in the order in which libfreenect counts them.
+// The cameras of all Kinects v1 in the context, in libfreenect's order.
 std::vector<KinectPlug> list_kinects(libusb_context* usb);
 
 class KinectListener {
@@ -45,9 +44,10 @@ class Kinect {
   Kinect(const Kinect&) = delete;
   Kinect& operator=(const Kinect&) = delete;
 
-  // Empty when open, otherwise why not, with libusb's name of the error where there is one.
+  // Returns an empty string on success, otherwise the reason of the failure, with libusb's error name if
+  // there is one.
   std::string open(const std::string& port);
-  // Depth as the colour camera sees it, from now on or, where it does not run, from its start on.
+  // Registers depth to the colour camera, from now on or, if depth is not running, from its start on.
   bool set_registered(bool registered);
   bool start_depth();
   bool start_colour();
@@ -68,9 +68,9 @@ class Kinect {
   bool registered_ = false;
   bool depth_runs_ = false;
   bool colour_runs_ = false;
-  std::uint64_t ticks_ = 0;  // the newest stamp of either stream, unwrapped
+  std::uint64_t ticks_ = 0;  // newest stamp of either stream, unwrapped
 
-  CommandThread thread_;  // last: it uses all of the above, and closes the device when it ends
+  CommandThread thread_;  // last member: uses all members above, and closes the device when it ends
 };
 
 }  // namespace plvo

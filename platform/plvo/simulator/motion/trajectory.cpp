@@ -11,7 +11,7 @@
 namespace plvo::sim {
 namespace {
 
-// Heading and pitch → rotation of an optical frame (x right, y down, z forward) in a world with z up.
+// Rotation of an optical frame (x right, y down, z forward) with this heading and pitch in a world with z up.
 Matrix3 look(double yaw, double pitch) {
   const Vector3 forward(cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), sin(pitch));
   const Vector3 right(sin(yaw), -cos(yaw), 0);
@@ -28,8 +28,8 @@ struct SplinePoint {
   double yaw = 0, pitch = 0;
 };
 
-// The closed uniform cubic B-spline at phase ∈ [0, 1). With winding, the heading grows by 2π from one lap to
-// the next.
+// Evaluates the closed uniform cubic B-spline at phase ∈ [0, 1). With winding, the heading grows by 2π per
+// lap.
 SplinePoint spline_at(const std::vector<WalkPoint>& points, double phase, bool winding) {
   const auto n = static_cast<int>(points.size());
   const double x = phase * n;
@@ -81,13 +81,13 @@ Trajectory Trajectory::hand_held(const Scene& scene, std::uint64_t seed, double 
     walk.extent_ = std::min(1.0, reach_m / stroll_m);
   }
 
-  // Amplitude at 1 Hz and how it falls with the frequency: translations x y z (m), rotations pitch yaw roll
-  // (rad). Each band's frequency is drawn from the seed, then moved to the nearest whole number of periods.
+  // Amplitudes per frequency band: translations x y z (m), rotations pitch yaw roll (rad). Each band's
+  // frequency is drawn from the seed, then rounded to a whole number of periods.
   Random random(seed, 0x5452);
   constexpr std::array<double, kWaves> kBand_hz = {0.3, 0.7, 1.6, 3.1, 5.7};
   constexpr std::array<std::array<double, kWaves>, 6> kAmplitude = {{
-      {0.020, 0.012, 0.003, 0.0008, 0.0002},  // sideways: a step to each side
-      {0.010, 0.004, 0.009, 0.0010, 0.0002},  // up and down: every step
+      {0.020, 0.012, 0.003, 0.0008, 0.0002},  // sideways: one period per two steps
+      {0.010, 0.004, 0.009, 0.0010, 0.0002},  // vertical: one period per step
       {0.015, 0.006, 0.003, 0.0008, 0.0002},
       {0.020, 0.009, 0.005, 0.0018, 0.0006},
       {0.026, 0.012, 0.004, 0.0018, 0.0006},
@@ -98,7 +98,7 @@ Trajectory Trajectory::hand_held(const Scene& scene, std::uint64_t seed, double 
       Wave& wave = walk.waves_[dof][k];
       const double periods = kBand_hz[k] * (0.8 + 0.4 * random.uniform()) * duration_s;
       wave.periods = static_cast<int>(periods + 0.5);
-      // A band too slow for so short a walk is left out, not sped up.
+      // A band too slow for a short trajectory is omitted, not sped up.
       wave.amplitude = wave.periods == 0 ? 0 : kAmplitude[dof][k] * (0.7 + 0.6 * random.uniform());
       wave.phase_rad = 2 * kPi * random.uniform();
     }
@@ -133,7 +133,7 @@ Se3 Trajectory::recording_at(double t_s) const {
   const double last = static_cast<double>(poses_.size() - 1);
   const double x = std::clamp(t_s / step_s_, 0.0, last);
   const auto k = std::min(static_cast<std::size_t>(x), poses_.size() - 2);
-  // Catmull–Rom through the neighbours' ⊞-differences keeps the velocity continuous.
+  // Catmull–Rom interpolation of the ⊞-differences of neighbouring poses keeps the velocity continuous.
   const Se3& a = poses_[k];
   const double u = x - static_cast<double>(k);
   const Vector6 to_next = boxminus(poses_[k + 1], a);

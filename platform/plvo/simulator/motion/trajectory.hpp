@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the camera is at any moment: a walk with a camera in the hand, made from a seed, or a recorded TUM
-// trajectory. The seeded walk follows the scene's closed spline; on top of it come the steps, the sway and
-// the tremor of a hand as sums of sinusoids with a whole number of periods, so that the walk ends exactly
-// where it began.
+// The pose of the camera at any time: a hand-held trajectory generated from a seed, or a recorded TUM
+// trajectory. The generated trajectory follows the scene's closed spline. Steps, sway and hand tremor are
+// added as sums of sinusoids with whole numbers of periods, so the trajectory ends exactly at its first pose.
 #pragma once
 
 #include <array>
@@ -18,24 +17,25 @@ namespace plvo::sim {
 
 class Trajectory {
  public:
-  // A closed walk of `duration_s` seconds: at(0) and at(duration_s) are the same pose.
+  // A closed trajectory of `duration_s` seconds: at(0) and at(duration_s) are the same pose.
   static Trajectory hand_held(const Scene& scene, std::uint64_t seed, double duration_s);
 
-  // Lines "t tx ty tz qx qy qz qw" (camera to world, optical frame, z up). Smoothed lightly against the 0.1
-  // mm steps of motion capture, turned about the vertical and shifted so that it starts where the scene's
-  // walk does, and scaled down, never up, as far as the scene's free space asks. What read_trajectory says of
-  // a file that it cannot read; kDamaged for rows with a NaN or a repeated stamp.
+  // Lines "t tx ty tz qx qy qz qw" (camera to world, optical frame, z up). The trajectory is lightly smoothed
+  // to remove the 0.1 mm steps of motion capture, then rotated about the vertical and shifted to the start of
+  // the scene's own trajectory. It is scaled down, never up, to fit into the scene's free space. Returns the
+  // error of read_trajectory for an unreadable file, and kDamaged for rows with a NaN or a repeated stamp.
   static Status from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory);
 
-  // T_world_camera. Times outside 0 … duration_s() are clamped for a recording and wrap for a walk.
+  // T_world_camera. Times outside 0 … duration_s() are clamped for a recording and wrap around for a
+  // generated trajectory.
   Se3 at(double t_s) const;
   double duration_s() const { return duration_s_; }
-  double scale() const { return scale_; }  // of a recording, ≤ 1
+  double scale() const { return scale_; }  // scale of a recording, ≤ 1
 
  private:
   struct Wave {
     double amplitude = 0;  // m or rad
-    int periods = 1;       // over the whole walk
+    int periods = 1;       // over the whole trajectory
     double phase_rad = 0;
   };
   static constexpr int kWaves = 5;  // per degree of freedom
@@ -45,13 +45,13 @@ class Trajectory {
 
   double duration_s_ = 0;
   double scale_ = 1;
-  // A walk:
+  // Generated trajectory:
   std::vector<WalkPoint> points_;
-  double extent_ = 1;  // of the stroll, towards its first point
+  double extent_ = 1;  // scale of the stroll about its first point
   int rounds_ = 1;
   bool winding_ = false;
   std::array<std::array<Wave, kWaves>, 6> waves_;
-  // A recording, at a fixed rate:
+  // Recorded trajectory, at a fixed rate:
   std::vector<Se3> poses_;
   double step_s_ = 0;
 };

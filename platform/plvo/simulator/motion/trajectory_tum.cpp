@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded TUM trajectory as the hand that moves the simulated camera.
+// Moves the simulated camera along a recorded TUM trajectory.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,7 +13,7 @@ namespace plvo::sim {
 namespace {
 
 constexpr double kStep_s = 0.01;       // motion capture runs at 100 Hz
-constexpr double kSmoothing_s = 0.02;  // standard deviation of the Gaussian that takes away the 0.1 mm steps
+constexpr double kSmoothing_s = 0.02;  // standard deviation of the Gaussian that removes the 0.1 mm steps
 constexpr int kSmoothingReach = 6;     // steps to each side
 constexpr std::int64_t kLongest_ns = 3'600'000'000'000;
 
@@ -32,7 +32,7 @@ Status read_samples(const std::string& path, std::vector<StampedPose>& samples) 
   return {};
 }
 
-// Evenly spaced poses; gaps are bridged at constant velocity.
+// Resamples to evenly spaced poses; gaps are interpolated at constant velocity.
 std::vector<Se3> resample(const std::vector<StampedPose>& samples) {
   std::vector<Se3> poses;
   const auto since_start_s = [&samples](std::size_t k) {
@@ -57,7 +57,7 @@ std::vector<Se3> smooth(const std::vector<Se3>& poses) {
     const Se3& centre = poses[static_cast<std::size_t>(i)];
     Vector6 sum = Vector6::Zero();
     double weights = 0;
-    // Symmetric, so that the ends are not dragged inwards.
+    // A symmetric window does not pull the ends inwards.
     const int reach = std::min({kSmoothingReach, i, n - 1 - i});
     for (int k = -reach; k <= reach; ++k) {
       const double x = k * kStep_s / kSmoothing_s;
@@ -82,7 +82,7 @@ Status Trajectory::from_tum(const std::string& path, const Scene& scene, Traject
   if (poses.size() < 2)
     return Status(StatusCode::kDamaged, path.substr(0, 160)).append(" is shorter than 20 ms");
 
-  // Turn about the vertical so that the first view looks where the walk's would.
+  // Rotates about the vertical so that the first view has the heading of the scene's stroll.
   const WalkPoint& begin = scene.stroll.front();
   const double turn = static_cast<double>(begin.yaw) - heading(poses.front().R);
   const Matrix3 R_scene_recording = rotation_exp(Vector3(0, 0, turn));

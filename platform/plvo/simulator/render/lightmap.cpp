@@ -13,7 +13,7 @@ namespace {
 constexpr float kPiF = 3.14159265F;
 constexpr std::uint32_t kUnset = 0xffffffffU;
 constexpr float kDirectScale = 4096;  // 16 bits hold irradiances up to 16
-constexpr float kOpenScale = 65534;   // so that the all-ones word stays free for "unset"
+constexpr float kOpenScale = 65534;   // leaves the all-ones word free for "unset"
 constexpr int kPanelEdge = 3;         // 3 × 3 samples on a ceiling panel
 constexpr int kRings = 3;             // ambient occlusion: 3 rings of 8 directions
 constexpr int kSpokes = 8;
@@ -89,7 +89,7 @@ std::uint32_t Lightmap::compute(std::size_t surface, std::uint32_t iu, std::uint
   const Grid& grid = grids_[surface];
   const Solid& solid = scene_.solids[surface / Solid::kFaces];
   const auto face = static_cast<int>(surface % Solid::kFaces);
-  // Nodes on a face's rim lie in the corner between two surfaces: look at the room from a little inside
+  // Nodes on a face's rim lie in the corner between two surfaces; their rays start slightly inside the face
   // instead.
   const auto inset = [](std::uint32_t i, std::uint32_t n, float step) {
     const float margin = std::min(0.04F * step, 0.002F) / step;
@@ -112,7 +112,7 @@ std::uint32_t Lightmap::compute(std::size_t surface, std::uint32_t iu, std::uint
   for (const Float3 d : kDirections) {
     const Float3 direction = side * d.x + other * d.y + normal * d.z;
     const Hit hit = scene_.bvh.closest({point + normal * kLift, direction}, 0, scene_.ambient_reach_m);
-    // A near surface hides the room but is lit as well: it gives back a share that grows with its distance.
+    // A near surface occludes the room but reflects light itself; its share grows with its distance.
     open += hit.solid < 0 ? 1.0F : 0.2F + 0.8F * hit.t / scene_.ambient_reach_m;
   }
   const auto direct_bits = static_cast<std::uint32_t>(std::min(direct * kDirectScale + 0.5F, 65535.0F));

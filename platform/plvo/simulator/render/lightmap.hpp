@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that does not change: the direct light of the ceiling panels with their soft shadows, and how open to
-// the room a point is (ambient occlusion). Both are computed on a grid over each face, at the moment a
-// picture first needs a node, and interpolated in between. Two threads that need the same node compute the
-// same value, so whoever stores it last changes nothing.
+// Static light: the direct light of the ceiling panels with soft shadows, and the openness of each point to
+// the room (ambient occlusion). Both are computed on a grid over each face, when an image first needs a node,
+// and interpolated in between. Two threads that need the same node compute the same value, so the order in
+// which they store it does not matter.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace plvo::sim {
 
-constexpr float kLift = 1e-3F;  // m, how far above a surface its rays start
+constexpr float kLift = 1e-3F;  // m, height above a surface at which its rays start
 
 class Lightmap {
  public:
@@ -24,7 +24,7 @@ class Lightmap {
     float direct = 0;    // irradiance from the ceiling panels at full power
     float openness = 0;  // 0 … 1
   };
-  // At a point of a surface given in face coordinates.
+  // Light at a point of a surface, given in face coordinates.
   Light at(int solid, int face, float u, float v);
 
  private:
@@ -41,8 +41,8 @@ class Lightmap {
   std::unique_ptr<std::atomic<std::uint32_t>[]> nodes_;
 };
 
-// Irradiance by a panel at a point with a unit normal, `visible` the share of the panel that is not hidden.
-// With shadows == false nothing hides it. `per_edge`² points of the panel are sampled.
+// Irradiance from a panel at a point with a unit normal, sampled at `per_edge`² points of the panel. With
+// shadows == false, occlusion is ignored.
 float panel_irradiance(const Bvh& bvh, const PanelLight& light, Float3 point, Float3 normal, int per_edge,
                        bool shadows);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every pixel of a camera sees: the surface that its ray meets, the exact depth there and the angle of
-// incidence. One ray per pixel, through its centre; each row from its own pose, so that a shutter may roll.
+// Computes for every pixel of a camera the surface that its ray hits, the exact depth and the angle of
+// incidence. It casts one ray per pixel, through the centre. Each row has its own pose, which allows a
+// rolling shutter.
 #pragma once
 
 #include <span>
@@ -13,28 +14,28 @@
 
 namespace plvo::sim {
 
-// What the ray through a pixel's centre meets.
+// The hit of the ray through a pixel's centre.
 struct PixelHit {
-  float depth_m = 0;  // along the optical axis; 0: nothing
+  float depth_m = 0;  // along the optical axis; 0: no hit
   float cosine = 0;   // between the ray and the surface's normal, 0 … 1
-  int surface = -1;   // Hit::surface(); −1: nothing
+  int surface = -1;   // Hit::surface(); −1: no hit
 };
 
-// A row's camera in the world.
+// Pose of one row's camera in the world.
 struct RowView {
   Float3 origin;
   Float3 right, down, forward;
   Float3 to_world(Float3 v) const { return right * v.x + down * v.y + forward * v.z; }
 };
 
-constexpr float kNear = 1e-3F;  // m, where rays begin
-constexpr float kFar = 200;     // m, where they end
+constexpr float kNear = 1e-3F;  // m, start of the rays
+constexpr float kFar = 200;     // m, end of the rays
 
 class RayCaster {
  public:
   RayCaster(const Scene& scene, const CameraModel& camera, int threads);
 
-  // T_world_camera of each row, from the top.
+  // Casts all rays. T_world_row: T_world_camera of each row, from the top.
   void cast(std::span<const Se3> T_world_row);
 
   ImageView<const PixelHit> hits() const { return {hits_.data(), width_, height_, width_}; }

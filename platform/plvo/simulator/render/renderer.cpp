@@ -10,11 +10,11 @@
 namespace plvo::sim {
 namespace {
 
-constexpr int kBlock = 4;          // px between the points at which the lamp's shadow is sampled first
+constexpr int kBlock = 4;          // px, spacing of the points at which the lamp's shadow is sampled first
 constexpr int kLampEdge = 3;       // 3 × 3 shadow rays to the lamp
-constexpr float kPenumbra = 0.3F;  // a block whose corners differ by less is interpolated
+constexpr float kPenumbra = 0.3F;  // a block whose corners differ by less than this is interpolated
 static_assert(kThreadRows % kBlock == 0);
-constexpr float kReflectiveGloss = 0.25F;  // below it no mirror image is traced
+constexpr float kReflectiveGloss = 0.25F;  // below this gloss no mirror image is traced
 // Four sub-pixel samples that differ in both coordinates (a rotated grid).
 constexpr std::array<std::array<float, 2>, 4> kRimSamples = {
     {{-0.125F, -0.375F}, {0.375F, -0.125F}, {-0.375F, 0.125F}, {0.125F, 0.375F}}};
@@ -55,7 +55,8 @@ float Renderer::lamp_visibility(const LightState& light, int x, int y) const {
   const Float3 normal =
       solid.rotate_to_world(face_normal(solid, pixel.surface % Solid::kFaces, solid.to_local(point)));
   const Float3 origin = point + normal * kLift;
-  // Turned away from the lamp, or behind it: no light whether hidden or not.
+  // The surface faces away from the lamp or lies behind it: it receives no light, so occlusion does not
+  // matter.
   if (dot(normal, light.lamp.centre - origin) <= 0 || dot(light.lamp.normal, origin - light.lamp.centre) <= 0)
     return 1;
   const auto sees = [&](int u, int v) {
@@ -64,7 +65,7 @@ float Renderer::lamp_visibility(const LightState& light, int x, int y) const {
                           light.lamp.half_v * (static_cast<float>(2 * v + 1) / kLampEdge - 1);
     return scene_.bvh.occluded({origin, target - origin}, 0, 0.999F) ? 0 : 1;
   };
-  // The corners and the centre decide for all where they agree.
+  // If the corners and the centre of the lamp agree, they decide for all samples.
   constexpr int kLast = kLampEdge - 1;
   constexpr int kMiddle = kLampEdge / 2;
   const int outline =
@@ -82,8 +83,8 @@ void Renderer::lamp_grid_rows(const LightState& light, int begin, int end) {
   }
 }
 
-// A pixel takes its lamp visibility from the corners of its block that lie on the same surface, where those
-// agree; rims of shadows and of surfaces are traced pixel by pixel.
+// A pixel interpolates the lamp visibility of those corners of its block that lie on the same surface, if
+// they agree. At the rims of shadows and of surfaces every pixel is traced.
 void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < width_; ++x) {
@@ -128,7 +129,7 @@ bool Renderer::on_rim(int x, int y) const {
          (y > 0 && surface(x, y - 1) != here) || (y + 1 < height_ && surface(x, y + 1) != here);
 }
 
-// `footprint`: the pixel's width across the ray, at the hit. depth counts mirror images.
+// `footprint`: width of the pixel across the ray, at the hit. depth: number of mirror reflections so far.
 Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float footprint,
                           const LightState& light, float lamp_visible, int depth) {
   const Solid& solid = scene_.solids[static_cast<std::size_t>(hit.solid)];
@@ -145,7 +146,7 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
   Float3 axis_u;
   Float3 axis_v;
   face_axes(solid, hit.face, local, axis_u, axis_v);
-  // A disc across the ray, projected along it onto the surface: its extent along each axis of the face.
+  // Extent along each axis of the face of a disc across the ray, projected along the ray onto the surface.
   const float slope_u = dot(axis_u, towards_local) / cosine;
   const float slope_v = dot(axis_v, towards_local) / cosine;
   const SurfaceSample sample{c.u,
@@ -174,7 +175,7 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
       }
     }
   }
-  // What glows by mains power (screens) stays; what glows as part of the ceiling light dims with it.
+  // The emission of ceiling panels is dimmed with the ceiling light; that of screens is constant.
   if (material.pattern == Pattern::kLampPanel) emitted = emitted * light.ceiling;
   Rgb colour = albedo * irradiance + emitted + Rgb{glint, glint, glint};
 
@@ -187,7 +188,7 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
     const Ray ray{point + normal * kLift, reflected};
     const Hit seen = scene_.bvh.closest(ray, kNear, kFar);
     if (seen.solid >= 0) {
-      // Polished is not a mirror: the image is blurred by its distance.
+      // A polished surface is no perfect mirror: the blur of its image grows with the distance.
       const float blur = footprint + 0.05F * seen.t;
       colour = colour + radiance_at(ray.origin, ray.direction, seen, blur, light, 0, 1) * mirror;
     }
@@ -205,7 +206,7 @@ Rgb Renderer::shade_rim(const LightState& light, int x, int y) {
     const Float3 direction = view(y).to_world(ray(i) + to_right * offset[0] + to_below * offset[1]);
     const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
     if (hit.solid < 0) continue;
-    // The lamp's visibility is that of a neighbouring centre on the same surface.
+    // Takes the lamp's visibility from a neighbouring pixel centre on the same surface.
     float lamp_visible = lamp_[i];
     bool found = seen_by(i).surface == hit.surface();
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, height_ - 1) && !found; ++ny) {

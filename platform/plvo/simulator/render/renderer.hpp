@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The linear radiance that reaches every pixel from the surface that it sees. Pixels on the rim of a surface
-// take four rays beside the one through the centre, the rest is averaged by the materials themselves. Work is
-// cut into rows and may be shared by threads; no result depends on how.
+// Computes the linear radiance that reaches every pixel from the observed surface. Pixels on the rim of a
+// surface use four additional rays; elsewhere the materials average their pattern over the pixel. The rows
+// may be distributed over threads; the result does not depend on it.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Renderer {
  public:
   Renderer(const Scene& scene, const CameraModel& camera, int threads);
 
-  // T_world_camera of each row, from the top.
+  // Renders one frame. T_world_row: T_world_camera of each row, from the top.
   void render(std::span<const Se3> T_world_row, const LightState& light);
 
   ImageView<const PixelHit> hits() const { return caster_.hits(); }
@@ -49,7 +49,7 @@ class Renderer {
   int width_, height_, threads_;
   int grid_width_, grid_height_;
   float pixel_angle_;             // rad, between neighbouring pixels at the centre
-  std::vector<float> lamp_;       // share of the lamp that each pixel's point sees
+  std::vector<float> lamp_;       // visible share of the lamp at each pixel's point
   std::vector<float> lamp_grid_;  // the same at every kBlock-th pixel
   std::vector<Rgb> radiance_;
 };

@@ -9,7 +9,7 @@ namespace plvo::sim {
 namespace {
 
 constexpr std::size_t kLeafSize = 2;
-constexpr int kMaxDepth = 40;  // deeper nodes become leaves, so that the stack of a traversal suffices
+constexpr int kMaxDepth = 40;  // deeper nodes become leaves, which bounds the stack of a traversal
 
 Float3 min3(Float3 a, Float3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Float3 max3(Float3 a, Float3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
@@ -41,7 +41,7 @@ void Bvh::build(const std::vector<Solid>& solids) {
     extent.x = std::abs(a[0].x) * h.x + std::abs(a[1].x) * h.y + std::abs(a[2].x) * h.z;
     extent.y = std::abs(a[0].y) * h.x + std::abs(a[1].y) * h.y + std::abs(a[2].y) * h.z;
     extent.z = std::abs(a[0].z) * h.x + std::abs(a[1].z) * h.y + std::abs(a[2].z) * h.z;
-    constexpr Float3 kMargin{1e-4F, 1e-4F, 1e-4F};  // rounding, and flat solids
+    constexpr Float3 kMargin{1e-4F, 1e-4F, 1e-4F};  // for rounding errors and flat solids
     lo_.push_back(solid.centre - extent - kMargin);
     hi_.push_back(solid.centre + extent + kMargin);
     items.push_back(static_cast<std::uint32_t>(items.size()));
@@ -116,8 +116,8 @@ std::uint32_t Bvh::build_node(std::vector<std::uint32_t>& items, std::size_t beg
   return index;
 }
 
-// A node of up to four children from a binary node: the child of the largest surface is opened until four are
-// there.
+// Collapses a binary node to a node of up to four children: replaces the child of the largest surface by its
+// children until there are four.
 std::uint32_t Bvh::collapse(std::uint32_t binary_index) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
@@ -154,7 +154,7 @@ std::uint32_t Bvh::collapse(std::uint32_t binary_index) {
   return index;
 }
 
-// Parameters at which a ray enters and leaves four boxes at once (Kay & Kajiya's slabs).
+// Ray parameters at the entry and exit of four boxes, computed in SIMD (slab method of Kay & Kajiya).
 inline void Bvh::slabs(const Node& node, const Ray& ray, Float3 inverse, float t_min, float t_max,
                        Float32x4& near, Float32x4& far) {
   near = Float32x4{t_min, t_min, t_min, t_min};
@@ -171,7 +171,7 @@ inline void Bvh::slabs(const Node& node, const Ray& ray, Float3 inverse, float t
 
 namespace {
 
-constexpr float kRounding = 1.00001F;  // boxes are a little too long rather than too short
+constexpr float kRounding = 1.00001F;  // makes boxes slightly too long, never too short
 
 }  // namespace
 
@@ -203,7 +203,7 @@ Hit Bvh::closest(const Ray& ray, float t_min, float t_max) const {
     Float32x4 near;
     Float32x4 far;
     slabs(node, ray, inverse, t_min, best.t, near, far);
-    // The nearest child goes on top.
+    // The nearest child is pushed last, so it is visited first.
     const std::size_t base = top;
     for (int k = 0; k < node.size; ++k) {
       if (near[k] > far[k] * kRounding) continue;

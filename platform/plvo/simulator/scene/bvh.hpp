@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bounding volume hierarchy over the solids of a room: split by the surface area heuristic (MacDonald &
-// Booth, "Heuristics for ray tracing using space subdivision", 1990), swept exactly, since rooms have
-// hundreds of solids, not millions.
+// A bounding volume hierarchy over the solids of a room, split by the surface area heuristic (MacDonald &
+// Booth, "Heuristics for ray tracing using space subdivision", 1990). The heuristic is evaluated by an exact
+// sweep, since rooms have hundreds of solids, not millions.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace plvo::sim {
 
 class Bvh {
  public:
-  // Keeps the reference: the solids must live as long as this does and stay where they are.
+  // Keeps a reference: the solids must outlive this object and must not move.
   void build(const std::vector<Solid>& solids);
 
-  // The nearest hit at t in (t_min, t_max); Hit::solid is −1 when there is none. Among hits at the same t the
-  // one that the fixed order of the tree meets first wins.
+  // The nearest hit at t in (t_min, t_max); Hit::solid is −1 if there is none. Among hits at the same t, the
+  // first one in the fixed order of the tree is returned.
   Hit closest(const Ray& ray, float t_min, float t_max) const;
-  // Is there any hit at t in (t_min, t_max)?
+  // True if there is any hit at t in (t_min, t_max).
   bool occluded(const Ray& ray, float t_min, float t_max) const;
 
  private:
@@ -29,8 +29,7 @@ class Bvh {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
-  // Four floats that compilers keep in one register where there is one; lane by lane the arithmetic of plain
-  // floats.
+  // A SIMD vector of four floats. Each element has the arithmetic of a plain float.
   using Float32x4 = float __attribute__((vector_size(16)));
   struct Node {
     Float32x4 lo[3] = {};

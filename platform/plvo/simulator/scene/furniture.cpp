@@ -81,7 +81,7 @@ void Furniture::door(const Wall& wall, float along, float width, float height) {
   on_wall(wall, {handle - 0.01F, handle + 0.01F}, {0.02F, 0.07F}, {1.04F, 1.06F}, metal);
   if (b_.chance(0.4F))
     on_wall(wall, {along + 0.06F, along + width - 0.06F}, {0.015F, 0.019F}, {0.05F, 0.3F}, metal);
-  // The room's number beside it.
+  // The room's number beside the door.
   sign(wall, left ? along + width + 0.16F : along - 0.36F, 1.55F, 0.2F, 0.12F);
 }
 

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rooms have in common: doors, windows, posters, tables, monitors … each from a few boxes and
-// cylinders. Things on a wall are placed by how far along it they are, how far they stand out, and how high.
+// Furniture of the rooms: doors, windows, posters, tables, monitors … Each consists of a few boxes and
+// cylinders. Objects on a wall are placed by their position along it, their distance from it and their
+// height.
 #pragma once
 
 #include "plvo/simulator/scene/scene_builder.hpp"
 
 namespace plvo::sim {
 
-// A wall's inner face: runs from `origin` along +x or +y; `outward` is the sign of its normal along the other
-// axis.
+// The inner face of a wall. It runs from `origin` along +x or +y; `outward` is the sign of its normal along
+// the other axis.
 struct Wall {
   Float3 origin;
   bool along_x = true;
   float outward = 1;
 
-  // The face of a box on this wall that looks into the room.
+  // Index of the face of a box on this wall that faces the room.
   std::size_t front() const { return (along_x ? 2U : 0U) + (outward > 0 ? 1U : 0U); }
 };
 
-// A stretch along a wall or over it.
+// An interval along a wall, away from it or upwards.
 struct Span {
   float lo = 0, hi = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light at a moment. "constant": the ceiling panels. "varying": an LED panel carried beside the camera
-// swings and dims, as in the paper's experiment, and the ceiling panels give a twentieth of their light.
+// The light at a given time. "constant": the ceiling panels. "varying": an LED panel carried beside the
+// camera swings and dims, as in the paper's experiment, and the ceiling panels emit a twentieth of their
+// light.
 #pragma once
 
 #include <array>
@@ -14,14 +15,14 @@ namespace plvo::sim {
 struct LightState {
   float ceiling = 1;  // share of the ceiling panels' power
   bool lamp_on = false;
-  PanelLight lamp;         // where the panel hangs now, and its power
-  float lamp_ambient = 0;  // what the room throws back of its light
+  PanelLight lamp;         // current pose and power of the panel
+  float lamp_ambient = 0;  // lamp light that the room reflects diffusely
 };
 
 class Lighting {
  public:
   Lighting(LightName name, std::uint64_t seed);
-  // T_world_camera: where the camera is at `t_s` (seconds since the first frame).
+  // T_world_camera: pose of the camera at `t_s` (seconds since the first frame).
   LightState at(double t_s, const Se3& T_world_camera) const;
 
  private:

@@ -30,8 +30,8 @@ float covered_bars(float x, float width, float period, float duty) {
   return (integral(x + width * 0.5F) - integral(x - width * 0.5F)) / width;
 }
 
-// Fractal noise: octaves of wavelength `wave`, wave/2, …, of equal amplitude, each faded out as it shrinks
-// below three pixels. In ±octaves·0.6 or so.
+// Fractal noise: octaves of wavelength `wave`, wave/2, …, of equal amplitude. Each fades out as its
+// wavelength falls below three pixels. The range is about ±octaves·0.6.
 float noise(const SurfaceSample& s, float wave_u, float wave_v, int octaves, std::uint32_t seed) {
   float sum = 0;
   for (int k = 0; k < octaves; ++k) {
@@ -45,7 +45,7 @@ float noise(const SurfaceSample& s, float wave_u, float wave_v, int octaves, std
   return sum;
 }
 
-// Sparse marks: one cell in `1/probability` holds a small rectangle. Returns its coverage.
+// Sparse marks: one cell in `1/probability` contains a small rectangle. Returns its coverage.
 float marks(const SurfaceSample& s, float cell, float probability, float size, std::uint32_t seed) {
   const float cu = floor_to(s.u / cell);
   const float cv = floor_to(s.v / cell);
@@ -64,7 +64,7 @@ float marks(const SurfaceSample& s, float cell, float probability, float size, s
   return covered(s.u, s.width_u, u - half_u, u + half_u) * covered(s.v, s.width_v, v - half_v, v + half_v);
 }
 
-// Lines of words in the rectangle [u0, u1] × [v0, v1] (in shares of the face), `lines` of them. Returns ink
+// `lines` lines of words in the rectangle [u0, u1] × [v0, v1] (as shares of the face). Returns the ink
 // coverage.
 float text(const SurfaceSample& s, float u0, float u1, float v0, float v1, int lines, std::uint32_t seed) {
   const float u = s.u / s.size_u;
@@ -75,7 +75,7 @@ float text(const SurfaceSample& s, float u0, float u1, float v0, float v1, int l
   const float inside = covered(u, width_u, u0, u1) * covered(v, width_v, v0, v1);
   const float pitch = (v1 - v0) / static_cast<float>(lines);
   const float ink_rows = covered_bars(v - v0, width_v, pitch, 0.45F);
-  // Words: each cell of four glyph widths along the line is inked or not, glyphs are bars inside it.
+  // Words: each cell of four glyph widths along the line is inked or not; glyphs are bars inside it.
   const float glyph = 0.5F * pitch * s.size_v / s.size_u;
   const auto line = static_cast<std::uint32_t>(static_cast<int>(floor_to((v - v0) / pitch)));
   const auto word = static_cast<std::uint32_t>(static_cast<int>(floor_to((u - u0) / (4 * glyph))));
@@ -89,7 +89,7 @@ Rgb tint(std::uint32_t h, float lo, float hi) {
   return {mix(lo, hi, uniform(h)), mix(lo, hi, uniform(hash(h + 1))), mix(lo, hi, uniform(hash(h + 2)))};
 }
 
-// The longer side of the face is the direction of growth.
+// The grain runs along the longer side of the face.
 Rgb wood(const Material& m, const SurfaceSample& s) {
   const bool along_v = s.size_v >= s.size_u;
   const float thin = 0.012F;
@@ -115,7 +115,7 @@ Rgb tiles(const Material& m, const SurfaceSample& s, float pitch_u, float pitch_
   return mix(m.second, m.base * shade, body);
 }
 
-// A poster of the face's size: ground, picture with coloured fields, headline, text.
+// A poster that fills the face: background, picture with coloured fields, headline, text.
 Rgb poster(const Material& m, const SurfaceSample& s) {
   const float u = s.u / s.size_u;
   const float v = s.v / s.size_v;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Procedural surfaces: what colour a point of a face has. Every pattern is averaged over the footprint that a
-// pixel has on the surface (edges by box filtering, noise by leaving out the octaves that the pixel cannot
-// resolve), so a picture neither flickers nor carries aliases that a sub-pixel tracker would follow.
+// Procedural textures: the colour of a point of a face. Every pattern is averaged over the footprint of the
+// pixel on the surface (edges by box filtering, noise by omitting the octaves that the pixel cannot resolve).
+// Images therefore neither flicker nor contain aliases that a sub-pixel tracker would follow.
 #pragma once
 
 #include <cstdint>
@@ -33,14 +33,14 @@ struct Material {
   Pattern pattern = Pattern::kPlain;
   Rgb base{0.5F, 0.5F, 0.5F};
   Rgb second{0.2F, 0.2F, 0.2F};
-  float scale = 0.3F;     // m, of the pattern where it has one
-  float contrast = 1;     // of the noise
+  float scale = 0.3F;     // m, period of the pattern, if it has one
+  float contrast = 1;     // amplitude factor of the noise
   float gloss = 0;        // 0 matt … 1 polished
-  float infrared = 0.6F;  // share of the projector's light that comes back diffusely
+  float infrared = 0.6F;  // share of the projector's light that is reflected diffusely
   float emission = 0;     // radiance where the pattern emits
 };
 
-// Where on a face, and how much of it the pixel sees.
+// A point on a face and the footprint of the pixel there.
 struct SurfaceSample {
   float u = 0, v = 0;              // m from the face's corner
   float width_u = 0, width_v = 0;  // m, footprint of the pixel
@@ -48,7 +48,7 @@ struct SurfaceSample {
   std::uint32_t seed = 0;
 };
 
-// Diffuse reflectance at the sample; `emitted` receives the radiance that the surface sends by itself.
+// Returns the diffuse reflectance at the sample; `emitted` receives the radiance that the surface emits.
 Rgb shade_material(const Material& material, const SurfaceSample& at, Rgb& emitted);
 
 }  // namespace plvo::sim

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A room: its solids and materials, the lights at its ceiling, and the walk that somebody with a camera in
-// the hand would take through it. World axes: x and y on the floor, z up, metres; headings are counted from
-// +x towards +y.
+// A room: its solids and materials, its ceiling lights, and the path of a hand-held camera through it. World
+// axes: x and y on the floor, z up, metres. Headings are measured from +x towards +y.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@
 
 namespace plvo::sim {
 
-// A rectangle that shines to the side of `normal`, by Lambert's law.
+// A rectangle that emits light to the side of `normal` by Lambert's law.
 struct PanelLight {
   Float3 centre;
   Float3 half_u, half_v;  // half edges
@@ -35,13 +34,13 @@ struct Scene {
   std::vector<PanelLight> lights;
   Bvh bvh;
 
-  float ambient = 0.25F;  // irradiance from everywhere while the ceiling light is on
+  float ambient = 0.25F;  // ambient irradiance while the ceiling light is on
   float lightmap_step_m = 0.06F;
-  float ambient_reach_m = 1.2F;  // how far away a surface still darkens a corner
+  float ambient_reach_m = 1.2F;  // largest distance at which a surface occludes ambient light
 
-  // Control points of two closed walks (uniform cubic B-splines): a stroll, whose heading returns without a
-  // full turn and which shrinks when time is short, and a long round, whose heading may wind around (empty:
-  // no round).
+  // Control points of two closed paths (uniform cubic B-splines). The heading of the stroll returns without a
+  // full turn, and a stroll of short duration is scaled down. The heading of the longer round may make a full
+  // turn (empty: no round).
   std::vector<WalkPoint> stroll;
   std::vector<WalkPoint> round;
   float speed_mps = 0.55F;
@@ -54,8 +53,7 @@ struct Scene {
   }
 };
 
-// Builds the room; the same name and seed give the same room. Null for a room that this version does not
-// have.
+// Builds the room; the same name and seed give the same room. Returns null for an unknown name.
 std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed);
 
 }  // namespace plvo::sim

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bare room of 6 × 5 m: white walls, a plain floor with skirting, a door, a window; only one wall has
-// texture (bricks and a few posters). The walk turns from it to the plain walls and back: there corners and
-// edges are all that is left.
+// A bare room of 6 × 5 m: white walls, a plain floor with skirting, a door, a window. Only one wall has
+// texture (bricks and a few posters). The camera turns from it to the plain walls, where only corners and
+// edges are visible, and back.
 #include "plvo/simulator/scene/furniture.hpp"
 
 namespace plvo::sim {

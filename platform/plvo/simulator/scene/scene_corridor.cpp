@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An office corridor, 24 m long and 2.1 m wide: doors with frames on both sides, skirting, a polished floor
-// that mirrors the ceiling panels, and little texture in between: home of lines.
+// that mirrors the ceiling panels, and little texture in between. It favours line features.
 #include <algorithm>
 
 #include "plvo/simulator/scene/furniture.hpp"
@@ -12,7 +12,7 @@ constexpr float kCorridorLength = 24;
 constexpr float kCorridorWidth = 2.1F;
 constexpr float kCorridorHeight = 2.6F;
 
-// Doors, and whatever hangs between them, along one wall.
+// Places doors, and the objects between them, along one wall.
 void furnish(SceneBuilder& b, Furniture& f, const Wall& wall, bool left) {
   f.skirting(wall, kCorridorLength);
   float s = b.uniform(0.5F, 1.6F);
@@ -66,7 +66,7 @@ std::unique_ptr<Scene> build_corridor(std::uint64_t seed) {
                   {{6.4F, 0.85F, 1.45F}, -0.12F, -0.06F}, {{8.0F, 1.0F, 1.45F}, 0.1F, -0.1F},
                   {{9.0F, 1.1F, 1.45F}, 0.22F, -0.08F},   {{8.2F, 1.2F, 1.45F}, -0.1F, -0.05F},
                   {{6.6F, 1.15F, 1.45F}, -0.22F, -0.1F},  {{4.8F, 1.1F, 1.45F}, 0.05F, -0.06F}};
-  // To the far end, about turn, back, about turn.
+  // The path leads to the far end, makes a half turn, leads back and makes another half turn.
   constexpr float kPi32 = 3.14159265F;
   for (float x = 3; x < 20; x += 1.4F)
     scene.round.push_back({{x, 0.85F, 1.45F}, b.uniform(-0.15F, 0.15F), -0.08F});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An office with a full desk: monitors, keyboard, books, papers and mugs within two metres, shelves and a
-// whiteboard behind them. Texture everywhere and depth steps at every object: home of points.
+// An office with a full desk: monitors, keyboard, books, papers and mugs within two metres, with shelves and
+// a whiteboard behind them. It has texture everywhere and depth steps at every object, and so favours point
+// features.
 #include "plvo/simulator/scene/furniture.hpp"
 
 namespace plvo::sim {

@@ -97,7 +97,8 @@ std::unique_ptr<Scene> build_hall(std::uint64_t seed) {
                   {{8.4F, 3.5F, 1.5F}, 0.75F, -0.12F}, {{8.9F, 3.6F, 1.5F}, 0.4F, -0.12F},
                   {{9.0F, 4.1F, 1.5F}, 0.05F, -0.1F},  {{8.5F, 4.4F, 1.5F}, -0.3F, -0.14F},
                   {{7.8F, 4.3F, 1.5F}, 0.0F, -0.12F}};
-  // Around the benches between the pillars, looking where one goes, a little outwards.
+  // The path leads around the benches between the pillars. The camera looks in the direction of motion,
+  // slightly outwards.
   constexpr int kPoints = 16;
   for (int k = 0; k < kPoints; ++k) {
     const double angle = 2 * kPi * k / kPoints;

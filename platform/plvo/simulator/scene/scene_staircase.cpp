@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stairwell: a flight of ten steps to a landing, a second flight back above the first, handrails on rods, a
-// window over the landing. Parallel edges at one pitch: easily taken for their neighbours.
+// window over the landing. Its parallel edges have equal spacing and are easily mismatched.
 #include <cmath>
 
 #include "plvo/math/trigonometry.hpp"
@@ -24,7 +24,7 @@ void flight(SceneBuilder& b, Furniture& f, float foot_x, float foot_z, float y, 
     const float x0 = foot_x + direction * kRun * static_cast<float>(k);
     const float x1 = foot_x + direction * kRun * static_cast<float>(k + 1);
     const float z = foot_z + kRise * static_cast<float>(k + 1);
-    const float lo = foot_z > 0 ? z - kRise - 0.12F : 0;  // the upper flight is open below
+    const float lo = foot_z > 0 ? z - kRise - 0.12F : 0;  // the upper flight is open underneath
     b.box({std::min(x0, x1), y, lo}, {std::max(x0, x1), y + kFlight, z - 0.03F}, f.plaster);
     // The tread, with its nose and a dark strip along it.
     const float nose = x0 - direction * 0.03F;
@@ -102,7 +102,7 @@ std::unique_ptr<Scene> build_staircase(std::uint64_t seed) {
   scene.speed_mps = 0.4F;
   scene.free_lo = {0.6F, 0.4F, 0.9F};
   scene.free_hi = {2.2F, 2.4F, 1.9F};
-  // Up to the landing facing it, and backwards down again; the eye keeps its height above the steps.
+  // The camera moves up facing the landing, and backwards down again, at a constant height above the steps.
   const auto eye = [&](float x) {
     return 1.5F + kRise * std::min(std::max((x - kFoot) / kRun, 0.0F), static_cast<float>(kStairs));
   };

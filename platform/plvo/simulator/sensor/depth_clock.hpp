@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the depth image that goes with a colour image was exposed, and the stamp that it bears.
+// Exposure time and stamp of the depth image that is paired with a colour image.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ class DepthClock {
   DepthClock(const DepthSchedule& timing, double colour_fps, std::uint64_t seed);
 
   struct Moment {
-    std::int64_t stamp_us = 0;       // as reported, since the walk began
-    std::int64_t true_stamp_us = 0;  // without its jitter
+    std::int64_t stamp_us = 0;       // as reported, since the start of the sequence
+    std::int64_t true_stamp_us = 0;  // without jitter
   };
-  // Of the depth image nearest to colour image `frame`, which was taken at colour_us.
+  // Returns the moment of the depth image nearest to colour image `frame`, which was taken at colour_us.
   Moment nearest(int frame, std::int64_t colour_us) const;
 
  private:

@@ -11,15 +11,16 @@
 namespace plvo::sim {
 namespace {
 
-constexpr double kTargetMean = 0.19;  // linear level that the mean of the scene is exposed to (sRGB 121)
+constexpr double kTargetMean = 0.19;  // linear level to which the mean of the scene is exposed (sRGB 121)
 constexpr double kLag_s = 0.35;       // time constant of the exposure
 constexpr double kBrightExposure_s = 0.008;
 constexpr double kDarkExposure_s = 0.020;
-constexpr double kExposureLevel = 0.35;  // mean radiance at which the bright exposure starts to grow
-constexpr double kDarkestLevel = 0.02;   // no amplification beyond what this needs
-constexpr float kMeterClip = 2.5F;  // times the present level: lamps in the picture do not rule the exposure
+constexpr double kExposureLevel = 0.35;  // mean radiance below which the exposure time starts to grow
+constexpr double kDarkestLevel = 0.02;   // mean radiance below which the amplification stops growing
+constexpr float kMeterClip =
+    2.5F;  // times the current level; limits the influence of visible lamps on the exposure
 constexpr float kReadNoise = 0.0014F;    // linear, at amplification 1
-constexpr float kPhotonNoise = 0.0075F;  // of the square root of the linear value
+constexpr float kPhotonNoise = 0.0075F;  // times the square root of the linear value
 constexpr int kCurveSize = 4096;
 constexpr int kMaxTaps = 12;
 
@@ -28,7 +29,7 @@ Float3 transform(const Se3& T, Float3 p) {
   return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
 }
 
-// sRGB code of a linear value in [0, 1], from the definition: x^(1/2.4) by exp and log.
+// sRGB code of a linear value in [0, 1] by the definition, with x^(1/2.4) computed by exp and log.
 std::uint8_t srgb(double linear) {
   const double coded =
       linear <= 0.0031308 ? 12.92 * linear : 1.055 * plvo::exp(plvo::log(linear) / 2.4) - 0.055;
@@ -46,14 +47,16 @@ Film::Film(const CameraModel& camera, std::uint64_t seed, bool noise, int thread
   blurred_.resize(pixels);
   pixels_.resize(3 * pixels);
   row_sums_.resize(static_cast<std::size_t>(camera.height));
-  // Indexed by the square root of the linear value, so that the dark end is fine enough.
+  // The table is indexed by the square root of the linear value, which gives enough resolution at the dark
+  // end.
   for (int i = 0; i < kCurveSize; ++i) {
     const double root = i / (kCurveSize - 1.0);
     curve_.push_back(srgb(root * root));
   }
 }
 
-// Mean of the clipped luminance, rows first, then the rows in order.
+// Mean of the clipped luminance. Sums each row first, then the rows in order, so the result does not depend
+// on the threads.
 void Film::meter(ImageView<const Rgb> radiance) {
   const float clip = metered_ ? kMeterClip * static_cast<float>(level_) : 4.0F;
   for_rows(threads_, radiance.height, kThreadRows, [&](int begin, int end) {
@@ -88,8 +91,8 @@ void Film::blur_rows(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mi
         out = radiance.at(x, y);
         continue;
       }
-      // Where the point was in the picture at the beginning and at the end, relative to this pixel. What
-      // passes this pixel during the exposure lies on the opposite path.
+      // The path of the point over the image from the beginning to the end of the exposure, relative to this
+      // pixel. The points that pass this pixel during the exposure lie on the opposite path.
       const float move_x = fx * (b.x / b.z - a.x / a.z);
       const float move_y = fy * (b.y / b.z - a.y / a.z);
       const float length = std::max(std::abs(move_x), std::abs(move_y));
@@ -126,7 +129,8 @@ void Film::expose_rows(std::uint32_t frame, int begin, int end) {
     for (int x = 0; x < camera_.width; ++x) {
       Rgb value = blurred_[static_cast<std::size_t>(y * camera_.width + x)] * gain;
       if (noise_) {
-        // Each channel has its own noise, and half of the green sites serve all three (demosaicing).
+        // Each channel has its own noise. Because of demosaicing, half of the green pixels contribute to all
+        // three channels.
         const std::uint32_t h = hash(static_cast<std::uint32_t>(x) + row_seed);
         const std::uint32_t h2 = hash(h ^ 0x68bc21ebU);
         const std::uint32_t h3 = hash(h ^ 0x02e5be93U);
@@ -147,7 +151,7 @@ void Film::expose_rows(std::uint32_t frame, int begin, int end) {
 void Film::develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
                    double frame_s) {
   meter(renderer.radiance());
-  if (!metered_) {  // the camera has been running before the first frame
+  if (!metered_) {  // the camera was already running before the first frame
     level_ = measured_;
     metered_ = true;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From radiance to the 8-bit picture: motion blur along each pixel's image velocity, an exposure that follows
-// the scene's brightness with a lag, the sensor's noise (photon noise and read-out noise, both amplified in
-// the dark), and the sRGB curve (IEC 61966-2-1).
+// Converts radiance to an 8-bit image. It models motion blur along each pixel's image velocity, an exposure
+// that follows the scene's brightness with a lag, sensor noise (photon noise and read-out noise, both
+// amplified in the dark), and the sRGB curve (IEC 61966-2-1).
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ class Film {
  public:
   Film(const CameraModel& camera, std::uint64_t seed, bool noise, int threads);
 
-  // How long the shutter of the coming frame stays open, in seconds; known before the frame is rendered.
+  // Exposure time of the next frame in seconds; known before the frame is rendered.
   double exposure_s() const { return exposure_s_; }
 
-  // Develops what the renderer saw at mid-exposure. T_mid_begin, T_mid_end: the camera when the shutter
-  // opened and closed, in the camera frame at mid-exposure. Then adapts the exposure of the next frame,
-  // `frame_s` later.
+  // Converts the radiance rendered at mid-exposure. T_mid_begin, T_mid_end: pose of the camera when the
+  // shutter opens and closes, in the camera frame at mid-exposure. Then adapts the exposure of the next
+  // frame, `frame_s` later.
   void develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
                double frame_s);
 
-  // 8-bit RGB, width·3 bytes a row.
+  // 8-bit RGB, width·3 bytes per row.
   const std::uint8_t* pixels() const { return pixels_.data(); }
 
  private:
@@ -39,10 +39,10 @@ class Film {
   bool noise_;
   int threads_;
   bool metered_ = false;
-  double level_ = 1;     // radiance that the exposure takes for the scene's mean
-  double measured_ = 1;  // of the last frame
+  double level_ = 1;     // mean radiance of the scene that the exposure assumes
+  double measured_ = 1;  // mean radiance of the last frame
   double exposure_s_ = 0.01;
-  float amplification_ = 1;  // of the noise
+  float amplification_ = 1;  // gain of the noise
   std::vector<Rgb> blurred_;
   std::vector<double> row_sums_;
   std::vector<std::uint8_t> curve_;

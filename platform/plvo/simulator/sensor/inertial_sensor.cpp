@@ -8,7 +8,8 @@
 namespace plvo::sim {
 namespace {
 
-// Differences over so long: the shortest sway takes 0.15 s, and rounding stays below 1e-9 m/s².
+// Step of the finite differences. The shortest period of the trajectory is 0.15 s, and rounding errors stay
+// below 1e-9 m/s².
 constexpr double kDifference_s = 5e-4;
 constexpr std::uint32_t kGyro = 0x47U, kAccelerometer = 0x41U, kOffset = 0x4fU;
 
@@ -30,7 +31,7 @@ InertialSensor::InertialSensor(const InertialOptions& options, std::uint64_t see
   accelerometer_offset_ = options.accelerometer_offset_sigma * three(kOffset, kAccelerometer, seed_);
 }
 
-// White noise of this density, sampled at the sensor's rate.
+// White noise of this density, sampled at the rate of the sensor.
 Vector3 InertialSensor::noise(std::uint32_t sample, std::uint32_t sensor, double density) const {
   if (!noisy_) return Vector3::Zero();
   return density * std::sqrt(options_.rate_hz) * three(sample, sensor, seed_);

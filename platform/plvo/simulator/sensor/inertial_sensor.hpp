@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A gyro and an accelerometer that move with the simulated camera, in its axes: what the walk's derivatives
-// say, a constant offset and white noise. The samples depend on their number alone.
+// A gyro and an accelerometer that move with the simulated camera and share its axes. A sample is the
+// derivative of the trajectory plus a constant offset and white noise. The noise depends on the sample number
+// only.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +14,11 @@ namespace plvo::sim {
 
 class InertialSensor {
  public:
-  // noise false: the exact twin.
+  // noise == false: exact samples.
   InertialSensor(const InertialOptions& options, std::uint64_t seed, bool noise);
 
-  // Angular velocity in rad/s and specific force in m/s² (9.8 upwards at rest) at t_s of the walk; stamps are
-  // the caller's. sample: which one of the sensor's, for its noise.
+  // Angular velocity in rad/s and specific force in m/s² (9.8 upwards at rest) at t_s of the trajectory. The
+  // caller sets the stamps. sample: index of the sample, which determines its noise.
   Vector3 rate(const Trajectory& trajectory, double t_s, std::uint32_t sample) const;
   Vector3 force(const Trajectory& trajectory, double t_s, std::uint32_t sample) const;
 

@@ -10,21 +10,20 @@
 namespace plvo::sim {
 namespace {
 
-// The correlation window makes neighbouring errors alike: half of the variance has this correlation length.
+// The correlation window correlates neighbouring errors; half of the variance has this correlation length.
 constexpr float kPatch_px = 3;
 constexpr float kValueNoiseSigma = 0.4289F;  // standard deviation of value_noise() over the plane
-constexpr float kEdgeShift_px = 1.3F;        // how far the outline of a near object wanders
-constexpr float kSignalFloor = 0.0085F;      // returned light below which no pattern is found
-constexpr float kSignalSpread = 0.35F;       // of the floor, from patch to patch
-constexpr float kGrazing = 0.10F;            // cosine below which the pattern is stretched beyond recognition
+constexpr float kEdgeShift_px = 1.3F;        // displacement of the outline of a near object
+constexpr float kSignalFloor = 0.0085F;      // returned light below which the pattern is not found
+constexpr float kSignalSpread = 0.35F;       // variation of kSignalFloor between patches
+constexpr float kGrazing = 0.10F;  // cosine below which the pattern is too stretched to be recognised
 
 std::uint16_t to_units(float depth_m) {
   const float units = depth_m * static_cast<float>(1 / kMetresPerUnit) + 0.5F;
   return units < 65535.5F ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
 }
 
-// Share of the projector's light that comes back to the infrared camera, relative to a white matt wall at 1
-// m.
+// Share of the projector's light that returns to the infrared camera, relative to a white matt wall at 1 m.
 float returned_light(const Material& material, float cosine, float depth_m) {
   float grazing = 1 - cosine;
   grazing *= grazing * grazing;
@@ -71,8 +70,8 @@ void KinectDepth::sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_
   const auto scale = static_cast<float>(options_.scale_error);
   const std::uint32_t row_seed = hash(static_cast<std::uint32_t>(y) + frame_seed);
   const auto fy = static_cast<float>(y);
-  // Seen from the projector, which is on the right, near things hide what lies to their left: walking from
-  // right to left, a column of the projector's picture must keep falling.
+  // From the projector, which is on the right, near objects hide what lies to their left. From right to left
+  // the column in the projector's image must therefore decrease monotonically.
   float leftmost = 1e30F;
   for (int x = width_ - 1; x >= 0; --x) {
     std::uint16_t& out = depth_[static_cast<std::size_t>(y * width_ + x)];
@@ -84,8 +83,7 @@ void KinectDepth::sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_
     leftmost = std::min(leftmost, column);
     if (hidden) continue;
 
-    // The outline of a near object wanders: where the neighbourhood steps, the pixel may report its
-    // neighbour.
+    // The outline of a near object is noisy: at a depth step the pixel may report the depth of its neighbour.
     const auto fx = static_cast<float>(x);
     PixelHit pixel = here;
     const float shift_x = 2 * kEdgeShift_px * value_noise(fx * 0.25F, fy * 0.25F, frame_seed + 1);
@@ -103,10 +101,11 @@ void KinectDepth::sense_row(ImageView<const PixelHit> hits, std::uint32_t frame_
                         0.6F * value_noise(fx * 0.45F, fy * 0.45F, frame_seed + 4);
     if (returned_light(material, pixel.cosine, z) < kSignalFloor * (1 + kSignalSpread * patch)) continue;
     if (pixel.cosine < kGrazing * (1 + 0.5F * patch)) continue;
-    // Facing the sensor squarely, polish sends the projector's image straight back and blinds the camera.
+    // A polished surface that faces the sensor reflects the projector's image directly and saturates the
+    // camera.
     if (material.gloss > 0.5F && pixel.cosine > 0.9985F - 0.001F * patch) continue;
 
-    // Noise so that noise and rounding together have the standard deviation asked for.
+    // Chooses the noise such that noise and rounding together have the requested standard deviation.
     const float target =
         static_cast<float>(options_.noise_scale * options_.noise.sigma(static_cast<double>(z)));
     const float step_m = steps > 0 ? z * z / (focal_baseline * steps) : 0;

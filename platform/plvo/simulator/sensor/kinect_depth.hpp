@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structured-light depth sensor: from the exact depth of every pixel to what a Kinect v1 would report,
-// registered to the colour image. Disparity d = f·b/z against a projector at baseline b along +x; noise is
-// added to the disparity, which is then rounded to 1/8 px. The standard deviation of the sum of both, in
-// depth, is noise_scale · σ_d(z) of equation (2) wherever (2) asks for more than the rounding alone gives.
-// A scale error stretches what is reported. Holes: out of range; hidden from the projector (bands at the left
-// of near objects); too little light back (dark, distant, grazing or polished surfaces); the projector's own
-// mirror image.
+// Model of the structured-light depth sensor: converts the exact depth of every pixel to the depth that a
+// Kinect v1 would report, registered to the colour image. The disparity is d = f·b/z for a projector at
+// baseline b along +x. Noise is added to the disparity, which is then rounded to 1/8 px. The standard
+// deviation of the sum of both, in depth, is noise_scale · σ_d(z) of equation (2) wherever (2) exceeds the
+// rounding error. A scale error multiplies the reported depth. Pixels without depth: out of range; occluded
+// from the projector (bands at the left of near objects); too little returned light (dark, distant, grazing
+// or polished surfaces); the mirror image of the projector.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace plvo::sim {
 
-constexpr double kMetresPerUnit = 0.0002;  // TUM's 5000 units a metre
+constexpr double kMetresPerUnit = 0.0002;  // TUM: 5000 units per metre
 
 class KinectDepth {
  public:
@@ -24,7 +24,7 @@ class KinectDepth {
               std::uint64_t seed, int threads);
 
   void sense(ImageView<const PixelHit> hits, std::uint32_t frame);
-  // The noise-free twin: exact depth but for the scale error, rounded to the format's unit.
+  // Noise-free depth: exact but for the scale error, rounded to the unit of the format.
   void copy_exact(ImageView<const PixelHit> hits);
 
   DepthView view() const;

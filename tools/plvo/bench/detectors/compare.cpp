@@ -7,8 +7,8 @@
 namespace plvo::bench {
 namespace {
 
-// Every detector over a view before the next view: what the machine does in the meantime then meets all
-// alike. found[k][i]: of detector k in view i.
+// Runs every detector over a view before the next view, so that the load of the machine affects all of them
+// alike. found[k][i]: the features of detector k in view i.
 template <typename Finder, typename Found, typename Select>
 std::vector<NamedScore> find_all(const ViewSequence& sequence, const std::vector<Finder>& finders,
                                  const Select& select, std::vector<std::vector<Found>>& found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All detectors over the views of one sequence.
+// Runs all detectors over the views of one sequence.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct DetectorComparison {
 DetectorComparison compare_detectors(const ViewSequence& sequence, const DetectorCapacity& capacity,
                                      const ScoreOptions& options);
 
-// CPU time over that of `ours`: the median over the views of the ratio within a view.
+// Ratio of the CPU time of `score` to that of `ours`: the median over the views of the ratio within a view.
 double time_ratio(const Score& score, const Score& ours);
 
 }  // namespace plvo::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The detectors that are compared. Each is a function from an 8-bit picture to what it finds.
+// The detectors under comparison. Each is a function from an 8-bit image to the features in it.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace plvo::bench {
 
-// How many features each may bring.
+// Largest number of features that each detector may return.
 struct DetectorCapacity {
   int keypoints = 400;
   int segments = 256;
-  int width = 640, height = 480;  // of all pictures
+  int width = 640, height = 480;  // of all images
 };
 
 struct SegmentFinder {
@@ -32,10 +32,10 @@ struct PointFinder {
   std::function<std::vector<FoundPoint>(const GrayView&)> find;
 };
 
-// Ours, with the pyramid that both make in their time.
+// Our detectors. The time of each includes the construction of the pyramid.
 SegmentFinder own_segment_finder(const DetectorCapacity& capacity);
 PointFinder own_point_finder(const DetectorCapacity& capacity);
-// OpenCV's, with their default settings; none where its contrib modules are not installed.
+// OpenCV's detectors with their default settings; empty if its contrib modules are not installed.
 std::vector<SegmentFinder> opencv_segment_finders();
 std::vector<PointFinder> opencv_point_finders(const DetectorCapacity& capacity);
 

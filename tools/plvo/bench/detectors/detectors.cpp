@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench detectors: our segments and keypoints beside those of OpenCV's detectors. docs/bench.md.
+// plvo_bench detectors: compares our segments and keypoints with those of OpenCV's detectors. See
+// docs/bench.md.
 #include <fmt/core.h>
 
 #include <memory>
@@ -43,7 +44,7 @@ void add_rows(const std::string& sequence, const std::vector<NamedScore>& scores
   }
 }
 
-// Views of one sequence at a time: the pictures of all would need much memory.
+// Holds the views of one sequence at a time: the images of all sequences would need much memory.
 Status compare_one(ViewSequence& sequence, const DetectorsArguments& arguments, Table& segments,
                    Table& points) {
   if (sequence.views.size() <= arguments.score.gap)

@@ -7,11 +7,11 @@
 namespace plvo::bench {
 namespace {
 
-constexpr double kSineOfParallel = 0.0872;  // of 5°
+constexpr double kSineOfParallel = 0.0872;  // sin 5°
 
 double cross(const Vector2& u, const Vector2& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-// A point in a line's own axes, from its first end.
+// Coordinates of a point along and across a line, relative to the line's first endpoint.
 struct Place {
   double along, across;
 };

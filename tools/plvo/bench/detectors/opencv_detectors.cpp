@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV's detectors with their default settings, one thread.
+// OpenCV's detectors with their default settings, in one thread.
 #include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
@@ -12,7 +12,7 @@
 namespace plvo::bench {
 namespace {
 
-// OpenCV's headers take what they only read through pointers that could write.
+// OpenCV's headers require pointers to mutable data even for images that they only read.
 cv::Mat as_mat(const GrayView& image) {
   return {image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.data),
           static_cast<std::size_t>(image.stride)};

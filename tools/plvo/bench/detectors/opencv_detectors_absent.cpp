@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where OpenCV's contrib modules are not installed.
+// Used if OpenCV's contrib modules are not installed.
 #include "plvo/bench/detectors/detector.hpp"
 
 namespace plvo::bench {

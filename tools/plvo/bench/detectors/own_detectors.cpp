@@ -13,7 +13,7 @@
 namespace plvo::bench {
 namespace {
 
-// A pyramid and the scratch of both detectors.
+// A pyramid and the scratch memory of both detectors.
 class Ground {
  public:
   explicit Ground(const DetectorCapacity& capacity) : memory_(bytes(capacity)), arena_(memory_) {
@@ -64,7 +64,7 @@ SegmentFinder own_segment_finder(const DetectorCapacity& capacity) {
 PointFinder own_point_finder(const DetectorCapacity& capacity) {
   const auto ground = std::make_shared<Ground>(capacity);
   const auto storage = std::make_shared<std::vector<Keypoint>>(static_cast<std::size_t>(capacity.keypoints));
-  // Our detector passes over pixels without depth; here every pixel has one.
+  // Our detector skips pixels without depth; here every pixel has a depth.
   const auto depth = std::make_shared<std::vector<std::uint16_t>>(
       static_cast<std::size_t>(capacity.width) * static_cast<std::size_t>(capacity.height),
       std::uint16_t{1000});

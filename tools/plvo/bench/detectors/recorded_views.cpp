@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of a recorded sequence, by its depth and its true poses. The true edges are not known.
+// Views of a recorded sequence with their depth and true poses. The true edges are unknown.
 #include <fmt/core.h>
 
 #include "plvo/bench/detectors/view.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of the simulated camera, each beside its noise-free twin.
+// Views of the simulated camera, each with its noise-free image.
 #include <memory>
 
 #include "plvo/bench/detectors/scene_edges.hpp"

@@ -7,19 +7,19 @@ namespace plvo::bench {
 namespace {
 
 constexpr double kNearest_m = 0.1;
-constexpr int kGap_px = 3;  // a stretch may be interrupted so long
+constexpr int kGap_px = 3;  // longest interruption of a stretch
 
 Vector3 to_vector(const sim::Float3& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-// Corner 0 … 7: bit i says on which side of axis i.
+// Corner 0 … 7: bit i gives the side along axis i.
 Vector3 corner(const sim::Solid& box, int number) {
   const auto side = [number](int axis, float half) { return (number >> axis & 1) != 0 ? half : -half; };
   return to_vector(box.to_world({side(0, box.half.x), side(1, box.half.y), side(2, box.half.z)}));
 }
 
-// Leaves of the edge what is in front of the camera; false when nothing is.
+// Clips the edge to the part in front of the camera; false if no part of it is.
 bool clip_to_front(Vector3& a, Vector3& b) {
   if (a.z() < kNearest_m && b.z() < kNearest_m) return false;
   const auto move = [](Vector3& behind, const Vector3& front) {
@@ -30,7 +30,8 @@ bool clip_to_front(Vector3& a, Vector3& b) {
   return true;
 }
 
-// Of the line from a on, the part within the image: the shares of it where that begins and ends.
+// The part of the line from a that lies within the image, as the fractions of its length at which it begins
+// and ends.
 bool clip_to_image(const Vector2& a, const Vector2& b, int width, int height, double& begin, double& end) {
   begin = 0;
   end = 1;
@@ -73,7 +74,7 @@ std::vector<Line> SceneEdges::visible(const Se3& T_world_camera, const std::vect
   return edges;
 }
 
-// The pixel, or one beside it, sees that solid there.
+// True if the pixel or one of its neighbours observes that solid at this depth.
 bool SceneEdges::shows(int solid, const Vector2& pixel, double depth_m) const {
   const ImageView<const sim::PixelHit> hits = caster_.hits();
   const int u = static_cast<int>(std::lround(pixel.x()));
@@ -108,7 +109,8 @@ void SceneEdges::add_stretches(const Vector3& a, const Vector3& b, int solid,
   };
   for (int i = 0; i <= samples; ++i) {
     const double share = begin + i / length;
-    const double depth_m = 1 / ((1 - share) / a.z() + share / b.z());  // 1/z is linear along a picture's line
+    const double depth_m =
+        1 / ((1 - share) / a.z() + share / b.z());  // 1/z is linear along a line of the image
     if (!shows(solid, pixel(i), depth_m) ||
         std::abs(step_across(clean, camera_.width, camera_.height, pixel(i), normal)) < kLeast_grey)
       continue;

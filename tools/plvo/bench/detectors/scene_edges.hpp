@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The true edges of a rendered picture: those of the boxes that its room is built of, where they are seen.
-// What is printed on a surface, shadows and cylinders are not among them.
+// The true edges of a rendered image: the visible edges of the boxes of the scene. Printed texture, shadows
+// and cylinders are not included.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ class SceneEdges {
  public:
   SceneEdges(SceneName scene, std::uint64_t seed, const CameraModel& camera);
 
-  // Stretches of at least kShortest_px that nothing hides and across which the clean picture, seen from
-  // there, changes by at least kLeast_grey.
+  // Stretches of at least kShortest_px that are not hidden and across which the noise-free image, seen from
+  // this view, changes by at least kLeast_grey.
   std::vector<Line> visible(const Se3& T_world_camera, const std::vector<std::uint8_t>& clean);
 
   static constexpr double kShortest_px = 20;

@@ -9,12 +9,13 @@
 namespace plvo::bench {
 namespace {
 
-// Where a segment lies on an edge of the clean picture: within a pixel across, the grey levels change by at
-// least so much, the same way as along most of the segment, and across it rather than along it.
+// Criterion for a point of a segment to lie on an edge of the noise-free image: within one pixel across the
+// segment, the grey level changes by at least this much, with the same sign as along most of the segment, and
+// across the segment rather than along it.
 constexpr double kLeastStep_grey = 5;
-constexpr double kTangentOfAcross = 0.41;  // of 22.5°
+constexpr double kTangentOfAcross = 0.41;  // tan 22.5°
 
-// The largest step across the line at one of its points; 0 where it is no edge in the line's direction.
+// The largest step across the line at one of its points; 0 if there is no edge in the line's direction.
 double step_at(const View& view, const Vector2& at, const Vector2& direction) {
   const Vector2 normal(-direction.y(), direction.x());
   double largest = 0;
@@ -29,7 +30,7 @@ double step_at(const View& view, const Vector2& at, const Vector2& direction) {
 }
 
 void score_precision(const View& view, const Line& line, Share& precision) {
-  constexpr int kRim_px = 5;  // where there is nothing to compare
+  constexpr int kRim_px = 5;  // border in which nothing is compared
   const double length = line.length();
   const Vector2 direction = (line.b - line.a) / length;
   std::size_t samples = 0, brighter = 0, darker = 0;
@@ -53,7 +54,7 @@ Line moved(const Line& line, double across_px) {
   return {line.a + across, line.b + across};
 }
 
-// The nearest of those that count as `expected`.
+// The nearest of the lines that count as `expected`.
 std::optional<double> nearest(const Line& expected, const std::vector<Line>& found, double tolerance_px) {
   std::optional<double> best;
   for (const Line& line : found) {

@@ -6,7 +6,7 @@
 namespace plvo::bench {
 namespace {
 
-// The nearest depth in the 5×5 pixels around; 0 where there is none.
+// The smallest depth in the surrounding 5×5 pixels; 0 if none of them has depth.
 double depth_near(const View& view, const Vector2& pixel) {
   float nearest = 0;
   const int u = static_cast<int>(std::lround(pixel.x()));
@@ -24,7 +24,7 @@ double depth_near(const View& view, const Vector2& pixel) {
 }  // namespace
 
 bool carry(const Pinhole& pinhole, const View& from, const View& to, const Vector2& pixel, Vector2& carried) {
-  constexpr double kHidden = 0.05;  // of the depth: what is nearer by more is another surface
+  constexpr double kHidden = 0.05;  // fraction of the depth: a surface that is nearer by more hides this one
   const double depth = depth_near(from, pixel);
   if (depth <= 0) return false;
   const Vector3 p = to.T_world_camera.inverse() *

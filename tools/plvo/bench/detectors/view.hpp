@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture for detectors, with what is known of it: where its camera was, how far each pixel's surface is,
-// and, of a rendered one, which edges are to be seen.
+// An image for detectors with its ground truth: the camera pose, the depth of each pixel and, for a rendered
+// image, the visible edges.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ struct View {
   std::vector<std::uint8_t> grey;  // without lens distortion
   std::vector<float> depth_m;      // 0: unknown
   Se3 T_world_camera;
-  std::vector<std::uint8_t> clean;  // the same picture without noise and blur; empty: unknown
-  std::vector<Line> edges;          // of solids, where they show in the clean picture
+  std::vector<std::uint8_t> clean;  // the same image without noise and blur; empty: unknown
+  std::vector<Line> edges;          // of solids, if visible in the noise-free image
 
   GrayView image() const { return {grey.data(), width, height, width}; }
 };
@@ -31,19 +31,19 @@ struct ViewSequence {
   std::string name;
   Pinhole pinhole;
   std::vector<View> views;
-  bool truth_known = false;  // of edges
+  bool truth_known = false;  // whether the true edges are known
 };
 
 Status render_views(SceneName scene, int frames, ViewSequence& sequence);
-// Frames without a true pose are left out.
+// Frames without a true pose are omitted.
 Status read_views(const NamedFolder& folder, const JobOptions& options, ViewSequence& sequence);
 
-// Where `to` shows the surface that `from` shows at `pixel`; false where its depth is unknown, and where it
-// is outside of `to` or hidden there. On a silhouette the pixel is taken to belong to what is in front.
+// Pixel of `to` at which the surface that `from` observes at `pixel` appears. False if its depth is unknown,
+// or if it lies outside of `to` or is hidden there. A pixel on a silhouette belongs to the surface in front.
 bool carry(const Pinhole& pinhole, const View& from, const View& to, const Vector2& pixel, Vector2& carried);
 
-// Grey levels from one side of a line to the other at one of its points, by linear interpolation; 0 at the
-// picture's rim.
+// Difference of the grey levels on the two sides of a line at one of its points, by linear interpolation; 0
+// at the border of the image.
 double step_across(const std::vector<std::uint8_t>& grey, int width, int height, const Vector2& at,
                    const Vector2& normal);
 

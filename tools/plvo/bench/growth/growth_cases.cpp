@@ -8,10 +8,10 @@
 namespace plvo::bench {
 namespace {
 
-// What is wanted of a frame.
-constexpr double kMostOfVga = 1 / 3.5;   // for a quarter of its pixels
-constexpr double kMostOfHardImages = 3;  // the worst frame, of the median of the walk's own
-constexpr double kMostOfMedian = 1.6;    // the 99 % quantile of a walk
+// Upper bounds for the cost of a frame, as ratios.
+constexpr double kMostOfVga = 1 / 3.5;   // cost at a quarter of the pixels
+constexpr double kMostOfHardImages = 3;  // slowest frame, relative to the median with unchanged images
+constexpr double kMostOfMedian = 1.6;    // 99 % quantile of a sequence, relative to its median
 
 class Planner {
  public:
@@ -36,13 +36,13 @@ class Planner {
     plan_.tables.push_back(table);
   }
 
-  void add_capacities(const char* title, const char* entry, int StageSetting::*room,
+  void add_capacities(const char* title, const char* entry, int StageSetting::*capacity,
                       const std::vector<int>& sizes) {
     GrowthTable table{title, entry, {}};
     for (const int size : sizes) {
       StageSetting setting;
-      const bool usual = setting.*room == size;
-      setting.*room = size;
+      const bool usual = setting.*capacity == size;
+      setting.*capacity = size;
       table.rows.push_back({std::to_string(size) + (usual ? " (default)" : ""),
                             usual ? 0 : add_case(1, setting, options_.frames)});
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured to see how a frame's cost grows: one thing at a time is changed of a rendered walk at
-// 640×480 with the default room for features.
+// The cases that measure how the cost of a frame grows. Each changes one parameter of a rendered sequence at
+// 640×480 with the default capacities for features.
 #pragma once
 
 #include <optional>
@@ -14,27 +14,27 @@
 namespace plvo::bench {
 
 struct GrowthCase {
-  NamedFolder sequence;  // where its frames are
+  NamedFolder sequence;  // folder of the frames
   std::size_t frames = 0;
   StageSetting setting;
-  std::optional<SimulatorOptions> walk;  // that is rendered there
+  std::optional<SimulatorOptions> walk;  // simulator options, if the sequence is rendered
 };
 
 struct GrowthTable {
   struct Row {
     std::string name;
-    std::size_t measured;  // the number of its case
+    std::size_t measured;  // index of its case
   };
   std::string title, first_column;
   std::vector<Row> rows;
 };
 
 struct GrowthPlan {
-  std::vector<GrowthCase> cases;  // the first: 640×480, all as by default
+  std::vector<GrowthCase> cases;  // the first has 640×480 pixels and all defaults
   std::vector<GrowthTable> tables;
-  GrowthTable walks;  // measured over their length, not against the first
+  GrowthTable walks;  // evaluated over their length, not relative to the first case
 
-  // What is wanted: of `measured`, at most so much.
+  // An upper bound on the result of the case `measured`.
   struct Bound {
     std::string what;
     std::size_t measured;
@@ -54,11 +54,11 @@ struct GrowthOptions {
   int jobs = 1;
 };
 
-// recorded: sequences whose frames are measured beside those of the rendered walk. kInvalidArgument for a
-// table that there is not.
+// recorded: sequences that are measured in addition to the rendered one. Returns kInvalidArgument for an
+// unknown table.
 Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>& recorded, GrowthPlan& plan);
 
-// The same view in an image `scale` times as wide and high.
+// The same view in an image whose width and height are multiplied by `scale`.
 CameraModel scaled(const CameraModel& camera, double scale);
 
 }  // namespace plvo::bench

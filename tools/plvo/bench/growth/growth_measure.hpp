@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the cases: CPU time in this process, repeats interleaved, and the instructions of each frame under
-// callgrind.
+// Measures the cases: the CPU time in this process with interleaved repeats, and the instructions of each
+// frame under callgrind.
 #pragma once
 
 #include <vector>
@@ -12,12 +12,12 @@
 namespace plvo::bench {
 
 struct GrowthResult {
-  std::vector<StageInstructions> frames;  // each but the first, which has no motion
-  std::vector<StageTimes> times;          // of each repeat
+  std::vector<StageInstructions> frames;  // all but the first, which has no motion
+  std::vector<StageTimes> times;          // one for each repeat
 };
 
-// One for each case. Renders what is not there yet; says on standard error how far it is. kNotFound without
-// valgrind.
+// Returns one result for each case. Renders the sequences that do not exist yet and prints its progress on
+// standard error. Returns kNotFound without valgrind.
 Status measure_growth(const GrowthPlan& plan, const GrowthOptions& options,
                       std::vector<GrowthResult>& results);
 

@@ -20,7 +20,7 @@ std::vector<double> instructions(const GrowthResult& result) {
 
 double mean_instructions(const GrowthResult& result) { return eval::statistics(instructions(result)).mean; }
 
-// Median over the repeats of the ratio within a repeat.
+// Median over the repeats of the CPU time ratio within a repeat.
 double cpu_ratio(const GrowthResult& result, const GrowthResult& reference) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < result.times.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of growth, and whether what is wanted of it is held.
+// The tables of the growth benchmark, and whether its bounds hold.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace plvo::bench {
 
-// Markdown. results: one for each case of the plan.
+// Returns Markdown. results: one for each case of the plan.
 std::string growth_report(const GrowthPlan& plan, const std::vector<GrowthResult>& results);
 
 }  // namespace plvo::bench

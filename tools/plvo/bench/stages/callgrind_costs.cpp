@@ -7,7 +7,7 @@
 namespace plvo::bench {
 namespace {
 
-// "(12) name" gives a name a number the first time; "(12)" means it from then on.
+// "(12) name" assigns a number to a name at its first occurrence; later "(12)" stands for the name.
 std::string resolve(const std::string& text, std::map<std::string, std::string>& names) {
   const std::size_t end = text.find(')');
   if (text.empty() || text[0] != '(' || end == std::string::npos) return text;
@@ -16,7 +16,7 @@ std::string resolve(const std::string& text, std::map<std::string, std::string>&
   return names[number];
 }
 
-// The cost of "line cost …", where the line may be "*", "+3" or "-3".
+// Reads the cost of a line "position cost …", whose position may be "*", "+3" or "-3".
 bool read_cost(const std::string& line, std::uint64_t& cost) {
   const char first = line.empty() ? 'x' : line[0];
   if (first != '*' && first != '+' && first != '-' && std::isdigit(static_cast<unsigned char>(first)) == 0)
@@ -39,7 +39,7 @@ CallgrindCosts read_callgrind(std::istream& file) {
   CallgrindCosts costs;
   std::map<std::string, std::string> names;
   std::string function;
-  bool of_callee = false;  // the next line of costs is that of a call
+  bool of_callee = false;  // the next cost line belongs to a call
   for (std::string line; std::getline(file, line);) {
     std::uint64_t cost = 0;
     if (line.starts_with("fn=")) {

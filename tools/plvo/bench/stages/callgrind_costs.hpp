@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what valgrind's callgrind wrote: how many instructions each function took, its callees included.
+// Reads the output of valgrind's callgrind: the number of instructions of each function, including its
+// callees.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,14 @@ namespace plvo::bench {
 
 struct CallgrindCosts {
   std::uint64_t total = 0;
-  std::map<std::string, std::uint64_t> inclusive;  // by the function's demangled name
+  std::map<std::string, std::uint64_t> inclusive;  // keyed by the demangled name of the function
 
-  // Of all functions whose name begins so; 0 for none. A lambda that the compiler left a function of its own
-  // is in the costs of the one that it stands in.
+  // Sum over all functions whose name starts with `name`; 0 if there are none. Lambdas that the compiler
+  // emits as separate functions are excluded: the cost of the enclosing function includes them.
   std::uint64_t of(const std::string& name) const;
 };
 
-// The first event (Ir) of each line counts. A function that calls itself counts what it calls more than once.
+// Only the first event (Ir) of each line counts. The callees of a recursive function count more than once.
 CallgrindCosts read_callgrind(std::istream& file);
 
 }  // namespace plvo::bench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo_bench stages` under valgrind's callgrind: the same count in every run, however busy the machine is.
+// Runs `plvo_bench stages` under valgrind's callgrind, whose count does not depend on the load of the
+// machine.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +15,13 @@ namespace plvo::bench {
 
 enum class ProfileOf : std::uint8_t { kAllFrames, kEachFrame };
 
-// The command line that tracks the sequence under callgrind; the profile, or one for each frame with its
-// number behind the name, is left at `profile`. kNotFound without valgrind.
+// Builds the command line that tracks the sequence under callgrind. The run writes the profile to `profile`,
+// or one profile for each frame with the frame's number appended. Returns kNotFound without valgrind.
 Status callgrind_command(const NamedFolder& sequence, const JobOptions& options, const StageSetting& setting,
                          const std::filesystem::path& profile, ProfileOf what,
                          std::vector<std::string>& command);
 
-// What a run with kEachFrame has left. kDamaged where there is nothing.
+// Reads the profiles of a run with kEachFrame. Returns kDamaged if there are none.
 Status read_frame_profiles(const std::filesystem::path& profile, std::vector<CallgrindCosts>& frames);
 
 }  // namespace plvo::bench

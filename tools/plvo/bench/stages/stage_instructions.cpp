@@ -9,8 +9,8 @@
 namespace plvo::bench {
 namespace {
 
-// What a row counts: functions that are called from other files, so that they are there whatever the compiler
-// inlines, and none of which calls another.
+// The functions that a row counts. Each is called from another file, so that it exists whatever the compiler
+// inlines, and none of them calls another.
 struct Row {
   Stage stage;
   const char* step;

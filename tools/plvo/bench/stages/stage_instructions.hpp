@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instructions of plvo's stages and of the steps in them, out of a profile of callgrind.
+// Instructions of plvo's stages and of their steps, from a profile of callgrind.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace plvo::bench {
 
-// Each step's, of the mean of so many frames.
+// One row for each step, as the mean over `frames` frames.
 Table instructions_table(const CallgrindCosts& costs, std::size_t frames);
 
-// What no stage accounts for is the rest of `all`.
+// `all` minus the sum over the stages is the cost outside of the stages.
 struct StageInstructions {
   std::array<std::uint64_t, kStageCount> stage{};
   std::uint64_t all = 0;

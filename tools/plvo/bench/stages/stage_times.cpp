@@ -23,7 +23,8 @@ Status open(const NamedFolder& sequence, const JobOptions& options, RecordedCame
   return camera.open(sequence.folder, calibration, range);
 }
 
-// A new one for each frame, as the worst sensor would give it; stripes and squares move with the frame.
+// Fills a new image for each frame, as the worst sensor would deliver it; stripes and squares move with the
+// frame index.
 void fill(Replacement replacement, int index, int width, int height, std::vector<std::uint8_t>& grey) {
   grey.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   Random random(static_cast<std::uint64_t>(index) + 1);

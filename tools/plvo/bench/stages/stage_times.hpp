@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CPU time of plvo's stages over the frames of a folder, in this process.
+// CPU time of plvo's stages over the frames of a folder, measured in this process.
 #pragma once
 
 #include <array>
@@ -13,14 +13,13 @@
 
 namespace plvo::bench {
 
-// What the camera sees instead of the folder's images, for the frames that are hardest on a detector. Depth
-// stays as it is.
+// Images that replace those of the folder: the hardest inputs for a detector. Depth is unchanged.
 enum class Replacement : std::uint8_t { kRecorded, kNoise, kStripes, kCheckerboard };
 
 struct StageSetting {
   Replacement replacement = Replacement::kRecorded;
-  bool tiny = false;                   // Config::tiny(), and what of Limits::tiny() is not below
-  int keypoints = Limits{}.keypoints;  // room for so many
+  bool tiny = false;                   // Config::tiny(), and those of Limits::tiny() that are not set below
+  int keypoints = Limits{}.keypoints;  // capacity
   int segments = Limits{}.segments;
   int surfaces = Limits{}.surfaces;
 
@@ -29,7 +28,7 @@ struct StageSetting {
     segments = limits.segments;
     surfaces = limits.surfaces;
   }
-  // As plvo run --preset tiny.
+  // Same settings as plvo run --preset tiny.
   void make_tiny() {
     tiny = true;
     take_limits(Limits::tiny());
@@ -37,13 +36,13 @@ struct StageSetting {
 };
 
 struct StageTimes {
-  std::array<std::vector<double>, kStageCount> stage_ms;  // of each frame but the first
+  std::array<std::vector<double>, kStageCount> stage_ms;  // of every frame but the first
   std::vector<double> frame_ms;
-  std::vector<double> points, segments;  // of each frame, those kept
+  std::vector<double> points, segments;  // number kept in each frame
   int lost = 0;
 };
 
-// Decoding is outside of the timed part. The first frame, which has no motion, is left out.
+// The time excludes decoding. The first frame, which has no motion, is omitted.
 Status measure_stages(const NamedFolder& sequence, const JobOptions& options, const StageSetting& setting,
                       StageTimes& times);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench stages: where a frame's time goes. CPU time of each stage, and with --instructions the
-// instructions of each step, over the same frames: of a folder, or of a walk that is rendered once.
+// plvo_bench stages: measures the CPU time of each stage and, with --instructions, the instructions of each
+// step over the same frames, which come from a folder or from a sequence that is rendered once.
 #include <fmt/core.h>
 
 #include <fstream>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Line matching and 3D lines on a recorded sequence with ground truth. A match is right when the reference's
-// 3D line, moved by the true motion, is seen within 3 px of both ends of the current segment and overlaps it.
-// Of right matches with a 3D line in both frames: are the two lines as far apart as their covariances say?
+// Evaluates line matching and 3D lines on a recorded sequence with ground truth. A match is right if the 3D
+// line of the reference, moved by the true motion, projects within 3 px of both endpoints of the current
+// segment and overlaps it. For right matches with a 3D line in both frames, the NEES tells whether the
+// distance of the two lines agrees with their covariances.
 //   line_match_precision DIR [--frames N] [--stride N] [--prediction none|previous|true] …
 #include <fmt/format.h>
 
@@ -38,7 +39,7 @@ using plvo::Vector3;
 constexpr std::size_t kCapacity = 256;
 constexpr double kRightPx = 3;
 
-// Everything that outlives a frame's images.
+// The data that outlive a frame's images.
 struct FrameLines {
   std::vector<plvo::Segment> segments;
   std::vector<plvo::LineDescriptor> descriptors;
@@ -122,8 +123,8 @@ bool same_edge(const plvo::Segment& truth, const plvo::Segment& seen) {
   return std::min(e, truth.length_px()) - std::max(s, 0.0) > 0;
 }
 
-// The current line's ends against the moved reference line: two offsets in depth (in the plane of the eye and
-// the segment) and two across it, with their covariances.
+// Error of the current line's endpoints relative to the moved reference line: two offsets in depth (in the
+// plane through the camera centre and the segment) and two across it, with their covariances.
 struct Disagreement {
   double nees_depth = 0, nees_across = 0;  // 2 degrees of freedom each
   double depth_m = 0, across_m = 0;        // RMS of the two ends
@@ -222,7 +223,7 @@ void print(const Settings& settings, const Totals& t) {
              t.segments / t.pairs, t.lines / t.pairs, t.matches / t.pairs);
   fmt::print("  judged/pair {:.1f}  precision {:.2f} %  recall {:.1f} % of {:.1f}\n", t.judged / t.pairs,
              100 * t.right / t.judged, 100 * t.right / t.findable, t.findable / t.pairs);
-  // Of a chi-square variable with 2 degrees of freedom: mean 2, median 1.39, 95 % 5.99.
+  // A chi-square variable with 2 degrees of freedom has mean 2, median 1.39 and 95 % quantile 5.99.
   fmt::print("  depth : NEES mean {:6.2f} median {:5.2f} 95 % {:6.2f} | median {:5.1f} mm 95 % {:6.1f} mm\n",
              mean(t.nees_depth), quantile(t.nees_depth, 0.5), quantile(t.nees_depth, 0.95),
              quantile(t.depth_mm, 0.5), quantile(t.depth_mm, 0.95));

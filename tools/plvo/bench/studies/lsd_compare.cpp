@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our segment detector beside OpenCV's LSD on the frames of a TUM folder, in one run: segments per frame,
-// time, and repeatability. A segment counts as repeatable when it can be carried to the next frame by its
-// depth and the ground truth (both ends' neighbourhood has depth, the ends fall inside), and as repeated when
-// a segment is found there within 3 px of it, 5° and half of its length.
+// Compares our segment detector with OpenCV's LSD on the frames of a TUM folder in one run: segments per
+// frame, time and repeatability. A segment is repeatable if its depth and the ground truth can transfer it to
+// the next frame (there is depth near both endpoints, and both lie inside the image). It is repeated if a
+// segment is found there within 3 px, 5° and half of its length.
 //   lsd_compare DIR [--frames N] [--min-length PX] [--draw DIR] [--only-ours]
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@
 
 namespace {
 
-// CPU time of this process: the machine may be busy with other things.
+// CPU time of this process, since other processes may load the machine.
 double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Options {
@@ -71,7 +71,7 @@ plvo::Status load(const Options& options, Sequence& sequence) {
     if (!pose.valid[0]) continue;
     Frame frame;
     frame.T_world_camera = pose.poses[0];
-    // OpenCV's headers take what they only read through pointers that could write.
+    // OpenCV's headers require pointers to mutable data even for images that they only read.
     const cv::Mat colour(image.colour.height, image.colour.width, CV_8UC3,
                          const_cast<std::uint8_t*>(image.colour.data));
     cv::cvtColor(colour, frame.gray, cv::COLOR_RGB2GRAY);
@@ -84,7 +84,7 @@ plvo::Status load(const Options& options, Sequence& sequence) {
   return {};
 }
 
-// Our detector with the memory and the pyramid that it needs.
+// Our detector with its memory and its pyramid.
 class Ours {
  public:
   Ours(int width, int height)
@@ -140,7 +140,8 @@ class Ours {
 };
 
 double depth_near(const Frame& frame, double metres_per_unit, double x, double y) {
-  // The nearest surface around: a segment on a silhouette belongs to what is in front.
+  // Takes the nearest surface in the neighbourhood: a segment on a silhouette belongs to the surface in
+  // front.
   std::uint16_t best = 0;
   for (int j = -2; j <= 2; ++j) {
     for (int i = -2; i <= 2; ++i) {
@@ -169,10 +170,10 @@ bool carry(const Sequence& sequence, const Frame& from, const Frame& to, double 
 
 struct Difference {
   double degrees = 0;
-  double distance_px = 0;  // of b's middle from a
+  double distance_px = 0;  // from the midpoint of b to the line a
 };
 
-// Is b a again, the same way round?
+// True if b is the same segment as a, with the same direction.
 bool same(const Line2& a, const Line2& b, Difference& difference) {
   const double la = a.length();
   const double dx = (a.x2 - a.x1) / la;
@@ -222,7 +223,7 @@ struct Score {
     }
   }
   void print(const char* name, std::size_t frames, double reference_ms) {
-    const double typical = median(ms);  // sorts them
+    const double typical = median(ms);  // sorts ms
     std::printf("| %-22s | %6.1f | %6d | %6.1f %% | %5.2f | %5.2f | %6.2f | %6.2f | %6.1f |\n", name,
                 static_cast<double>(segments) / static_cast<double>(frames), repeatable,
                 100.0 * repeated / std::max(1, repeatable), median(degrees), median(distances_px), typical,

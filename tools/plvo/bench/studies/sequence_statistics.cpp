@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a sequence looks as data, real or simulated, by one estimator for both: the residual of each frame
-// warped into the next one by the true pose, the noise of depth against planes, holes, the noise of grey
-// values, and how the brightness wanders. docs/simulator.md shows what it said.
+// Compares the data of sequences, recorded or simulated, with the same estimator for both: the residual of
+// each frame warped into the next one by the true pose, the noise of depth relative to planes, holes, the
+// noise of grey values, and the drift of brightness. docs/simulator.md shows the results.
 //   sequence_statistics DIR…        TUM folders with calibration.txt and groundtruth.txt; a Markdown table on
 //   standard output
 #include <fmt/core.h>
@@ -25,8 +25,8 @@
 namespace plvo::bench {
 namespace {
 
-constexpr int kEvery = 5;            // of the frames one is looked at
-constexpr std::size_t kFewest = 10;  // windows that say something about a distance
+constexpr int kEvery = 5;            // evaluates every fifth frame
+constexpr std::size_t kFewest = 10;  // windows that a distance needs for a result
 constexpr int kWindow = 16;          // px, side of the windows that planes are fitted to
 constexpr std::array<std::array<double, 2>, 6> kDepthBins_m = {
     {{0.7, 1.0}, {1.3, 1.6}, {1.6, 2.0}, {2.0, 2.5}, {2.5, 3.0}, {3.0, 3.5}}};
@@ -34,7 +34,7 @@ constexpr std::array<std::array<double, 2>, 6> kDepthBins_m = {
 struct Picture {
   int width = 0, height = 0;
   std::vector<double> gray, smooth;  // smooth: two passes of the binomial filter (1 2 1)/4 along each axis
-  std::vector<double> depth_m;       // 0 for none
+  std::vector<double> depth_m;       // 0: no depth
   Se3 T_world_camera;
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width + x); }
 };
@@ -64,8 +64,8 @@ Picture make_picture(IdealImages& images, const RgbdFrame& frame) {
   return p;
 }
 
-// Grey values and depths of `from`, moved by T_to_from, against what is in `to` at that place. Where depth
-// jumps or the surface is hidden, nothing is compared.
+// Differences of grey values and depths between `from`, moved by T_to_from, and `to` at the corresponding
+// pixel. Pixels at a depth discontinuity or on a hidden surface are skipped.
 void warp(const Pinhole& pinhole, const Picture& from, const Picture& to, const Se3& T_to_from,
           std::vector<double>& gray, std::vector<double>& depth) {
   constexpr double kSameSurface = 0.05;
@@ -92,8 +92,8 @@ void warp(const Pinhole& pinhole, const Picture& from, const Picture& to, const 
   }
 }
 
-// Residual of a plane, in which inverse depth is linear over the picture. Nothing where depth is missing or
-// the window holds a step.
+// Mean depth and residual of a plane fit; inverse depth of a plane is linear over the image. Returns nullopt
+// if depth is missing or the window contains a step.
 std::optional<std::array<double, 2>> plane_residual(const Picture& p, int x0, int y0) {
   constexpr int kCount = kWindow * kWindow;
   Eigen::Matrix<double, kCount, 3> A;
@@ -116,8 +116,8 @@ std::optional<std::array<double, 2>> plane_residual(const Picture& p, int x0, in
   return std::array<double, 2>{z, rms * z * z};
 }
 
-// Noise of a window by Immerkaer's mask (CVIU 1996), which neither a slope nor an edge along an axis answers
-// to.
+// Noise of a window by Immerkaer's mask (CVIU 1996), which does not respond to a slope or to an edge along an
+// axis.
 double gray_noise(const Picture& p, int x0, int y0) {
   double sum = 0;
   for (int y = y0 + 1; y < y0 + kWindow - 1; ++y) {
@@ -144,7 +144,7 @@ void look_at_windows(const Picture& p, Samples& samples) {
           samples.plane_mm[bin].push_back(1e3 * (*residual)[1]);
     }
   }
-  // The quietest tenth of the windows has the least texture.
+  // The tenth of the windows with the least noise has the least texture.
   std::sort(noises.begin(), noises.end());
   if (!noises.empty()) samples.gray_noise.push_back(eval::quantile(noises, 0.1));
   const auto none = std::count(p.depth_m.begin(), p.depth_m.end(), 0.0);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the ground truth of a recording is off itself, from estimates that err independently of each other.
-// docs/evaluation.md shows what it said.
+// Estimates the noise of a recording's ground truth from estimates with mutually independent errors.
+// docs/evaluation.md shows the results.
 //   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…
-// of every pair of trajectories, from frame to frame;
+// for every pair of trajectories, from frame to frame;
 //   truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]
-// of points and of lines, where the camera comes back to a view, the truth fitted to the trajectory if one is
-// given. Each prints a Markdown table on standard output.
+// for points and for lines, at frames in which the camera returns to an earlier view; the truth is fitted to
+// the trajectory if one is given. Both print a Markdown table on standard output.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -25,14 +25,15 @@ namespace plvo::bench {
 namespace {
 
 constexpr double kDegree = kPi / 180;
-// A return: later than the truth's fast noise lasts, in a view that is still much the same, and neither end
-// blurred.
+// Conditions of a return: the time difference exceeds the correlation time of the truth's fast noise, the
+// view is almost the same, and neither frame is blurred.
 constexpr std::int64_t kLeastApart_ns = 700'000'000;
 constexpr double kMostTurn_deg = 10, kMostMove_m = 0.12;
 constexpr double kMostTurn_deg_per_s = 30;
-constexpr std::int64_t kAround_ns = 50'000'000;  // to either side, for how fast it turns
+constexpr std::int64_t kAround_ns =
+    50'000'000;  // half of the interval over which the angular rate is measured
 constexpr std::size_t kMostReturns = 200;
-// Estimates that differ by more are wrong, not noisy.
+// Estimates that differ by more are outliers, not noise.
 constexpr double kMostDifference_deg = 1, kMostDifference_m = 0.05;
 
 using Pair = std::pair<std::size_t, std::size_t>;
@@ -69,7 +70,7 @@ int study_frames(const std::vector<std::string>& files) {
   return 0;
 }
 
-// Each frame with truth at which the camera turns slowly is paired with those that come back to its view.
+// Pairs each frame that has truth and a low angular rate with the frames that return to its view.
 std::vector<Pair> find_returns(const eval::Trajectory& ground_truth, const std::vector<std::int64_t>& stamps,
                                const eval::SampledPoses& truth) {
   const auto at = [&](std::int64_t shift_ns) {
@@ -103,7 +104,7 @@ std::vector<Pair> spread(const std::vector<Pair>& all) {
   return chosen;
 }
 
-// Two frames, the second against the first, by one kind of features.
+// Registers the second of two frames relative to the first with one kind of features.
 class Registration {
  public:
   Status init(const CameraModel& camera, Features features) {
@@ -174,7 +175,7 @@ Status measure(const Recorded& recorded, const CameraModel& camera, const std::v
   return status;
 }
 
-// Puts right what is constantly wrong with it.
+// Corrects the constant errors of the ground truth.
 Status fit_to(const std::string& file, eval::Trajectory& ground_truth) {
   eval::Trajectory estimate;
   eval::TruthFit fit;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a peer gets that knows no lens distortion: the images of a pinhole camera with the same focal length.
-// Colour is interpolated linearly, depth taken from the nearest pixel, since a mean of two surfaces is on
-// neither. Colours come as RGB. What the camera did not see is black and without depth.
+// Input images for systems without a lens distortion model: the images of a pinhole camera with the same
+// focal length. Colour is interpolated linearly and delivered as RGB. Depth is taken from the nearest pixel,
+// since the mean of two surfaces lies on neither. Pixels that the camera does not observe are black and have
+// no depth.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,11 @@ class IdealImages {
   int width() const { return width_; }
   int height() const { return height_; }
   std::uint8_t* rgb() { return rgb_.data(); }       // 3 × width × height
-  std::uint16_t* depth() { return depth_.data(); }  // width × height, in the frame's units, 0 for none
+  std::uint16_t* depth() { return depth_.data(); }  // width × height, in the frame's units, 0: no depth
 
  private:
   struct Source {
-    int x = -1, y = -1;  // of the upper left of four neighbours; −1 where the camera saw nothing
+    int x = -1, y = -1;  // upper left of four neighbouring pixels; −1 where the camera observes nothing
     float u = 0, v = 0;
   };
 

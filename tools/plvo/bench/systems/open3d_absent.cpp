@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where Open3D is not installed.
+// Used if Open3D is not installed.
 #include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Open3D's RGB-D odometry (open3d::pipelines::odometry) with its default options, from the previous frame to
-// the current one: the hybrid term, brightness and depth (Park 2017). Open3D makes the pyramids of both
-// frames anew for every pair; its interface offers no way to keep them, so that is in its time. This file
-// alone is built with aligned Eigen matrices, as Open3D is, since such matrices go in and out.
+// the current one: the hybrid term of brightness and depth (Park 2017). Open3D rebuilds the pyramids of both
+// frames for every pair; its interface cannot keep them, so the measured time includes this. Only this file
+// is built with aligned Eigen matrices, because it exchanges such matrices with Open3D.
 #include <omp.h>
 #include <open3d/Open3DConfig.h>
 #include <open3d/geometry/RGBDImage.h>
@@ -51,14 +51,14 @@ class Open3dSystem final : public System {
   Se3 pose() const override { return T_world_camera_; }
 
  private:
-  // Some failures are a flag, others an exception.
+  // Open3D reports some failures by a flag and others by an exception.
   bool track_from(const o3d::geometry::RGBDImage& previous) {
     try {
       const auto [success, motion, information] =
           odometry::ComputeRGBDOdometry(previous, *current_, intrinsics_, Eigen::Matrix4d::Identity(),
                                         odometry::RGBDOdometryJacobianFromHybridTerm(), options_);
       if (!success || !motion.allFinite()) return false;
-      Se3 T_current_previous;  // motion is of points: previous camera → current camera
+      Se3 T_current_previous;  // motion maps points: previous camera → current camera
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) T_current_previous.R(i, j) = motion(i, j);
         T_current_previous.t(i) = motion(i, 3);

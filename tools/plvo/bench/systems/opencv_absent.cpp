@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where OpenCV's contrib modules are not installed.
+// Used if OpenCV's contrib modules are not installed.
 #include "plvo/bench/systems/system.hpp"
 
 namespace plvo::bench {

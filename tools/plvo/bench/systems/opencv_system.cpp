@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV's odometries (module rgbd of opencv-contrib), frame to frame with their default settings, driven as
-// the module's own evaluation sample does it: grey images, depth in metres with NaN for none, one frame
-// object each whose cache is kept for its second use, and on failure no motion and on to the next frame. But
-// from the previous frame to the current one, not the other way as there: on our recordings that serves them
-// better.
+// OpenCV's odometries (module rgbd of opencv-contrib), frame to frame with their default settings, as in the
+// module's own evaluation sample: grey images, depth in metres with NaN for missing values, one frame object
+// per frame whose cache is kept for its second use; a failure leaves the pose unchanged and continues with
+// the next frame. Unlike the sample, the motion is estimated from the previous frame to the current one: this
+// gives better results on our recordings.
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -47,7 +47,7 @@ class OpencvSystem final : public System {
   bool track() override {
     bool tracked = true;
     if (previous_) {
-      cv::Mat motion;  // of points: previous camera → current camera
+      cv::Mat motion;  // maps points: previous camera → current camera
       tracked = odometry_->compute(previous_, current_, motion);
       if (tracked) {
         Se3 T_current_previous;

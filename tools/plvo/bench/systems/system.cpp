@@ -70,7 +70,7 @@ Status parse_systems(const std::string& text, std::vector<std::string>& names) {
   names.clear();
   std::stringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
-    bool known = is_group(word);  // also where none of its systems was built
+    bool known = is_group(word);  // a group is known even if none of its systems was built
     for (const std::string& name : system_names()) {
       if (name != word && !in_group(word, name)) continue;
       known = true;
@@ -102,7 +102,7 @@ Status make_system(const std::string& name, const CameraModel& camera, std::uniq
   config.features = name.starts_with("plvo-points")  ? Features::kPoints
                     : name.starts_with("plvo-lines") ? Features::kLines
                                                      : Features::kBoth;
-  if (config.features != Features::kBoth) config.surfaces = false;  // the kind alone
+  if (config.features != Features::kBoth) config.surfaces = false;  // only this kind of features
   auto ours = std::make_unique<PlvoSystem>();
   const Status status = ours->init(camera, config);
   if (status.ok()) system = std::move(ours);
