@@ -36,14 +36,14 @@ Odometry::Odometry() = default;
         .append(" bytes for these Limits, got ")
         .append(static_cast<std::ptrdiff_t>(memory.size()));
   arena_ = Arena(memory);
-  std::array<FrameFeatures, kFrames> features;
-  memory_.allocate(arena_, limits, features);
-  for (std::size_t i = 0; i < kFrames; ++i) frames_[i].features = features[i];
+  Window::Features features;
+  Window::allocate(arena_, limits, features);
+  memory_.allocate(arena_, limits);
   arena_.seal();
   memory_.extraction.init(camera, config);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
-  kept_.init(limits.kept_keyframes);
+  window_.init(features, limits.kept_keyframes);
   ready_ = true;
   return {};
 }
@@ -91,8 +91,9 @@ Status Odometry::check(const RgbdFrame& input) const {
 }
 
 void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result) {
-  const bool has_pose = last_ != kInvalidSlot;
-  report(held(has_pose ? last_ : current_), has_pose ? frame(last_).velocity : Vector6::Zero(), result);
+  const bool has_pose = window_.has_last();
+  report(window_[has_pose ? window_.last() : window_.current()].pose,
+         has_pose ? window_.last_frame().velocity : Vector6::Zero(), result);
   point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
   Status status = check(input);
   if (status.ok()) status = prior.validate();
@@ -103,19 +104,18 @@ void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackRe
   }
   sense(prior, input.stamp_ns);
   last_stamp_ns_ = input.stamp_ns;
-  view_slot_ = current_;
+  view_slot_ = window_.current();
   has_stamp_ = true;
   depth_after_colour_s_ = depth_after_colour_s(input);
   const DepthSampler depth = memory_.extraction.depth_sampler(input);
   const Exposure predicted = predict_exposure(input.stamp_ns);
-  take_feature_memory();
-  FrameFeatures& features = frame(current_).features;
+  FrameFeatures& features = window_.begin_frame();
   features.clear(budget_.capacity());
   result.feature_step = budget_.step();
   result.points = points_found_;
   memory_.extraction.extract(input, depth.with(predicted), wants_points(), arena_, features, result);
   TrackedMotion tracked;
-  if (keyframe_ != kInvalidSlot) {
+  if (window_.has_keyframe()) {
     estimate_motion(depth, tracked, result);
     fill_track_views(tracked.motion);
     if (tracked.motion.status == StatusCode::kOk) {
@@ -127,7 +127,7 @@ void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackRe
   } else if (!resume(depth, prior, tracked, result)) {
     memory_.extraction.lift(depth.with(predicted), noise_, arena_, features);
     memory_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
-    if (last_ == kInvalidSlot)
+    if (!window_.has_last())
       start_first(prior, result);
     else
       start_again(prior, result);
@@ -137,22 +137,10 @@ void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackRe
   points_found_.matched = points_found_.inliers = 0;
 }
 
-// Limits for one reference have memory for the features of two frames: the reference, and the current frame,
-// which takes it from the last one, unless that is a reference.
-void Odometry::take_feature_memory() {
-  FrameFeatures& mine = frame(current_).features;
-  for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {
-    if (is_reference(slot)) continue;
-    FrameFeatures& theirs = frame(slot).features;
-    std::swap(mine, theirs);
-    std::swap(mine.stamp_ns, theirs.stamp_ns);  // each keeps its own
-  }
-}
-
 // Every frame's points are looked for where descriptors alone find them again, else those of a frame that
 // will be matched later.
 bool Odometry::wants_points() const {
-  if (keyframe_ == kInvalidSlot || !config().points.registered || relocalisation_is_due()) return true;
+  if (!window_.has_keyframe() || !config().points.registered || relocalisation_is_due()) return true;
   const ReferenceConfig& references = config().references;
   if (references.policy == ReferencePolicy::kPreviousFrame) return true;
   return references_of(references.policy) > 1 && !recent_is_young();
@@ -162,13 +150,13 @@ bool Odometry::wants_points() const {
 // sampler would else be on the stack while the motion is solved for.
 [[gnu::noinline]] void Odometry::find_points(const DepthSampler& depth, TrackResult& result) {
   memory_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
-                                 frame(current_).features.points, result);
+                                 window_.current_frame().features.points, result);
 }
 
 // Of the current frame, which becomes a keyframe or is searched by descriptors; a recent frame is found again
 // by its image. Apart, as find_points.
 [[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
-  memory_.extraction.describe_points(arena_, frame(current_).features.points, result);
+  memory_.extraction.describe_points(arena_, window_.current_frame().features.points, result);
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {

@@ -28,10 +28,10 @@
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
-#include "plvo/odometry/kept_keyframes.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
+#include "plvo/odometry/window.hpp"
 
 namespace plvo {
 
@@ -58,9 +58,6 @@ struct FeatureView {
   std::span<const LineTrackView> line_tracks;
 };
 
-// The frame being tracked, the last good one, those that are matched, and those that are kept.
-inline constexpr std::size_t kFrames = 2 + kMostOtherFrames;
-
 // What init allocates, in order; an arena without memory counts it.
 struct OdometryMemory {
   FeatureExtraction extraction;
@@ -69,9 +66,7 @@ struct OdometryMemory {
   std::span<LineTrackView> line_track_views;
   std::span<SegmentView> segment_views, reference_segment_views;
 
-  constexpr void allocate(Arena& memory, const Limits& limits, std::array<FrameFeatures, kFrames>& frames) {
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
-      frames[i].allocate(memory, limits);
+  constexpr void allocate(Arena& memory, const Limits& limits) {
     point_track_views =
         memory.take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
     const auto segments = static_cast<std::size_t>(limits.segments);
@@ -91,9 +86,10 @@ struct OdometryMemory {
 // Bytes that init needs for these capacities, wherever the block starts.
 constexpr std::size_t required_bytes(const Limits& limits) {
   Arena sizer = Arena::counting();
-  OdometryMemory rooms;
-  std::array<FrameFeatures, kFrames> frames;
-  rooms.allocate(sizer, limits, frames);
+  Window::Features features;
+  OdometryMemory memory;
+  Window::allocate(sizer, limits, features);
+  memory.allocate(sizer, limits);
   OdometryMemory::reserve(sizer, limits);
   return sizer.peak() + kArenaAlignment;
 }
@@ -141,30 +137,11 @@ class Odometry {
   FeatureView features() const;
 
  private:
-  // A frame; all but its features is known once it is tracked.
-  struct Frame {
-    FrameFeatures features;
-    Se3 T_world_camera;
-    Matrix6 covariance = Matrix6::Zero();               // of T_world_camera
-    Matrix6 covariance_with_gravity = Matrix6::Zero();  // of its error with those of gravity_
-    // Per second (exposure.hpp): since the good frame before it, which was motion_ns earlier (0: there is
-    // none and the velocity is not known); once the next one is tracked, the mean of both.
-    Vector6 velocity = Vector6::Zero();
-    std::int64_t motion_ns = 0;
-  };
-  // How uncertain T_frame_keyframe is.
-  struct FromKeyframe {
-    Matrix6 covariance = Matrix6::Zero();  // for weighing it against what is matched with the keyframe
-    Matrix6 repeated = Matrix6::Zero();    // besides: common_mode_error.hpp
-    Matrix6 total() const { return covariance + repeated; }
-  };
   using References = std::array<Reference, kMaxReferences>;
-  static constexpr int kInvalidSlot = -1;
 
   // odometry.cpp: what is refused, and what a frame brings with it.
   Status check(const RgbdFrame& input) const;
   void process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result);
-  void take_feature_memory();
   bool wants_points() const;
   void find_points(const DepthSampler& depth, TrackResult& result);
   void describe_points(TrackResult& result);
@@ -175,10 +152,9 @@ class Odometry {
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   std::size_t list_references(std::int64_t stamp_ns, References& references) const;
-  bool uses_both_references() const { return recent_ != keyframe_; }
   // There is a recent frame, and it may be matched once more.
   bool recent_is_young() const {
-    return uses_both_references() && recent_age_ + 1 < config().references.recent_frames;
+    return window_.has_recent() && window_.recent_age() + 1 < config().references.recent_frames;
   }
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
 
@@ -191,28 +167,15 @@ class Odometry {
   void add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const;
   void accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
               TrackResult& result);
-  void note_velocity(std::int64_t motion_ns);
-  // The references that go on being good ones.
-  struct Kept {
-    bool keyframe = false, recent = false, older = false;
-  };
-  Kept still_good() const;
-  void choose_references(const Kept& kept);
+  Window::Kept still_good() const;
   void keep_image();
   bool still_seen(int slot, std::size_t reference, double share) const;
   bool affordable(int slot) const;
-  void replace_keyframe();
-  bool is_reference(int slot) const;
-  int free_slot() const;
   void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
   const char* first_word_of_loss() const;
 
   // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
-  PoseWithCovariance held(int slot) const;
-  void hold(int slot, PoseWithCovariance pose);
   void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
-  MotionReference from_keyframe(int slot) const;
-  void move_keyframe(const PoseWithCovariance& pose);
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   PoseWithCovariance predicted_pose(const MotionPrior& prior, TrackResult& result) const;
 
@@ -222,7 +185,7 @@ class Odometry {
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
               TrackResult& result);
   bool relocalisation_is_due() const {
-    return !kept_.empty() &&
+    return !window_.kept().empty() &&
            frames_since_relocalisation_ + 1 >= config().references.relocalisation_interval_frames;
   }
   void relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
@@ -234,27 +197,13 @@ class Odometry {
 
   const CameraModel& camera() const { return memory_.extraction.camera(); }
   const Config& config() const { return memory_.extraction.config(); }
-  Frame& frame(int slot) { return frames_[static_cast<std::size_t>(slot)]; }
-  const Frame& frame(int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
   Arena arena_;
   OdometryMemory memory_;
   FeatureBudget budget_;
   bool ready_ = false;
 
-  std::array<Frame, kFrames> frames_;
-  // Slots of frames_. Until the first usable frame there is no keyframe.
-  int keyframe_ = kInvalidSlot;
-  int last_ = kInvalidSlot;
-  // Matched beside the keyframe: a frame since, until it makes way for a newer one; else the keyframe itself.
-  int recent_ = kInvalidSlot;
-  int recent_age_ = 0;        // frames since it was tracked
-  int older_ = kInvalidSlot;  // the keyframe before, while it is matched
-  // Zero while it is the keyframe, or there is none.
-  FromKeyframe last_motion_, recent_motion_;
-  Matrix6 older_covariance_ = Matrix6::Zero();
-  int current_ = 0;  // until the first usable frame it holds the pose of that one
-  KeptKeyframes kept_;
+  Window window_;
   int frames_since_relocalisation_ = 0;
   PropagatedPrior propagated_prior_;  // since the last good frame
   GravityFilter gravity_;

@@ -23,16 +23,16 @@ constexpr double kSameMotion = 0.02;
 
 // How the camera moves while the frame is exposed, if it goes on as it did.
 Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
-  if (last_ == kInvalidSlot) return {};
-  const PairPrior prior = prior_of(last_, stamp_ns);
+  if (!window_.has_last()) return {};
+  const PairPrior prior = prior_of(window_.last(), stamp_ns);
   return current_exposure(camera(), prior, prior.T_current_reference);
 }
 
 // The motion from the reference to now: as other sensors tell it, or if the camera goes on as it did between
 // the last two good frames.
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
-  const Frame& last = frame(last_);
-  const Se3 T_last_reference = last.T_world_camera.inverse() * frame(reference).T_world_camera;
+  const Window::Frame& last = window_.last_frame();
+  const Se3 T_last_reference = last.pose.T_world_camera.inverse() * window_[reference].pose.T_world_camera;
   if (propagated_prior_.known()) return propagated_prior_.T_current_last() * T_last_reference;
   const auto elapsed = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns));
   if (!(elapsed < kLongestPrediction * static_cast<double>(last.motion_ns))) return T_last_reference;
@@ -40,15 +40,15 @@ Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
 }
 
 PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
-  const Frame& from = frame(reference);
-  const Frame& last = frame(last_);
+  const Window::Frame& from = window_[reference];
+  const Window::Frame& last = window_.last_frame();
   PairPrior prior;
   prior.T_current_reference = predict_motion(reference, stamp_ns);
-  prior.T_reference_last = from.T_world_camera.inverse() * last.T_world_camera;
+  prior.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
   prior.seconds_since_last = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9;
   prior.reference_velocity = from.velocity;
   prior.reference_velocity_known = from.motion_ns > 0;
-  prior.reference_is_last = reference == last_;
+  prior.reference_is_last = reference == window_.last();
   prior.last_velocity = last.velocity;
   prior.last_velocity_known = last.motion_ns > 0;
   prior.depth_after_colour_s = depth_after_colour_s_;
@@ -60,12 +60,13 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
 [[gnu::noinline]] std::size_t Odometry::list_references(std::int64_t stamp_ns, References& references) const {
   std::size_t count = 0;
   const auto add = [&](int slot) {
-    references[count++] = {
-        .features = &frame(slot).features, .prior = prior_of(slot, stamp_ns), .pose = from_keyframe(slot)};
+    references[count++] = {.features = &window_[slot].features,
+                           .prior = prior_of(slot, stamp_ns),
+                           .pose = window_.from_keyframe(slot)};
   };
-  add(keyframe_);
-  if (uses_both_references()) add(recent_);
-  if (older_ != kInvalidSlot) add(older_);
+  add(window_.keyframe());
+  if (window_.has_recent()) add(window_.recent());
+  if (window_.has_older()) add(window_.older());
   return count;
 }
 
@@ -77,10 +78,10 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
                                                  TrackResult& result) {
   References references;
   const std::size_t count = list_references(result.stamp_ns, references);
-  const MotionReference last = from_keyframe(last_);
+  const MotionReference last = window_.from_keyframe(window_.last());
   const CurrentFrame current{
-      frame(current_).features, memory_.extraction, depth, noise_, propagated_prior_, last};
-  result.reference_stamp_ns = frame(keyframe_).features.stamp_ns;
+      window_.current_frame().features, memory_.extraction, depth, noise_, propagated_prior_, last};
+  result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
   const std::span<const Reference> all = std::span(references).first(count);
   const Reference& latest = all[latest_of(all)];
   const bool registered = config().points.registered;

@@ -66,7 +66,7 @@ void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
         "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
     return;
   }
-  PoseWithCovariance pose = held(current_);
+  PoseWithCovariance pose = window_.current_frame().pose;
   if (levels)
     gravity_.level(*prior.gravity, pose);
   else
@@ -89,7 +89,7 @@ void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
     return;
   }
   const bool sensed = propagated_prior_.known();
-  PoseWithCovariance pose = sensed ? predicted_pose(prior, result) : held(last_);
+  PoseWithCovariance pose = sensed ? predicted_pose(prior, result) : window_.last_frame().pose;
   if (!sensed) add_process_noise(result.stamp_ns, pose.covariance);
   if (may_be_anywhere(pose.covariance)) {
     forget_world();
@@ -103,17 +103,10 @@ void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
   start_at(pose, result);
 }
 
-// Poses, and what was said of them; what was learnt of the noise stays. The next usable frame is the first.
+// Forgets all poses and what was said of them; what was learnt of the noise stays. The next usable frame is
+// the first of a new world.
 void Odometry::forget_world() {
-  for (Frame& each : frames_) {
-    const FrameFeatures features = each.features;
-    each = Frame();
-    each.features = features;
-  }
-  keyframe_ = recent_ = last_ = older_ = kInvalidSlot;
-  recent_age_ = 0;
-  last_motion_ = recent_motion_ = {};
-  kept_.clear();
+  window_.clear();
   frames_since_relocalisation_ = 0;
   start_is_set_ = false;
   propagated_prior_ = PropagatedPrior();
@@ -131,25 +124,21 @@ void Odometry::read_gravity(const MotionPrior& prior, PoseWithCovariance& pose) 
 // The current frame becomes the keyframe and the last good one, with no motion behind it.
 void Odometry::start_at(const PoseWithCovariance& pose, TrackResult& result) {
   describe_points(result);
-  hold(current_, pose);
-  report(held(current_), Vector6::Zero(), result);
-  frame(current_).motion_ns = 0;
-  last_motion_ = recent_motion_ = {};
+  keep_image();
+  window_.start(pose);
+  report(window_.last_frame().pose, Vector6::Zero(), result);
   result.T_camera_reference = Se3();
   result.motion_covariance.setZero();
   result.state = TrackState::kInitialising;
   result.reference_stamp_ns = result.stamp_ns;
-  keyframe_ = recent_ = last_ = current_;
-  older_ = kInvalidSlot;
-  keep_image();
-  current_ = free_slot();
   lost_frames_ = 0;
   propagated_prior_.restart();
 }
 
 // The last good pose's covariance by now, when nobody saw the motion since.
 void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const {
-  const double seconds = static_cast<double>(elapsed_ns(frame(last_).features.stamp_ns, stamp_ns)) * 1e-9;
+  const double seconds =
+      static_cast<double>(elapsed_ns(window_.last_frame().features.stamp_ns, stamp_ns)) * 1e-9;
   const double sigma_m = config().references.process_noise_m_per_s * seconds;
   const double sigma_rad = config().references.process_noise_rad_per_s * seconds;
   for (int i = 0; i < 3; ++i) {
@@ -162,104 +151,69 @@ void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) con
 void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
                       TrackResult& result) {
   const MotionEstimate& motion = tracked.motion;
-  const Kept kept = still_good();
+  const Window::Kept kept = still_good();
   if (!kept.recent) {
     find_points(depth, result);
     if (!kept.keyframe) describe_points(result);
-    memory_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, frame(current_).features);
+    memory_.extraction.lift(depth.with(tracked.exposure), noise_, arena_, window_.current_frame().features);
   }
   result.state = TrackState::kTracking;
   result.T_camera_reference = motion.T_current_reference;
-  // Of the last frame until here, of the current one from here on.
-  last_motion_ = {motion.C_H, common_mode_error(motion.references, recent_motion_.repeated,
-                                                config().noise.common_mode_share)};
-  const Matrix6 covariance = last_motion_.total();
-  PoseWithCovariance from = held(keyframe_);
+  const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
+                                                config().noise.common_mode_share);
+  window_.set_motion({motion.C_H, common_mode});
+  const Matrix6 covariance = window_.last_motion().total();
+  PoseWithCovariance from = window_[window_.keyframe()].pose;
   PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance);
   if (prior.gravity) {
     gravity_.read(*prior.gravity, from, pose);
-    move_keyframe(from);
+    window_.move_keyframe(from);
   }
-  hold(current_, pose);
-  note_velocity(elapsed_ns(frame(last_).features.stamp_ns, result.stamp_ns));
-  const Vector6& velocity = frame(current_).velocity;
-  report(held(current_), velocity, result);
+  window_.set_pose(window_.current(), pose);
+  window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, result.stamp_ns));
+  const Vector6& velocity = window_.current_frame().velocity;
+  report(window_.current_frame().pose, velocity, result);
   result.motion_covariance =
-      covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity, frame(keyframe_).velocity,
-                                              camera().stamp_sigma_s);
+      covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
+                                              window_[window_.keyframe()].velocity, camera().stamp_sigma_s);
   lost_frames_ = 0;
   propagated_prior_.restart();
   learn(config().noise, tracked.observed, noise_);
-  choose_references(kept);
-}
-
-// Of the current frame, and so more of the last one.
-void Odometry::note_velocity(std::int64_t motion_ns) {
-  Frame& last = frame(last_);
-  Frame& current = frame(current_);
-  const Se3 T_current_last = current.T_world_camera.inverse() * last.T_world_camera;
-  current.velocity = boxminus(T_current_last, Se3{}) / (static_cast<double>(motion_ns) * 1e-9);
-  current.motion_ns = motion_ns;
-  last.velocity = last.motion_ns > 0 ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
-  last.motion_ns = motion_ns;
+  const bool keep_older =
+      config().references.policy == ReferencePolicy::kWindow && config().points.registered;
+  if (!kept.recent) keep_image();
+  window_.advance(kept, keep_older);
 }
 
 // By what the last estimate found of them.
-Odometry::Kept Odometry::still_good() const {
+Window::Kept Odometry::still_good() const {
   const ReferenceConfig& references = config().references;
   const bool window = references.policy == ReferencePolicy::kWindow;
-  const bool both = uses_both_references();
+  const bool both = window_.has_recent();
   const auto good = [&](int slot, std::size_t index, double share) {
     return affordable(slot) && still_seen(slot, index, share);
   };
-  Kept kept;
-  kept.older = older_ != kInvalidSlot && good(older_, both ? 2 : 1, references.older_inlier_ratio);
+  Window::Kept kept;
+  kept.older = window_.has_older() && good(window_.older(), both ? 2 : 1, references.older_inlier_ratio);
   kept.keyframe =
       references.policy != ReferencePolicy::kPreviousFrame &&
-      good(keyframe_, 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
+      good(window_.keyframe(), 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
   if (both)
-    kept.recent = recent_is_young() && good(recent_, 1, kRecentInlierRatio);
+    kept.recent = recent_is_young() && good(window_.recent(), 1, kRecentInlierRatio);
   else  // Without registration find() is the whole estimate, of the base alone.
     kept.recent = !config().points.registered || references_of(references.policy) == 1;
   kept.recent = kept.recent && kept.keyframe;
   return kept;
 }
 
-// The tracked frame becomes the last good one, and takes the place of a reference that is none any more.
-void Odometry::choose_references(const Kept& kept) {
-  if (!kept.older) older_ = kInvalidSlot;
-  last_ = current_;
-  if (!kept.keyframe) replace_keyframe();
-  ++recent_age_;
-  if (!kept.recent) {
-    recent_ = last_;
-    recent_age_ = 0;
-    recent_motion_ = last_motion_;
-    keep_image();
-  }
-  current_ = free_slot();
-}
-
-// By the last good frame.
-void Odometry::replace_keyframe() {
-  const bool window = config().references.policy == ReferencePolicy::kWindow;
-  if (window && config().points.registered) {
-    const MotionReference last = from_keyframe(last_);
-    older_covariance_ = inverse_covariance(last.T_reference_base, last.covariance);
-    older_ = keyframe_;
-  }
-  last_motion_ = {};
-  keyframe_ = last_;
-}
-
 // Of the current frame, which is the latest reference from now on.
 void Odometry::keep_image() {
-  memory_.tracking.keep_image(memory_.extraction.pyramid(), frame(current_).features.stamp_ns);
+  memory_.tracking.keep_image(memory_.extraction.pyramid(), window_.current_frame().features.stamp_ns);
 }
 
 // Whether the last estimate, whose reference of this index was that frame, found this share of its features.
 bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
-  const FrameFeatures& features = frame(slot).features;
+  const FrameFeatures& features = window_[slot].features;
   std::size_t available = features.lines.count_3d;
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
     available += point.p.z() > 0 ? 1 : 0;
@@ -268,20 +222,10 @@ bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
 
 // Too full a frame for the budget goes on costing what it did.
 bool Odometry::affordable(int slot) const {
-  const FrameFeatures& features = frame(slot).features;
+  const FrameFeatures& features = window_[slot].features;
   const FeatureCapacity capacity = budget_.capacity();
   return features.points.keypoints.size() <= capacity.keypoints &&
          features.lines.segments.size() <= capacity.segments;
-}
-
-bool Odometry::is_reference(int slot) const {
-  return slot == keyframe_ || slot == recent_ || slot == older_ || kept_.holds(slot);
-}
-
-int Odometry::free_slot() const {
-  int slot = 0;
-  while (slot == last_ || is_reference(slot)) ++slot;
-  return slot;
 }
 
 void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result) {
@@ -292,10 +236,7 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   if (lost_frames_ < config().references.max_lost_frames) return;
   // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
   // starts anew at the last good pose.
-  kept_.keep(keyframe_);
-  keyframe_ = recent_ = older_ = kInvalidSlot;
-  last_motion_ = recent_motion_ = {};
-  current_ = free_slot();
+  window_.give_up();
 }
 
 const char* Odometry::first_word_of_loss() const {

@@ -28,7 +28,8 @@ void Odometry::reset() {
   forget_world();
   world_is_lost_ = false;
   points_found_ = {};
-  current_ = view_slot_ = 0;
+  window_.reset();
+  view_slot_ = window_.current();
   noise_ = config().noise.initial;
   last_stamp_ns_ = 0;
   has_stamp_ = false;
@@ -50,30 +51,13 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   pose.covariance = covariance;
   start_is_set_ = true;
   world_is_lost_ = false;
-  kept_.clear();  // their poses are in the world that was
-  if (last_ == kInvalidSlot) {
-    hold(current_, pose);
-    return {};
-  }
+  window_.kept().clear();  // their poses are in the world that was
   // The keyframe moves with the last frame: the motion between them stays what it is.
-  if (keyframe_ != kInvalidSlot)
-    move_keyframe(keyframe_ == last_
-                      ? pose
-                      : advance(pose, from_keyframe(last_).T_reference_base.inverse(), Matrix6::Zero()));
-  hold(last_, pose);
+  if (window_.has_last())
+    window_.move_last(pose, Matrix6::Zero());
+  else
+    window_.set_pose(window_.current(), pose);
   return {};
-}
-
-PoseWithCovariance Odometry::held(int slot) const {
-  return {frame(slot).T_world_camera, frame(slot).covariance, frame(slot).covariance_with_gravity};
-}
-
-// What is not finite is found where the result leaves.
-void Odometry::hold(int slot, PoseWithCovariance pose) {
-  (void)settle(pose);
-  frame(slot).T_world_camera = pose.T_world_camera;
-  frame(slot).covariance = pose.covariance;
-  frame(slot).covariance_with_gravity = pose.covariance_with_gravity;
 }
 
 // What the caller is told of a pose: of its stamp, which may err.
@@ -83,27 +67,10 @@ void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, T
       pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera().stamp_sigma_s);
 }
 
-// A frame as a reference whose pose relative to the keyframe is known.
-MotionReference Odometry::from_keyframe(int slot) const {
-  if (keyframe_ == kInvalidSlot || keyframe_ == slot) return {};
-  const Matrix6& covariance = slot == older_    ? older_covariance_
-                              : slot == recent_ ? recent_motion_.covariance
-                                                : last_motion_.covariance;
-  return {frame(slot).T_world_camera.inverse() * frame(keyframe_).T_world_camera, covariance};
-}
-
-// The keyframe is put right; the frames that are matched beside it go on standing where they do from there.
-void Odometry::move_keyframe(const PoseWithCovariance& pose) {
-  for (const int slot : {last_, older_, recent_ == last_ ? kInvalidSlot : recent_})
-    if (slot != kInvalidSlot && slot != keyframe_)
-      frame(slot).T_world_camera = pose.T_world_camera * from_keyframe(slot).T_reference_base.inverse();
-  hold(keyframe_, pose);
-}
-
 // Takes in what the prior says of the motion since the frame before.
 void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
-  if (last_ == kInvalidSlot) return;
-  const Frame& last = frame(last_);
+  if (!window_.has_last()) return;
+  const Window::Frame& last = window_.last_frame();
   const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
                        elapsed_ns(last.features.stamp_ns, stamp_ns) <= kLongestCoast_ns;
   const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, stamp_ns)) * 1e-9;
@@ -113,18 +80,18 @@ void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
 // Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
 // gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
 PoseWithCovariance Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
-  const int anchor = keyframe_ != kInvalidSlot ? keyframe_ : last_;
-  const MotionReference last = from_keyframe(last_);
+  const int anchor = window_.has_keyframe() ? window_.keyframe() : window_.last();
+  const MotionReference last = window_.from_keyframe(window_.last());
   result.T_camera_reference = propagated_prior_.T_current_last() * last.T_reference_base;
   result.motion_covariance =
       compose_covariance(propagated_prior_.T_current_last(), propagated_prior_.covariance(),
-                         last.T_reference_base, last_motion_.total());
-  result.reference_stamp_ns = frame(anchor).features.stamp_ns;
-  PoseWithCovariance from = held(anchor);
+                         last.T_reference_base, window_.last_motion().total());
+  result.reference_stamp_ns = window_[anchor].features.stamp_ns;
+  PoseWithCovariance from = window_[anchor].pose;
   PoseWithCovariance pose = advance(from, result.T_camera_reference, result.motion_covariance);
   GravityFilter gravity = gravity_;
   if (prior.gravity && gravity.known()) gravity.read(*prior.gravity, from, pose);
-  report(pose, frame(last_).velocity, result);
+  report(pose, window_.last_frame().velocity, result);
   result.state = TrackState::kPredicted;
   return pose;
 }

@@ -16,8 +16,8 @@ std::size_t Odometry::fill_segment_views(const LineFeatures& lines, std::span<Se
 // Of the latest reference; without a motion there is nothing to show.
 void Odometry::fill_track_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
-  const bool both = uses_both_references();
-  const FrameFeatures& reference = frame(both ? recent_ : keyframe_).features;
+  const bool both = window_.has_recent();
+  const FrameFeatures& reference = window_[both ? window_.recent() : window_.keyframe()].features;
   const ReferenceTracks& tracks = memory_.tracking.tracks(both ? 1 : 0);
   point_track_count_ = tracks.points.matches.size();
   for (std::size_t i = 0; i < point_track_count_; ++i) {
@@ -37,7 +37,7 @@ FeatureView Odometry::features() const {
   FeatureView view;
   if (!ready_ || !has_stamp_) return view;
   view.image = memory_.extraction.pyramid().level(0);
-  view.keypoints = frame(view_slot_).features.points.keypoints.span();
+  view.keypoints = window_[view_slot_].features.points.keypoints.span();
   view.point_tracks = memory_.point_track_views.first(point_track_count_);
   view.segments = memory_.segment_views.first(segment_count_);
   view.reference_segments = memory_.reference_segment_views.first(reference_segment_count_);

@@ -35,14 +35,14 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   PairPrior prior;
   prior.velocity = velocity;
   prior.velocity_known = true;
-  prior.reference_velocity = frame(slot).velocity;
-  prior.reference_velocity_known = frame(slot).motion_ns > 0;
+  prior.reference_velocity = window_[slot].velocity;
+  prior.reference_velocity_known = window_[slot].motion_ns > 0;
   prior.reference_is_last = false;
   prior.depth_after_colour_s = depth_after_colour_s_;
   const PropagatedPrior nothing;
   const MotionReference nobody;
   const CurrentFrame current{features, memory_.extraction, depth, noise_, nothing, nobody};
-  const Reference reference{&frame(slot).features, prior, {}};
+  const Reference reference{&window_[slot].features, prior, {}};
   memory_.extraction.describe_points(arena_, features.points, result);
   const double anywhere_px = std::max(camera().width, camera().height);
   memory_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
@@ -52,26 +52,25 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   }
   return tracked.motion.status == StatusCode::kOk &&
          still_seen(slot, 0, config().references.keyframe_inlier_ratio) &&
-         agree(held(slot), tracked.motion, believed);
+         agree(window_[slot].pose, tracked.motion, believed);
 }
 
 // Where tracking would start anew: the kept keyframe is taken up again if the camera looks where it did.
 bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
                       TrackResult& result) {
-  if (kept_.empty()) return false;
-  const int slot = kept_.latest();
-  PoseWithCovariance believed = held(last_);
+  if (window_.kept().empty()) return false;
+  const int slot = window_.kept().latest();
+  PoseWithCovariance believed = window_.last_frame().pose;
   add_process_noise(result.stamp_ns, believed.covariance);
   TrackResult trial = result;
   // It stands still, for all that is known: what it did before says nothing any more.
   const bool found =
-      recognise(slot, frame(current_).features, Vector6::Zero(), depth, believed, tracked, trial);
+      recognise(slot, window_.current_frame().features, Vector6::Zero(), depth, believed, tracked, trial);
   result.stage_ns = trial.stage_ns;
   if (!found) return false;
   result = trial;
-  kept_.drop(slot);
-  keyframe_ = recent_ = slot;
-  result.reference_stamp_ns = frame(slot).features.stamp_ns;
+  window_.resume(slot);
+  result.reference_stamp_ns = window_[slot].features.stamp_ns;
   accept(depth, tracked, prior, result);
   result.returned = true;
   return true;
@@ -81,35 +80,32 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
 // keyframe, all poses are moved so that this frame's is the one that follows from there.
 // tracked: of the frame's own motion, which is accepted and not needed any more: room for another one.
 void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
-  if (kept_.empty()) return;
+  if (window_.kept().empty()) return;
   if (!relocalisation_is_due()) {
     ++frames_since_relocalisation_;
     return;
   }
   frames_since_relocalisation_ = 0;
-  const int slot = kept_.next();
-  Frame& last = frame(last_);  // the frame just tracked
-  TrackResult trial;           // the counts of the frame are those of its own tracking
+  const int slot = window_.kept().next();
+  Window::Frame& last = window_.last_frame();  // the frame just tracked
+  TrackResult trial;                           // the counts of the frame are those of its own tracking
   trial.stage_ns = result.stage_ns;
-  const bool found = recognise(slot, last.features, last.velocity, depth, held(last_), tracked, trial);
+  const bool found =
+      recognise(slot, last.features, last.velocity, depth, window_.last_frame().pose, tracked, trial);
   result.stage_ns = trial.stage_ns;
   if (!found) return;
   move_to_relocalised_pose(slot, tracked.motion);
-  report(held(last_), last.velocity, result);
+  report(window_.last_frame().pose, last.velocity, result);
   result.returned = true;
 }
 
 // All poses are moved so that the last frame stands where `motion` leads from the kept keyframe. Apart, for
 // its matrices would else be on the stack while that keyframe is looked for.
 [[gnu::noinline]] void Odometry::move_to_relocalised_pose(int slot, const MotionEstimate& motion) {
-  const PoseWithCovariance pose = advance(held(slot), motion.T_current_reference, motion.C_H);
-  const MotionReference from = from_keyframe(last_);
-  move_keyframe(keyframe_ == last_
-                    ? pose
-                    : advance(pose, from.T_reference_base.inverse(),
-                              inverse_covariance(from.T_reference_base, last_motion_.total())));
-  hold(last_, pose);
-  kept_.drop(slot);
+  const PoseWithCovariance pose = advance(window_[slot].pose, motion.T_current_reference, motion.C_H);
+  const MotionReference from = window_.from_keyframe(window_.last());
+  window_.move_last(pose, inverse_covariance(from.T_reference_base, window_.last_motion().total()));
+  window_.kept().drop(slot);
 }
 
 }  // namespace plvo

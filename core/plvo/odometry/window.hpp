@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frames that the odometry keeps, the role of each, where they stand in the world, and how they stand to
+// each other. The window holds no policy: it is told which frame takes which role.
+//
+//   current   the frame that is being tracked
+//   last      the last frame that has a pose; the velocity is that between it and the one before
+//   keyframe  the base of the estimate: the current pose is chained to it
+//   recent    a later frame that is matched beside the keyframe; the keyframe itself where there is no other
+//   older     the keyframe before, which is still matched (ReferencePolicy::kWindow)
+//   kept      keyframes from before a loss, which may come back into view (kept_keyframes.hpp)
+//
+// One frame can have several roles. Frames are named by their slots. Memory: the features of as many frames
+// as Limits ask for, from the arena; two frames without a role share it (begin_frame()).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/motion/motion_estimator.hpp"
+#include "plvo/odometry/features/frame_features.hpp"
+#include "plvo/odometry/gravity_filter.hpp"
+#include "plvo/odometry/kept_keyframes.hpp"
+
+namespace plvo {
+
+class Window {
+ public:
+  static constexpr int kNoFrame = -1;
+  // The current and the last frame, and those that are references or kept.
+  static constexpr std::size_t kFrames = 2 + kMostOtherFrames;
+
+  struct Frame {
+    FrameFeatures features;  // of the current frame; the rest of it is known once it is tracked
+    PoseWithCovariance pose;
+    // Twist of the scene in the camera's axes, per second (exposure.hpp), measured over the motion_ns since
+    // the last good frame before it. When the next frame is tracked, it becomes the mean of both sides.
+    Vector6 velocity = Vector6::Zero();
+    std::int64_t motion_ns = 0;  // 0: there is no such frame, and the velocity is not known
+  };
+  // Covariance of T_frame_keyframe.
+  struct RelativeCovariance {
+    Matrix6 independent = Matrix6::Zero();  // weighs it against what is matched with the keyframe
+    Matrix6 common_mode = Matrix6::Zero();  // besides: common_mode_error.hpp
+    Matrix6 total() const { return independent + common_mode; }
+  };
+  // Which references go on being matched.
+  struct Kept {
+    bool keyframe = false, recent = false, older = false;
+  };
+
+  // Memory for the features of as many frames as Limits ask for; an arena without memory counts it.
+  using Features = std::array<FrameFeatures, kFrames>;
+  static constexpr void allocate(Arena& memory, const Limits& limits, Features& features) {
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
+      features[i].allocate(memory, limits);
+  }
+  void init(const Features& features, int kept_keyframes);
+  // Forgets all poses and roles; the memory, and which frame is current, stay.
+  void clear();
+  // As after init().
+  void reset() {
+    clear();
+    current_ = 0;
+  }
+
+  int current() const { return current_; }
+  int last() const { return last_; }
+  int keyframe() const { return keyframe_; }
+  int recent() const { return recent_; }
+  int older() const { return older_; }
+  bool has_last() const { return last_ != kNoFrame; }
+  bool has_keyframe() const { return keyframe_ != kNoFrame; }
+  bool has_recent() const { return recent_ != keyframe_; }
+  bool has_older() const { return older_ != kNoFrame; }
+  int recent_age() const { return recent_age_; }  // frames since the recent one was tracked
+  const KeptKeyframes& kept() const { return kept_; }
+  KeptKeyframes& kept() { return kept_; }
+
+  Frame& operator[](int slot) { return frames_[static_cast<std::size_t>(slot)]; }
+  const Frame& operator[](int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
+
+  Frame& current_frame() { return (*this)[current_]; }
+  const Frame& current_frame() const { return (*this)[current_]; }
+  Frame& last_frame() { return (*this)[last_]; }
+  const Frame& last_frame() const { return (*this)[last_]; }
+
+  // Stores the pose of a frame, with its covariance within the bound of covariance.hpp. A pose that is not
+  // finite is stored as it is: it is found where results leave the library.
+  void set_pose(int slot, PoseWithCovariance pose);
+  // T_frame_keyframe with the covariance that the estimate weighs it with; the identity for the keyframe, or
+  // without one.
+  MotionReference from_keyframe(int slot) const;
+  // Covariance of T_last_keyframe.
+  const RelativeCovariance& last_motion() const { return last_motion_; }
+  const RelativeCovariance& recent_motion() const { return recent_motion_; }
+  // Corrects the keyframe's pose. The last, recent and older frames keep their poses relative to it.
+  void move_keyframe(const PoseWithCovariance& pose);
+  // Corrects the last frame's pose. The keyframe, if there is one, moves with it; its new covariance includes
+  // that of T_keyframe_last, which the caller gives.
+  void move_last(const PoseWithCovariance& pose, const Matrix6& covariance_keyframe_last);
+
+  // Gives the current frame memory for its features.
+  FrameFeatures& begin_frame();
+  // The current frame becomes keyframe and last frame, without a motion behind it.
+  void start(const PoseWithCovariance& pose);
+  // A kept keyframe takes up its role again.
+  void resume(int slot);
+  // The current frame was tracked; covariance: of T_current_keyframe.
+  void set_motion(const RelativeCovariance& covariance) { last_motion_ = covariance; }
+  // Velocity of the current frame, from its pose and the last frame's, motion_ns apart.
+  void set_velocity(std::int64_t motion_ns);
+  // The current frame becomes the last one and takes the roles that are not kept. keep_older: a keyframe that
+  // makes way goes on as the older one.
+  void advance(const Kept& kept, bool keep_older);
+  // No reference is seen any more: the keyframe joins the kept ones, and there is none.
+  void give_up();
+
+ private:
+  bool is_reference(int slot) const;
+  int free_slot() const;
+
+  std::array<Frame, kFrames> frames_;
+  int current_ = 0;
+  int last_ = kNoFrame;
+  int keyframe_ = kNoFrame;
+  int recent_ = kNoFrame;
+  int older_ = kNoFrame;
+  int recent_age_ = 0;
+  // Zero while the frame is the keyframe.
+  RelativeCovariance last_motion_, recent_motion_;
+  Matrix6 older_covariance_ = Matrix6::Zero();
+  KeptKeyframes kept_;
+};
+
+}  // namespace plvo
