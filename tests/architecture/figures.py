@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A figure stands on one page, and the others refer to it: a copy stays behind when the figure changes. Where the README repeats rows
-of the bench's page on purpose, they must be equal."""
+"""A figure stands on one page, and the others refer to it: a copy stays behind when the figure changes. The README's table repeats
+figures of docs/results/ on purpose: they must be equal, and its best peer must be the best one there."""
 import pathlib
 import re
 import sys
@@ -18,7 +18,7 @@ ONE_PAGE = [
 
 
 def pages(root):
-    return [path for path in (*root.glob("*.md"), *root.glob("docs/*.md"))]
+    return [path for path in (*root.glob("*.md"), *root.glob("docs/**/*.md"))]
 
 
 def check_one_page(root):
@@ -44,32 +44,50 @@ def with_columns(text, *names):
     return [rows for rows in tables(text) if rows and all(name in rows[0] for name in names)]
 
 
-# Of the recordings: the README's columns, and those of the bench's page, with fewer decimals.
+# The columns of docs/results/recordings.md and of the table there that stands beside the paper's, which has fewer decimals.
 COLUMNS = {"mm per frame": "mm/frame", "° per frame": "°/frame", "mm per s": "mm/s", "° per s": "°/s"}
+RECORDINGS, LIGHTING = "docs/results/recordings.md", "docs/results/lighting.md"
+
+
+def expected_rows(recordings, lighting):
+    """The README's table as docs/results/ has it: a row by the name of its sequence."""
+    rows, peers = {}, {}
+    for row in (row for table in with_columns(recordings, "sequence", "system", "mm per s") for row in table):
+        if row["system"] == "plvo, both":
+            rows[row["sequence"]] = {"plvo, mm per s": row["mm per s"], "plvo, ° per s": row["° per s"], "time": row["time"]}
+        elif not row["system"].startswith(("plvo", "never moves")):
+            peers.setdefault(row["sequence"], []).append((float(row["mm per s"]), row["mm per s"], row["system"]))
+    for row in (row for table in with_columns(lighting, "site", "light", "never moves") for row in table):
+        name = f"{row['site']}, {row['light']}"
+        rows[name] = {"plvo, mm per s": row["plvo, both"], "plvo, ° per s": "–", "time": "–"}
+        others = [column for column in row if column not in ("site", "light", "never moves") and not column.startswith("plvo")]
+        peers[name] = [(float(row[column]), row[column], column) for column in others if row[column] != "–"]
+    for name, row in rows.items():
+        _, row["its mm per s"], row["best peer"] = min(peers.get(name, []), default=(0, "–", "–"))
+    return rows
 
 
 def check_copies(root):
-    readme, bench = ((root / name).read_text(encoding="utf-8") for name in ("README.md", "docs/bench.md"))
-    copied = 0
-    for ours, theirs in zip(with_columns(readme, "site", "light"), with_columns(bench, "site", "light"), strict=True):
-        rows = {(row["site"], row["light"]): row for row in theirs}
-        for row in ours:
-            other = rows[row["site"], row["light"]]
-            for column in set(row) & set(other):
-                copied += 1
-                if row[column] != other[column]:
-                    yield f"README.md: {row['site']}, {row['light']}: {column} is {row[column]}, on docs/bench.md {other[column]}"
-    rows = {(row["sequence"], row["system"]): row for table in with_columns(readme, "sequence", "system") for row in table}
-    for table in with_columns(bench, "sequence", "system", *COLUMNS.values()):
-        for row in table:
-            ours = rows.get((row["sequence"], row["system"].replace("plvo-", "plvo, ")))
-            for column, theirs in COLUMNS.items() if ours else ():
-                copied += 1
-                last_digit = 10.0 ** -len(row[theirs].partition(".")[2])
-                if abs(float(ours[column]) - float(row[theirs])) > 0.5001 * last_digit:
-                    yield f"docs/bench.md: {row['sequence']}, {row['system']}: {theirs} is {row[theirs]}, in README.md {ours[column]}"
-    if copied == 0:
-        yield "README.md: none of its figures was found on docs/bench.md: have the tables moved?"
+    readme, recordings, lighting = ((root / name).read_text(encoding="utf-8") for name in ("README.md", RECORDINGS, LIGHTING))
+    expected, compared = expected_rows(recordings, lighting), 0
+    for row in (row for table in with_columns(readme, "sequence", "best peer") for row in table):
+        for column, theirs in expected.get(row["sequence"], {}).items():
+            compared += 1
+            ours = row[column].removeprefix("OpenCV ") if column == "best peer" else row[column]
+            if ours != theirs.removeprefix("OpenCV "):
+                yield f"README.md: {row['sequence']}: {column} is {row[column]}, in docs/results/ {theirs}"
+        if row["sequence"] not in expected:
+            yield f"README.md: {row['sequence']} is in no table of docs/results/"
+    rows = {(row["sequence"], row["system"]): row for table in with_columns(recordings, "sequence", "system", "mm per s") for row in table}
+    for row in (row for table in with_columns(recordings, "sequence", "system", *COLUMNS.values()) for row in table):
+        ours = rows.get((row["sequence"], row["system"].replace("plvo-", "plvo, ")))
+        for column, theirs in COLUMNS.items() if ours else ():
+            compared += 1
+            last_digit = 10.0 ** -len(row[theirs].partition(".")[2])
+            if abs(float(ours[column]) - float(row[theirs])) > 0.5001 * last_digit:
+                yield f"{RECORDINGS}: {row['sequence']}, {row['system']}: {theirs} is {row[theirs]}, {ours[column]} in the table above"
+    if compared == 0:
+        yield "README.md: none of its figures was found in docs/results/: have the tables moved?"
 
 
 def check(root):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the build to a fresh prefix, looks at what came, and builds a stranger's project against it.
-# cmake -DBUILD=<build> -DWORK=<folder> -DCONSUMER=<folder> -DCOMPILER=<c++> -DFLAGS=<flags> -P install_test.cmake
+# cmake -DBUILD=<build> -DWORK=<folder> -DCONSUMER=<folder> -DCOMPILER=<c++> -DFLAGS=<flags> [-DCPP_PAGE=<folder>] -P install_test.cmake
 cmake_minimum_required(VERSION 3.22)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
@@ -47,6 +47,11 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}
   -DCMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
+if(CPP_PAGE)
+  run(${CMAKE_COMMAND} -S ${CPP_PAGE} -B ${WORK}/page -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER}
+    -DCMAKE_CXX_FLAGS=${FLAGS})
+  run(${CMAKE_COMMAND} --build ${WORK}/page)
+endif()
 
 # pkg-config, for both languages; the shared library shows the functions of its headers and nothing else.
 file(GLOB_RECURSE pc ${WORK}/prefix/plvo-core.pc)

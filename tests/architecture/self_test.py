@@ -6,6 +6,7 @@ import unittest
 
 import dependencies
 import figures
+import links
 import ran
 import rules
 
@@ -170,28 +171,33 @@ class Ran(unittest.TestCase):
 
 
 README = """
-| sequence | system | mm per s | ° per s | mm per frame | ° per frame |
-|---|---|---:|---:|---:|---:|
-| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 |
-
-| site | light | path m | **plvo, both** |
-|---|---|---:|---:|
-| hall | constant | 3.7 | 7.2 |
+| sequence | plvo, mm per s | plvo, ° per s | best peer | its mm per s | time |
+|---|---:|---:|---|---:|---:|
+| rpy | 7.5 | 0.89 | OpenCV B | 20.0 | 0.17 |
+| mean, constant | 1.4 | – | OpenCV B | 85.7 | – |
 """
-BENCH = """
-| site | light | path m | **plvo, both** | others |
-|---|---|---:|---:|---:|
-| hall | constant | 3.7 | 7.2 | 9 |
+RECORDINGS = """
+| sequence | system | mm per s | ° per s | mm per frame | ° per frame | time |
+|---|---|---:|---:|---:|---:|---:|
+| rpy | *never moves* | 86.0 | 38 | 3 | 1 | – |
+| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 | 0.17 |
+| rpy | OpenCV A | 36.2 | 2.32 | 7.45 | 0.441 | 1.00 |
+| rpy | OpenCV B | 20.0 | 1.00 | 4.00 | 0.300 | 2.00 |
 
 | sequence | system | mm/frame | °/frame | mm/s | °/s |
 |---|---|---:|---:|---:|---:|
 | rpy | plvo-both | 2.8 | 0.26 | 7.5 | 0.89 |
 """
+LIGHTING = """
+| site | light | *never moves* | plvo, points | **plvo, both** | A | B |
+|---|---|---:|---:|---:|---:|---:|
+| mean | constant | 504.5 | 1.3 | 1.4 | 113.1 | 85.7 |
+"""
 
 
 class Figures(unittest.TestCase):
-    def found(self, readme=README, bench=BENCH, **more):
-        files = {"README.md": readme, "docs/bench.md": bench}
+    def found(self, readme=README, recordings=RECORDINGS, lighting=LIGHTING, **more):
+        files = {"README.md": readme, "docs/results/recordings.md": recordings, "docs/results/lighting.md": lighting}
         with Tree({**files, **{f"docs/{name}.md": text for name, text in more.items()}}) as root:
             return figures.check(root)
 
@@ -207,11 +213,42 @@ class Figures(unittest.TestCase):
             self.assertTrue(errors[0].startswith("docs/porting.md:2:"), errors)
 
     def test_a_copy_that_differs_is_named(self):
-        for bench in (BENCH.replace("7.2", "7.3"), BENCH.replace("| 7.5", "| 7.6"), BENCH.replace("0.26 ", "0.27 ")):
-            self.assertEqual(len(self.found(bench=bench)), 1, bench)
+        for row in ("| 7.5 | 0.89 | OpenCV B", "| 0.17 |", "mean, constant | 1.4"):
+            self.assertIn(row, README)
+            self.assertEqual(len(self.found(readme=README.replace(row, row.replace("7", "8").replace("1.4", "1.5")))), 1, row)
+        self.assertEqual(len(self.found(recordings=RECORDINGS.replace("0.26 ", "0.27 "))), 1)
+
+    def test_a_peer_that_is_not_the_best_is_named(self):
+        self.assertEqual(len(self.found(recordings=RECORDINGS.replace("36.2", "19.9"))), 2, "its name and its error")
+        self.assertEqual(len(self.found(lighting=LIGHTING.replace("113.1", "80.0"))), 2)
+
+    def test_a_sequence_that_is_not_in_the_results_is_named(self):
+        self.assertEqual(len(self.found(readme=README.replace("| rpy", "| other"))), 1)
 
     def test_nothing_compared_is_a_failure(self):
-        self.assertTrue(self.found(readme="", bench=""))
+        self.assertTrue(self.found(readme="", recordings=""))
+
+
+class Links(unittest.TestCase):
+    PAGES = {"README.md": "# A\n[b](docs/b.md#two-words-c) [web](https://example.org/x) [here](#a) <a id=\"own\"></a>[there](#own)\n",
+             "docs/b.md": "## Two words, `c`\n[up](../README.md) [again](#same-1)\n## Same\n## Same\n```sh\n# no heading\n[no](link.md)\n```\n"}
+
+    def found(self, **changed):
+        with Tree({**self.PAGES, **changed}) as root:
+            return list(links.check_links(root))
+
+    def test_links_that_lead_somewhere_pass(self):
+        self.assertEqual(self.found(), [])
+
+    def test_a_link_that_leads_nowhere_is_named(self):
+        for bad in ("[x](docs/c.md)", "[x](docs/b.md#three)", "[x](#no-heading)", "[x](docs/b.md#no-heading)"):
+            errors = self.found(**{"README.md": "# A\n" + bad})
+            self.assertEqual(len(errors), 1, bad)
+            self.assertTrue(errors[0].startswith("README.md:2:"), errors)
+
+    def test_a_readme_without_what_a_newcomer_asks_for_is_named(self):
+        with Tree(self.PAGES) as root:
+            self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README))
 
 
 if __name__ == "__main__":

@@ -111,6 +111,19 @@ TEST_F(CliOutputs, TwoOutputsHaveTwoNames) {
   EXPECT_EQ(run("--quiet --out /dev/null --stats /dev/null").exit_code, 0);  // nothing is lost there
 }
 
+TEST_F(CliOutputs, ColumnsOfStatsAreThoseOfThePage) {
+  std::istringstream page(read_file(PLVO_FORMATS_PAGE));
+  std::string columns;
+  bool inside = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("## ", 0) == 0) inside = line == "## Columns of stats.csv";
+    if (!inside || line.rfind("| `", 0) != 0) continue;
+    columns += (columns.empty() ? "" : ",") + line.substr(3, line.find('`', 3) - 3);
+  }
+  const std::string written = run("--quiet --stats -").out;
+  EXPECT_EQ(written.substr(0, written.find('\n')), columns);
+}
+
 TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
   ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
   const std::string expected = read_file(folder_ / "t.txt");

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every relative link of a page leads to a file that is there, and to a heading of it. What a newcomer asks for first is one link
+away from the README."""
+import pathlib
+import re
+import sys
+
+# (what is looked for, the page and the heading that has it)
+FROM_README = [
+    ("a camera driver of one's own", "docs/cpp.md#a-camera-driver-of-your-own"),
+    ("covariance", "docs/cpp.md#pose-and-covariance"),
+    ("wheels", "docs/cpp.md#wheels-a-gyro-gravity"),
+    ("lost frames", "docs/cpp.md#lost-frames"),
+    ("poses in ROS", "docs/robot.md#a-node-for-ros-2"),
+    ("a Raspberry Pi", "docs/boards.md#raspberry-pi-4-and-5-zero-2-and-others-with-debians-arm64-raspberry-pi-os-64-bit"),
+    ("columns of stats.csv", "docs/formats.md#columns-of-statscsv"),
+]
+
+
+def without_code(text):
+    return re.sub(r"^```.*?^```$", lambda block: "\n" * block.group(0).count("\n"), text, flags=re.S | re.M)
+
+
+def anchors(text):
+    """The headings of a page as GitHub makes anchors of them, and the anchors that a page sets itself."""
+    found = set(re.findall(r'<a id="([^"]+)">', text))
+    for heading in re.findall(r"^#+ (.*)$", without_code(text), re.M):
+        heading = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
+        anchor = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+        number = sum(1 for other in found if re.fullmatch(re.escape(anchor) + r"(-\d+)?", other))
+        found.add(f"{anchor}-{number}" if anchor in found else anchor)
+    return found
+
+
+def links(text):
+    """(line number, target) of every link of a page, outside of blocks of code."""
+    plain = without_code(text)
+    for match in re.finditer(r"\]\(([^()\s]*(?:\([^()\s]*\))?[^()\s]*)\)", plain):
+        yield plain.count("\n", 0, match.start()) + 1, match.group(1)
+
+
+def check_links(root):
+    for page in sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"))):
+        for line, target in links(page.read_text(encoding="utf-8")):
+            if re.match(r"[a-z]+:", target):
+                continue
+            file, _, anchor = target.partition("#")
+            path = page.parent / file if file else page
+            if not path.exists():
+                yield f"{page.relative_to(root)}:{line}: {target}: there is no such file"
+            elif anchor and anchor not in anchors(path.read_text(encoding="utf-8")):
+                yield f"{page.relative_to(root)}:{line}: {target}: {path.name} has no such heading"
+
+
+def check_readme(root):
+    targets = {target for _, target in links((root / "README.md").read_text(encoding="utf-8"))}
+    for what, target in FROM_README:
+        if target not in targets:
+            yield f"README.md: no link to {target}, where a reader finds {what}"
+
+
+def check(root):
+    root = pathlib.Path(root)
+    return [*check_links(root), *check_readme(root)]
+
+
+def main():
+    errors = check(sys.argv[1])
+    print("\n".join(errors) if errors else "every link leads to a heading")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
