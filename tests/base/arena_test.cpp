@@ -16,7 +16,7 @@ struct Small {
   std::uint8_t tag = 1;
 };
 
-// What a room does at init: the same code with memory and without.
+// What a module does at init. The same code runs on a counting arena and on one with memory.
 constexpr void allocate(Arena& memory, std::size_t n) {
   (void)memory.take<std::uint8_t>("pixels", 3 * n + 1);
   (void)memory.take<double>("table", n);
@@ -53,7 +53,7 @@ class ArenaOf {
 
 bool aligned(const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kArenaAlignment == 0; }
 
-TEST(CountingArena, CountsAtCompileTime) {
+TEST(CountingArena, CountsTheSameAtCompileTimeAndAtRunTime) {
   static_assert(allocate_bytes(0) > 0);
   static_assert(allocate_bytes(100) > allocate_bytes(10));
   Arena sizer = Arena::counting();
@@ -62,7 +62,7 @@ TEST(CountingArena, CountsAtCompileTime) {
   EXPECT_LT(sizer.used(), sizer.peak());
 }
 
-TEST(CountingArena, AgreesWithTheArenaToTheByte) {
+TEST(CountingArena, CountsExactlyTheBytesThatTheArenaNeeds) {
   for (std::size_t n : {0U, 1U, 2U, 63U, 64U, 65U, 1000U}) {
     Arena sizer = Arena::counting();
     allocate(sizer, n);
@@ -77,7 +77,7 @@ TEST(CountingArena, AgreesWithTheArenaToTheByte) {
   }
 }
 
-TEST(Arena, ArraysAreAlignedApartAndInsideTheBlock) {
+TEST(Arena, ArraysAreAlignedDisjointAndInsideTheBlock) {
   ArenaOf owner(4096);
   const auto a = owner.arena.take<std::uint8_t>("a", 65);
   const auto b = owner.arena.take<double>("b", 3);
@@ -93,7 +93,7 @@ TEST(Arena, ArraysAreAlignedApartAndInsideTheBlock) {
   EXPECT_LE(static_cast<void*>(c.data() + c.size()), static_cast<void*>(owner.block().data() + 4096));
 }
 
-TEST(Arena, SkipsToTheBoundaryOfAMisalignedBlock) {
+TEST(Arena, SkipsToTheFirstAlignedByteOfAMisalignedBlock) {
   for (std::size_t offset : {1U, 8U, 63U}) {
     ArenaOf owner(1024, offset);
     EXPECT_EQ(owner.arena.capacity(), 1024 - (kArenaAlignment - offset));
@@ -103,7 +103,7 @@ TEST(Arena, SkipsToTheBoundaryOfAMisalignedBlock) {
   }
 }
 
-TEST(Arena, ABlockOfNothingGivesNothing) {
+TEST(Arena, TakesNothingFromAnEmptyBlock) {
   Arena none;
   EXPECT_TRUE(none.take<std::uint8_t>("a", 1).empty());
   EXPECT_TRUE(none.exhausted());
@@ -112,7 +112,7 @@ TEST(Arena, ABlockOfNothingGivesNothing) {
   EXPECT_TRUE(tiny.arena.take<std::uint8_t>("a", 1).empty());
 }
 
-TEST(Arena, RefusesWhatDoesNotFitAndSaysSoForEver) {
+TEST(Arena, RejectsWhatDoesNotFitAndStaysExhausted) {
   ArenaOf owner(256);
   EXPECT_FALSE(owner.arena.take<std::uint8_t>("a", 192).empty());
   EXPECT_FALSE(owner.arena.exhausted());
@@ -123,7 +123,7 @@ TEST(Arena, RefusesWhatDoesNotFitAndSaysSoForEver) {
   EXPECT_TRUE(owner.arena.exhausted());
 }
 
-TEST(Arena, ACountWhoseBytesOverflowIsRefused) {
+TEST(Arena, RejectsACountWhoseBytesOverflow) {
   ArenaOf owner(256);
   const std::size_t most = std::numeric_limits<std::size_t>::max();
   EXPECT_TRUE(owner.arena.take<double>("a", most / 8 + 2).empty());  // × 8 wraps to 8
@@ -132,7 +132,7 @@ TEST(Arena, ACountWhoseBytesOverflowIsRefused) {
   EXPECT_EQ(owner.arena.used(), 0U);
 }
 
-TEST(CountingArena, ACountWhoseBytesOverflowSaturates) {
+TEST(CountingArena, SaturatesForACountWhoseBytesOverflow) {
   const std::size_t most = std::numeric_limits<std::size_t>::max();
   Arena sizer = Arena::counting();
   (void)sizer.take<double>("a", most / 8 + 2);
@@ -141,7 +141,7 @@ TEST(CountingArena, ACountWhoseBytesOverflowSaturates) {
   EXPECT_EQ(sizer.peak(), most / kArenaAlignment * kArenaAlignment);
 }
 
-TEST(Arena, ScratchIsGivenBackWhicheverWayAStageIsLeft) {
+TEST(Arena, ReleasesScratchOnEveryReturnPath) {
   ArenaOf owner(1024);
   (void)owner.arena.take<std::uint8_t>("kept", 64);
   const auto stage = [&](bool early) {
@@ -156,7 +156,7 @@ TEST(Arena, ScratchIsGivenBackWhicheverWayAStageIsLeft) {
   EXPECT_FALSE(owner.arena.exhausted());
 }
 
-TEST(Arena, RecordsWhoTookWhatUntilSealed) {
+TEST(Arena, RecordsBytesPerNameUntilSealed) {
   ArenaOf owner(4096);
   char name_elsewhere[] = "points";  // the same name at another address
   (void)owner.arena.take<std::uint8_t>("points", 10);
@@ -172,9 +172,9 @@ TEST(Arena, RecordsWhoTookWhatUntilSealed) {
   EXPECT_EQ(records[1].bytes, 64U);
 }
 
-TEST(Arena, NoByteEscapesTheRecordsWhenNamesAreMany) {
+TEST(Arena, CountsBytesOfExcessNamesAsOthers) {
   static std::vector<std::string> names;
-  for (std::size_t i = 0; i < Arena::kMaxRecords + 10; ++i) names.push_back("room" + std::to_string(i));
+  for (std::size_t i = 0; i < Arena::kMaxRecords + 10; ++i) names.push_back("module" + std::to_string(i));
   ArenaOf owner(64 * names.size());
   for (const std::string& name : names) (void)owner.arena.take<std::uint8_t>(name.c_str(), 1);
   std::size_t sum = 0;

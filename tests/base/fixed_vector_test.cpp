@@ -9,7 +9,7 @@
 namespace plvo {
 namespace {
 
-TEST(FixedVector, RefusesAndCountsWhatDoesNotFit) {
+TEST(FixedVector, RejectsAndCountsElementsBeyondItsCapacity) {
   std::array<int, 3> storage{};
   FixedVector<int> v{std::span(storage)};
   EXPECT_TRUE(v.empty());
@@ -26,7 +26,7 @@ TEST(FixedVector, RefusesAndCountsWhatDoesNotFit) {
   EXPECT_EQ(v.dropped(), 0U);
 }
 
-TEST(FixedVector, IteratesOverWhatItHolds) {
+TEST(FixedVector, IteratesOverItsElementsOnly) {
   std::array<int, 8> storage{9, 9, 9, 9, 9, 9, 9, 9};
   FixedVector<int> v{std::span(storage)};
   v.push_back(1);
@@ -38,7 +38,7 @@ TEST(FixedVector, IteratesOverWhatItHolds) {
   EXPECT_EQ(constant.span()[1], 2);
 }
 
-TEST(FixedVector, WithoutStorageHoldsNothing) {
+TEST(FixedVector, RejectsEveryElementWithoutStorage) {
   FixedVector<int> v;
   EXPECT_FALSE(v.push_back(1));
   EXPECT_EQ(v.dropped(), 1U);

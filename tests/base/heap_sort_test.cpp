@@ -13,11 +13,11 @@
 namespace plvo {
 namespace {
 
-TEST(HeapSort, SortsAsTheStandardLibraryDoes) {
+TEST(HeapSort, SortsLikeStdSort) {
   Random random(1);
   for (std::uint32_t size = 0; size < 300; ++size) {
     std::vector<std::uint32_t> numbers(size);
-    // With many that are equal, too.
+    // Every third size has many equal numbers.
     for (std::uint32_t& number : numbers) number = random.below(size % 3 == 0 ? 5 : 1000000);
     std::vector<std::uint32_t> expected = numbers;
     std::sort(expected.begin(), expected.end(), std::greater<>());
@@ -26,8 +26,8 @@ TEST(HeapSort, SortsAsTheStandardLibraryDoes) {
   }
 }
 
-// Whatever the order was: sorted, the other way round, all the same.
-TEST(HeapSort, ComparesNoMoreThanItsBound) {
+// The bound holds for every input order: sorted, reversed, all equal, shuffled.
+TEST(HeapSort, NumberOfComparisonsStaysWithinTheBound) {
   constexpr int kSize = 1024, kLevels = 10;
   const auto count = [](const auto& make) {
     std::vector<int> numbers(kSize);

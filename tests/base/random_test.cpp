@@ -8,7 +8,7 @@
 namespace plvo {
 namespace {
 
-TEST(Random, MatchesThePublishedSequence) {
+TEST(Random, MatchesThePublishedPcgSequence) {
   // The first outputs that the authors of PCG publish for seed 42, stream 54.
   Random random(42, 54);
   constexpr std::array<std::uint32_t, 6> kExpected{0xa15c02b7, 0x7b47f409, 0xba1d3330,
@@ -16,7 +16,7 @@ TEST(Random, MatchesThePublishedSequence) {
   for (std::uint32_t expected : kExpected) EXPECT_EQ(random.next(), expected);
 }
 
-TEST(Random, SeedsAndStreamsDiffer) {
+TEST(Random, SequencesDependOnSeedAndStream) {
   Random a(1), b(2), c(1, 2), again(1);
   const std::uint32_t first = a.next();
   EXPECT_NE(first, b.next());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers in registers against the loops that stand for them in small code.
+// Compares the SIMD vectors with the loops that replace them in size-optimised code.
 #include "plvo/base/simd.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Eight = std::array<std::int16_t, 8>;
 
-// Over the whole range: sums and products wrap.
+// Numbers of the whole range, so that sums and products wrap.
 Eight any_numbers(Random& random) {
   Eight numbers{};
   for (std::int16_t& number : numbers) number = static_cast<std::int16_t>(random.below(1 << 16));
@@ -36,7 +36,7 @@ Eight stored(const Numbers& lanes) {
   return numbers;
 }
 
-// What is made of the same numbers, in registers and in loops.
+// Applies `make` to the same numbers as SIMD vectors and as loops; the results must be equal.
 template <typename Make>
 void expect_alike(const Eight& a, const Eight& b, const Make& make) {
   using Slow = simd_loops::Int16x8;
@@ -44,7 +44,7 @@ void expect_alike(const Eight& a, const Eight& b, const Make& make) {
             stored(make(loaded<Slow>(a), loaded<Slow>(b))));
 }
 
-TEST(Int16x8, LoopsMakeTheSameNumbers) {
+TEST(Int16x8, ArithmeticEqualsThatOfLoops) {
   Random random(1);
   for (int round = 0; round < 200; ++round) {
     const Eight a = any_numbers(random);
@@ -75,7 +75,7 @@ TEST(Int16x8, LoopsMakeTheSameNumbers) {
   }
 }
 
-TEST(Int16x8, AreReadAndWrittenAsLoopsDo) {
+TEST(Int16x8, LoadsAndStoresEqualThoseOfLoops) {
   Random random(2);
   for (int round = 0; round < 200; ++round) {
     std::array<std::uint8_t, 16> bytes{};
@@ -106,7 +106,7 @@ TEST(Int16x8, AreReadAndWrittenAsLoopsDo) {
   }
 }
 
-TEST(Int16x8, AreSortedAndAddedAsLoopsDo) {
+TEST(Int16x8, InterleavingAddingAndNarrowingEqualThoseOfLoops) {
   Random random(4);
   for (int round = 0; round < 200; ++round) {
     const Eight a = any_numbers(random);
@@ -120,7 +120,7 @@ TEST(Int16x8, AreSortedAndAddedAsLoopsDo) {
     interleave(loaded<simd_loops::Int16x8>(a), loaded<simd_loops::Int16x8>(b), slow, slow_others);
     EXPECT_EQ(stored(fast), stored(slow));
     EXPECT_EQ(stored(fast_others), stored(slow_others));
-    // Numbers that fit 16 bits, as sums of two that do.
+    // 32-bit numbers that fit 16 bits.
     const Int32x4 p = {a[0], a[1] / 2, a[2] / 2, a[3]}, q = {b[0], b[1], b[2], b[3]};
     const simd_loops::Int32x4 slow_p(a[0], a[1] / 2, a[2] / 2, a[3]), slow_q(b[0], b[1], b[2], b[3]);
     Int32x4 sums;
@@ -134,7 +134,7 @@ TEST(Int16x8, AreSortedAndAddedAsLoopsDo) {
   }
 }
 
-TEST(Int16x8, OfSixteenBytesOneBitEach) {
+TEST(Int16x8, SetBytesGivesOneBitPerByte) {
   Random random(6);
   for (int round = 0; round < 200; ++round) {
     const std::uint32_t chosen = random.below(1 << 16);
@@ -144,7 +144,7 @@ TEST(Int16x8, OfSixteenBytesOneBitEach) {
   }
 }
 
-TEST(Int16x8, ProductsHaveTheHighHalfOfLoops) {
+TEST(Int16x8, MultiplyHighEqualsThatOfLoops) {
   Random random(5);
   for (int round = 0; round < 200; ++round) {
     const Eight a = any_numbers(random);
@@ -157,12 +157,12 @@ TEST(Int16x8, ProductsHaveTheHighHalfOfLoops) {
   }
 }
 
-TEST(Int16x8, PairsAreMultipliedAndRangesTakenAsLoopsDo) {
+TEST(Int16x8, DotPairsRangesAndSignsEqualThoseOfLoops) {
   Random random(3);
   Int32x4 low = {}, high = {};
   simd_loops::Int32x4 slow_low = {}, slow_high = {};
   for (int round = 0; round < 200; ++round) {
-    // −2^15 twice in both would pass 32 bits, which dot_pairs excludes.
+    // dot_pairs excludes −2^15 twice in both operands, whose sum exceeds 32 bits.
     Eight a = any_numbers(random);
     for (std::int16_t& number : a) number = static_cast<std::int16_t>(number / 2);
     const Eight b = any_numbers(random);

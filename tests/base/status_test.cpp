@@ -33,15 +33,15 @@ TEST(Status, AppendsEveryInteger) {
   EXPECT_EQ(text(Limits::min()), std::to_string(Limits::min()));
 }
 
-TEST(Status, CutsTextBeyondItsCapacity) {
+TEST(Status, TruncatesTextAtItsCapacity) {
   Status status(StatusCode::kIo, std::string(1000, 'x'));
   EXPECT_EQ(std::strlen(status.message()), Status::kCapacity - 1);
   status.append("more").append(42);
   EXPECT_EQ(std::strlen(status.message()), Status::kCapacity - 1);
 }
 
-TEST(Status, NeverCutsACharacterInTwo) {
-  // "é" is two bytes of UTF-8, "→" three: whatever the offset, what is kept must be whole characters.
+TEST(Status, TruncatesBetweenUtf8Characters) {
+  // "→" is three bytes of UTF-8. At every offset the message must end with a whole character.
   for (std::size_t offset = 0; offset < 4; ++offset) {
     std::string text(Status::kCapacity - 1 - offset, 'x');
     const std::size_t whole = text.size();
@@ -52,7 +52,7 @@ TEST(Status, NeverCutsACharacterInTwo) {
   }
 }
 
-TEST(Status, EveryCodeHasItsOwnName) {
+TEST(Status, EveryCodeHasAUniqueName) {
   std::set<std::string> names;
   for (int code = 0; code <= static_cast<int>(StatusCode::kNotConverged); ++code)
     names.insert(to_string(static_cast<StatusCode>(code)));

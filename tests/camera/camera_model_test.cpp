@@ -11,7 +11,7 @@
 namespace plvo {
 namespace {
 
-// The Kinect of TUM's freiburg1 sequences: strong, and not monotonic far outside the image.
+// The Kinect of TUM's freiburg1 sequences. Its distortion is strong, and not monotonic far outside the image.
 CameraModel freiburg1() {
   return {640, 480, {517.3, 516.5, 318.6, 255.3}, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
 }
@@ -25,7 +25,7 @@ TEST(Pinhole, ProjectInvertsBackProject) {
   EXPECT_GT(back_project(k, k.cx, k.cy + 1, 2).y(), 0) << "y points down";
 }
 
-TEST(Pinhole, DerivativeOfProjectMatchesDifferences) {
+TEST(Pinhole, DerivativeOfProjectMatchesNumericJacobian) {
   const Pinhole k{517.3, 516.5, 318.6, 255.3};
   for (const Vector3& p : {Vector3(0.3, -0.2, 0.8), Vector3(-1.5, 1, 4)}) {
     const auto J = numeric_jacobian<2, 3>([&](const Vector3& x) { return project(k, x); }, p, 1e-5);
@@ -33,8 +33,8 @@ TEST(Pinhole, DerivativeOfProjectMatchesDifferences) {
   }
 }
 
-TEST(Distortion, FollowsBrownAndConrady) {
-  // One term at a time, at (0.3, −0.2): r² = 0.13.
+TEST(Distortion, FollowsTheBrownConradyModel) {
+  // Each check isolates one term at (0.3, −0.2), where r² = 0.13.
   const Vector2 ideal(0.3, -0.2);
   const auto moved = [&](const Distortion& lens) { return Vector2(distort(lens, ideal) - ideal); };
   EXPECT_LT((moved({1, 0, 0, 0, 0}) - 0.13 * ideal).norm(), 1e-15);
@@ -44,7 +44,7 @@ TEST(Distortion, FollowsBrownAndConrady) {
   EXPECT_LT((moved({0, 0, 0, 1, 0}) - Vector2(0.13 + 2 * 0.09, 2 * 0.3 * -0.2)).norm(), 1e-15);
 }
 
-TEST(Distortion, JacobianMatchesDifferences) {
+TEST(Distortion, JacobianMatchesNumericJacobian) {
   const Distortion lens = freiburg1().distortion;
   for (double x : {-0.6, -0.1, 0.0, 0.4}) {
     for (double y : {-0.5, 0.0, 0.3}) {
@@ -66,7 +66,7 @@ void expect_round_trip(const CameraModel& camera, double tolerance_px) {
   }
 }
 
-TEST(Distortion, RoundTripsOverTheWholeImage) {
+TEST(Distortion, UndistortInvertsDistortOverTheWholeImage) {
   expect_round_trip(freiburg1(), 1e-9);
   CameraModel freiburg2{640, 480, {520.9, 521.0, 325.1, 249.7}, {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}};
   expect_round_trip(freiburg2, 1e-9);
@@ -74,7 +74,7 @@ TEST(Distortion, RoundTripsOverTheWholeImage) {
   expect_round_trip(barrel, 1e-9);
 }
 
-TEST(Distortion, EveryPixelOfTheSensorHasAnIdealOne) {
+TEST(Distortion, DistortInvertsUndistortOverTheWholeSensor) {
   const CameraModel camera = freiburg1();
   for (int v = 0; v < camera.height; v += 13) {
     for (int u = 0; u < camera.width; u += 13) {
@@ -84,7 +84,7 @@ TEST(Distortion, EveryPixelOfTheSensorHasAnIdealOne) {
   }
 }
 
-TEST(Distortion, WithoutALensNothingMoves) {
+TEST(Distortion, ZeroDistortionMovesNoPixel) {
   CameraModel camera = freiburg1();
   camera.distortion = {};
   EXPECT_TRUE(camera.distortion.is_zero());
@@ -92,12 +92,12 @@ TEST(Distortion, WithoutALensNothingMoves) {
   EXPECT_LT((undistort_pixel(camera, {17, 300}) - Vector2(17, 300)).norm(), 1e-12);
 }
 
-TEST(Distortion, NoNumberLeavesFarOutsideTheImageEither) {
+TEST(Distortion, UndistortIsFiniteFarOutsideTheImage) {
   for (const Vector2& px : {Vector2(-1e4, -1e4), Vector2(1e6, 3), Vector2(639, 1e5)})
     EXPECT_TRUE(undistort_pixel(freiburg1(), px).allFinite()) << px.transpose();
 }
 
-TEST(Validate, AcceptsWhatIsInUse) {
+TEST(Validate, AcceptsUsualCameras) {
   EXPECT_TRUE(CameraModel{}.validate().ok());
   EXPECT_TRUE(freiburg1().validate().ok()) << freiburg1().validate().message();
   CameraModel smallest{32, 32, {30, 30, 15.5, 15.5}, {}};

@@ -26,7 +26,7 @@ TEST(DepthNoise, NeverFallsBelowItsFloor) {
   EXPECT_GT(noise.sigma(0.6), noise.floor_m);
 }
 
-TEST(DepthNoise, ANumberThatIsNoneGivesTheFloor) {
+TEST(DepthNoise, ReturnsTheFloorForNaN) {
   const DepthNoise noise;
   const double nan = __builtin_nan("");
   EXPECT_EQ(noise.sigma(nan), noise.floor_m);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against OpenCV's formulas written out with the long double of the C library; against each other's inverse
-// over whole images; against recorded bits.
+// Compares the lens models with OpenCV's formulas in long double, with each other's inverse over whole
+// images, and with recorded fingerprints.
 #include "plvo/camera/distortion.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct NamedCamera {
   const char* name;
   CameraModel camera;
 };
-// Of the kind that sensors report, and wider ones.
+// Lenses that sensors report, and wider ones.
 const NamedCamera kCameras[] = {
     {"rational, nearly straight",
      {1280, 720, {611, 611, 638, 367}, {0.4538, -2.5786, 0.0008, -0.0003, 1.4886, 0.3304, -2.4063, 1.4179}}},
@@ -87,7 +87,7 @@ TEST(Lens, FollowsOpenCvsFormulas) {
   }
 }
 
-TEST(Lens, JacobianMatchesDifferences) {
+TEST(Lens, JacobianMatchesNumericJacobian) {
   for (const NamedCamera& named : kCameras) {
     const char* name = named.name;
     const CameraModel& camera = named.camera;
@@ -103,7 +103,7 @@ TEST(Lens, JacobianMatchesDifferences) {
   }
 }
 
-TEST(Lens, RoundTripsOverTheWholeIdealImage) {
+TEST(Lens, UndistortInvertsDistortOverTheWholeIdealImage) {
   for (const NamedCamera& named : kCameras) {
     const char* name = named.name;
     const CameraModel& camera = named.camera;
@@ -115,7 +115,7 @@ TEST(Lens, RoundTripsOverTheWholeIdealImage) {
   }
 }
 
-TEST(Lens, EveryPixelOfTheSensorHasAnIdealOneBelowARightAngle) {
+TEST(Lens, DistortInvertsUndistortForRaysBelowARightAngle) {
   for (const NamedCamera& named : kCameras) {
     const char* name = named.name;
     const CameraModel& camera = named.camera;
@@ -142,7 +142,7 @@ TEST(Lens, EveryPixelOfTheSensorHasAnIdealOneBelowARightAngle) {
   }
 }
 
-TEST(Lens, NoNumberLeavesFarOutsideTheImage) {
+TEST(Lens, ResultsAreFiniteFarOutsideTheImage) {
   for (const NamedCamera& named : kCameras)
     for (const Vector2& px : {Vector2(-1e4, -1e4), Vector2(1e6, 3), Vector2(639, 1e5), Vector2(-1e9, 1e9)}) {
       EXPECT_TRUE(undistort_pixel(named.camera, px).allFinite()) << named.name << px.transpose();
@@ -150,8 +150,8 @@ TEST(Lens, NoNumberLeavesFarOutsideTheImage) {
     }
 }
 
-// The denominator costs plumb_bob no bit.
-TEST(Lens, PlumbBobHasTheBitsOfItsOwnFormula) {
+// The denominator of the rational model must not change a bit of plumb_bob.
+TEST(Lens, PlumbBobEqualsItsOwnFormulaToTheBit) {
   const Distortion lens{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
   EXPECT_TRUE(lens.is_plumb_bob());
   for_image({640, 480, {517.3, 516.5, 318.6, 255.3}, lens}, [&](const Vector2& px) {
@@ -168,8 +168,8 @@ TEST(Lens, PlumbBobHasTheBitsOfItsOwnFormula) {
   });
 }
 
-// Recorded with GCC on x86-64.
-TEST(Lens, TheSameBitsOnEveryMachine) {
+// The fingerprints were recorded with GCC on x86-64.
+TEST(Lens, ResultsHaveTheRecordedBits) {
   Fingerprint there, back;
   for (const NamedCamera& named : kCameras)
     for_image(named.camera, [&](const Vector2& px) {
@@ -183,7 +183,7 @@ TEST(Lens, TheSameBitsOnEveryMachine) {
   EXPECT_EQ(back.value(), 9630241771354188109ULL);
 }
 
-TEST(Lens, OnlyPlumbBobOfZerosIsNoLens) {
+TEST(Lens, IsZeroOnlyForPlumbBobWithZeroCoefficients) {
   EXPECT_TRUE(Distortion{}.is_zero());
   EXPECT_FALSE(fisheye(0, 0, 0, 0).is_zero()) << "it bends by itself";
   EXPECT_FALSE((Distortion{.k6 = 1e-9}.is_zero()));
@@ -195,12 +195,12 @@ struct BadLens {
 };
 class LensRefused : public testing::TestWithParam<BadLens> {};
 
-TEST_P(LensRefused, WithWordsThatSayWhatToDo) {
+TEST_P(LensRefused, MessageNamesTheErrorAndTheRemedy) {
   CameraModel camera{640, 480, {300, 300, 320, 240}, GetParam().lens};
   const Status status = camera.validate();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(std::string(status.message()).find(GetParam().says), std::string::npos) << status.message();
-  // A camera that does not look that far may have it.
+  // A camera with a narrower field of view may have the same lens.
   if (std::string(GetParam().says).find("folds") == std::string::npos) return;
   EXPECT_NE(std::string(status.message()).find("calibrate again"), std::string::npos) << status.message();
   camera.pinhole.fx = camera.pinhole.fy = 3000;
@@ -210,7 +210,7 @@ TEST_P(LensRefused, WithWordsThatSayWhatToDo) {
 INSTANTIATE_TEST_SUITE_P(
     Camera, LensRefused,
     testing::Values(
-        // Its corners are at r = 1.33, 53°.
+        // The image corners are at r = 1.33, 53°.
         BadLens{"the rational distortion folds the image", {-0.9, 0, 0, 0, 0, -0.1, 0, 0}},
         BadLens{"the rational distortion folds the image 45 degrees",
                 {0, 0, 0, 0, 0, -1, 0, 0}},  // a pole at 45°
@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLens{"must be numbers", {.k5 = std::numeric_limits<double>::quiet_NaN()}},
         BadLens{"must be numbers", fisheye(0, 0, 0, std::numeric_limits<double>::infinity())}));
 
-TEST(CameraInfo, NumbersByTheModelsName) {
+TEST(CameraInfo, AssignsCoefficientsByTheNameOfTheModel) {
   const std::vector<double> eight{1, 2, 3, 4, 5, 6, 7, 8};
   Distortion lens;
   ASSERT_TRUE(distortion_of("rational_polynomial", eight, lens).ok());
@@ -255,7 +255,7 @@ TEST(CameraInfo, NumbersByTheModelsName) {
   EXPECT_EQ(lens.k6, 8);
 }
 
-TEST(CameraInfo, RefusesWhatItDoesNotKnow) {
+TEST(CameraInfo, RejectsUnknownModelsAndWrongCounts) {
   Distortion lens{0.5};
   const auto refusal = [&](const char* model, std::vector<double> numbers, StatusCode code) {
     const Status status = distortion_of(model, numbers, lens);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against a slow statement of the same: the point is moved in a thousand small steps from its row's exposure
-// to that of the middle row.
+// Compares Exposure with a slow reference that moves the point in a thousand small steps from the row time of
+// its row to that of the middle row.
 #include "plvo/camera/exposure.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ Vector3 integrate(Vector3 p, const Vector6& velocity, double seconds) {
   return p;
 }
 
-TEST(Exposure, MovesAPointToTheMiddleRowsMoment) {
+TEST(Exposure, MovesAPointToTheRowTimeOfTheMiddleRow) {
   const CameraModel camera = rolling_camera(0.03);
   Random random(7);
   for (int trial = 0; trial < 200; ++trial) {
@@ -53,12 +53,12 @@ TEST(Exposure, MovesAPointToTheMiddleRowsMoment) {
     const Vector3 seen = back_project(camera.pinhole, u, v, uniform(random, 0.5, 5));
     const Vector3 expected = integrate(seen, velocity, -camera.readout_s * (v / 479 - 0.5));
     const Vector3 moved = Exposure(camera, velocity, 0).at_mid_exposure(seen);
-    // Third order in the angle, of at most 0.04 rad.
+    // The error is of third order in the angle, which is at most 0.04 rad.
     EXPECT_LT((moved - expected).norm(), 0.0005 * (seen - expected).norm() + 1e-6) << trial;
   }
 }
 
-TEST(Exposure, AsSeenIsTheWayBack) {
+TEST(Exposure, AsSeenInvertsAtMidExposure) {
   const CameraModel camera = rolling_camera(0.0261);
   Random random(8);
   for (int trial = 0; trial < 200; ++trial) {
@@ -71,7 +71,7 @@ TEST(Exposure, AsSeenIsTheWayBack) {
   }
 }
 
-TEST(Exposure, TheMiddleRowStays) {
+TEST(Exposure, DoesNotMoveAPointOfTheMiddleRow) {
   const CameraModel camera = rolling_camera(0.03);
   Vector6 velocity;
   velocity << 1, -1, 0.5, 1, 2, -1;
@@ -79,7 +79,7 @@ TEST(Exposure, TheMiddleRowStays) {
   EXPECT_LT((Exposure(camera, velocity, 0).at_mid_exposure(p) - p).norm(), 1e-12);
 }
 
-TEST(Exposure, NothingMovesWithoutOne) {
+TEST(Exposure, MovesNothingWithoutReadoutOrBehindTheCamera) {
   Vector6 velocity = Vector6::Ones();
   const Vector3 p(0.3, 0.4, 1);
   EXPECT_EQ(Exposure().at_mid_exposure(p), p);
@@ -103,15 +103,15 @@ TEST(Exposure, DepthIsSeenWhereTheSurfaceWasAtItsTime) {
     EXPECT_TRUE(exposure.depth_apart());
     const double lag = after + 0.02 * (depth_v / 479 - 0.5) - 0.03 * (v / 479 - 0.5);
     const Vector3 then = exposure.at_depth_time(p, v, depth_v);
-    // Third order in the angle, of at most 0.1 rad.
+    // The error is of third order in the angle, which is at most 0.1 rad.
     EXPECT_LT((then - integrate(p, velocity, lag)).norm(), 0.002 * (then - p).norm() + 1e-6) << trial;
-    // Forth and back: to second order in the angle.
+    // The round trip is exact to second order in the angle.
     EXPECT_LT((exposure.from_depth_time(then, v, depth_v) - p).norm(), 0.001 * (then - p).norm() + 1e-6)
         << trial;
   }
 }
 
-TEST(Exposure, DepthSeesItInItsOwnRow) {
+TEST(Exposure, AsDepthSeesUsesTheRowOfTheDepthImage) {
   CameraModel camera = rolling_camera(0.03);
   camera.depth_timing = {true, 0, 0.03};
   Random random(10);
@@ -127,7 +127,7 @@ TEST(Exposure, DepthSeesItInItsOwnRow) {
   }
 }
 
-TEST(Exposure, DepthOfUnknownTimingComesWithItsColour) {
+TEST(Exposure, DepthIsApartOnlyWhenItsTimingIsKnownAndDiffers) {
   const Vector6 velocity = Vector6::Ones();
   EXPECT_FALSE(Exposure(rolling_camera(0.03), velocity, 0.01).depth_apart());
   CameraModel together = rolling_camera(0.03);
@@ -136,7 +136,7 @@ TEST(Exposure, DepthOfUnknownTimingComesWithItsColour) {
   EXPECT_TRUE(Exposure(together, velocity, 1e-3).depth_apart());
 }
 
-TEST(Exposure, ATimingOutOfRangeIsRefused) {
+TEST(Exposure, RejectsADepthTimingOutOfRange) {
   for (const double seconds : {-0.11, 0.11, std::numeric_limits<double>::quiet_NaN()}) {
     CameraModel camera;
     camera.depth_timing.delay_s = seconds;
@@ -146,7 +146,7 @@ TEST(Exposure, ATimingOutOfRangeIsRefused) {
   }
 }
 
-TEST(Exposure, AReadoutOutOfRangeIsRefused) {
+TEST(Exposure, RejectsAReadoutOutOfRange) {
   EXPECT_TRUE(rolling_camera(0.1).validate().ok());
   for (double readout_s : {-0.001, 0.11, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(rolling_camera(readout_s).validate().code(), StatusCode::kInvalidArgument);

@@ -27,7 +27,7 @@ TEST(ObservePoint, IsTheBackProjection) {
   }
 }
 
-TEST(ObservePoint, JacobianMatchesDifferences) {
+TEST(ObservePoint, JacobianMatchesNumericJacobian) {
   for (const Pixel& px : kPixels) {
     Matrix3 J;
     (void)observe_point(kKinect, px.u, px.v, px.d, 0.5, 0.01, &J);
@@ -48,7 +48,7 @@ TEST(ObservePoint, CovarianceIsEquation4) {
   }
 }
 
-TEST(ObservePoint, CovarianceMatchesAMonteCarlo) {
+TEST(ObservePoint, CovarianceMatchesMonteCarlo) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   constexpr int kTrials = 20000;
@@ -66,8 +66,8 @@ TEST(ObservePoint, CovarianceMatchesAMonteCarlo) {
       sum += e * e.transpose();
       nees += e.dot(information * e);
     }
-    // Normalised by the claimed covariance the sample must be the identity, entry by entry, within sampling
-    // error.
+    // The sample covariance normalised by the stated one must be the identity, entry by entry, within
+    // sampling error.
     const Matrix3 whitened = information * (sum / kTrials);
     EXPECT_LT((whitened - Matrix3::Identity()).cwiseAbs().maxCoeff() /
                   (1 + point.Sigma.norm() * information.norm()),

@@ -18,9 +18,9 @@ namespace {
 constexpr int kWidth = 48;
 constexpr int kHeight = 36;
 constexpr int kReach = 2;       // px: windows of 5 × 5
-constexpr double kUnit = 5e-5;  // m: fine steps, so that only the sampler's own errors are seen
+constexpr double kUnit = 5e-5;  // m: fine steps, so that the sampler's own errors dominate
 
-// A depth image made from a function of the pixel, in metres; no lens.
+// A depth image computed by a function of the pixel, in metres, without a lens.
 struct Scene {
   template <typename Function>
   explicit Scene(Function depth_m) : units(kWidth * kHeight) {
@@ -38,13 +38,13 @@ struct Scene {
   UndistortionMap map;
 };
 
-// A plane of the world is one in inverse depth: q = q0 + qx x + qy y.
+// A plane of the world is a plane in inverse depth: q = q0 + qx x + qy y.
 struct Plane {
   double q0, qx, qy;
   double operator()(double x, double y) const { return 1 / (q0 + qx * x + qy * y); }
 };
 
-TEST(DepthSampler, ASlantedPlaneIsRecoveredBetweenThePixels) {
+TEST(DepthSampler, RecoversASlantedPlaneBetweenThePixels) {
   for (const Plane& plane : {Plane{0.8, 0, 0}, Plane{0.7, 0.002, 0}, Plane{0.9, -0.001, 0.0015}}) {
     const Scene scene(plane);
     const DepthSampler sampler = scene.sampler();
@@ -98,14 +98,14 @@ TEST(DepthSampler, OneOrTwoPixelsThatFlyBeforeTheSurfaceAreNone) {
     const DepthSample sample = scene.sampler().sample(23, 18, kReach);
     EXPECT_NEAR(sample.depth_m, 1.5, 1e-9) << flying;
   }
-  // Three are a surface.
+  // Three pixels count as a surface.
   Scene thin([](int, int) { return 1.5; });
   for (int i = 0; i < 3; ++i) thin.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
   EXPECT_NEAR(thin.sampler().sample(23, 18, kReach).depth_m, 0.75, 1e-3);
 }
 
 TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
-  // A camera that turns by 1 rad/s sees the border of the nearer surface elsewhere when depth is exposed.
+  // A camera that turns at 1 rad/s sees the border of the nearer surface elsewhere when depth is exposed.
   const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
   CameraModel camera;
   camera.width = kWidth;
@@ -113,7 +113,7 @@ TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
   camera.pinhole = {500, 500, 20, 18};
   camera.depth_timing = {true, 0, 0};
   Vector6 velocity = Vector6::Zero();
-  velocity[4] = 1;  // dX/dt = ω × X: what is seen moves to larger u
+  velocity[4] = 1;  // dX/dt = ω × X: the scene moves to larger u
   const double shift_px = 500 * 0.01;
   const DepthSampler at_rest = scene.sampler();
   const DepthSampler turning = at_rest.with(Exposure(camera, velocity, 0.01));
@@ -124,8 +124,8 @@ TEST(DepthSampler, DepthExposedApartIsReadWhereTheSurfaceWas) {
   EXPECT_NEAR(at_rest.sample(22, 18, kReach).depth_m, 1.0, 0.01);
 }
 
-TEST(DepthSampler, NoiseAndSteepSurfacesAreNoEdge) {
-  // Six sigma, or 4 % of the depth, whichever is more.
+TEST(DepthSampler, MarksAnEdgeOnlyAboveTheStepThreshold) {
+  // An edge is a step of more than six sigma and more than 4 % of the depth.
   const auto step = [](double jump_m) {
     return Scene([=](int x, int) { return x <= 23 ? 1.0 : 1.0 + jump_m; });
   };
@@ -149,7 +149,7 @@ TEST(DepthSampler, AHalfEmptyWindowHasNoDepth) {
   EXPECT_EQ(empty.sampler().sample(20, 15, kReach).depth_m, 0);
 }
 
-TEST(DepthSampler, AtTheBorderTheWindowIsWhatTheImageHolds) {
+TEST(DepthSampler, ClipsTheWindowAtTheBorder) {
   const Plane plane{0.7, 0.001, 0.0007};
   const Scene scene(plane);
   const DepthSampler sampler = scene.sampler();
@@ -165,14 +165,14 @@ TEST(DepthSampler, AtTheBorderTheWindowIsWhatTheImageHolds) {
   EXPECT_EQ(sampler.at(5, kHeight), 0);
 }
 
-TEST(DepthSampler, TheRadiusIsBounded) {
+TEST(DepthSampler, LimitsTheRadiusToThree) {
   const Scene scene([](int x, int) { return x <= 23 ? 1.0 : 1.5; });
   EXPECT_TRUE(scene.sampler().sample(26, 18, 3).on_edge);
   EXPECT_FALSE(scene.sampler().sample(27, 18, 3).on_edge);
   EXPECT_FALSE(scene.sampler().sample(27, 18, 100).on_edge);
 }
 
-// A slope whose depth names the raw pixel, through a lens.
+// A slope seen through a lens; its depth identifies the raw pixel.
 struct SlopeBehind {
   explicit SlopeBehind(const Distortion& lens)
       : scene([](int x, int y) { return 0.5 + 0.01 * x + 0.02 * y; }),
@@ -207,9 +207,9 @@ TEST(DepthSampler, ReadsThroughTheLens) {
   EXPECT_GT(unseen, 0);
 }
 
-// Whole windows of one surface are summed up by registers, all others reading by reading: beside an image's
-// border, as it is here cut off, the same window takes the other way.
-TEST(DepthSampler, AWindowIsTheSameByRegistersAndByReadings) {
+// The sampler sums whole windows of one surface with SIMD vectors and all other windows reading by reading. A
+// copy of the image that is cut off beside the window forces the same window onto the second path.
+TEST(DepthSampler, SimdWindowsEqualWindowsReadOneByOne) {
   Random random(11);
   const auto scene_of = [&](double noise_m, int gap) {
     return Scene([&, noise_m, gap](int x, int y) {
@@ -244,8 +244,8 @@ TEST(DepthSampler, AWindowIsTheSameByRegistersAndByReadings) {
   EXPECT_GT(same, 10000);
 }
 
-// Through a lens the plane of the world is found where the pixel is seen, between the pixels of either image.
-TEST(DepthSampler, APlaneIsRecoveredThroughTheLens) {
+// The sampler recovers a plane of the world at positions between the pixels, through a lens.
+TEST(DepthSampler, RecoversAPlaneThroughTheLens) {
   const CameraModel camera{kWidth, kHeight, {40, 40, 24, 18}, kLens};
   const Plane plane{0.8, 0.003, -0.002};
   Scene scene([&](int x, int y) {

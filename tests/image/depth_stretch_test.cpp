@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth along a stretch against its definition, place by place: where the depth image shows it, by
-// DepthSampler::locate, and where the lens puts that, by the map.
+// Compares depth along a stretch with its definition at every position: DepthSampler::locate gives the
+// position in the depth image, and the map applies the lens to it.
 #include "plvo/image/depth_stretch.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ CameraModel rolling_camera(const Distortion& lens) {
   return camera;
 }
 
-// What a raw depth image shows where the lens puts the ideal pixel, through a function of the raw pixel.
+// A raw depth image computed by a function of the raw pixel, and the undistortion map of the camera.
 struct RawScene {
   template <typename Function>
   RawScene(const CameraModel& camera, Function depth_m)
@@ -50,7 +50,7 @@ struct RawScene {
   Arena arena;
 };
 
-// A Kinect's, and one that bends the other way.
+// No lens, a Kinect's, and one with distortion of the opposite sign.
 const Distortion kStretchLenses[] = {{}, {0.26, -0.95, -0.005, 0.003, 1.16}, {-0.1, 0.02, 0, 0, 0}};
 
 struct Line {
@@ -76,15 +76,15 @@ Vector6 random_velocity(Random& random) {
   return velocity;
 }
 
-// A camera that moves fast, before a plane: what is read is what depth shows there, within what it changes
-// over a pixel (half of it is rounding), and at colour's time as well.
+// The camera moves fast in front of a plane. The stretch must read the depth at that position within its
+// change over one pixel (half of this is rounding), and convert it to the time of colour as the sampler does.
 TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
   Random random(5);
   int read = 0;
   int unseen = 0;
   for (const Distortion& lens : kStretchLenses) {
     const CameraModel camera = rolling_camera(lens);
-    // Depth says where it was read: nearly, for x and y are told apart by two scenes.
+    // The depth identifies one coordinate of the position where it was read; two scenes cover x and y.
     for (const bool across : {false, true}) {
       constexpr double kSlope = 0.003;  // m / px
       const RawScene scene(camera, [&](int x, int y) { return 1 + kSlope * (across ? y : x); });
@@ -113,9 +113,9 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
               EXPECT_TRUE(raw.x() < 2 || raw.y() < 2 || raw.x() > kRawWidth - 3 || raw.y() > kRawHeight - 3);
               continue;
             }
-            // The exact place, without the rounding to a pixel of the ideal image.
+            // The exact position, without the rounding to a pixel of the ideal image.
             const Vector2 exact = scene.map.active() ? distort_pixel(camera, p) : p;
-            // Beside the border a guess may have found no depth: a pixel or two are left.
+            // Beside the border a guess may find no depth, which leaves an error of a pixel or two.
             const bool at_border =
                 std::min({exact.x(), exact.y(), kRawWidth - exact.x(), kRawHeight - exact.y()}) < 8;
             EXPECT_NEAR((got - 1) / kSlope, across ? exact.y() : exact.x(), at_border ? 3 : 0.5 + 0.33)
@@ -132,12 +132,12 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
   EXPECT_GT(unseen, 1000);
 }
 
-// A near surface before a far one: each is read where depth shows it, and nothing of the other but at their
-// border.
+// Near and far surfaces alternate. The stretch must read each surface where the depth image shows it, except
+// at their borders.
 TEST(DepthStretch, FollowsTheSurfaceThatIsSeen) {
   const CameraModel camera = rolling_camera({});
   Vector6 velocity = Vector6::Zero();
-  velocity[0] = 1;  // m/s: at 0.6 m 8.7 px within 20 ms, at 3 m 1.7
+  velocity[0] = 1;  // m/s: 8.7 px within 20 ms at 0.6 m, 1.7 px at 3 m
   const Exposure exposure(camera, velocity, 0.02);
   const RawScene scene(camera, [](int x, int) { return x / 40 % 2 == 0 ? 0.6 : 3.0; });
   const DepthSampler sampler = scene.sampler(exposure);
@@ -154,7 +154,7 @@ TEST(DepthStretch, FollowsTheSurfaceThatIsSeen) {
   }
 }
 
-TEST(DepthSampler, WhoKnowsHowDeepFindsItWhereItIsLookedUp) {
+TEST(DepthSampler, LocateWithKnownDepthAgreesWithTheSearch) {
   Random random(11);
   int compared = 0;
   for (const Distortion& lens : kStretchLenses) {
@@ -176,7 +176,7 @@ TEST(DepthSampler, WhoKnowsHowDeepFindsItWhereItIsLookedUp) {
   EXPECT_GT(compared, 500);
 }
 
-TEST(DepthStretch, BesideTheImageThereIsNoDepth) {
+TEST(DepthStretch, ReturnsZeroOutsideTheImage) {
   const CameraModel camera = rolling_camera({});
   const RawScene scene(camera, [](int, int) { return 1.0; });
   const DepthSampler sampler = scene.sampler({});

@@ -15,7 +15,7 @@ using test::GrayImage;
 constexpr int kColourWidth = 37;
 constexpr int kColourHeight = 11;
 
-// Rows are longer than three times the width, as some cameras deliver them.
+// Rows are padded beyond three bytes per pixel, as some cameras deliver them.
 struct Colour {
   explicit Colour(PixelFormat format) : bytes(kStride * kColourHeight) {
     Random random(601);
@@ -30,7 +30,7 @@ struct Colour {
   ColourView view;
 };
 
-TEST(Gray, IsTheFormulaInBothOrdersOfTheChannels) {
+TEST(Gray, FollowsTheFormulaForRgbAndBgr) {
   for (PixelFormat format : {PixelFormat::kRgb8, PixelFormat::kBgr8}) {
     const Colour colour(format);
     GrayImage gray(kColourWidth, kColourHeight, 3);
@@ -43,13 +43,13 @@ TEST(Gray, IsTheFormulaInBothOrdersOfTheChannels) {
         const int b = colour.byte(x, y, 2 - red);
         const double exact = (77.0 * r + 150.0 * g + 29.0 * b) / 256;
         ASSERT_EQ(gray.view().at(x, y), GrayImage::to_byte(exact)) << x << " " << y;
-        // And that is BT.601 to a grey level.
+        // The formula equals BT.601 within one grey level.
         ASSERT_NEAR(gray.view().at(x, y), 0.299 * r + 0.587 * g + 0.114 * b, 1.0);
       }
   }
 }
 
-TEST(Gray, GreyIsCopiedAndColourWithoutColourStays) {
+TEST(Gray, CopiesGreyAndKeepsTheLevelOfColourlessPixels) {
   const Colour one(PixelFormat::kGray8);
   GrayImage gray(kColourWidth, kColourHeight, 2);
   to_gray(one.view, gray.view());

@@ -11,7 +11,7 @@
 namespace plvo {
 namespace {
 
-// A pyramid with memory of its own.
+// A pyramid and its memory.
 class Owned {
  public:
   Owned(int width, int height) : memory_(bytes(width, height)), arena_(memory_) {
@@ -47,7 +47,7 @@ Centroid centroid(GrayView image) {
   return {x_sum / sum, y_sum / sum};
 }
 
-TEST(Pyramid, EveryLevelIsTheHalvingOfTheOneBefore) {
+TEST(Pyramid, EveryLevelIsTheHalvedPreviousLevel) {
   Owned owned(101, 75);
   ASSERT_TRUE(owned.fits());
   Random random(3);
@@ -72,7 +72,7 @@ TEST(Pyramid, EveryLevelIsTheHalvingOfTheOneBefore) {
 }
 
 TEST(Pyramid, PositionsScaleWithoutAnOffset) {
-  // A blob is found at the same place on every level: pixel (x, y) of level l is (x, y) · 2^l of level 0.
+  // Pixel (x, y) of level l is (x, y) · 2^l of level 0, so a blob has the same position on every level.
   for (const Centroid& at : {Centroid{80, 64}, Centroid{81.3, 63.6}, Centroid{77, 59}}) {
     Owned owned(161, 129);
     for (int y = 0; y < 129; ++y)
@@ -91,7 +91,7 @@ TEST(Pyramid, PositionsScaleWithoutAnOffset) {
   }
 }
 
-TEST(Pyramid, TakesAThirdMoreThanTheImage) {
+TEST(Pyramid, TakesOneThirdMoreMemoryThanTheImage) {
   constexpr std::size_t kPixels = 640 * 480;
   static_assert(Owned::bytes(640, 480) < kPixels * 4 / 3 + 4096);
   static_assert(Owned::bytes(640, 480) > kPixels * 85 / 64);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both filters against sums in double precision (exact here: every product is an integer below 2^20), rounded
-// half up, borders repeated: the one that halves over the whole two-dimensional kernel, the other down and
-// then across, as it is defined.
+// Compares both filters with sums in double precision, rounded half up, with repeated borders. The sums are
+// exact because every product is an integer below 2^20. The reference of the halving filter sums over the
+// whole two-dimensional kernel; that of the other filter sums down and then across, as it is defined.
 #include "plvo/image/smoothing.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using test::GrayImage;
 
-// The kernel's weights over their sum, around (x, y).
+// The weighted mean around (x, y) over the two-dimensional kernel.
 std::uint8_t filtered(GrayView image, int x, int y, const std::vector<int>& weights, double sum_of_weights) {
   const int radius = static_cast<int>(weights.size() / 2);
   double sum = 0;
@@ -27,7 +27,7 @@ std::uint8_t filtered(GrayView image, int x, int y, const std::vector<int>& weig
   return static_cast<std::uint8_t>(std::floor(sum / (sum_of_weights * sum_of_weights) + 0.5));
 }
 
-// Down, rounded to quarters, then across.
+// The weighted mean down, rounded to quarters, and then across.
 std::uint8_t filtered_in_turn(GrayView image, int x, int y, const std::vector<int>& weights,
                               double sum_of_weights) {
   const int radius = static_cast<int>(weights.size() / 2);
@@ -61,7 +61,7 @@ void expect_padding_untouched(const GrayImage& image) {
     }
 }
 
-TEST(Smoothing, Binomial7IsTheSumDownAndThenAcross) {
+TEST(Smoothing, Binomial7SumsDownAndThenAcross) {
   Random random(7);
   for (const Size& size : kSizes) {
     SCOPED_TRACE(testing::Message() << size.width << "x" << size.height);
@@ -76,7 +76,7 @@ TEST(Smoothing, Binomial7IsTheSumDownAndThenAcross) {
   }
 }
 
-TEST(Smoothing, HalvingIsTheTwoDimensionalSumAtEverySecondPixel) {
+TEST(Smoothing, HalvingEqualsTheTwoDimensionalSumAtEverySecondPixel) {
   Random random(5);
   for (const Size& size : kSizes) {
     SCOPED_TRACE(testing::Message() << size.width << "x" << size.height);
@@ -91,7 +91,7 @@ TEST(Smoothing, HalvingIsTheTwoDimensionalSumAtEverySecondPixel) {
   }
 }
 
-TEST(Smoothing, BlackAndWhiteDoNotOverflow) {
+TEST(Smoothing, ConstantImagesDoNotOverflow) {
   for (std::uint8_t level : {std::uint8_t{0}, std::uint8_t{127}, std::uint8_t{255}}) {
     const GrayImage in(40, 30, 0, level);
     GrayImage out(40, 30);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map against the lens itself, distort_pixel, evaluated in double precision at every pixel.
+// Compares the map with the lens model distort_pixel, evaluated in double precision at every pixel.
 #include "plvo/image/undistortion.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ CameraModel camera_with(const Distortion& distortion) {
   camera.distortion = distortion;
   return camera;
 }
-// One lens that shows more than the ideal image, one that leaves its corners unseen, one of each.
+// kBarrel shows more than the ideal image, kPincushion leaves its corners unseen, kKinect does both.
 const Distortion kBarrel{-0.25, 0.06, 0, 0, 0};
 const Distortion kPincushion{0.12, 0.02, 0.002, -0.001, 0};
 const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
@@ -47,8 +47,8 @@ class Map {
   std::vector<std::byte> memory_;
 };
 
-// A bilinear read touches the next pixel too, so the last row and column count as unseen. Within a step of
-// the map from the border either answer is right: reach = 1/32 px widens, −1/32 px narrows.
+// A bilinear read also touches the next pixel, so the last row and column count as unseen. Within one step of
+// the map from the border both answers are right: reach = 1/32 px widens the seen area, −1/32 px narrows it.
 bool seen(const Vector2& raw, double reach = 0) {
   return raw.x() >= -reach && raw.y() >= -reach && raw.x() < kBentWidth - 1 + reach &&
          raw.y() < kBentHeight - 1 + reach;
@@ -64,7 +64,7 @@ double bilinear(GrayView image, const Vector2& at) {
          fy * ((1 - fx) * image.at(x, y + 1) + fx * image.at(x + 1, y + 1));
 }
 
-TEST(Undistortion, WithoutALensNothingMoves) {
+TEST(Undistortion, ZeroDistortionMovesNoPixel) {
   const Map owned(camera_with({}));
   EXPECT_FALSE(owned.map.active());
   for (int y = 0; y < kBentHeight; y += 7)
@@ -76,8 +76,8 @@ TEST(Undistortion, WithoutALensNothingMoves) {
     }
 }
 
-TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
-  // Slopes of up to 10 grey levels a pixel: a place good to 1/40 px is then good to a quarter of a level, and
+TEST(Undistortion, ReadsTheRawImageAtTheDistortedPosition) {
+  // The slopes reach 10 grey levels per pixel: an error of 1/40 px in position is a quarter of a level, and
   // the result is rounded.
   GrayImage raw(kBentWidth, kBentHeight, 6);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
@@ -100,8 +100,8 @@ TEST(Undistortion, TheImageIsReadWhereTheLensPutIt) {
   }
 }
 
-// Two processors share an image by its rows, wherever they divide it.
-TEST(Undistortion, PartsOfTheRowsMakeTheWhole) {
+// Two processors share the rows of an image; the result must not depend on the row that divides them.
+TEST(Undistortion, RowsInTwoPartsEqualTheWhole) {
   GrayImage raw(kBentWidth, kBentHeight, 6);
   raw.paint([](int x, int y) { return 128 + 100 * std::sin(0.7 * x + 0.4 * y); });
   const Map owned(camera_with(kBarrel));
@@ -117,8 +117,8 @@ TEST(Undistortion, PartsOfTheRowsMakeTheWhole) {
   }
 }
 
-// TUM's fr1, whose lens is the strongest of the Kinects there, at both sizes.
-TEST(Undistortion, AKinectsLensIsMetToAFiftiethOfAPixel) {
+// TUM's fr1, the strongest lens of the Kinects in that data set, at both image sizes.
+TEST(Undistortion, MapOfAKinectsLensIsAccurateToAFiftiethOfAPixel) {
   for (const int halvings : {0, 1}) {
     CameraModel camera;
     const double scale = 1.0 / (1 << halvings);
@@ -137,8 +137,9 @@ TEST(Undistortion, AKinectsLensIsMetToAFiftiethOfAPixel) {
   }
 }
 
-// Wherever the camera saw the pixel: a sensor's rational lens at its size, and fisheyes of 130° and 180°.
-TEST(Undistortion, WideLensesAreMetToAFiftiethOfAPixel) {
+// A sensor's rational lens at its own image size, and fisheyes of 130° and 180°, at all pixels that the
+// camera saw.
+TEST(Undistortion, MapsOfWideLensesAreAccurateToAFiftiethOfAPixel) {
   const auto fisheye = [](double k1, double k2, double k3, double k4) {
     return Distortion{.k1 = k1, .k2 = k2, .k3 = k3, .k4 = k4, .model = LensModel::kEquidistant};
   };
@@ -165,8 +166,8 @@ TEST(Undistortion, WideLensesAreMetToAFiftiethOfAPixel) {
   }
 }
 
-// A window's plane goes through the map at its centre, and stays near it.
-TEST(Undistortion, AWindowFollowsTheMap) {
+// The linear map of a window equals the map at its centre and approximates it around the centre.
+TEST(Undistortion, WindowsApproximateTheMap) {
   const CameraModel camera = camera_with(kBarrel);
   const Map owned(camera);
   for (int y = 20; y < kBentHeight - 20; y += 7)
@@ -183,7 +184,7 @@ TEST(Undistortion, AWindowFollowsTheMap) {
     }
 }
 
-TEST(Undistortion, TheNearestRawPixelOrNone) {
+TEST(Undistortion, RawPixelIsTheNearestOneOrNone) {
   for (const Distortion& lens : {kBarrel, kPincushion, kKinect}) {
     const CameraModel camera = camera_with(lens);
     const Map owned(camera);
@@ -199,7 +200,7 @@ TEST(Undistortion, TheNearestRawPixelOrNone) {
           ASSERT_FALSE(known) << x << " " << y;
         }
         if (!known) continue;
-        // Half a pixel, and what the map is off by.
+        // Half a pixel of rounding plus the error of the map.
         ASSERT_LE(std::abs(raw_x - at.x()), 0.5 + kStep);
         ASSERT_LE(std::abs(raw_y - at.y()), 0.5 + kStep);
         ASSERT_TRUE(raw_x >= 0 && raw_y >= 0 && raw_x < kBentWidth && raw_y < kBentHeight);
@@ -207,7 +208,7 @@ TEST(Undistortion, TheNearestRawPixelOrNone) {
   }
 }
 
-TEST(Undistortion, WhatTheCameraDidNotSeeRepeatsItsNearestBorder) {
+TEST(Undistortion, RepeatsTheNearestBorderOutsideTheRawImage) {
   GrayImage raw(kBentWidth, kBentHeight);
   raw.paint([](int x, int y) { return 128 + 50 * std::sin(0.14 * x) + 50 * std::cos(0.13 * y + 0.05 * x); });
   const CameraModel camera = camera_with(kPincushion);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow, obvious statement of L3: equations (5)–(10) in three dimensions, with 3×3 covariances, numerical
-// Jacobians and dense Gauss–Newton over the six numbers [A, B].
+// A slow reference implementation of L3: equations (5)–(10) in three dimensions, with 3×3 covariances,
+// numerical Jacobians and dense Gauss–Newton over the six numbers [A, B].
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,7 +14,7 @@
 
 namespace plvo::reference {
 
-// (5) by ever finer grids over λ, no formula for its minimum.
+// Equation (5), minimised over λ on ever finer grids.
 inline double mahalanobis_by_search(const Point3d& point, const Vector3& a, const Vector3& b) {
   const Matrix3 information = point.Sigma.inverse();
   const auto value = [&](double lambda) {
@@ -32,14 +32,14 @@ inline double mahalanobis_by_search(const Point3d& point, const Vector3& a, cons
   return std::sqrt(value(centre));
 }
 
-// (6).
+// Equation (6).
 inline Vector3 delta(const Point3d& point, const Vector3& a, const Vector3& b) {
   const Matrix3 information = point.Sigma.inverse();
   const Vector3 d = b - a, e = a - point.p;
   return point.p - (a - d.dot(information * e) / d.dot(information * d) * d);
 }
 
-// (8), whitened by Σ_w.
+// Equation (8), whitened by Σ_w.
 inline test::DenseVector whitened_w(const std::vector<Point3d>& points, const Vector6& L) {
   const Vector3 a = L.head<3>(), b = L.tail<3>();
   test::DenseVector w(3 * points.size());
@@ -69,7 +69,7 @@ struct Mle {
   double cost = 0;
 };
 
-// (9) and (10), from the points' two ends, by damped Gauss–Newton.
+// Equations (9) and (10) by damped Gauss–Newton, starting from the first and the last point.
 inline Mle maximum_likelihood(const std::vector<Point3d>& points) {
   Mle mle;
   mle.L << points.front().p, points.back().p;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Monte Carlo: is the covariance (10) true, and do occluding edges leave the line where it is?
+// Monte Carlo tests of the covariance (10) and of the bias at occluding edges.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -15,8 +15,8 @@ namespace {
 using test::kSeed;
 using test::LineScene;
 
-// The four numbers of a line that a match can see: where it crosses the two planes z = const … here, the
-// offsets of A and B from the true line in two directions across it.
+// The four observable numbers of a line: the offsets of A and B from the true line in two directions across
+// it.
 struct Offsets {
   Vector4 error;
   Matrix4 covariance;
@@ -35,24 +35,25 @@ Offsets across(const Line3d& line, const LineScene& truth) {
   return {J * e, J * line.Sigma * J.transpose()};
 }
 
-// 95 % band of the mean of n chi-square variables of `dof` degrees, normal approximation.
+// Half of the 95 % band of the mean of n chi-square variables with `dof` degrees of freedom, in the normal
+// approximation.
 double half_band(int n, int dof) { return 1.96 * std::sqrt(2.0 * dof / n); }
 
-TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
+TEST(Line3dStatistics, NeesOfTheLineIsWithinThe95PercentBand) {
   Random random(21);
   const Pinhole pinhole;
   const int trials = 1500;
   double nees = 0, nees_ends = 0;
-  Line3dConfig config = Line3dConfig::paper();  // its noise is independent from sample to sample
+  Line3dConfig config = Line3dConfig::paper();  // the noise is independent from sample to sample
   config.trust_segment = true;
   config.sigma_p_px = 0.8;
-  config.inlier_chi_square = 16;  // no truncation of the noise's tails
+  config.inlier_chi_square = 16;  // does not truncate the tails of the noise
   for (int trial = 0; trial < trials; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
     double first_t = 0, last_t = 0;
     const LineSamples samples =
         scene.noisy_samples(random, config.sigma_p_px, DepthNoise{}, &first_t, &last_t);
-    // The detector's error: the segment lies beside the line's image and turned, with the σ that it states.
+    // The detector's error shifts and rotates the segment against the image of the line, with the stated σ.
     Segment seen = scene.segment;
     seen.sigma_px = 0.2;
     seen.sigma_angle_rad = 0.3 / seen.length_px();
@@ -74,12 +75,12 @@ TEST(Line3dStatistics, NeesOfTheLineIsWithinItsBand) {
   EXPECT_NEAR(nees, 4, half_band(trials, 4));
   RecordProperty("nees_4", std::to_string(nees));
   RecordProperty("nees_6", std::to_string(nees_ends));
-  // The ends: G_1 − A, the pixel's noise along the segment, is in the estimate as well.
+  // The NEES of the ends also covers G_1 − A, the pixel noise along the segment.
   EXPECT_NEAR(nees_ends, 6, half_band(trials, 6));
 }
 
-// Errors that come in runs of 8 px, as a Kinect's do: the paper's assumption is then off by the run's length,
-// and the stated correlation makes it right again.
+// Depth errors are constant over runs of 8 px, like those of a Kinect. The variance under the paper's
+// assumption is then wrong by the length of the run; the stated correlation corrects it.
 TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
   Random random(22);
   const Pinhole pinhole;
@@ -122,12 +123,12 @@ TEST(Line3dStatistics, CorrelatedDepthErrorsAreAccountedFor) {
   }
   EXPECT_GT(as_paper, 6);
   EXPECT_NEAR(as_stated, 2, 0.4);
-  EXPECT_GT(as_seen, 1.2);  // told by the residuals alone, within a third
+  EXPECT_GT(as_seen, 1.2);  // estimated from the residuals alone, within a third
   EXPECT_LT(as_seen, 2.7);
 }
 
-// A straight border: before it a wall at `near`, beyond it one at `near + step`; the depth image is displaced
-// by `shift` pixels across the border and blurred by nothing.
+// A straight border between a wall at `near` and one at `near + step`. The depth image is displaced by
+// `shift` pixels across the border and is not blurred.
 struct Border {
   double near_m, step_m, shift_px;
   Segment segment;
@@ -138,7 +139,7 @@ struct Border {
   }
 };
 
-TEST(OccludingEdge, BackgroundDoesNotDragTheLine) {
+TEST(OccludingEdge, DoesNotBiasTheLineTowardsTheBackground) {
   Random random(23);
   const Pinhole pinhole;
   int plain_good = 0, good = 0, total = 0;
@@ -169,7 +170,7 @@ TEST(OccludingEdge, BackgroundDoesNotDragTheLine) {
       }
   EXPECT_EQ(good, total);
   EXPECT_LT(plain_good,
-            total * 3 / 4);  // the paper's rule takes the background wherever the depth is displaced
+            total * 3 / 4);  // the paper's rule reads the background wherever the depth is displaced
 }
 
 }  // namespace

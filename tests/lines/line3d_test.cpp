@@ -18,7 +18,7 @@ double signed_distance(const Whitened& s, const PlaneLine& line) {
   return d.cross * std::sqrt(d.inverse_norm2);
 }
 
-TEST(PlaneLine, DistanceIsThatOfThreeDimensions) {
+TEST(PlaneLine, DistanceEqualsThatInThreeDimensions) {
   Random random(7);
   const Pinhole pinhole{520, 540, 320, 240};
   for (int trial = 0; trial < 50; ++trial) {
@@ -42,7 +42,7 @@ TEST(PlaneLine, DistanceIsThatOfThreeDimensions) {
   }
 }
 
-TEST(PlaneLine, DerivativesAreExact) {
+TEST(PlaneLine, DerivativesMatchDifferences) {
   Random random(8);
   for (int trial = 0; trial < 100; ++trial) {
     const PlaneLine line{-80, 1 + 2 * random.uniform(), 90, 1 + 2 * random.uniform()};
@@ -62,7 +62,7 @@ TEST(PlaneLine, DerivativesAreExact) {
   }
 }
 
-TEST(PlaneLine, ReAnchoringIsTheSameLine) {
+TEST(PlaneLine, ReAnchoringKeepsTheLine) {
   const PlaneLine line{-50, 1.5, 40, 2.5};
   PlaneLine moved = line;
   ASSERT_TRUE(re_anchor(moved, -10, 12));
@@ -71,14 +71,14 @@ TEST(PlaneLine, ReAnchoringIsTheSameLine) {
   EXPECT_FALSE(re_anchor(moved, -50, 5000));  // beyond the line's vanishing point
 }
 
-// Without outliers: the fast solution in the plane against the dense one over [A, B].
+// Without outliers the fast solution in the plane must equal the dense solution over [A, B].
 TEST(Line3d, AgreesWithTheDenseSolution) {
   Random random(9);
   const Pinhole pinhole{520, 540, 320, 240};
   for (int trial = 0; trial < 20; ++trial) {
     LineScene scene = LineScene::random(random, pinhole);
     Line3dConfig config = Line3dConfig::paper();
-    config.inlier_chi_square = 1e9;  // everything is consensus, in both
+    config.inlier_chi_square = 1e9;  // both solutions use every sample
     const LineSamples samples = scene.noisy_samples(random, config.sigma_p_px, DepthNoise{});
     Line3d line;
     const Line3dReport report = fit_line3d(scene.segment, samples, pinhole, config, kSeed, line);
@@ -90,7 +90,7 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
     }
     const reference::Mle mle = reference::maximum_likelihood(points);
     EXPECT_NEAR(report.cost, mle.cost, 1e-5 * mle.cost);
-    // A thousandth of a standard deviation is where the fast one stops.
+    // The fast solution stops at a thousandth of a standard deviation.
     const Vector6 sd = mle.covariance.diagonal().cwiseSqrt();
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(line.a(k), mle.L(k), 5e-3 * sd(k));
@@ -101,7 +101,7 @@ TEST(Line3d, AgreesWithTheDenseSolution) {
   }
 }
 
-TEST(Line3d, EndsAreOrderedAsTheSegments) {
+TEST(Line3d, EndsHaveTheOrderOfTheSegment) {
   Random random(10);
   const Pinhole pinhole;
   const LineScene scene = LineScene::random(random, pinhole);
@@ -113,7 +113,7 @@ TEST(Line3d, EndsAreOrderedAsTheSegments) {
   EXPECT_LT((line.a - scene.a).norm() + (line.b - scene.b).norm(), 1e-8);
 }
 
-TEST(Line3d, WrongDepthsAreLeftOut) {
+TEST(Line3d, ExcludesWrongDepths) {
   Random random(11);
   const Pinhole pinhole;
   int found = 0;
@@ -133,8 +133,9 @@ TEST(Line3d, WrongDepthsAreLeftOut) {
   EXPECT_GE(found, 47);
 }
 
-// Two walls meet under one segment, 70 to 30: no line, though the larger part alone would pass τ.
-TEST(Line3d, TwoSurfacesAreNotOneLine) {
+// Two walls cover 70 % and 30 % of one segment. This is not a line, though the larger part alone would pass
+// τ.
+TEST(Line3d, RejectsASegmentOverTwoSurfaces) {
   Random random(15);
   const Pinhole pinhole;
   int with_paper = 0;
@@ -151,7 +152,7 @@ TEST(Line3d, TwoSurfacesAreNotOneLine) {
   EXPECT_GT(with_paper, 30);
 }
 
-TEST(Line3d, MissingDepth) {
+TEST(Line3d, ToleratesMissingDepthDownToTheThreshold) {
   Random random(12);
   const Pinhole pinhole;
   for (const int percent : {0, 30, 60}) {
@@ -175,8 +176,8 @@ TEST(Line3d, MissingDepth) {
   }
 }
 
-// An arc seen edge-on images as a straight segment.
-TEST(Line3d, PerspectiveAmbiguityIsRejected) {
+// An arc seen edge-on projects to a straight segment.
+TEST(Line3d, RejectsAnArcSeenEdgeOn) {
   Random random(13);
   const Pinhole pinhole;
   for (const double sagitta_m : {0.4, 0.7, -0.4}) {
@@ -199,7 +200,7 @@ TEST(Line3d, PerspectiveAmbiguityIsRejected) {
   }
 }
 
-TEST(Line3d, SameBitsWhateverTheOrderOfCalls) {
+TEST(Line3d, ResultDoesNotDependOnTheOrderOfCalls) {
   Random random(14);
   const Pinhole pinhole;
   const LineScene one = LineScene::random(random, pinhole), two = LineScene::random(random, pinhole);
@@ -213,7 +214,7 @@ TEST(Line3d, SameBitsWhateverTheOrderOfCalls) {
   EXPECT_EQ(first.Sigma, again.Sigma);
 }
 
-TEST(Line3d, NothingToFit) {
+TEST(Line3d, ReturnsTooFewDepthsWithoutLengthOrDepth) {
   Line3d line;
   Segment s;
   EXPECT_EQ(observe_line(s, test::DepthFunction{[](int, int) { return 1.0; }}, Pinhole{}, DepthNoise{}, {},

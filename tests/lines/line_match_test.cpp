@@ -17,7 +17,7 @@ using test::ScenePicture;
 struct View {
   std::vector<Segment> segments;
   std::vector<LineDescriptor> descriptors;
-  std::vector<int> border;  // which of the scene's
+  std::vector<int> border;  // index of the scene's border
 };
 
 template <typename Light>
@@ -29,7 +29,7 @@ View see(const PictureScene& scene, const Matrix3& H, const Light& light, std::u
   for (std::size_t k = 0; k < borders.size(); ++k) {
     Segment s = borders[k];
     if (s.length_px() < 12) continue;
-    // A detector's ends are not repeatable: up to a sixth is missing at either.
+    // The ends of a detected segment are not repeatable: up to a sixth is missing at each end.
     const Vector2 d = s.b - s.a;
     s.a += d * random.uniform() / 6;
     s.b -= d * random.uniform() / 6;
@@ -72,7 +72,7 @@ Matrix3 motion(Random& random) {
   return H;
 }
 
-TEST_F(LineMatch, FindsTheSameBordersAfterAMotion) {
+TEST_F(LineMatch, MatchesTheSameBordersAfterAMotion) {
   Random random(3);
   MatchScore constant, varying;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -95,7 +95,7 @@ TEST_F(LineMatch, FindsTheSameBordersAfterAMotion) {
   RecordProperty("varying_wrong", varying.wrong);
 }
 
-// The definition, written down: every pair, every rule.
+// The definition by brute force: every rule is applied to every pair.
 std::vector<Match> brute_force(const View& r, const View& c, const LineMatchConfig& config) {
   const auto offset = [](const Segment& a, const Segment& b) {
     return std::abs((b.middle() - a.middle()).dot(a.normal()));
@@ -130,7 +130,7 @@ std::vector<Match> brute_force(const View& r, const View& c, const LineMatchConf
   return matches;
 }
 
-TEST_F(LineMatch, IsItsDefinition) {
+TEST_F(LineMatch, EqualsTheBruteForceResult) {
   Random random(5);
   for (std::uint64_t seed = 20; seed < 26; ++seed) {
     const PictureScene scene(seed, 24);
@@ -150,7 +150,7 @@ TEST_F(LineMatch, IsItsDefinition) {
   }
 }
 
-TEST_F(LineMatch, AnEdgeOfTheOtherSignIsAnotherEdge) {
+TEST_F(LineMatch, DoesNotMatchEdgesOfOppositeSign) {
   const PictureScene scene(2);
   View view = see(scene, Matrix3::Identity(), test::as_it_is, 1);
   View flipped = view;
@@ -161,17 +161,17 @@ TEST_F(LineMatch, AnEdgeOfTheOtherSignIsAnotherEdge) {
   EXPECT_TRUE(match(view, flipped, config).empty());
 }
 
-TEST_F(LineMatch, APieceOfTheSameLineIsNoRival) {
+TEST_F(LineMatch, RatioTestIgnoresSegmentsOfTheSameLine) {
   const PictureScene scene(2);
   const View view = see(scene, Matrix3::Identity(), test::as_it_is, 1);
   View broken = view;
-  // The same segment twice: were its copy a rival, the ratio would be 1.
+  // Every segment occurs twice. If its copy were a rival candidate, the ratio would be 1.
   broken.segments.insert(broken.segments.end(), view.segments.begin(), view.segments.end());
   broken.descriptors.insert(broken.descriptors.end(), view.descriptors.begin(), view.descriptors.end());
   EXPECT_EQ(match(view, broken, {}).size(), match(view, view, {}).size());
 }
 
-TEST_F(LineMatch, NothingToMatch) {
+TEST_F(LineMatch, ReturnsNothingWithoutSegments) {
   const View empty;
   const PictureScene scene(2);
   const View view = see(scene, Matrix3::Identity(), test::as_it_is, 1);

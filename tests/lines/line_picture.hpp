@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures with known segments: convex polygons drawn with exact anti-aliasing by supersampling, noise, and
-// the pyramid as production makes it; and a detector with its memory.
+// Images with known segments: convex polygons, anti-aliased by supersampling, with noise and the pyramid of
+// the library; and a detector with its memory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Picture {
   }
 };
 
-// The corners clockwise as seen on the picture; 8 × 8 samples a pixel along the outline.
+// The corners are clockwise as seen on the image. Pixels on the outline have 8 × 8 samples.
 inline void fill_polygon(Picture& picture, const std::vector<Vector2>& corners, double level) {
   const auto depth_inside = [&](double x, double y) {  // > 0 inside, px
     double depth = 1e9;
@@ -56,7 +56,7 @@ inline void fill_polygon(Picture& picture, const std::vector<Vector2>& corners, 
   }
 }
 
-// A regular polygon turned by angle; radius to its corners.
+// A regular polygon rotated by `angle`; `radius` is that of its corners.
 inline std::vector<Vector2> regular_polygon(const Vector2& centre, int sides, double radius, double angle) {
   std::vector<Vector2> corners;
   for (int i = 0; i < sides; ++i) {
@@ -81,7 +81,8 @@ inline std::vector<std::uint8_t> expose(const Picture& picture, double noise_sd,
   return pixels;
 }
 
-// The detector as production uses it: on the half-resolution level, placed on the full image.
+// The detector as the library uses it: detection on the half-resolution level, localisation on the full
+// image.
 class DetectorRig {
  public:
   DetectorRig(int width, int height, std::size_t capacity = 256)

@@ -20,7 +20,7 @@ Segment segment(double ax, double ay, double bx, double by) {
 
 constexpr SampleOptions kPaper{100, 1, 0};
 
-TEST(LineSamples, OneAPixelIsThePapersCount) {
+TEST(LineSamples, SpacingOfOnePixelGivesTheCountOfThePaper) {
   EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), kPaper), 0);
   EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), kPaper), 20);
   EXPECT_EQ(sample_count(segment(0, 0, 60, 80), kPaper), 100);
@@ -28,7 +28,7 @@ TEST(LineSamples, OneAPixelIsThePapersCount) {
   EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {50, 1, 0}), 50);
 }
 
-TEST(LineSamples, WiderSpacingTakesFewerButLeavesEnough) {
+TEST(LineSamples, WiderSpacingTakesFewerSamplesDownToTheMinimum) {
   EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {100, 3, 0}), 0);
   EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {100, 3, 0}), 12);
   EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {100, 3, 0}), kEnoughSamples);
@@ -36,7 +36,7 @@ TEST(LineSamples, WiderSpacingTakesFewerButLeavesEnough) {
   EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {100, 3, 0}), 100);
 }
 
-TEST(LineSamples, EvenlySpacedFromEndToEnd) {
+TEST(LineSamples, AreEvenlySpacedFromEndToEnd) {
   const Segment s = segment(10, 20, 70, 100);
   LineSamples samples;
   std::vector<Vector2> asked;
@@ -55,7 +55,7 @@ TEST(LineSamples, EvenlySpacedFromEndToEnd) {
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, DepthNoise{}.sigma(2.0));
 }
 
-TEST(LineSamples, NoDepthIsLeftOut) {
+TEST(LineSamples, OmitsSamplesWithoutDepth) {
   LineSamples samples;
   sample_segment(segment(0, 0, 50, 0), DepthNoise{}, kPaper,
                  test::DepthFunction{[](int x, int) { return x < 20 ? 0.0 : 1.0; }}, samples);
@@ -63,7 +63,7 @@ TEST(LineSamples, NoDepthIsLeftOut) {
   EXPECT_EQ(samples.count, 30);
 }
 
-TEST(LineSamples, ASlopeAcrossTheSegmentIsLessSure) {
+TEST(LineSamples, SigmaGrowsWithTheSlopeAcrossTheSegment) {
   DepthNoise noise;
   noise.registration_px = 2;
   LineSamples samples;
@@ -76,28 +76,28 @@ TEST(LineSamples, ASlopeAcrossTheSegmentIsLessSure) {
 
 SurfaceReading read(std::array<float, 7> profile) { return nearer_surface(profile, DepthNoise{}); }
 
-TEST(NearerSurface, TheRule) {
-  // One surface: what is under the segment, though a slope makes another reading nearer.
+TEST(NearerSurface, FollowsTheRule) {
+  // One surface: the reading under the segment counts, though a slope makes another one nearer.
   EXPECT_FLOAT_EQ(static_cast<float>(read({2.00f, 2.01f, 2.02f, 2.03f, 2.04f, 2.05f, 2.06f}).depth_m), 2.03f);
   EXPECT_FALSE(read({2.00f, 2.01f, 2.02f, 2.03f, 2.04f, 2.05f, 2.06f}).mixed);
-  // The depth image is displaced: the background lies under the segment. The nearer surface's closest
-  // reading.
+  // The depth image is displaced, so that the background lies under the segment: the reading of the nearer
+  // surface that is closest to the segment counts.
   EXPECT_FLOAT_EQ(static_cast<float>(read({1.01f, 1.02f, 3, 3, 3, 3, 3}).depth_m), 1.02f);
   EXPECT_TRUE(read({1.01f, 1.02f, 3, 3, 3, 3, 3}).mixed);
   EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 3, 3, 3, 1.01f}).depth_m), 1.01f);
-  // The nearer surface lies under it.
+  // The nearer surface lies under the segment.
   EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 1.03f, 1.02f, 1.01f, 1.0f, 1.0f}).depth_m), 1.02f);
-  // A lone wrong reading in front of one surface is not a surface.
+  // A single wrong reading in front of one surface is not a surface.
   EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 3, 1.5f, 3, 3}).depth_m), 3);
   EXPECT_FLOAT_EQ(static_cast<float>(read({3, 3, 3, 1.5f, 3, 3, 3}).depth_m), 3);
-  // A shadow: the background's readings are missing beside the nearer surface.
+  // A shadow: readings of the background are missing beside the nearer surface.
   EXPECT_FLOAT_EQ(static_cast<float>(read({1, 1, 1, 0, 0, 0, 0}).depth_m), 1);
   EXPECT_TRUE(read({1, 1, 1, 0, 0, 0, 0}).mixed);
   EXPECT_FLOAT_EQ(static_cast<float>(read({0, 0, 0, 0, 0, 0, 0}).depth_m), 0);
   EXPECT_FLOAT_EQ(static_cast<float>(read({0, 0, 0, 2, 0, 0, 0}).depth_m), 2);
 }
 
-TEST(NearerSurface, WithoutReachItIsTheReadingItself) {
+TEST(NearerSurface, IsTheReadingItselfWithoutReach) {
   const std::array<float, 1> one{1.5f};
   EXPECT_EQ(nearer_surface(one, DepthNoise{}).depth_m, 1.5);
   EXPECT_FALSE(nearer_surface(one, DepthNoise{}).mixed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random 3D lines before a camera, their segments, and samples of them with the noise that (3) assumes.
+// Random 3D lines in front of a camera, their segments, and their samples with the noise that (3) assumes.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace plvo::test {
 
-inline constexpr std::uint64_t kSeed = 1;  // of the fits
+inline constexpr std::uint64_t kSeed = 1;  // seed of the fits
 
 inline double gaussian(Random& random) {
   double sum = 0;
@@ -33,7 +33,7 @@ inline double offset_from_line(const Vector3& p, const Vector3& a, const Vector3
   return (p - a - d * d.dot(p - a)).norm();
 }
 
-// A depth image from a function of the pixel.
+// A depth image computed by a function of the pixel.
 template <typename Function>
 struct DepthFunction {
   Function function;
@@ -63,7 +63,7 @@ DepthFunction(Function) -> DepthFunction<Function>;
 
 struct LineScene {
   Segment segment;
-  Vector3 a, b;  // of the true line, at the segment's ends
+  Vector3 a, b;  // points of the true line at the ends of the segment
 
   static LineScene random(Random& random, const Pinhole& pinhole) {
     LineScene scene;
@@ -94,11 +94,12 @@ struct LineScene {
     const double u = t_px / segment.length_px() + 0.5;
     const double z = depth_at(t_px);
     return a +
-           u * z / b.z() * (b - a);  // perspective: the fraction along the line is not that along its image
+           u * z / b.z() *
+               (b - a);  // under perspective the fraction along the line differs from that along its image
   }
 
-  // The depth's noise is added to it; the pixel's noise makes the depth be read beside the sample along the
-  // segment, at the pixels first_t and last_t for the two ends.
+  // Adds noise to the depth. The pixel noise displaces the position of the reading along the segment; first_t
+  // and last_t return these positions for the two ends.
   LineSamples noisy_samples(Random& random, double sigma_p_px, const DepthNoise& noise,
                             double* first_t = nullptr, double* last_t = nullptr) const {
     LineSamples samples = exact_samples();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segment detector at its limits: bounds of time and memory, capacity, broken arguments, odd pictures;
-// and whether the uncertainty that it reports is the one it has.
+// Tests the segment detector at its limits: bounds of time and memory, capacity, invalid arguments, unusual
+// images; and compares its stated uncertainty with its errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ using test::Picture;
 static_assert(SegmentDetector::scratch_bytes(320, 240) <= 2'500'000, "half of VGA");
 static_assert(SegmentDetector::scratch_bytes(320, 240) > 1'000'000);
 
-// The bound that lsd.hpp states, on pictures made to be hard.
-TEST(SegmentDetectorLimits, NoPixelGrowsMoreOftenThanStated) {
+// Tests the bound that lsd.hpp states on difficult images.
+TEST(SegmentDetectorLimits, GrownPixelsStayWithinTheBound) {
   Random random(1);
   for (const int cell : {1, 2, 3, 4, 6, 8, 16}) {
     for (const double noise : {0.0, 4.0, 25.0}) {
@@ -32,7 +32,7 @@ TEST(SegmentDetectorLimits, NoPixelGrowsMoreOftenThanStated) {
       rig.detect(test::expose(picture, noise, random));
       EXPECT_LE(rig.counts().grown_pixels,
                 std::int64_t{lsd::kMaxReleases + 1} * rig.counts().directed_pixels);
-      // In practice far below the bound.
+      // In practice the number is far below the bound.
       EXPECT_LE(rig.counts().grown_pixels, 3 * std::int64_t{rig.counts().directed_pixels})
           << cell << " " << noise;
     }
@@ -56,14 +56,14 @@ TEST(SegmentDetectorLimits, RingsAndSpokesStayWithinTheBound) {
   }
 }
 
-TEST(SegmentDetectorLimits, TinyAndFlatPicturesHoldNothing) {
+TEST(SegmentDetectorLimits, FindsNothingInTinyAndFlatImages) {
   for (const int width : {1, 2, 3, 5, 9, 17}) {
     for (const int height : {1, 2, 3, 5, 9, 17}) {
       DetectorRig rig(width, height);
       std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width * height), 77);
       EXPECT_EQ(rig.detect(pixels).size(), 0U);
       for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i % 2 == 0 ? 0 : 255;
-      rig.detect(pixels);  // must only return
+      rig.detect(pixels);  // only has to return
     }
   }
   DetectorRig rig(640, 480);
@@ -71,7 +71,7 @@ TEST(SegmentDetectorLimits, TinyAndFlatPicturesHoldNothing) {
   EXPECT_EQ(rig.counts().directed_pixels, 0);
 }
 
-TEST(SegmentDetectorLimits, SaysWhatIsWrong) {
+TEST(SegmentDetectorLimits, RejectsInvalidArguments) {
   std::vector<std::byte> memory(SegmentDetector::scratch_bytes(32, 24) + kArenaAlignment);
   std::vector<std::uint8_t> pixels(64 * 48, 10);
   const GrayView full{pixels.data(), 64, 48, 64};
@@ -98,9 +98,9 @@ TEST(SegmentDetectorLimits, SaysWhatIsWrong) {
   }
 }
 
-// A dense grid of strong squares on the left, two faint ones on the right: with room for a few, the faint
-// ones stay.
-TEST(SegmentDetectorLimits, KeepsTheBestAndBestSpread) {
+// The image has a dense grid of strong squares on the left and two faint squares on the right. A detector
+// with small capacity must keep the faint ones.
+TEST(SegmentDetectorLimits, KeepsTheMostMeaningfulAndSpreadsTheRest) {
   Picture picture(640, 480, 100);
   for (int j = 0; j < 8; ++j) {
     for (int i = 0; i < 6; ++i) {
@@ -128,11 +128,11 @@ TEST(SegmentDetectorLimits, KeepsTheBestAndBestSpread) {
     }
   }
   EXPECT_EQ(faint, 8);
-  // Half of the room is for the most meaningful, whatever their place.
+  // Half of the capacity is for the most meaningful segments, wherever they are.
   for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(kept[i].meaningfulness, all[i].meaningfulness);
 }
 
-// Three bands of a picture of 240 rows meet at rows 80 and 160.
+// The three bands of an image of 240 rows meet at rows 80 and 160; no shape crosses these rows.
 Picture shapes_between_the_borders() {
   Picture picture(320, 240, 100);
   for (int band = 0; band < 3; ++band) {
@@ -144,14 +144,14 @@ Picture shapes_between_the_borders() {
   return picture;
 }
 
-TEST(SegmentDetectorLimits, BandsCutOnlyWhatCrossesThem) {
+TEST(SegmentDetectorLimits, BandsSplitOnlySegmentsThatCrossThem) {
   Random random(11);
   Picture picture = shapes_between_the_borders();
   const auto detect = [](const std::vector<std::uint8_t>& pixels, const SegmentSearch& search) {
     DetectorRig rig(320, 240, 256, search);
     const auto& found = rig.detect(pixels);
     std::vector<Segment> sorted(found.begin(), found.end());
-    // Alike in two bands, they are as meaningful as each other: by place.
+    // Equal shapes in two bands have equal meaningfulness, so the order is by position.
     std::sort(sorted.begin(), sorted.end(), [](const Segment& p, const Segment& q) {
       return p.a.y() != q.a.y() ? p.a.y() < q.a.y() : p.a.x() < q.a.x();
     });
@@ -168,7 +168,7 @@ TEST(SegmentDetectorLimits, BandsCutOnlyWhatCrossesThem) {
     EXPECT_EQ(in_bands[i].a, all[i].a);
     EXPECT_EQ(in_bands[i].b, all[i].b);
   }
-  // A bar from top to bottom: two edges, or three times two.
+  // A bar from top to bottom has two edges in the whole image, and two in each of the three bands.
   test::fill_polygon(picture, {{295, 10}, {305, 10}, {305, 230}, {295, 230}}, 220);
   const auto crossed = test::expose(picture, 0.5, random);
   const auto upright = [](const std::vector<Segment>& segments) {
@@ -180,7 +180,7 @@ TEST(SegmentDetectorLimits, BandsCutOnlyWhatCrossesThem) {
   EXPECT_EQ(upright(detect(crossed, bands)), 6);
 }
 
-TEST(SegmentDetectorLimits, CandidatesBeyondTheirNumberAreCounted) {
+TEST(SegmentDetectorLimits, CountsCandidatesBeyondTheCapacity) {
   Random random(12);
   const auto pixels = test::expose(shapes_between_the_borders(), 0.5, random);
   DetectorRig roomy(320, 240);
@@ -191,7 +191,7 @@ TEST(SegmentDetectorLimits, CandidatesBeyondTheirNumberAreCounted) {
   EXPECT_EQ(kept.dropped(), all - 20);
 }
 
-TEST(SegmentDetectorLimits, TheSameEveryTime) {
+TEST(SegmentDetectorLimits, IsDeterministic) {
   Picture picture(320, 240, 100);
   test::fill_polygon(picture, test::regular_polygon(Vector2(160, 120), 5, 90, 0.3), 150);
   Random random(9);
@@ -209,8 +209,8 @@ TEST(SegmentDetectorLimits, TheSameEveryTime) {
   }
 }
 
-// A step edge at a known place, the segment handed in somewhat off it.
-TEST(Localise, IsAsUncertainAsItSays) {
+// A step edge has a known position; the initial segment is somewhat off it.
+TEST(Localise, StatedUncertaintyMatchesTheErrors) {
   Random random(12);
   double offset_nees = 0;
   double angle_nees = 0;
@@ -248,12 +248,13 @@ TEST(Localise, IsAsUncertainAsItSays) {
   EXPECT_GT(placed, kTrials * 9 / 10);
   std::printf("placed %d of %d, NEES offset %.2f angle %.2f\n", placed, kTrials, offset_nees / placed,
               angle_nees / placed);
-  // 1 if the SDs are true: they are to 15 %, which is four times what the mean of so many squares wanders.
+  // A consistent estimate has 1. The SDs are true to 15 %; the mean of so many squares varies by a quarter of
+  // the tolerance.
   EXPECT_NEAR(offset_nees / placed, 1, 0.3);
   EXPECT_NEAR(angle_nees / placed, 1, 0.3);
 }
 
-TEST(Localise, LeavesASegmentWithoutAnEdgeWhereItIs) {
+TEST(Localise, DoesNotMoveASegmentWithoutAnEdge) {
   std::vector<std::uint8_t> pixels(64 * 64, 100);
   Segment s;
   s.a = {10, 30};
@@ -263,10 +264,10 @@ TEST(Localise, LeavesASegmentWithoutAnEdgeWhereItIs) {
   EXPECT_EQ(s.a, before.a);
   EXPECT_EQ(s.b, before.b);
   EXPECT_EQ(s.sigma_px, 0.5);
-  // Nor onto an edge of the opposite sign.
+  // The segment does not move onto an edge of the opposite sign either.
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i < 64 * 32 ? 200 : 50;
   EXPECT_FALSE(lsd::localise({pixels.data(), 64, 64, 64}, 0.5, s));
-  // Off the picture, or of no length: no harm.
+  // Segments outside the image and segments without length are safe.
   s.a = {-40, -40};
   s.b = {-20, 90};
   EXPECT_FALSE(lsd::localise({pixels.data(), 64, 64, 64}, 0.5, s));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The number of false alarms against the binomial sum written out, in long double.
+// Compares the number of false alarms with the explicit binomial sum in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace plvo::lsd {
 namespace {
 
-// Infinite where the terms are so small that long double (on some processors no longer than double) has lost
-// digits.
+// Infinite where the terms are so small that long double loses digits; on some processors it is as short as
+// double.
 long double reference(int width, int height, int n, int k) {
   constexpr long double p = 1.0L / 8;
   long double sum = 0;
@@ -27,7 +27,7 @@ long double reference(int width, int height, int n, int k) {
   return -(std::log10(tests) + std::log10(sum));
 }
 
-TEST(FalseAlarms, AgreesWithTheSumWrittenOut) {
+TEST(FalseAlarms, AgreesWithTheExplicitSum) {
   Random random(5);
   const FalseAlarms alarms(320, 240);
   int compared[2] = {};
@@ -39,7 +39,7 @@ TEST(FalseAlarms, AgreesWithTheSumWrittenOut) {
     if (std::isinf(truth)) continue;
     ++compared[8 * k > n ? 1 : 0];
     if (8 * k > n) {
-      // Rounded up by at most one part in a thousand, and never down.
+      // The number of false alarms is rounded up by at most one part in a thousand, and never down.
       EXPECT_LE(found, static_cast<double>(truth) + 1e-8) << n << " " << k;
       EXPECT_GE(found, static_cast<double>(truth) - 0.002) << n << " " << k;
     } else {
@@ -50,7 +50,7 @@ TEST(FalseAlarms, AgreesWithTheSumWrittenOut) {
   EXPECT_GT(std::min(compared[0], compared[1]), 100);
 }
 
-TEST(FalseAlarms, MoreAlignedMeansMoreMeaningful) {
+TEST(FalseAlarms, MeaningfulnessGrowsWithAlignedPixels) {
   const FalseAlarms alarms(320, 240);
   for (int n : {20, 255, 256, 300, 70000}) {
     double before = alarms.meaningfulness(n, 0);
@@ -63,8 +63,8 @@ TEST(FalseAlarms, MoreAlignedMeansMoreMeaningful) {
   }
 }
 
-TEST(FalseAlarms, OneIsTheLimitOfTheTextbookCase) {
-  // (320 · 240)^2.5 = 10^12.21: fourteen of fourteen at p = 1/8 are just meaningful, thirteen of thirteen
+TEST(FalseAlarms, FourteenAlignedPixelsAreJustMeaningful) {
+  // (320 · 240)^2.5 = 10^12.21, so 14 aligned pixels of 14 at p = 1/8 are just meaningful, and 13 of 13 are
   // not.
   const FalseAlarms alarms(320, 240);
   EXPECT_GT(alarms.meaningfulness(14, 14), 0);

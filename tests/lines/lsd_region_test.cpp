@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integer stages of the segment detector, each against a slow and obvious version in floating point.
+// Compares each integer stage of the segment detector with a slow reference in floating point.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -22,7 +22,7 @@ double radians(Angle angle) { return angle / kAnglePerRadian; }
 
 double angle_between(double a, double b) { return std::abs(std::remainder(a - b, 2 * kPi)); }
 
-// From a rectangle's centre along it, and across it, 2^-8 pixels.
+// Distances from the centre of a rectangle along it and across it, in units of 2^-8 pixels.
 std::int32_t along(const Rectangle& r, int x, int y) {
   const std::int64_t q22 = std::int64_t{x * 256 - r.x_q8} * r.dx + std::int64_t{y * 256 - r.y_q8} * r.dy;
   return static_cast<std::int32_t>(q22 >> Rectangle::kDirectionBits);
@@ -37,21 +37,21 @@ struct Field {
   std::vector<std::byte> memory;
   Arena arena;
   LevelLineField field;
-  std::span<Run> storage;
+  std::span<PixelRun> storage;
   int width;
   int height;
 
   Field(int w, int h, std::vector<std::uint8_t> image)
       : pixels(std::move(image)), memory(1 << 21), arena(memory), width(w), height(h) {
     field = allocate_field(arena, w, h);
-    storage = arena.take<Run>("region", static_cast<std::size_t>(w * h));
+    storage = arena.take<PixelRun>("region", static_cast<std::size_t>(w * h));
     compute_field({pixels.data(), w, h, w}, field);
   }
   int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
-  bool is_open(Run pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }
+  bool is_open(PixelRun pixel) const { return (field.open()[field.index(pixel)] & pixel.bits) != 0; }
   bool is_open(int x, int y) const { return is_open(piece_of(x, y)); }
   bool is_directed(int x, int y) const {
-    const Run run = piece_of(x, y);
+    const PixelRun run = piece_of(x, y);
     return (field.directed[static_cast<std::size_t>(field.index(run))] & run.bits) != 0;
   }
   Angle angle(int x, int y) const { return field.angles()[field.pixel(x, y)]; }
@@ -59,26 +59,26 @@ struct Field {
     return field.magnitude_and_releases[static_cast<std::size_t>(field.pixel(x, y))] &
            ((1 << LevelLineField::kReleaseBit) - 1);
   }
-  static Run piece_of(int x, int y) {
+  static PixelRun piece_of(int x, int y) {
     return {static_cast<std::uint16_t>(y), static_cast<std::uint8_t>(x / kBlockPixels),
             static_cast<std::uint8_t>(1 << x % kBlockPixels)};
   }
-  std::span<const Run> seeds() const { return field.seeds.first(field.seed_count); }
+  std::span<const PixelRun> seeds() const { return field.seeds.first(field.seed_count); }
 };
 
 using Pixels = std::vector<std::pair<int, int>>;  // x, y
 
-void append(Run run, Pixels& pixels) {
+void append(PixelRun run, Pixels& pixels) {
   for (int i = 0; i < kBlockPixels; ++i)
     if ((run.bits >> i & 1) != 0) pixels.push_back({run.block * kBlockPixels + i, run.row});
 }
-Pixels pixels_of(std::span<const Run> runs) {
+Pixels pixels_of(std::span<const PixelRun> runs) {
   Pixels pixels;
-  for (const Run run : runs) append(run, pixels);
+  for (const PixelRun run : runs) append(run, pixels);
   return pixels;
 }
 
-// Polygons under noise, twice smoothed like a pyramid level: regions of every size.
+// Polygons with noise, smoothed twice like a pyramid level, so that regions of every size occur.
 Field busy_field(std::uint64_t seed, int width = 160) {
   Random random(seed);
   test::Picture picture(width, 120, 90);
@@ -91,7 +91,7 @@ Field busy_field(std::uint64_t seed, int width = 160) {
   return {width, 120, test::expose(picture, 3, random)};
 }
 
-TEST(LevelLineField, PolarGradientIsAtan2AndHypot) {
+TEST(LevelLineField, PolarGradientEqualsAtan2AndHypot) {
   for (int gx = -510; gx <= 510; gx += 7) {
     for (int gy = -510; gy <= 510; ++gy) {
       if (gx == 0 && gy == 0) continue;
@@ -102,8 +102,8 @@ TEST(LevelLineField, PolarGradientIsAtan2AndHypot) {
   }
 }
 
-TEST(LevelLineField, IsTheTwoByTwoGradientAboveTheQuantisationNoise) {
-  for (const int width : {160, 161, 162, 165, 168}) {  // rows that end anywhere in a block
+TEST(LevelLineField, EqualsTheTwoByTwoGradientAboveTheQuantisationNoise) {
+  for (const int width : {160, 161, 162, 165, 168}) {  // the rows end at any position in a block
     const Field f = busy_field(1, width);
     std::size_t directed = 0;
     for (int y = 0; y < f.field.height; ++y) {
@@ -127,7 +127,7 @@ TEST(LevelLineField, IsTheTwoByTwoGradientAboveTheQuantisationNoise) {
   }
 }
 
-TEST(LevelLineField, NothingIsOpenAroundIt) {
+TEST(LevelLineField, HasNoOpenPixelsOutsideTheImage) {
   const Field f = busy_field(2);
   const LevelLineField& field = f.field;
   for (int block = -1; block < field.stride; ++block) {
@@ -140,7 +140,7 @@ TEST(LevelLineField, NothingIsOpenAroundIt) {
   }
 }
 
-TEST(LevelLineField, SeedsComeStrongestFirstAndEachOnce) {
+TEST(LevelLineField, SeedsAreOrderedByStrengthAndUnique) {
   const Field f = busy_field(2);
   std::set<std::pair<int, int>> seen;
   int before = 1 << 20;
@@ -153,7 +153,7 @@ TEST(LevelLineField, SeedsComeStrongestFirstAndEachOnce) {
   EXPECT_EQ(seen.size(), f.field.seed_count);
 }
 
-// Growing by sets of pixels, one block after the other.
+// Grows a region with sets of pixels, block by block.
 class SlowRegion {
  public:
   SlowRegion(const Field& f, std::set<std::pair<int, int>>& used, int seed_x, int seed_y)
@@ -181,7 +181,7 @@ class SlowRegion {
     const auto off = static_cast<Angle>(f_.angle(x, y) - middle_);
     return used_.count({x, y}) == 0 && off >= -kTau && off <= kTau;
   }
-  // Of a block, what fits and touches the pixels, and what touches that along the row.
+  // Takes the pixels of a block row that fit and touch `pixels`, and those that touch them along the row.
   void take(int block, int row, const Pixels& pixels) {
     std::set<int> taken;
     const int begin = block * kBlockPixels, end = begin + kBlockPixels;
@@ -212,12 +212,12 @@ class SlowRegion {
   int beyond_first_ = 0;
 };
 
-TEST(Region, GrowsAsPixelByPixel) {
+TEST(Region, GrowsLikeTheReference) {
   int compared = 0;
   for (std::uint64_t seed = 3; seed < 9; ++seed) {
     Field f = busy_field(seed, 158 + static_cast<int>(seed));
     std::set<std::pair<int, int>> used;
-    for (const Run start : f.seeds()) {
+    for (const PixelRun start : f.seeds()) {
       const auto [x, y] = pixels_of({&start, 1}).front();
       ASSERT_EQ(f.is_open(start), used.count({x, y}) == 0);
       if (!f.is_open(start)) continue;
@@ -242,8 +242,8 @@ TEST(Region, GrowsAsPixelByPixel) {
   EXPECT_GT(compared, 1000);
 }
 
-// A clean edge has no spread at all: what tighten() asks for then is the least tolerance.
-TEST(Region, OneDirectionHoldsTogetherAtTheLeastTolerance) {
+// The angles of a noise-free edge have no spread, so tighten() uses the least tolerance.
+TEST(Region, NoiseFreeEdgeStaysOneRegionAtTheLeastTolerance) {
   constexpr int kSide = 40;
   for (const bool upright : {true, false}) {
     std::vector<std::uint8_t> image;
@@ -255,30 +255,30 @@ TEST(Region, OneDirectionHoldsTogetherAtTheLeastTolerance) {
   }
 }
 
-TEST(Region, APixelIsGivenBackSoManyTimesAndNoMore) {
+TEST(Region, PixelsAreReleasedAtMostKMaxReleasesTimes) {
   Field f = busy_field(4);
-  const Run seed = f.field.seeds[0];
+  const PixelRun seed = f.field.seeds[0];
   for (int i = 0; i < 20; ++i) {
     const Region region = grow(f.field, seed, kTau, f.storage);
     const Pixels pixels = pixels_of(region.runs);
     if (i <= kMaxReleases) {
       EXPECT_GT(region.size, 3);
     } else {
-      EXPECT_EQ(region.size, 1);  // all its neighbours have had their turns
+      EXPECT_EQ(region.size, 1);  // all its neighbours were released too often
     }
-    for (const Run run : region.runs) release(f.field, run);
+    for (const PixelRun run : region.runs) release(f.field, run);
     for (const auto& [x, y] : pixels) EXPECT_EQ(f.is_open(x, y), i < kMaxReleases);
     if (i == 0) {
-      for (const auto& [x, y] : pixels)  // the magnitudes stay
+      for (const auto& [x, y] : pixels)  // the magnitudes do not change
         EXPECT_NEAR(f.magnitude(x, y), busy_field(4).magnitude(x, y), 0);
     }
   }
 }
 
-TEST(Rectangle, HasTheMomentsOfItsRegionAndHoldsIt) {
+TEST(Rectangle, HasTheMomentsOfItsRegionAndContainsIt) {
   Field f = busy_field(6);
   int compared = 0;
-  for (const Run start : f.seeds()) {
+  for (const PixelRun start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     const Rectangle r = fit_rectangle(region, weigh(f.field, region));
@@ -344,7 +344,7 @@ TEST(Rectangle, VisitsExactlyThePixelsInside) {
   }
 }
 
-TEST(AngleRange, HoldsWhatIsWithinItsTolerance) {
+TEST(AngleRange, ContainsAnglesWithinItsTolerance) {
   Random random(3);
   for (int trial = 0; trial < 5000; ++trial) {
     const auto middle = static_cast<Angle>(random.below(65536) - 32768);
@@ -367,7 +367,7 @@ TEST(AngleRange, HoldsWhatIsWithinItsTolerance) {
   }
 }
 
-TEST(AngleSum, AddsWhatIsChosen) {
+TEST(AngleSum, AddsTheChosenAngles) {
   Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
     const auto from = static_cast<Angle>(random.below(65536) - 32768);
@@ -398,11 +398,11 @@ TEST(AngleSum, SquaresHalfTurns) {
   EXPECT_EQ(squares_beyond(0, eight.data(), 0xffU), std::int64_t{8} << 30);
 }
 
-// What is cut off is taken from a region's sums: they are those of what is left.
-TEST(Validation, ATightenedRegionHasTheSumsOfItsPixels) {
+// Tightening subtracts the removed pixels from the sums of a region; the result must be the sums of the rest.
+TEST(Validation, TightenedRegionHasTheSumsOfItsPixels) {
   Field f = busy_field(9);
   int cut = 0;
-  for (const Run start : f.seeds()) {
+  for (const PixelRun start : f.seeds()) {
     if (!f.is_open(start)) continue;
     Region region = grow(f.field, start, kTau, f.storage);
     if (region.size < 10) continue;
@@ -433,11 +433,11 @@ TEST(Validation, ATightenedRegionHasTheSumsOfItsPixels) {
   EXPECT_GT(cut, 10);
 }
 
-TEST(Validation, CountsWhatTheRectangleHolds) {
+TEST(Validation, CountsThePixelsInTheRectangle) {
   Field f = busy_field(8);
   const FalseAlarms alarms(f.width, f.height);
   int meaningful = 0;
-  for (const Run start : f.seeds()) {
+  for (const PixelRun start : f.seeds()) {
     if (!f.is_open(start)) continue;
     const Region region = grow(f.field, start, kTau, f.storage);
     Rectangle r = fit_rectangle(region, weigh(f.field, region));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole detector on pictures whose segments are known, on pictures that hold none, and at its limits.
+// Tests the whole detector on images with known segments and on images without segments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using test::Picture;
 constexpr double kDegree = kPi / 180;
 
 struct TrueEdge {
-  Vector2 a, b;  // as a Segment: brighter side on the right
+  Vector2 a, b;  // the brighter side is on the right, like in Segment
 };
 
 struct Score {
@@ -37,8 +37,8 @@ struct Score {
   double rms_end_px() const { return std::sqrt(end_squares / ends); }
 };
 
-// A segment is explained by an edge when it runs along it, the same way round; an edge is found when its
-// longest such segment covers 80 % of it.
+// An edge explains a segment that runs along it in the same direction. An edge is found when its longest such
+// segment covers 80 % of it.
 void add_score(const std::vector<TrueEdge>& edges, const FixedVector<Segment>& segments, Score& score) {
   std::vector<double> covered(edges.size(), 0);
   std::vector<Vector2> ends(edges.size());
@@ -73,7 +73,7 @@ void add_score(const std::vector<TrueEdge>& edges, const FixedVector<Segment>& s
   }
 }
 
-// A polygon's outline; corners clockwise as seen, so the inside is on the right of each edge.
+// The outline of a polygon. Its corners are clockwise as seen, so the inside is on the right of each edge.
 std::vector<TrueEdge> outline(const std::vector<Vector2>& corners, bool bright_inside) {
   std::vector<TrueEdge> edges;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -142,7 +142,7 @@ TEST(SegmentDetector, FindsPolygonsUnderNoise) {
   }
 }
 
-// The promise of the a-contrario test: at most one false segment in an image of noise, on average.
+// The a-contrario test promises at most one false segment per image of noise, on average.
 TEST(SegmentDetector, FindsNothingInNoise) {
   Random random(3);
   DetectorRig rig(640, 480);

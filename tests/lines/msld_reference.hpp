@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow, obvious MSLD: floating point throughout, the gradient description matrix written out, any
-// sampling.
+// A slow reference implementation of MSLD in floating point, with an explicit gradient description matrix and
+// any sampling.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ inline std::vector<double> msld(GrayView image, double scale, const Segment& seg
   const double length = segment.length_px() * scale;
   const int columns = std::max(1, std::min(sampling.max_columns, static_cast<int>(length)));
   const int rows = sampling.bands * sampling.rows_per_band;
-  // The matrix: a row for each band and part, a column for each position along the segment.
+  // The matrix has a row for each band and part, and a column for each position along the segment.
   std::vector<std::vector<double>> matrix(static_cast<std::size_t>(4 * sampling.bands),
                                           std::vector<double>(static_cast<std::size_t>(columns)));
   for (int c = 0; c < columns; ++c)
@@ -52,7 +52,7 @@ inline std::vector<double> msld(GrayView image, double scale, const Segment& seg
       const double parts[4] = {std::max(across, 0.0), std::max(-across, 0.0), std::max(along, 0.0),
                                std::max(-along, 0.0)};
       const double weight = std::exp(-0.5 * std::pow(row / (0.5 * rows), 2));
-      // Linear interpolation between the centres of the bands.
+      // Each row contributes to the bands by linear interpolation between their centres.
       for (int band = 0; band < sampling.bands; ++band) {
         const double centre = (band + 0.5 - 0.5 * sampling.bands) * sampling.rows_per_band;
         const double share = 1 - std::abs(row - centre) / sampling.rows_per_band;

@@ -14,7 +14,7 @@ namespace {
 using test::PictureScene;
 using test::ScenePicture;
 
-// Squared distance in units of one half's norm: 0 the same, 4 nothing in common.
+// Squared distance in units of the norm of one half: 0 for equal descriptors, 4 for orthogonal ones.
 double distance(const LineDescriptor& a, const LineDescriptor& b) {
   return descriptor_distance(a, b) / (255.0 * 255.0);
 }
@@ -30,7 +30,7 @@ void for_each_border(const PictureScene& scene, const Matrix3& H, const Check& c
   EXPECT_GT(count, 5);
 }
 
-TEST(Msld, AgreesWithTheWrittenOutReference) {
+TEST(Msld, AgreesWithTheReference) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const PictureScene scene(seed);
     const ScenePicture picture = scene.render(Matrix3::Identity(), test::as_it_is, 2, seed);
@@ -43,7 +43,7 @@ TEST(Msld, AgreesWithTheWrittenOutReference) {
       worst = std::fmax(worst, squared);
     });
     EXPECT_LT(worst,
-              0.003);  // rounding of positions and of the result; unlike pairs are at 1
+              0.003);  // rounding of positions and of the result; different segments are about 1 apart
   }
 }
 
@@ -60,7 +60,7 @@ TEST(Msld, HalvesHaveUnitNorm) {
   });
 }
 
-TEST(Msld, LightThatChangesLinearlyCancels) {
+TEST(Msld, IsInvariantToLinearChangesOfLight) {
   const PictureScene scene(5);
   const ScenePicture plain = scene.render(Matrix3::Identity(), test::as_it_is);
   const auto worst = [&](const auto& light) {
@@ -75,11 +75,11 @@ TEST(Msld, LightThatChangesLinearlyCancels) {
   EXPECT_LT(worst([](double g, int, int) { return 0.6 * g; }),
             0.04);  // rounding to whole grey levels remains
   EXPECT_LT(worst([](double g, int, int) { return 0.5 * g + 60; }), 0.05);
-  // Light that falls off over the picture, by a factor of three from left to right, is linear only nearly.
+  // Light that falls by a factor of three from left to right is only approximately linear.
   EXPECT_LT(worst([](double g, int x, int) { return g * (1 - x / 480.0); }), 0.15);
 }
 
-TEST(Msld, TurnsWithTheSegment) {
+TEST(Msld, IsInvariantToAQuarterTurn) {
   Matrix3 quarter;  // world = (y + 40, 279 − x): an exact quarter turn of the pixels
   quarter << 0, 1, 40, -1, 0, 279, 0, 0, 1;
   int compared = 0;
@@ -90,7 +90,7 @@ TEST(Msld, TurnsWithTheSegment) {
     const std::vector<Segment> a = scene.borders(Matrix3::Identity()), b = scene.borders(quarter);
     for (std::size_t k = 0; k < a.size(); ++k) {
       if (a[k].length_px() < 10 || b[k].length_px() < 10) continue;
-      const auto whole = [&](const Segment& s) {  // the region lies in the picture
+      const auto whole = [&](const Segment& s) {  // whether the region lies inside the image
         const Vector2 m = s.middle();
         const double r = 0.5 * s.length_px() + 15;
         return m.x() > r && m.y() > r && m.x() < 319 - r && m.y() < 239 - r;
@@ -104,7 +104,7 @@ TEST(Msld, TurnsWithTheSegment) {
   EXPECT_GT(compared, 10);
 }
 
-TEST(Msld, TheBordersOfTheImageAreSafe) {
+TEST(Msld, AcceptsSegmentsAcrossTheBordersOfTheImage) {
   const PictureScene scene(7);
   const ScenePicture picture = scene.render(Matrix3::Identity(), test::as_it_is);
   Random random(8);
@@ -120,7 +120,7 @@ TEST(Msld, TheBordersOfTheImageAreSafe) {
   }
 }
 
-TEST(Msld, NothingToDescribe) {
+TEST(Msld, ReturnsZeroForAFlatImage) {
   const std::vector<std::uint8_t> flat(64 * 64, 90);
   Segment s;
   s.a = {10, 10};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A flat world of overlapping textured rectangles, pictured after any homography, whose borders are known
-// segments.
+// A flat world of overlapping textured rectangles, rendered through any homography. The borders of the
+// rectangles are known segments.
 #pragma once
 
 #include <Eigen/LU>
@@ -38,7 +38,7 @@ class PictureScene {
     }
   }
 
-  // The world's grey level at a world point: the last rectangle that holds it.
+  // The grey level at a point of the world: that of the last rectangle that contains it.
   double grey(const Vector2& p) const {
     for (auto r = rectangles_.rbegin(); r != rectangles_.rend(); ++r) {
       const double dx = p.x() - r->centre.x(), dy = p.y() - r->centre.y();
@@ -50,7 +50,8 @@ class PictureScene {
     return 110 + 10 * std::sin(0.11 * p.x()) + 10 * std::sin(0.13 * p.y() + 0.05 * p.x());
   }
 
-  // H_world_picture maps homogeneous pixels to the world. light: grey → grey at a pixel. 2×2 samples a pixel.
+  // H_world_picture maps homogeneous pixels to the world. `light` maps a grey level at a pixel to a grey
+  // level. Each pixel has 2×2 samples.
   template <typename Light>
   ScenePicture render(const Matrix3& H_world_picture, const Light& light, double noise = 0,
                       std::uint64_t seed = 1) const {
@@ -72,8 +73,8 @@ class PictureScene {
     return {q.x() / q.z(), q.y() / q.z()};
   }
 
-  // The rectangles' visible borders with contrast, brighter side on the right, in the picture's pixels; entry
-  // k is the same border in every picture (length 0: not seen well there).
+  // The visible borders with contrast, in pixels, with the brighter side on the right. Entry k is the same
+  // border in every image; its length is 0 where the border is not clearly visible.
   std::vector<Segment> borders(const Matrix3& H_world_picture) const {
     const Matrix3 H_picture_world = Eigen::Matrix3d(H_world_picture).inverse();
     std::vector<Segment> result;
@@ -85,7 +86,7 @@ class PictureScene {
       for (int k = 0; k < 4; ++k) {
         const Vector2 a = corner[k], b = corner[(k + 1) % 4];
         const Vector2 direction = (b - a).normalized(), inwards(-direction.y(), direction.x());
-        // In the world: the least contrast along the border, with its sign.
+        // The least contrast along the border in the world, with its sign.
         double least = 1e9, sign = 0;
         for (int i = 1; i < 20; ++i) {
           const Vector2 p = a + i / 20.0 * (b - a);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Rosenbrock's valley as least squares, r = (10 (y − x²), 1 − x): the textbook case that plain Gauss–Newton
-// overshoots.
+// Rosenbrock's function as least squares, r = (10 (y − x²), 1 − x): a textbook case in which plain
+// Gauss–Newton overshoots.
 struct Rosenbrock {
   Vector2 x{-1.2, 1.0};
   Vector2 candidate;
@@ -33,14 +33,14 @@ struct Rosenbrock {
   void accept() { x = candidate; }
 };
 
-// ½ scale |x − centre|² in 3D, with switches for everything that can go wrong.
+// ½ scale |x − centre|² in 3D, with one switch per failure.
 struct Bowl {
   Vector3 x{1, 2, 3};
   Vector3 candidate;
   Vector3 centre = Vector3::Zero();
   double scale = 1;
   bool observes_z = true;
-  double forbidden_radius = -1;  // the cost is NaN inside this distance of the centre
+  double forbidden_radius = -1;  // the cost is NaN within this distance of the centre
   bool gradient_lies = false;    // points uphill
   bool negative_curvature = false;
 
@@ -58,7 +58,7 @@ struct Bowl {
   void accept() { x = candidate; }
 };
 
-TEST(LevenbergMarquardt, WalksDownTheCurvedValley) {
+TEST(LevenbergMarquardt, ConvergesOnRosenbrocksFunction) {
   Rosenbrock problem;
   LevenbergMarquardt<2> solver;
   LmOptions options;
@@ -73,8 +73,8 @@ TEST(LevenbergMarquardt, WalksDownTheCurvedValley) {
       << "one pass over the residuals per iteration, and one to begin";
 }
 
-// What small code does.
-TEST(LevenbergMarquardt, AProblemWhoseTypeIsForgottenIsSolvedAlike) {
+// Size-optimised code solves through LmAnyProblem.
+TEST(LevenbergMarquardt, TypeErasedProblemHasTheSameSolution) {
   LmOptions options;
   options.max_iterations = 50;
   Rosenbrock known, forgotten;
@@ -89,7 +89,7 @@ TEST(LevenbergMarquardt, AProblemWhoseTypeIsForgottenIsSolvedAlike) {
   EXPECT_EQ(of_any.hessian(), of_known.hessian());
 }
 
-TEST(LevenbergMarquardt, HessianIsThatOfTheFinalState) {
+TEST(LevenbergMarquardt, HessianAndGradientBelongToTheFinalState) {
   Rosenbrock problem;
   LevenbergMarquardt<2> solver;
   LmOptions options;
@@ -117,7 +117,7 @@ TEST(LevenbergMarquardt, CostNeverRises) {
   }
 }
 
-TEST(LevenbergMarquardt, GradientTolerance) {
+TEST(LevenbergMarquardt, StopsAtTheGradientTolerance) {
   Bowl problem;
   problem.x = {3e-3, 0, 0};
   LevenbergMarquardt<3> solver;
@@ -131,7 +131,7 @@ TEST(LevenbergMarquardt, GradientTolerance) {
   EXPECT_GT(summary.iterations, 0);
 }
 
-TEST(LevenbergMarquardt, StepTolerance) {
+TEST(LevenbergMarquardt, StopsAtTheStepTolerance) {
   Bowl problem;
   problem.x = {1e-3, 0, 0};
   problem.scale = 1e6;
@@ -147,8 +147,8 @@ TEST(LevenbergMarquardt, StepTolerance) {
   EXPECT_EQ(summary.accepted, 1);
 }
 
-TEST(LevenbergMarquardt, DecreaseTolerance) {
-  Bowl problem;  // of H = I: a step of k lowers the cost by ½ k²
+TEST(LevenbergMarquardt, StopsAtTheDecreaseTolerance) {
+  Bowl problem;  // H = I: the full step, of length k, lowers the cost by ½ k²
   problem.x = {0.1, 0, 0};
   LevenbergMarquardt<3> solver;
   LmOptions options;
@@ -163,7 +163,7 @@ TEST(LevenbergMarquardt, DecreaseTolerance) {
   EXPECT_LT(problem.x.norm(), 1e-4);
 }
 
-TEST(LevenbergMarquardt, IterationBound) {
+TEST(LevenbergMarquardt, StopsAtTheIterationBound) {
   Rosenbrock problem;
   LevenbergMarquardt<2> solver;
   LmOptions options;
@@ -174,7 +174,7 @@ TEST(LevenbergMarquardt, IterationBound) {
   EXPECT_FALSE(converged(summary.status));
 }
 
-TEST(LevenbergMarquardt, NotFiniteAtTheStartLeavesTheStateAlone) {
+TEST(LevenbergMarquardt, ReturnsNotFiniteAndKeepsTheStateWhenTheInitialCostIsNaN) {
   Bowl problem;
   problem.forbidden_radius = 100;
   LevenbergMarquardt<3> solver;
@@ -182,7 +182,7 @@ TEST(LevenbergMarquardt, NotFiniteAtTheStartLeavesTheStateAlone) {
   EXPECT_EQ(problem.x, Vector3(1, 2, 3));
 }
 
-TEST(LevenbergMarquardt, NotFiniteOnTheWayIsAStepThatFailed) {
+TEST(LevenbergMarquardt, RejectsAStepWhoseCostIsNaN) {
   Bowl problem;
   problem.forbidden_radius = 0.5;
   LevenbergMarquardt<3> solver;
@@ -195,7 +195,7 @@ TEST(LevenbergMarquardt, NotFiniteOnTheWayIsAStepThatFailed) {
   EXPECT_LE(summary.final_cost, summary.initial_cost);
 }
 
-TEST(LevenbergMarquardt, UnobservedParameterStaysPut) {
+TEST(LevenbergMarquardt, UnobservedParameterDoesNotChange) {
   Bowl problem;
   problem.observes_z = false;
   LevenbergMarquardt<3> solver;
@@ -205,7 +205,7 @@ TEST(LevenbergMarquardt, UnobservedParameterStaysPut) {
   EXPECT_EQ(problem.x.z(), 3);
 }
 
-TEST(LevenbergMarquardt, TheNextStepIsTheOneItWouldHaveTried) {
+TEST(LevenbergMarquardt, NextStepIsTheStepOfTheNextIteration) {
   Bowl problem;
   LevenbergMarquardt<3> solver;
   LmOptions options = LmOptions::one_step();
@@ -225,7 +225,7 @@ TEST(LevenbergMarquardt, TheNextStepIsTheOneItWouldHaveTried) {
   EXPECT_EQ(solver.next_decrease(), 0);
 }
 
-TEST(LevenbergMarquardt, SingularIsReported) {
+TEST(LevenbergMarquardt, ReturnsSingularForNegativeCurvature) {
   Bowl problem;
   problem.negative_curvature = true;
   LevenbergMarquardt<3> solver;
@@ -233,12 +233,13 @@ TEST(LevenbergMarquardt, SingularIsReported) {
   options.max_iterations = 1000;
   options.max_damping = 1e3;
   LmSummary summary = solver.solve(problem, options);
-  // −I + μ floor: no Cholesky factor at any μ ≤ 1000 with D lifted to 1e-12 of the largest entry.
+  // −I + μ D has no Cholesky factor at any μ ≤ 1000, because D is bounded below by only 1e-12 of the largest
+  // entry.
   EXPECT_EQ(summary.status, LmStatus::kSingular);
   EXPECT_EQ(problem.x, Vector3(1, 2, 3));
 }
 
-TEST(LevenbergMarquardt, StalledIsReported) {
+TEST(LevenbergMarquardt, ReturnsStalledWhenNoStepLowersTheCost) {
   Bowl problem;
   problem.gradient_lies = true;
   LevenbergMarquardt<3> solver;
@@ -263,7 +264,7 @@ TEST(Cholesky, SolvesAndInverts) {
   EXPECT_NEAR(cholesky.solve_lower(b).squaredNorm(), b.dot(cholesky.solve(b)), 1e-13);
 }
 
-TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
+TEST(Cholesky, RejectsMatricesThatAreNotPositiveDefinite) {
   Cholesky<3> cholesky;
   Matrix3 A = Matrix3::Identity();
   A(2, 2) = -1;

@@ -34,7 +34,7 @@ Matrix6 random_covariance(Random& random) {
   return C;
 }
 
-// The exponential of a matrix by its series: slow, and obviously right.
+// The exponential of a matrix by its power series.
 Matrix3 exponential_series(const Matrix3& W) {
   Matrix3 sum = Matrix3::Identity();
   Matrix3 term = Matrix3::Identity();
@@ -45,12 +45,12 @@ Matrix3 exponential_series(const Matrix3& W) {
   return sum;
 }
 
-// From 0 to π, dense at both ends, where the formulas change.
+// Angles from 0 to π, dense at both ends, where the formulas switch.
 const double kAngles[] = {0,       1e-300,   1e-12, 1e-9, 9.9e-9, 1e-8,       1.1e-8,     1e-5,
                           9.99e-5, 1.001e-4, 1e-3,  0.1,  0.5,    1,          1.5,        2,
                           2.5,     3,        3.1,   3.14, 3.1415, 3.14159265, kPi - 1e-9, kPi};
 
-TEST(Rotation, ExpEqualsTheSeries) {
+TEST(Rotation, ExpEqualsThePowerSeries) {
   Random random(1);
   for (double angle : kAngles) {
     for (int i = 0; i < 20; ++i) {
@@ -68,7 +68,7 @@ TEST(Rotation, LogInvertsExpAtEveryAngle) {
       const Matrix3 R = rotation_exp(omega);
       const Vector3 back = rotation_log(R);
       EXPECT_LE(back.norm(), kPi * (1 + 1e-15));
-      // At π itself both signs of the axis are the same rotation.
+      // At π both signs of the axis give the same rotation.
       const double error = std::min((back - omega).norm(), (back + omega).norm());
       EXPECT_LT(angle > kPi - 1e-8 ? error : (back - omega).norm(), 2e-14 + 1e-14 * angle) << angle;
       EXPECT_LT((rotation_exp(back) - R).norm(), 5e-15) << angle;
@@ -81,7 +81,7 @@ TEST(Rotation, LogKeepsTinyAngles) {
   EXPECT_LT((rotation_log(rotation_exp(omega)) - omega).norm(), 1e-24);
 }
 
-TEST(Rotation, AFrameAlongADirectionIsOne) {
+TEST(Rotation, FrameAlongIsARotationWhoseZAxisIsTheDirection) {
   for (const Vector3& direction :
        {Vector3(0, 0, 1), Vector3(-1, 0, 0), Vector3(1, 1, 1), Vector3(3, -2, 0.1)}) {
     const Vector3 d = direction / direction.norm();
@@ -92,7 +92,7 @@ TEST(Rotation, AFrameAlongADirectionIsOne) {
   }
 }
 
-TEST(Rotation, HalfTurnsAboutEachAxis) {
+TEST(Rotation, LogOfHalfTurnsHasNormPi) {
   for (int axis = 0; axis < 3; ++axis) {
     Matrix3 R = -Matrix3::Identity();
     R(axis, axis) = 1;
@@ -114,7 +114,7 @@ TEST(Rotation, RenormaliseSquaresTheError) {
   }
 }
 
-TEST(Rotation, AThousandCompositionsStayARotationWhenRenormalised) {
+TEST(Rotation, RenormalisingKeepsAThousandCompositionsARotation) {
   Random random(4);
   Matrix3 R = Matrix3::Identity();
   for (int i = 0; i < 1000; ++i) R = renormalise(rotation_exp(random_direction(random) * 0.03) * R);
@@ -139,7 +139,7 @@ TEST(Quaternion, RoundTripsThroughEveryBranch) {
   }
 }
 
-TEST(Quaternion, IsHamiltonAndNormalisedOnTheWayBack) {
+TEST(Quaternion, FollowsHamiltonsConventionAndIsNormalisedByToRotation) {
   const Quaternion quarter_turn_about_z = to_quaternion(rotation_exp({0, 0, kPi / 2}));
   EXPECT_NEAR(quarter_turn_about_z.z, 0.70710678118654752, 1e-15);
   EXPECT_NEAR(quarter_turn_about_z.w, 0.70710678118654752, 1e-15);
@@ -148,7 +148,7 @@ TEST(Quaternion, IsHamiltonAndNormalisedOnTheWayBack) {
   EXPECT_EQ(to_rotation({0, 0, 0, 0}), Matrix3(Matrix3::Identity()));
 }
 
-TEST(Se3, GroupLaws) {
+TEST(Se3, SatisfiesTheGroupLaws) {
   Random random(6);
   for (int i = 0; i < 100; ++i) {
     const Se3 a = random_pose(random), b = random_pose(random);
@@ -171,8 +171,7 @@ TEST(Se3, BoxminusInvertsBoxplus) {
   }
 }
 
-// Propagates C through f, which maps a ⊞-perturbation of the input to one of the output, by central
-// differences.
+// Propagates C through f by central differences. f maps a ⊞-perturbation of the input to one of the output.
 template <typename Function>
 Matrix6 propagate_numerically(const Function& f, const Matrix6& C) {
   const Matrix6 J = numeric_jacobian<6, 6>(f, Vector6::Zero(), 1e-5);
@@ -204,7 +203,7 @@ TEST(Se3, CovarianceOfAnInverseMatchesNumericJacobians) {
   }
 }
 
-TEST(Se3, FiniteMeansEveryEntry) {
+TEST(Se3, IsFiniteChecksEveryEntry) {
   Se3 T;
   EXPECT_TRUE(T.is_finite());
   T.t.z() = std::nan("");

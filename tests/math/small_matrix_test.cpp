@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eigenvalues, the best rotation and the χ² distribution against Eigen, exact cases and printed tables.
+// Compares eigenvalues, the best rotation and the χ² distribution with Eigen, exact cases and printed tables.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -45,12 +45,12 @@ TEST(SymmetricEigen, AgreesWithEigen) {
   compare_with_eigen<6>();
 }
 
-TEST(SymmetricEigen, ZeroAndDiagonal) {
+TEST(SymmetricEigen, IsExactForZeroAndDiagonalMatrices) {
   EXPECT_EQ(symmetric_eigen<3>(Matrix3::Zero()).values, Vector3::Zero());
   EXPECT_EQ(symmetric_eigen<3>(Vector3(3, 1, 2).asDiagonal()).values, Vector3(3, 1, 2));
 }
 
-TEST(BestRotation, RecoversAndIsOptimal) {
+TEST(BestRotation, RecoversTheRotationAndMaximisesTheScore) {
   Random random(62);
   const auto vector = [&] {
     return Vector3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
@@ -73,7 +73,7 @@ TEST(BestRotation, RecoversAndIsOptimal) {
   }
 }
 
-TEST(BestRotation, TwoVectorsAreEnoughAndReflectionsAreNotRotations) {
+TEST(BestRotation, NeedsTwoVectorsAndReturnsNoReflection) {
   const Matrix3 R = rotation_exp({0.3, -2.0, 1.0});
   Matrix3 two = Matrix3::Zero();
   for (const Vector3& a : {Vector3(1, 0, 0), Vector3(0, 1, 0)}) two += R * a * a.transpose();
@@ -94,7 +94,7 @@ TEST(ChiSquare, AgreesWithPrintedTables) {
   EXPECT_NEAR(chi_square_quantile(6, 0.025), 1.237344, 5e-6);
 }
 
-TEST(ChiSquare, ClosedForms) {
+TEST(ChiSquare, AgreesWithClosedForms) {
   for (double x = 0; x < 60; x += 0.37) {
     EXPECT_NEAR(chi_square_cdf(1, x), std::erf(std::sqrt(x / 2)), 1e-13);
     EXPECT_NEAR(chi_square_cdf(2, x), 1 - std::exp(-x / 2), 1e-13);

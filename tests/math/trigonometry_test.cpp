@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against the long double of the C library, in units in the last place; and against recorded bits, so that a
-// change of compiler, level or processor that moves a single bit is seen.
+// Compares the functions with the long double functions of the C library, in units in the last place, and
+// with recorded fingerprints, so that a compiler, optimisation level or processor that changes a bit fails.
 #include "plvo/math/trigonometry.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace plvo {
 namespace {
 
-// |got − exact| in units in the last place of `exact` rounded to double; subnormals count in their own unit.
+// |got − exact| in units in the last place of `exact` rounded to double. A subnormal counts in its own unit.
 double ulps(double got, long double exact) {
   const double rounded = std::abs(static_cast<double>(exact));
   const double unit = std::nextafter(rounded, std::numeric_limits<double>::infinity()) - rounded;
@@ -24,7 +24,7 @@ double ulps(double got, long double exact) {
 
 double uniform(Random& random, double low, double high) { return low + (high - low) * random.uniform(); }
 
-// A double of any magnitude between 2^low and 2^high, either sign.
+// A double of either sign with a magnitude between 2^low and 2^high.
 double any_magnitude(Random& random, int low, int high) {
   const double m = 1 + random.uniform();
   const double sign = random.below(2) == 0 ? 1 : -1;
@@ -33,7 +33,7 @@ double any_magnitude(Random& random, int low, int high) {
 
 constexpr int kDraws = 20000;
 
-// Where long double is no longer than double (32-bit ARM) the reference itself may be off by one unit.
+// Where long double is as short as double (32-bit ARM), the reference itself may be wrong by one unit.
 constexpr double kReferenceUlps = sizeof(long double) > sizeof(double) ? 0 : 1;
 
 TEST(Trigonometry, SinAndCosWithinTwoUnitsUpToAMillion) {
@@ -48,8 +48,8 @@ TEST(Trigonometry, SinAndCosWithinTwoUnitsUpToAMillion) {
   EXPECT_LT(worst_cos, 2 + kReferenceUlps);
 }
 
-TEST(Trigonometry, SinAndCosNearMultiplesOfAQuarterTurn) {
-  // Where the result is nearly zero the reduction is all there is: here the error is stated absolutely.
+TEST(Trigonometry, SinAndCosAreAccurateNearMultiplesOfAQuarterTurn) {
+  // Near a zero the error of the range reduction dominates, so this test bounds the absolute error.
   for (int k = -2000; k <= 2000; ++k) {
     const double centre = k * (kPi / 2);
     for (double x : {std::nextafter(centre, -1e9), centre, std::nextafter(centre, 1e9), centre + 1e-9}) {
@@ -73,7 +73,7 @@ TEST(Trigonometry, Atan2WithinThreeUnitsInEveryQuadrant) {
   EXPECT_LT(worst, 3 + kReferenceUlps);
 }
 
-TEST(Trigonometry, Atan2OnTheAxes) {
+TEST(Trigonometry, Atan2IsExactOnTheAxes) {
   EXPECT_EQ(atan2(0, 0), 0);
   EXPECT_EQ(atan2(0, 1), 0);
   EXPECT_EQ(atan2(0, -1), kPi);
@@ -126,7 +126,7 @@ TEST(Trigonometry, LogWithinTwoUnitsOverItsWholeRange) {
   EXPECT_EQ(log(0), -std::numeric_limits<double>::infinity());
 }
 
-TEST(Trigonometry, AFunctionOfNoNumberIsNoNumber) {
+TEST(Trigonometry, ReturnsNaNForNaNAndOutsideTheDomain) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (double x : {nan, infinity, -infinity}) {
@@ -145,8 +145,8 @@ TEST(Trigonometry, AFunctionOfNoNumberIsNoNumber) {
   EXPECT_EQ(log(infinity), infinity);
 }
 
-// Over a few thousand results of each function. Recorded with GCC on x86-64.
-TEST(Trigonometry, TheSameBitsOnEveryMachine) {
+// The fingerprints of 4000 results of each function were recorded with GCC on x86-64.
+TEST(Trigonometry, ResultsHaveTheRecordedBits) {
   Random random(6);
   Fingerprint sin_bits, cos_bits, atan2_bits, acos_bits, exp_bits, log_bits, sqrt_bits;
   for (int i = 0; i < 4000; ++i) {

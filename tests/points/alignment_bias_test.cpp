@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What registration may not do: favour some fractions of a pixel, which would look like a motion because all
-// points of a frame share the fraction; or listen to a surface that the mask leaves out.
+// The registration must not favour some fractions of a pixel: all points of a frame share the fraction, so
+// the bias would look like a motion. It must also ignore the surface that the depth mask excludes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -26,7 +26,7 @@ constexpr int kCell = 15;
 constexpr int kBorder = 12;
 constexpr double kFineGrain = 0.3;  // grains of 1.5 px and more
 
-// The texture shifted by (dx, dy), each pixel the mean over its square.
+// The texture shifted by (dx, dy). Each pixel is the mean over its square.
 GrayImage render(const test::Texture& texture, double dx, double dy, int side = kSide) {
   GrayImage image(side, side);
   constexpr int kSamples = 3;
@@ -57,8 +57,8 @@ std::vector<Corner> corners(GrayView image) {
   return all;
 }
 
-// The same registration as usually done: raw template, bilinear reading. It shows that the textures are fine
-// enough to tell.
+// The usual registration with a raw template and bilinear interpolation. Its bias shows that the textures are
+// fine enough for this test.
 double bilinear_registration(GrayView reference, GrayView current, const Corner& at) {
   double x = at.x, y = at.y;
   for (int iteration = 0; iteration < 10; ++iteration) {
@@ -85,7 +85,7 @@ double bilinear_registration(GrayView reference, GrayView current, const Corner&
   return x;
 }
 
-TEST(AlignmentBias, NoFractionOfAPixelIsFavoured) {
+TEST(AlignmentBias, HasNoBiasAtAnyFractionOfAPixel) {
   std::vector<test::Texture> textures;
   std::vector<GrayImage> references;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -94,7 +94,7 @@ TEST(AlignmentBias, NoFractionOfAPixelIsFavoured) {
   }
   double worst = 0, worst_bilinear = 0;
   for (int eighths = 0; eighths < 8; ++eighths) {
-    // Along x only: the bias of one axis does not depend on the other's fraction.
+    // The shift is along x only, because the bias of one axis does not depend on the fraction of the other.
     const double shift = eighths / 8.0;
     double error_sum = 0, bilinear_sum = 0;
     int found = 0, found_bilinear = 0, tried = 0;
@@ -129,7 +129,7 @@ TEST(AlignmentBias, NoFractionOfAPixelIsFavoured) {
   EXPECT_GT(worst_bilinear, 5 * worst) << "the textures are too smooth to tell";
 }
 
-// Two surfaces meet two pixels right of the patch's middle; each moves by its own shift.
+// Two surfaces meet two pixels right of the middle of the patch. Each moves by its own shift.
 constexpr int kSmall = 60;
 constexpr int kCentre = 30;
 struct TwoSurfaces {
@@ -146,14 +146,14 @@ struct TwoSurfaces {
 
 constexpr WindowMask kLeftHalf = {15, 15, 15, 15, 15, 15, 15, 15, 15};
 
-TEST(AlignmentMask, APatchIsRegisteredAsItsOwnHalfMoves) {
+TEST(AlignmentMask, FollowsTheUnmaskedHalfOfThePatch) {
   double masked_sum = 0;
   int found = 0, misled = 0;
   constexpr int kTrials = 60;
   for (int trial = 0; trial < kTrials; ++trial) {
     const TwoSurfaces scene(static_cast<std::uint64_t>(trial + 1));
     const GrayImage reference = scene.render(0, 0, 0, 0);
-    // The own half goes one way by a fraction of a pixel, the other one the other way.
+    // The half on the own surface moves by a fraction of a pixel, the other half moves the opposite way.
     const double dx = 0.05 + 0.005 * trial, dy = 0.3 - 0.005 * trial;
     const GrayImage current = scene.render(dx, dy, -1.1, -0.9);
     const Patch patch = cut_patch(reference.view(), kCentre, kCentre);
@@ -173,8 +173,8 @@ TEST(AlignmentMask, APatchIsRegisteredAsItsOwnHalfMoves) {
   EXPECT_GT(misled, kTrials / 2) << "the other half must be able to mislead";
 }
 
-TEST(AlignmentMask, WhatIsMaskedDoesNotMatterAtAll) {
-  // Any grey levels may stand in the masked half of either image, beyond the reach of the spline.
+TEST(AlignmentMask, ResultDoesNotDependOnMaskedPixels) {
+  // The masked half of both images may hold any grey levels beyond the support of the spline.
   const TwoSurfaces one(5);
   TwoSurfaces two(5);
   two.other = test::Texture(77, 100, 1.2);
@@ -190,7 +190,7 @@ TEST(AlignmentMask, WhatIsMaskedDoesNotMatterAtAll) {
   EXPECT_NEAR(a.sigma_px, b.sigma_px, 1e-3);
 }
 
-TEST(AlignmentMask, FewerThanAThirdOfThePixelsAreRefused) {
+TEST(AlignmentMask, RejectsAMaskWithFewerThanAThirdOfThePixels) {
   const test::Texture texture(4, 100, 0.8);
   const GrayImage image = render(texture, 0, 0, kSmall);
   const Patch patch = cut_patch(image.view(), kCentre, kCentre);

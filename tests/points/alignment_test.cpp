@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A patch of a smooth texture, rendered again at known sub-pixel shifts under another light.
+// Registers patches of a smooth texture that is rendered again at known sub-pixel shifts under another light.
 #include "plvo/points/alignment.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ constexpr int kImageCentre = 30;
 // Smooth enough that bilinear interpolation between the pixels is nearly exact.
 constexpr double kGrain = 1.2;
 
-// The texture shifted by (dx, dy), darkened and lifted, with noise of this SD.
+// The texture shifted by (dx, dy), with this gain, offset and SD of the noise.
 GrayImage render(const test::Texture& texture, double dx, double dy, double gain, double offset, double noise,
                  Random& random) {
   GrayImage image(kImageSide, kImageSide, 5);
@@ -37,7 +37,7 @@ GrayImage render(const test::Texture& texture, double dx, double dy, double gain
   return image;
 }
 
-// Where a detector would look: the strongest corner near the middle.
+// The strongest corner near the middle, as a detector would choose it.
 struct StrongestCorner {
   int x = kImageCentre, y = kImageCentre;
 };
@@ -49,7 +49,7 @@ StrongestCorner strongest_corner(GrayView image) {
   return best;
 }
 
-TEST(Alignment, RecoversShiftsUnderAnotherLight) {
+TEST(Alignment, RecoversShiftsUnderChangedGainAndOffset) {
   const AlignmentOptions options;
   Random random(1);
   double worst = 0, square_sum = 0;
@@ -80,7 +80,7 @@ TEST(Alignment, RecoversShiftsUnderAnotherLight) {
   EXPECT_GE(found, tried * 90 / 100);
 }
 
-TEST(Alignment, TheSamePatchStaysWhereItIs) {
+TEST(Alignment, DoesNotMoveOnTheSameImage) {
   Random random(3);
   const GrayImage image = render(test::Texture(5), 0, 0, 1, 0, 0, random);
   const Patch patch = cut_patch(image.view(), kImageCentre, kImageCentre);
@@ -92,8 +92,8 @@ TEST(Alignment, TheSamePatchStaysWhereItIs) {
   EXPECT_LT(got.sigma_px, 0.01);
 }
 
-TEST(Alignment, RefusesWhatCannotBeLocated) {
-  // Nothing at all; one straight edge; a patch of one grey level in a rich image.
+TEST(Alignment, RejectsPatchesWithoutTextureInTwoDirections) {
+  // A flat image; one straight edge; a patch of one grey level in a textured image.
   GrayImage flat(kImageSide, kImageSide, 0, 90);
   EXPECT_FALSE(align_patch(cut_patch(flat.view(), kImageCentre, kImageCentre), kWholeWindow, flat.view(),
                            kImageCentre, kImageCentre, {})
@@ -113,7 +113,7 @@ TEST(Alignment, RefusesWhatCannotBeLocated) {
                    .ok);
 }
 
-TEST(Alignment, RefusesAnotherPatch) {
+TEST(Alignment, RejectsADifferentPatch) {
   Random random(9);
   int accepted = 0;
   constexpr int kTrials = 100;
@@ -129,8 +129,8 @@ TEST(Alignment, RefusesAnotherPatch) {
 }
 
 TEST(Alignment, NeverReadsOutsideTheImage) {
-  // The image is exactly as large as its memory: a sanitizer would see a step beside it. Nor may a start
-  // outside the image, or none at all, do harm.
+  // The image is exactly as large as its memory, so a sanitizer detects a read outside it. Starts outside the
+  // image and starts that are not finite must be safe too.
   const test::Texture texture(10);
   GrayImage image(kImageSide, kImageSide);
   image.paint([&](int x, int y) { return texture(x, y); });
@@ -143,7 +143,7 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
   const double nan = std::nan("");
   EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), nan, kImageCentre, {}).ok);
   EXPECT_FALSE(align_patch(patch, kWholeWindow, image.view(), kImageCentre, nan, {}).ok);
-  // As near to the border as a keypoint gets, it works.
+  // The registration works as near to the border as a keypoint can be.
   for (int near : {kPatchRadius + 1, kImageSide - kPatchRadius - 3}) {
     const Alignment got =
         align_patch(cut_patch(image.view(), near, near), kWholeWindow, image.view(), near, near, {});
@@ -151,8 +151,8 @@ TEST(Alignment, NeverReadsOutsideTheImage) {
   }
 }
 
-TEST(Alignment, ARunawayIsNotAMatch) {
-  // A wide smooth blob: the registration would go far, and is stopped.
+TEST(Alignment, RejectsAResultFarFromItsStart) {
+  // On a wide smooth blob the registration would move far; it must stop.
   GrayImage blob(kImageSide, kImageSide), far(kImageSide, kImageSide);
   const auto paint = [](double cx) {
     return [cx](int x, int y) {
@@ -171,7 +171,7 @@ TEST(Alignment, ARunawayIsNotAMatch) {
   EXPECT_NEAR(got.x, 34.5, 0.05);
 }
 
-TEST(Alignment, StopsAtItsBound) {
+TEST(Alignment, StopsAtTheIterationBound) {
   Random random(13);
   const test::Texture texture(13);
   const GrayImage reference = render(texture, 0, 0, 1, 0, 0, random);
@@ -188,7 +188,7 @@ TEST(Alignment, StopsAtItsBound) {
 }
 
 TEST(Alignment, SigmaIsTheSpreadUnderNoise) {
-  // Fresh noise in both images, many times; sigma_px is of the worse axis.
+  // Every trial draws new noise for both images. sigma_px is that of the worse axis.
   for (double noise : {1.5, 3.0}) {
     Random random(17);
     double ratio_sum = 0;
@@ -240,7 +240,7 @@ GrayImage render_warped(const test::Texture& texture, const StrongestCorner& abo
   return image;
 }
 
-// A keyframe's patch after the camera came nearer, turned and looked from the side.
+// A keyframe's patch after the camera approaches, rotates and views it obliquely.
 TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
   Random random(9);
   const Matrix2 warps[] = {(Matrix2() << 1.3, 0, 0, 1.3).finished(), (Matrix2() << 0.8, 0, 0, 0.8).finished(),
@@ -276,16 +276,16 @@ TEST(Alignment, FollowsAPatchThatIsWarpedAsPredicted) {
   }
   EXPECT_EQ(found, tried);
   EXPECT_LT(std::sqrt(with / found), 0.06);
-  // Unwarped most are given up, and what is found lies elsewhere.
+  // Without the warp most patches are rejected, and the accepted ones have large errors.
   EXPECT_LT(found_without, tried);
   EXPECT_GT(std::sqrt(without / std::max(found_without, 1)), 3 * std::sqrt(with / found));
 }
 
-// A slight warp moves the patch itself, any other makes the window be read pixel by pixel: on both sides of
-// the border between them a patch is located as well, and better than without its warp.
+// A slight warp moves the patch itself; with any other warp the window is read pixel by pixel. On both sides
+// of this limit the accuracy must be equal, and better than without the warp.
 TEST(Alignment, FollowsASlightWarpAsWellAsAnyOther) {
   Random random(10);
-  constexpr double kWarpBorder = 0.075;  // of an entry, by which a pixel at the rim moves 0.3 px
+  constexpr double kWarpBorder = 0.075;  // limit of a matrix entry; it moves a pixel at the rim by 0.3 px
   struct Kind {
     double entry;
     bool slight;
@@ -329,7 +329,7 @@ TEST(Alignment, FollowsASlightWarpAsWellAsAnyOther) {
   EXPECT_LT(rms[0], 1.5 * rms[1]);
 }
 
-TEST(Alignment, AWarpThatNoSurfaceMakesIsRefused) {
+TEST(Alignment, RejectsImpossibleWarps) {
   Random random(11);
   const test::Texture texture(5, 100, kGrain);
   const GrayImage image = render(texture, 0, 0, 1, 0, 0, random);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mask of a keypoint's own surface against its definition: a pixel belongs to it when every pixel of its
-// level within two has a depth that differs by less than 6 %.
+// Compares the depth mask of a keypoint with its definition: a pixel belongs to the mask when every pixel of
+// the level within two pixels has a depth that differs by less than 6 %.
 #include "plvo/points/depth_mask.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr int kSceneWidth = 96;
 constexpr int kSceneHeight = 80;
 constexpr double kUnit = 0.001;  // m
 
-// A depth image made from a function of the pixel, in metres, 0 for none; no lens.
+// A depth image computed by a function of the pixel, in metres, without a lens; 0 is no depth.
 struct Scene {
   template <typename Function>
   explicit Scene(Function depth_m) : units(kSceneWidth * kSceneHeight) {
@@ -48,7 +48,7 @@ Keypoint keypoint_at(double u, double v, int level) {
   return keypoint;
 }
 
-// Depth is exposed with colour here.
+// The mask for depth that is exposed with colour.
 WindowMask depth_mask_of(const DepthSampler& depth, const Keypoint& keypoint, double depth_m) {
   const Vector2 centre(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v));
   return depth_mask(depth, centre, depth_m, keypoint.level);
@@ -57,7 +57,7 @@ WindowMask depth_mask_of(const DepthSampler& depth, const Keypoint& keypoint, do
 WindowMask slow_mask(const Scene& scene, const Keypoint& keypoint, double depth_m) {
   constexpr int kRim = 2;
   const int step = 1 << keypoint.level;
-  // A pixel of the keypoint's level, so many columns and rows from the keypoint.
+  // The pixel of the keypoint's level at this offset in columns and rows from the keypoint.
   const auto on_surface = [&](int column, int row) {
     const int x = static_cast<int>(std::floor(static_cast<double>(keypoint.u) + column * step + 0.5));
     const int y = static_cast<int>(std::floor(static_cast<double>(keypoint.v) + row * step + 0.5));
@@ -84,8 +84,8 @@ int count(const WindowMask& mask) {
   return n;
 }
 
-TEST(DepthMask, IsWhatItsDefinitionSays) {
-  // An edge aslant, a gap without depth along a part of it, single holes, and a slope.
+TEST(DepthMask, EqualsItsDefinition) {
+  // A slanted edge, a gap without depth along a part of it, single holes, and a slope.
   const Scene scene([](int x, int y) {
     if (x + y / 3 > 55 && x + y / 3 < 59 && y > 30) return 0.0;
     if ((x * 7 + y * 13) % 211 == 0) return 0.0;
@@ -95,7 +95,7 @@ TEST(DepthMask, IsWhatItsDefinitionSays) {
   Random random(3);
   int whole = 0, empty = 0, partly = 0;
   for (int trial = 0; trial < 8000; ++trial) {
-    // As close to the border as the window's centre gets.
+    // The centre of the window may be at the border of the image.
     const double u = (kSceneWidth - 1.0) * random.uniform();
     const double v = (kSceneHeight - 1.0) * random.uniform();
     const Keypoint keypoint = keypoint_at(u, v, trial % 3);
@@ -106,37 +106,38 @@ TEST(DepthMask, IsWhatItsDefinitionSays) {
         << "u " << u << ", v " << v << ", level " << trial % 3;
     ++(mask == kWholeWindow ? whole : count(mask) == 0 ? empty : partly);
   }
-  // All that may happen did.
+  // Each case occurs.
   EXPECT_GT(whole, 100);
   EXPECT_GT(partly, 100);
   EXPECT_GT(empty, 100);
 }
 
-TEST(DepthMask, FarFromAnyEdgeItIsTheWholeWindow) {
-  // The edge is just beyond the window and its rim: columns −6 … 5 of the level.
+TEST(DepthMask, IsTheWholeWindowFarFromEdges) {
+  // The edge is just beyond the window and its margin, which are columns −6 … 5 of the level.
   for (int level : {0, 1, 2}) {
     const int step = 1 << level;
     const int u = 40;
     const Scene scene([&](int x, int) { return x <= u + 5 * step ? 1.0 : 2.0; });
     EXPECT_EQ(depth_mask_of(scene.sampler(), keypoint_at(u, 40, level), 1.0), kWholeWindow) << level;
-    // One column nearer it takes the window's last column away, and no more.
+    // An edge one column nearer removes exactly the last column of the window.
     WindowMask but_last;
     but_last.fill(0x7f);
     EXPECT_EQ(depth_mask_of(scene.sampler(), keypoint_at(u + step, 40, level), 1.0), but_last) << level;
   }
 }
 
-TEST(DepthMask, WhatHasNoDepthIsAnotherSurface) {
+TEST(DepthMask, ExcludesPixelsWithoutDepth) {
   const Scene hole([](int x, int y) { return x == 40 && y == 40 ? 0.0 : 1.0; });
-  // The hole and the rim around it: 25 pixels.
+  // The hole and the margin around it are 25 pixels.
   const WindowMask mask = depth_mask_of(hole.sampler(), keypoint_at(40, 40, 0), 1.0);
   EXPECT_EQ(count(mask), kWindowColumns * kWindowRows - 25);
   const Scene blind([](int, int) { return 0.0; });
   EXPECT_EQ(depth_mask_of(blind.sampler(), keypoint_at(40, 40, 0), 1.0), WindowMask{});
 }
 
-TEST(DepthMask, BesideTheImageThereIsNone) {
-  // Everything at one depth: what is missing of the mask lies outside, or within two pixels of it.
+TEST(DepthMask, ExcludesPixelsOutsideTheImage) {
+  // The depth is constant, so the mask excludes only pixels outside the image or within two pixels of its
+  // border.
   const Scene wall([](int, int) { return 1.5; });
   for (int level : {0, 1, 2})
     for (int u = 0; u < 7 << level; ++u) {

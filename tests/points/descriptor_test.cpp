@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance against a count bit by bit; the invariance to light that the descriptor promises; and the
-// measured rate of matches over roll and scale, which docs/maths.md quotes.
+// Compares the distance with a count bit by bit, tests the invariance to light, and measures the rate of
+// right matches over roll and scale, which docs/maths.md quotes.
 #include "plvo/points/descriptor.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Descriptor random_descriptor(Random& random) {
   return descriptor;
 }
 
-TEST(Descriptor, TheDistanceIsTheNumberOfDifferingBits) {
+TEST(Descriptor, DistanceIsTheNumberOfDifferingBits) {
   Random random(256);
   for (int trial = 0; trial < 2000; ++trial) {
     const Descriptor a = random_descriptor(random);
@@ -46,9 +46,9 @@ TEST(Descriptor, TheDistanceIsTheNumberOfDifferingBits) {
   EXPECT_EQ(hamming_distance(all, all), 0);
 }
 
-TEST(Descriptor, AnyStrictlyIncreasingMapOfTheGreyLevelsChangesNothing) {
+TEST(Descriptor, IsInvariantToStrictlyIncreasingMapsOfTheGreyLevels) {
   Random random(77);
-  // 60 … 187, so that the maps below keep different levels different.
+  // The maps below keep the levels 60 … 187 distinct.
   GrayImage image(64, 50, 3);
   image.paint([&](int, int) { return 60 + random.below(64) * 2; });
   GrayImage brighter(64, 50), bent(64, 50);
@@ -62,7 +62,7 @@ TEST(Descriptor, AnyStrictlyIncreasingMapOfTheGreyLevelsChangesNothing) {
     }
 }
 
-TEST(Descriptor, ReadsOnlyWithinItsRadius) {
+TEST(Descriptor, ReadsOnlyPixelsWithinItsRadius) {
   Random random(31);
   GrayImage image = test::random_image(41, 41, random);
   const Descriptor before = Describer(image.view())(20, 20);
@@ -75,7 +75,7 @@ TEST(Descriptor, ReadsOnlyWithinItsRadius) {
   EXPECT_EQ(cut_patch(image.view(), 20, 20), patch);
 }
 
-TEST(Descriptor, ThePatchHoldsThePixelsRowByRow) {
+TEST(Descriptor, PatchHoldsThePixelsRowByRow) {
   Random random(11);
   const GrayImage image = test::random_image(30, 25, random, 4);
   const Patch patch = cut_patch(image.view(), 12, 9);
@@ -85,7 +85,7 @@ TEST(Descriptor, ThePatchHoldsThePixelsRowByRow) {
   EXPECT_EQ(i, patch.size());
 }
 
-TEST(Descriptor, HalfOfTheBitsAreSetAndTwoPlacesShareHalf) {
+TEST(Descriptor, OfRandomImagesHasHalfOfItsBitsSetAndDiffersInHalf) {
   Random random(5);
   const GrayImage image = test::random_image(400, 60, random);
   double set = 0, differ = 0;
@@ -100,7 +100,7 @@ TEST(Descriptor, HalfOfTheBitsAreSetAndTwoPlacesShareHalf) {
   EXPECT_NEAR(differ, 0.5, 0.04);
 }
 
-// The texture turned by `roll_rad` about the middle and enlarged by `scale`, with noise (SD 2), smoothed.
+// The texture rotated by `roll_rad` about the middle and enlarged by `scale`, with noise (SD 2), smoothed.
 constexpr int kTurnedSide = 360;
 GrayImage turned_texture(double roll_rad, double scale, std::uint64_t noise_seed) {
   const test::Texture texture(21);
@@ -117,14 +117,14 @@ GrayImage turned_texture(double roll_rad, double scale, std::uint64_t noise_seed
   return smoothed;
 }
 
-// Rate of right matches when the image is turned by `roll_rad` and enlarged by `scale`: a place of the
-// texture is matched when its own descriptor, among those of all places, is the nearest, within 64 bits, and
-// clearly nearer than any other. With fresh noise in both images, and up to half a pixel beside the place, as
-// a detector would be.
+// Rate of right matches when the image is rotated by `roll_rad` and enlarged by `scale`. A place of the
+// texture is matched when its own descriptor is the nearest among those of all places, within 64 bits, and
+// clearly nearer than any other. Both images have independent noise. The position is wrong by up to half a
+// pixel, like that of a detector.
 double match_rate(const GrayImage& reference, double roll_rad, double scale) {
   const GrayImage turned = turned_texture(roll_rad, scale, 4712);
   std::vector<Descriptor> before, after;
-  // Places whose image stays inside at every roll and scale of the table.
+  // These places stay inside the image at every roll and scale of the table.
   for (int y = -90; y <= 90; y += 15)
     for (int x = -100; x <= 100; x += 15) {
       const double u = scale * (std::cos(roll_rad) * x - std::sin(roll_rad) * y) + kTurnedSide / 2;
@@ -162,7 +162,7 @@ TEST(Descriptor, MatchesOverRollAndScale) {
   EXPECT_GT(rate[2][2], 0.90) << "10 degrees between two frames is a fast roll: 300 degrees a second";
   EXPECT_GT(rate[0][1], 0.95);
   EXPECT_GT(rate[0][3], 0.95);
-  // It is not turned with the image, and this is where that shows.
+  // The descriptor is not invariant to rotation, so the rate falls with roll.
   EXPECT_LT(rate[6][2], rate[0][2]);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The detector against a plain statement of its rule, and what it promises about light, places and capacity.
+// Compares the detector with a plain implementation of its rule, and tests its invariance to light, its
+// positions and its capacity.
 #include "plvo/points/detector.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ using test::GrayImage;
 constexpr int kWidth = 257;
 constexpr int kHeight = 199;
 
-// Pyramid, depth and scratch of one image. Depth is 1 m everywhere unless a pixel is cleared.
+// Pyramid, depth and scratch memory of one image. Depth is 1 m at every pixel that is not cleared.
 class DetectorFrame {
  public:
   explicit DetectorFrame(const GrayImage& image) : depth_(kWidth * kHeight, 1000), memory_(bytes()) {
@@ -75,7 +76,8 @@ int score(GrayView image, int x, int y) {
   return value;
 }
 
-// Of nine, the greatest; of equals, the first in reading order.
+// Whether the pixel has the greatest score of its 3×3 neighbourhood; of equal scores the first in reading
+// order wins.
 bool is_maximum(GrayView image, int x, int y) {
   const int centre = score(image, x, y);
   for (int dy = -1; dy <= 1; ++dy)
@@ -163,7 +165,7 @@ TEST(CornerStrength, IsTheSmallerEigenvalueOfTheMeanStructureTensor) {
     }
 }
 
-TEST(Detector, KeepsWhatTheRuleSays) {
+TEST(Detector, KeepsTheSameKeypointsAsTheReference) {
   for (std::uint64_t seed : {11U, 12U, 13U}) {
     DetectorFrame frame(textured(seed, seed == 13 ? 6 : 1.5));
     Random random(seed);
@@ -182,7 +184,7 @@ TEST(Detector, KeepsWhatTheRuleSays) {
       ASSERT_EQ(got.keypoints.size(), kept);
       EXPECT_EQ(got.dropped, expected.size() - kept);
       EXPECT_GE(got.candidates, static_cast<int>(expected.size()));
-      // The order is free; what is kept is not.
+      // Only the set of keypoints is specified, not their order.
       std::vector<std::tuple<int, int, int>> got_places, expected_places;
       for (const Keypoint& k : got.keypoints) got_places.emplace_back(k.level, k.y, k.x);
       for (std::size_t i = 0; i < kept; ++i)
@@ -195,7 +197,7 @@ TEST(Detector, KeepsWhatTheRuleSays) {
   }
 }
 
-TEST(Detector, StaysOffTheBorderAndWithinHalfAPixel) {
+TEST(Detector, KeypointsAreOffTheBorderAndRefinedByLessThanHalfAPixel) {
   const DetectorFrame frame(textured(21));
   const Detection got = detect(frame, {}, 2000);
   ASSERT_GT(got.keypoints.size(), 100U);
@@ -213,7 +215,7 @@ TEST(Detector, StaysOffTheBorderAndWithinHalfAPixel) {
   for (int count : levels) EXPECT_GT(count, 0);
 }
 
-TEST(Detector, WithoutDepthOrTextureThereIsNothing) {
+TEST(Detector, FindsNothingWithoutDepthOrTexture) {
   DetectorFrame blind(textured(22));
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) blind.clear_depth(x, y);
@@ -224,8 +226,8 @@ TEST(Detector, WithoutDepthOrTextureThereIsNothing) {
   EXPECT_EQ(detect(bare, {}, 500).candidates, 0);
 }
 
-TEST(Detector, TheSameCornersStayWhenTheLightDims) {
-  // The same scene at 40 % of the light, with the sensor's noise of the same strength in both.
+TEST(Detector, FindsTheSameCornersInDimLight) {
+  // The same scene at full light and at 40 %, with sensor noise of the same SD.
   const test::Texture texture(31, 70);
   Random random(32);
   const auto render = [&](double light) {
@@ -254,8 +256,8 @@ TEST(Detector, TheSameCornersStayWhenTheLightDims) {
   EXPECT_GT(repeated(bright, dim), 0.7);
 }
 
-TEST(Detector, TheSpreadLeavesNoTexturedCellEmpty) {
-  // The capacity is the number of cells of level 0: every cell that has a corner keeps its best one, however
+TEST(Detector, KeepsAKeypointInEveryTexturedCell) {
+  // The capacity is the number of cells of level 0. Every cell with a corner keeps its best one, however
   // strong the corners elsewhere are.
   GrayImage image = textured(41);
   for (int y = 0; y < kHeight; ++y)
@@ -276,9 +278,9 @@ TEST(Detector, TheSpreadLeavesNoTexturedCellEmpty) {
   EXPECT_EQ(std::count(count.begin(), count.end(), 1), static_cast<std::ptrdiff_t>(cells));
 }
 
-TEST(Detector, FindsRenderedCornersBelowThePixel) {
-  // A bright square on dark ground, edges blended by area, at known places below the pixel. The strength of a
-  // corner peaks a little inside it; what counts is that the place moves with the corner.
+TEST(Detector, LocatesRenderedCornersWithSubPixelAccuracy) {
+  // A bright square on dark ground, with edges blended by area, at known sub-pixel positions. The strength of
+  // a corner peaks slightly inside it; the test checks that the keypoint moves with the corner.
   DetectorConfig options;
   options.levels = 1;
   double square_sum = 0, worst = 0;

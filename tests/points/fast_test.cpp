@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segment test against its definition, threshold by threshold.
+// Compares the segment test with its definition, threshold by threshold.
 #include "plvo/points/fast.hpp"
 
 #include <gtest/gtest.h>
@@ -14,11 +14,11 @@ namespace {
 
 using test::GrayImage;
 
-// The circle of radius three, clockwise from the top.
+// The circle of radius 3, clockwise from the top.
 constexpr int kCircle[16][2] = {{0, -3}, {1, -3}, {2, -2}, {3, -1}, {3, 0},  {3, 1},   {2, 2},   {1, 3},
                                 {0, 3},  {-1, 3}, {-2, 2}, {-3, 1}, {-3, 0}, {-3, -1}, {-2, -2}, {-1, -3}};
 
-// Nine contiguous pixels of the circle are all brighter, or all darker, by more than the threshold.
+// Whether nine contiguous pixels of the circle are all brighter, or all darker, by more than the threshold.
 bool passes(GrayView image, int x, int y, int threshold) {
   for (int sign : {1, -1})
     for (int start = 0; start < 16; ++start) {
@@ -33,7 +33,7 @@ bool passes(GrayView image, int x, int y, int threshold) {
   return false;
 }
 
-// The smallest threshold that it does not pass: it passes all below.
+// The smallest threshold that the pixel does not pass; it passes all smaller ones.
 int reference_score(GrayView image, int x, int y) {
   int threshold = 0;
   while (passes(image, x, y, threshold)) ++threshold;
@@ -58,13 +58,13 @@ void expect_same(const GrayImage& owner) {
   }
 }
 
-TEST(SegmentTest, RandomImages) {
+TEST(SegmentTest, AgreesWithTheDefinitionOnRandomImages) {
   Random random(9);
-  // Widths that do and do not fill vector registers.
+  // The widths do and do not fill SIMD vectors.
   for (int width : {7, 22, 23, 38, 71, 101}) expect_same(test::random_image(width, 13, random, 5));
 }
 
-TEST(SegmentTest, ImagesWithCornersEdgesAndSpots) {
+TEST(SegmentTest, AgreesWithTheDefinitionOnCornersEdgesAndSpots) {
   Random random(16);
   for (int trial = 0; trial < 40; ++trial) {
     GrayImage image(40, 30);
@@ -83,8 +83,9 @@ TEST(SegmentTest, ImagesWithCornersEdgesAndSpots) {
   }
 }
 
-TEST(SegmentTest, EveryPatternOfTheCircle) {
-  // All 2^16 choices of brighter and not brighter: the run of nine has to be found wherever it starts.
+TEST(SegmentTest, AgreesWithTheDefinitionForEveryPatternOfTheCircle) {
+  // The test covers all 2^16 patterns of brighter and not brighter, so the nine pixels start at every
+  // position.
   GrayImage image(7, 7, 0, 100);
   for (std::uint32_t bits = 0; bits < 65536; ++bits) {
     const auto brighter = static_cast<std::uint8_t>(150 + bits % 100);
@@ -100,7 +101,7 @@ TEST(SegmentTest, EveryPatternOfTheCircle) {
   }
 }
 
-TEST(SegmentTest, TheEndsOfTheScale) {
+TEST(SegmentTest, ScoreReachesTheEndsOfItsRange) {
   GrayImage black(7, 7, 0, 0);
   black.view().at(3, 3) = 255;
   std::uint8_t score = 0;

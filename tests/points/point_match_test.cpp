@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bucketed search against one that compares everything with everything.
+// Compares the bucketed search with a brute-force search.
 #include "plvo/points/point_match.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ constexpr std::size_t scratch_bytes() {
   return sizer.peak() + kArenaAlignment;
 }
 
-// The features of one frame, with memory of their own.
+// The features of one frame and their memory.
 class Frame {
  public:
   Frame()
@@ -59,7 +59,8 @@ std::vector<Match> match(const Frame& reference, const std::vector<Prediction>& 
   return {out.begin(), out.end()};
 }
 
-// The rule in its own words. Best: fewest bits, then the smaller index. Second: any other candidate in reach.
+// The matching rule by brute force. The best candidate has the fewest differing bits, then the smaller index;
+// the second is any other candidate in reach.
 std::vector<Match> reference_match(const PointFeatures& reference, const std::vector<Prediction>& predictions,
                                    const PointFeatures& current, const PointMatchConfig& options) {
   const auto in_reach = [&](std::size_t i, std::size_t j) {
@@ -88,7 +89,7 @@ std::vector<Match> reference_match(const PointFeatures& reference, const std::ve
         const int rival = distance(i, j);
         accepted = accepted && rival > best && best <= options.max_ratio * rival;
       }
-    // Alone, a candidate is compared with the worst that there could be.
+    // A single candidate is compared with the worst possible distance.
     accepted = accepted && best <= options.max_ratio * 257;
     if (!accepted) choice[i] = kInvalidSlot;
   }
@@ -126,14 +127,14 @@ Descriptor with_flipped_bits(Descriptor descriptor, int count) {
   return descriptor;
 }
 
-TEST(PointMatch, IsTheBruteForceResult) {
+TEST(PointMatch, EqualsTheBruteForceResult) {
   Random random(32);
   std::size_t total = 0;
   for (int trial = 0; trial < 30; ++trial) {
     SCOPED_TRACE(trial);
     Frame reference, current;
     std::vector<Prediction> predictions;
-    // Few different descriptors, few bits apart: ties, rivals and shared choices happen all the time.
+    // The descriptors are few and differ in few bits, so ties, rivals and shared choices are frequent.
     const Descriptor base = random_view_descriptor(random);
     const int variants = trial % 3 == 0 ? 4 : 120;
     const auto draw = [&] {
@@ -177,7 +178,7 @@ class PointMatchPair : public testing::Test {
   PointMatchConfig options_;
 };
 
-TEST_F(PointMatchPair, TheRadiusTheLevelAndTheDistanceBound) {
+TEST_F(PointMatchPair, RespectsRadiusLevelAndMaximumDistance) {
   expect_at(0);
   current_.add(130.5, 100, 0, descriptor_);  // too far
   current_.add(101, 100, 1, descriptor_);    // another level
@@ -189,7 +190,7 @@ TEST_F(PointMatchPair, TheRadiusTheLevelAndTheDistanceBound) {
   EXPECT_EQ(run()[0].current, 3);
 }
 
-TEST_F(PointMatchPair, TheBestMustBeClearlyBetter) {
+TEST_F(PointMatchPair, RejectsAMatchAboveTheMaximumRatio) {
   expect_at(0);
   current_.add(100, 100, 0, with_flipped_bits(descriptor_, 17));
   current_.add(102, 100, 0, with_flipped_bits(descriptor_, 20));
@@ -198,7 +199,7 @@ TEST_F(PointMatchPair, TheBestMustBeClearlyBetter) {
   EXPECT_TRUE(run().empty());
 }
 
-TEST_F(PointMatchPair, OfTwoThatAreTheSameNeitherIsTaken) {
+TEST_F(PointMatchPair, RejectsTwoEqualCandidates) {
   expect_at(0);
   current_.add(95, 100, 0, descriptor_);
   EXPECT_EQ(run().size(), 1U);
@@ -208,7 +209,7 @@ TEST_F(PointMatchPair, OfTwoThatAreTheSameNeitherIsTaken) {
   EXPECT_TRUE(run().empty());
 }
 
-TEST_F(PointMatchPair, MutualTheNearestReferenceKeepsIt) {
+TEST_F(PointMatchPair, KeepsOnlyTheNearestReferenceOfACandidate) {
   expect_at(9);
   expect_at(4);
   expect_at(4);
@@ -218,7 +219,7 @@ TEST_F(PointMatchPair, MutualTheNearestReferenceKeepsIt) {
   EXPECT_EQ(matches[0].reference, 1) << "of equals the first";
 }
 
-TEST_F(PointMatchPair, NothingToMatch) {
+TEST_F(PointMatchPair, ReturnsNothingWithoutVisiblePredictions) {
   EXPECT_TRUE(run().empty());
   expect_at(0);
   EXPECT_TRUE(run().empty());

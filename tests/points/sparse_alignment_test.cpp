@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two textured planes, a wall and a floor, seen by a camera before and after a known motion, under another
+// Aligns two views of a textured wall and floor, taken before and after a known motion and under different
 // light.
 #include "plvo/points/sparse_alignment.hpp"
 
@@ -27,7 +27,7 @@ struct Light {
   double gain = 1, offset = 0;
 };
 
-// Where the ray of a camera at T_camera_reference meets the nearer plane, in the reference's frame.
+// The point where the ray of a camera at T_camera_reference meets the nearer plane, in the reference frame.
 Vector3 seen_point(const Se3& T_reference_camera, double u, double v) {
   const Vector3 ray = T_reference_camera.R * back_project(kPinhole, u, v, 1);
   const Vector3& o = T_reference_camera.t;
@@ -48,7 +48,7 @@ void render(const test::Texture& texture, const Se3& T_camera_reference, const L
     }
 }
 
-// The reference's features, two pyramids, and capacity for windows.
+// The features of the reference, two pyramids, and storage for windows.
 class SparseAlignmentTest : public testing::Test {
  protected:
   SparseAlignmentTest() : memory_(std::size_t{1} << 21), capacity_(kMostAlignmentWindows) {
@@ -87,7 +87,7 @@ class SparseAlignmentTest : public testing::Test {
       if (!align_step(windows, features_.points, kPinhole, {}, current_, T, step)) return false;
     return true;
   }
-  // The farthest that T has a keypoint from where it is.
+  // The largest reprojection error of a keypoint at T, in pixels.
   double worst_px(const Se3& T, const Se3& truth) const {
     double worst = 0;
     for (std::size_t i = 0; i < features_.keypoints.size(); ++i) {
@@ -108,7 +108,7 @@ class SparseAlignmentTest : public testing::Test {
 
 const Vector6 kMotion = (Vector6() << 0.03, -0.02, 0.04, 0.01, -0.035, 0.012).finished();
 
-TEST_F(SparseAlignmentTest, FindsItsWayOverTenPixelsUnderAnotherLight) {
+TEST_F(SparseAlignmentTest, RecoversMotionsOfTenPixelsUnderAnotherLight) {
   const Se3 truth = boxplus({}, kMotion);
   for (const Light& light : {Light{}, Light{0.6, 30}, Light{1.3, -25}}) {
     see(truth, light);
@@ -123,8 +123,8 @@ TEST_F(SparseAlignmentTest, FindsItsWayOverTenPixelsUnderAnotherLight) {
   }
 }
 
-// Another scene, a flat one, and keypoints without depth.
-TEST_F(SparseAlignmentTest, IsNotTrustedWhereNothingIsToBeFound) {
+// Another scene, a flat image, and keypoints without depth must not be trusted.
+TEST_F(SparseAlignmentTest, IsNotTrustedWithoutMatchingImageTextureOrDepth) {
   see({}, {}, 8);
   Se3 T;
   AlignmentStep step;
@@ -145,7 +145,7 @@ TEST_F(SparseAlignmentTest, IsNotTrustedWhereNothingIsToBeFound) {
   EXPECT_TRUE(T.t == before.t && T.R == before.R);
 }
 
-TEST_F(SparseAlignmentTest, KnowsWhoseImageItHolds) {
+TEST_F(SparseAlignmentTest, HoldsReturnsTrueForTheKeptFrameOnly) {
   EXPECT_FALSE(SparseAlignment().holds(0));
   EXPECT_TRUE(alignment_.holds(5));
   alignment_.keep(current_, 6);
@@ -157,13 +157,13 @@ TEST_F(SparseAlignmentTest, SpreadsItsWindowsOverAllKeypoints) {
   ASSERT_GT(features_.keypoints.size(), kMostAlignmentWindows);
   const std::span<const AlignmentWindow> windows = alignment_.cut_coarse(features_, capacity_);
   ASSERT_FALSE(windows.empty());
-  // The first and the last row lie at the border.
+  // The keypoints of the first and the last row lie at the border.
   EXPECT_LT(windows.front().keypoint, 40u);
   EXPECT_GT(windows.back().keypoint, features_.keypoints.size() - 40);
 }
 
-// Whatever the number of keypoints is to the capacity: every one of them has a window here.
-TEST_F(SparseAlignmentTest, FillsTheRoomAndNoMore) {
+// Every keypoint has a window here, so the capacity limits the number of windows.
+TEST_F(SparseAlignmentTest, FillsItsCapacityAndWritesNothingBeyond) {
   const std::size_t keypoints = features_.keypoints.size();
   for (std::size_t i = 0; i < keypoints; ++i) {
     features_.keypoints[i] = features_.keypoints[keypoints / 2];
@@ -179,8 +179,8 @@ TEST_F(SparseAlignmentTest, FillsTheRoomAndNoMore) {
   }
 }
 
-// The step in doubles, window by window: every number about its mean, the gain by regression, what it takes
-// of the gradients projected out, the projection differentiated numerically.
+// The step in double precision, window by window. Values are centred, the gain comes from regression, its
+// direction is projected out of the gradients, and the projection is differentiated numerically.
 Vector6 reference_step(std::span<const AlignmentWindow> windows, const PointFeatures& features,
                        const Pyramid& from, const Pyramid& to, const Se3& T) {
   Matrix6 H = Matrix6::Zero();
@@ -234,7 +234,7 @@ Vector6 reference_step(std::span<const AlignmentWindow> windows, const PointFeat
   return test::solve_positive(H, g);
 }
 
-TEST_F(SparseAlignmentTest, StepIsThatOfTheSlowOne) {
+TEST_F(SparseAlignmentTest, StepEqualsThatOfTheReference) {
   const Se3 truth = boxplus({}, 0.3 * kMotion);
   see(truth, {0.8, 20});
   for (const bool fine : {false, true}) {
@@ -246,7 +246,7 @@ TEST_F(SparseAlignmentTest, StepIsThatOfTheSlowOne) {
     ASSERT_TRUE(align(windows, 1, T, step));
     const Vector6 slow = reference_step(windows, features_, reference_, current_, start);
     const Vector6 fast = boxminus(T, start);
-    // Grey levels are read in eighths, and a millionth of damping is added.
+    // The difference is due to grey levels in eighths and to damping by a millionth.
     EXPECT_LT((fast - slow).norm(), 0.01 * slow.norm()) << fast.transpose() << "\n" << slow.transpose();
     EXPECT_NEAR(step.size, fast.cwiseAbs().maxCoeff(), 1e-9);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A smooth random texture that can be evaluated anywhere, not only at pixels: a sum of value noises of
-// several grain sizes, interpolated by a cubic B-spline, so that shifts below the pixel are exact.
+// A smooth random texture that can be evaluated anywhere, so that sub-pixel shifts are exact. It is a sum of
+// value noises of several grain sizes, interpolated by a cubic B-spline.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class Texture {
     for (float& value : lattice_) value = static_cast<float>(2 * random.uniform() - 1);
   }
 
-  // Grey level, roughly 127 ± 2 · contrast; grains of 5, 11 and 24 px times `grain`.
+  // Grey level, roughly 127 ± 2 · contrast, with grains of 5, 11 and 24 px times `grain`.
   double operator()(double x, double y) const {
     x /= grain_;
     y /= grain_;
@@ -35,8 +35,8 @@ class Texture {
             t * t * t / 6};
   }
   double noise(double x, double y, int salt) const {
-    // Whole grains are added so that the cut of the fraction rounds down: the texture repeats itself after
-    // kSide of them.
+    // Adding whole grains makes truncation round down. The texture repeats after kSide grains, so its value
+    // stays the same.
     constexpr int kWhole = 8 * kSide;
     const int x_floor = static_cast<int>(x + kWhole);
     const int y_floor = static_cast<int>(y + kWhole);
@@ -56,7 +56,8 @@ class Texture {
   std::array<float, kSide * kSide> lattice_{};
 };
 
-// A standard normal number: the sum of twelve uniform ones, less its mean (Irwin–Hall; tails end at 6).
+// An approximately standard normal number: the sum of twelve uniform numbers minus its mean (Irwin–Hall; the
+// tails end at 6).
 inline double gaussian(Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) sum += random.uniform();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mask of a keypoint whose window shows nothing but its own surface.
+// The depth mask of a keypoint whose window shows only its own surface.
 #pragma once
 
 #include "plvo/points/keypoint.hpp"

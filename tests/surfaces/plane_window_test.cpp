@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plane through a window of depth: where it is and where it faces against the plane that the image was made
-// of, its variances against what noise makes of it, and what is no plane.
+// Fits a plane to a window of depth. The tests compare its position and normal with the rendered plane,
+// compare its variances with the spread under noise, and check that windows without a plane are rejected.
 #include "plvo/surfaces/plane_window.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using test::Gaussian;
 constexpr int kWidth = 96;
 constexpr int kHeight = 72;
 constexpr Pinhole kPinhole{90, 92, 47.5, 35.5};
-// Of Kinect-like images the pixels are finer; noise then decides how well a normal is known.
+// The resolution of a Kinect-like image, where noise limits the accuracy of the normal.
 constexpr Pinhole kFine{525, 525, 47.5, 35.5};
 
 struct Wall {
@@ -30,7 +30,7 @@ DepthPicture picture_of(const Wall& wall, const Pinhole& pinhole = kPinhole) {
   return {kWidth, kHeight, [&](int x, int y) { return depth_of_plane(pinhole, x, y, wall.n, -wall.d); }};
 }
 
-TEST(PlaneWindow, FindsThePlaneOfTheWorld) {
+TEST(PlaneWindow, RecoversTheRenderedPlane) {
   for (const Wall& wall : {Wall{{0, 0, -1}, 2.0}, Wall{Vector3(0.5, 0.1, -0.8).normalized(), 1.7},
                            Wall{Vector3(-0.2, 0.7, -0.5).normalized(), 1.1}}) {
     const DepthPicture picture = picture_of(wall);
@@ -45,7 +45,7 @@ TEST(PlaneWindow, FindsThePlaneOfTheWorld) {
         EXPECT_NEAR(pixel.y(), v, 1e-9);
         EXPECT_NEAR(wall.n.dot(sample.p), -wall.d, 2 * DepthPicture::kUnit);
         EXPECT_GT(wall.n.dot(sample.normal), 0.9999);
-        // A depth error moves a slanted surface along its normal by less than along the ray.
+        // A depth error moves a slanted surface less along its normal than along the ray.
         const double sigma_d = DepthNoise{}.sigma(sample.p.z());
         const double cosine = -wall.n.dot(sample.p) / sample.p.z();
         EXPECT_NEAR(sample.variance, cosine * cosine * sigma_d * sigma_d, 0.01 * sample.variance);
@@ -54,11 +54,12 @@ TEST(PlaneWindow, FindsThePlaneOfTheWorld) {
   }
 }
 
-// What is left out must be out of every sum.
-TEST(PlaneWindow, HolesDoNotTiltIt) {
+// A missing reading must be missing from every sum.
+TEST(PlaneWindow, IsUnbiasedByMissingReadings) {
   const Wall wall{Vector3(0.5, 0.1, -0.8).normalized(), 1.7};
   constexpr int kU = 48, kV = 36;
-  // Of the readings, three pixels apart: the first, the last of a row, in the middle, in a corner.
+  // The readings are three pixels apart. Missing are the first, the last of a row, the middle one and a
+  // corner.
   const auto hole = [](int x, int y) {
     const int i = (x - kU) / 3, j = (y - kV) / 3;
     return (i == -3 && j == -3) || (i == 3 && j == -1) || (i == 0 && j == 0) || (i == 3 && j == 3);
@@ -74,10 +75,10 @@ TEST(PlaneWindow, HolesDoNotTiltIt) {
   EXPECT_GT(holed.normal_variance, whole.normal_variance) << "it is known less well";
 }
 
-TEST(PlaneWindow, ItsVarianceOfTheNormalIsWhatNoiseMakesOfIt) {
+TEST(PlaneWindow, VarianceOfTheNormalMatchesItsSpread) {
   Gaussian gaussian(7);
   const Wall wall{Vector3(0.4, -0.2, -0.9).normalized(), 2};
-  constexpr double kShare = 0.5;  // of σ_d
+  constexpr double kShare = 0.5;  // share of σ_d
   double spread = 0;
   double stated = 0;
   constexpr int kTrials = 300;
@@ -88,16 +89,17 @@ TEST(PlaneWindow, ItsVarianceOfTheNormalIsWhatNoiseMakesOfIt) {
     });
     SurfaceSample sample;
     ASSERT_TRUE(observe_surface(picture.sampler(), kFine, 16, 16, kShare * kShare, sample));
-    // Two directions across the normal: half of the squared distance is the variance of one.
+    // There are two directions across the normal, so half of the squared distance is the variance of one.
     spread += 0.5 * (sample.normal - wall.n).squaredNorm() / kTrials;
     stated += sample.normal_variance / kTrials;
   }
-  // It is that of a surface which faces the camera: on a slope it is less in one of the two directions.
+  // The stated variance is that of a surface that faces the camera. On a slope the true variance is smaller
+  // in one of the two directions.
   EXPECT_GT(stated, 0.9 * spread);
   EXPECT_LT(stated, 1.5 * spread);
 }
 
-TEST(PlaneWindow, AnEdgeAHoleAndAGrazingSurfaceAreNone) {
+TEST(PlaneWindow, RejectsEdgesHolesAndGrazingSurfaces) {
   SurfaceSample sample;
   const auto seen = [&](const DepthPicture& picture) {
     return observe_surface(picture.sampler(), kPinhole, 48, 36, 1, sample);
@@ -112,8 +114,8 @@ TEST(PlaneWindow, AnEdgeAHoleAndAGrazingSurfaceAreNone) {
       << "beside the image";
 }
 
-// A wall comes nearer; depth is exposed 20 ms before colour, so the depth image shows it farther away.
-TEST(PlaneWindow, IsCarriedFromDepthsTimeToColours) {
+// A wall approaches. Depth is exposed 20 ms before colour, so the depth image shows the wall farther away.
+TEST(PlaneWindow, MovesFromTheTimeOfDepthToThatOfColour) {
   CameraModel camera;
   camera.width = kWidth;
   camera.height = kHeight;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which samples of a frame's surfaces are kept: all while there is room, then as many of a small surface as
-// of a large one.
+// Tests which samples of a frame's surfaces are kept: all of them within the capacity, otherwise as many of a
+// small surface as of a large one.
 #include "plvo/surfaces/surface_sampling.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ constexpr int kImageWidth = 320;
 constexpr int kImageHeight = 240;
 constexpr Pinhole kCamera{262, 262, 159.5, 119.5};
 
-struct Room {
-  explicit Room(int samples) : memory(1 << 20), arena(memory) {
+struct SamplingRig {
+  explicit SamplingRig(int samples) : memory(1 << 20), arena(memory) {
     features.allocate(arena, samples);
     arena.seal();
   }
@@ -29,7 +29,7 @@ struct Room {
   SurfaceFeatures features;
 };
 
-// A wall, and below it a strip of floor.
+// A wall and a strip of floor below it.
 test::DepthPicture wall_and_floor() {
   return {kImageWidth, kImageHeight, [](int x, int y) {
             const double floor = test::depth_of_plane(kCamera, x, y, {0, 1, 0}, 0.8);
@@ -53,26 +53,26 @@ Share share_of(const SurfaceFeatures& features) {
   return share;
 }
 
-TEST(SurfaceSampling, TakesAllThatThereIsRoomFor) {
-  Room room(400);
-  room.sample(wall_and_floor());
-  const Share share = share_of(room.features);
+TEST(SurfaceSampling, KeepsAllSamplesWithinTheCapacity) {
+  SamplingRig rig(400);
+  rig.sample(wall_and_floor());
+  const Share share = share_of(rig.features);
   EXPECT_GT(share.wall, 60);
   EXPECT_GT(share.floor, 5);
   EXPECT_LT(share.floor, 40);
   EXPECT_EQ(share.other, 0) << "a window that holds both is no plane";
 }
 
-TEST(SurfaceSampling, ASmallSurfaceIsNotOutvoted) {
-  Room all(400);
+TEST(SurfaceSampling, KeepsAsManySamplesOfASmallSurfaceAsOfALargeOne) {
+  SamplingRig all(400);
   all.sample(wall_and_floor());
   const int floor = share_of(all.features).floor;
-  Room few(2 * floor);
+  SamplingRig few(2 * floor);
   few.sample(wall_and_floor());
   const Share share = share_of(few.features);
   EXPECT_EQ(share.floor, floor);
   EXPECT_EQ(share.wall, floor);
-  // Those of the wall are spread over it: in each quarter of its width some.
+  // The samples of the wall are spread over it: each quarter of its width has some.
   int quarters[4] = {};
   for (const SurfaceSample& sample : few.features.samples)
     if (sample.normal.z() < -0.99)
@@ -80,20 +80,20 @@ TEST(SurfaceSampling, ASmallSurfaceIsNotOutvoted) {
   for (const int quarter : quarters) EXPECT_GT(quarter, 0);
 }
 
-TEST(SurfaceSampling, WithoutRoomThereAreNone) {
-  Room room(0);
-  room.sample(wall_and_floor());
-  EXPECT_TRUE(room.features.samples.empty());
+TEST(SurfaceSampling, KeepsNothingAndNeedsNoMemoryWithoutCapacity) {
+  SamplingRig rig(0);
+  rig.sample(wall_and_floor());
+  EXPECT_TRUE(rig.features.samples.empty());
   Arena sizer = Arena::counting();
   reserve_surface_sampling(sizer, kImageWidth, kImageHeight, 0);
   EXPECT_EQ(sizer.peak(), 0U);
 }
 
-TEST(SurfaceSampling, WhatThereWasBeforeIsForgotten) {
-  Room room(400);
-  room.sample(wall_and_floor());
-  room.sample({kImageWidth, kImageHeight, [](int, int) { return 0.0; }});
-  EXPECT_TRUE(room.features.samples.empty());
+TEST(SurfaceSampling, ReplacesTheSamplesOfTheLastFrame) {
+  SamplingRig rig(400);
+  rig.sample(wall_and_floor());
+  rig.sample({kImageWidth, kImageHeight, [](int, int) { return 0.0; }});
+  EXPECT_TRUE(rig.features.samples.empty());
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ void compute_field(GrayView image, LevelLineField& field) {
   // bin.
   std::uint32_t before = 0;
   for (std::uint32_t& of_bin : places) before += std::exchange(of_bin, before);
-  Run* const seeds = field.seeds.data();
+  PixelRun* const seeds = field.seeds.data();
   for (int y = 0; y < field.height; ++y) {
     for (int block = 0; block < blocks; ++block) {
       const std::ptrdiff_t at = field.index(block, y);

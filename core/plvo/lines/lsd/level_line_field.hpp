@@ -25,7 +25,7 @@ inline constexpr int kBlockPixels = 8;
 
 // A run: some pixels of one block. Bit i is the pixel (8 · block + i, row), counted from 0. There are no
 // initialisers, because a frame's scratch holds a hundred thousand runs, all written before they are read.
-struct Run {
+struct PixelRun {
   std::uint16_t row;
   std::uint8_t block;
   std::uint8_t bits;
@@ -52,13 +52,13 @@ struct LevelLineField {
   std::span<std::uint8_t> padded_open;
   std::span<Angle> padded_angles;
   std::span<std::int16_t> magnitude_and_releases;
-  std::span<Run> seeds;  // one pixel each; capacity: all pixels of all blocks
+  std::span<PixelRun> seeds;  // one pixel each; capacity: all pixels of all blocks
   std::size_t seed_count = 0;
 
   static constexpr int kReleaseBit = 13;
 
   std::ptrdiff_t index(int block, int row) const { return row * std::ptrdiff_t{stride} + block; }
-  std::ptrdiff_t index(Run run) const { return index(run.block, run.row); }
+  std::ptrdiff_t index(PixelRun run) const { return index(run.block, run.row); }
   // Pointers to block 0. index() gives the other blocks relative to it.
   std::uint8_t* open() const { return padded_open.data() + stride + 1; }
   Angle* angles() const { return padded_angles.data() + (stride + 1) * kBlockPixels; }
@@ -78,13 +78,13 @@ constexpr LevelLineField allocate_field(Arena& memory, int image_width, int imag
   field.padded_open = memory.take<std::uint8_t>("lines/lsd", padded);
   field.padded_angles = memory.take<Angle>("lines/lsd", padded * kBlockPixels);
   field.magnitude_and_releases = memory.take<std::int16_t>("lines/lsd", stride * rows * kBlockPixels);
-  field.seeds = memory.take<Run>("lines/lsd", (stride - 1) * rows * kBlockPixels);
+  field.seeds = memory.take<PixelRun>("lines/lsd", (stride - 1) * rows * kBlockPixels);
   return field;
 }
 
 // Column of the first and of the last pixel of a run.
-inline int first_x(Run run) { return run.block * kBlockPixels + lowest_bit(run.bits); }
-inline int last_x(Run run) { return run.block * kBlockPixels + highest_bit(run.bits); }
+inline int first_x(PixelRun run) { return run.block * kBlockPixels + lowest_bit(run.bits); }
+inline int last_x(PixelRun run) { return run.block * kBlockPixels + highest_bit(run.bits); }
 
 // Angle and magnitude of an integer gradient in half grey levels, |gx|, |gy| ≤ 510, not both 0. The error is
 // at most 0.004° in the angle and half a unit in the magnitude (unit: 1/16 grey level).

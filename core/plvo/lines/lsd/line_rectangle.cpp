@@ -65,13 +65,13 @@ Int16x8 pairs(const Int32x4& four) {
 
 // Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px. For each run, its first and its last
 // pixel suffice.
-void range_along_and_across(std::span<const Run> runs, std::int32_t dx, std::int32_t dy, Range& along,
+void range_along_and_across(std::span<const PixelRun> runs, std::int32_t dx, std::int32_t dy, Range& along,
                             Range& across) {
   const std::int32_t axis = pair_of(dx, dy), normal = pair_of(-dy, dx);
   const Int16x8 axes = pairs(Int32x4{axis, axis, normal, normal});
   Int32x4 low = Int32x4{} + std::numeric_limits<std::int32_t>::max();
   Int32x4 high = Int32x4{} + std::numeric_limits<std::int32_t>::min();
-  for (const Run run : runs) {
+  for (const PixelRun run : runs) {
     const std::int32_t first = pair_of(first_x(run), run.row);
     const std::int32_t last = pair_of(last_x(run), run.row);
     const Int16x8 ends = pairs(Int32x4{first, last, first, last});
@@ -93,7 +93,7 @@ Range about(Range range, std::int64_t centre_q22) {
 
 }  // namespace
 
-void GradientMass::add(const LevelLineField& field, Run seed, Run run) {
+void GradientMass::add(const LevelLineField& field, PixelRun seed, PixelRun run) {
   const PieceMass of = weigh(field.magnitude_and_releases.data() + field.index(run) * kBlockPixels, run.bits);
   const std::int64_t x = run.block * kBlockPixels - first_x(seed);
   const std::int64_t y = run.row - seed.row;
@@ -117,7 +117,7 @@ void GradientMass::operator-=(const GradientMass& part) {
 
 GradientMass weigh(const LevelLineField& field, const Region& region) {
   GradientMass mass;
-  for (const Run run : region.runs) mass.add(field, region.seed, run);
+  for (const PixelRun run : region.runs) mass.add(field, region.seed, run);
   return mass;
 }
 

@@ -40,7 +40,7 @@ struct Rectangle {
 // are integers, so runs can be added and removed in any order.
 struct GradientMass {
   std::int64_t m = 0, mx = 0, my = 0, mxx = 0, mxy = 0, myy = 0;
-  void add(const LevelLineField& field, Run seed, Run run);
+  void add(const LevelLineField& field, PixelRun seed, PixelRun run);
   void operator-=(const GradientMass& part);
 };
 GradientMass weigh(const LevelLineField& field, const Region& region);

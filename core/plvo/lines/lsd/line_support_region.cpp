@@ -33,12 +33,12 @@ bool is_alone(const std::uint8_t* open, std::ptrdiff_t stride, unsigned bit) {
 
 }  // namespace
 
-Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> storage) {
+Region grow(LevelLineField& field, PixelRun seed, Angle tolerance, std::span<PixelRun> storage) {
   // Local pointers: otherwise the compiler must assume that a write to the flags changes the arrays'
   // addresses.
   std::uint8_t* const open = field.open();
   const Angle* const angles = field.angles();
-  Run* const runs = storage.data();
+  PixelRun* const runs = storage.data();
   const std::ptrdiff_t stride = field.stride;
   const Angle seed_angle = angles[field.pixel(first_x(seed), seed.row)];
   AngleRange range(seed_angle, tolerance);
@@ -59,7 +59,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
     run_count += taken != 0 ? 1 : 0;
   };
   // The same for the blocks above and below, together: one's bits from bit 0 on, the other's from bit 16 on.
-  const auto take_above_and_below = [&](std::ptrdiff_t at, Run of, unsigned touching) {
+  const auto take_above_and_below = [&](std::ptrdiff_t at, PixelRun of, unsigned touching) {
     const std::ptrdiff_t above = at - stride, below = at + stride;
     const unsigned free = open[above] | unsigned{open[below]} << 16;
     const unsigned fit = free & (range.holding(angles + above * kBlockPixels) |
@@ -84,7 +84,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
   }
   take(at_seed, seed.row, seed.block, seed.bits);
   for (std::size_t next = 0; next < run_count; ++next) {
-    const Run run = runs[next];
+    const PixelRun run = runs[next];
     const std::ptrdiff_t at = field.index(run);
     const unsigned bits = run.bits;
     sum.add(angles + at * kBlockPixels, bits);
@@ -114,7 +114,7 @@ Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> sto
   return {storage.first(run_count), count, seed, seed_angle, sum.beyond()};
 }
 
-void release(LevelLineField& field, Run run) {
+void release(LevelLineField& field, PixelRun run) {
   const std::ptrdiff_t at = field.index(run);
   constexpr std::int16_t kReleases = (1 << (16 - LevelLineField::kReleaseBit)) - 1;
   static_assert(kMaxReleases <= kReleases);

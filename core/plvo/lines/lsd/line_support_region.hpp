@@ -21,9 +21,9 @@ inline constexpr Angle kTau = 4096;  // 22.5°
 inline constexpr Angle kLeastTolerance = 3;
 
 struct Region {
-  std::span<Run> runs;    // disjoint
-  std::int32_t size = 0;  // pixels
-  Run seed{};             // one pixel
+  std::span<PixelRun> runs;  // disjoint
+  std::int32_t size = 0;     // pixels
+  PixelRun seed{};           // one pixel
   // Sum of the differences between the pixels' angles and `from`.
   Angle from = 0;
   std::int32_t beyond = 0;
@@ -33,9 +33,9 @@ struct Region {
 
 // Grows a region from a seed of one pixel, which is taken whether it is open or not. storage receives the
 // runs (capacity: every pixel of the field and one more). The taken pixels are no longer open.
-Region grow(LevelLineField& field, Run seed, Angle tolerance, std::span<Run> storage);
+Region grow(LevelLineField& field, PixelRun seed, Angle tolerance, std::span<PixelRun> storage);
 
 // Makes the pixels of a run open again, except those that have been released kMaxReleases times.
-void release(LevelLineField& field, Run run);
+void release(LevelLineField& field, PixelRun run);
 
 }  // namespace plvo::lsd

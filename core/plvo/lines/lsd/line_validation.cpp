@@ -11,14 +11,14 @@
 namespace plvo::lsd {
 namespace {
 
-std::int32_t squared_distance(int x, int y, Run seed) {
+std::int32_t squared_distance(int x, int y, PixelRun seed) {
   const std::int32_t dx = x - first_x(seed);
   const std::int32_t dy = y - seed.row;
   return dx * dx + dy * dy;
 }
 
 // Returns which pixels of the run's block are within a distance of the seed.
-unsigned within(std::int32_t squared_px, Run seed, Run run) {
+unsigned within(std::int32_t squared_px, PixelRun seed, PixelRun run) {
   const Int16x8 x =
       Int16x8{0, 1, 2, 3, 4, 5, 6, 7} + static_cast<std::int16_t>(run.block * kBlockPixels - first_x(seed));
   const Int16x8 y = Int16x8{} + static_cast<std::int16_t>(run.row - seed.row);
@@ -39,7 +39,7 @@ Angle spread_near_seed(const LevelLineField& field, const Region& region, const 
   std::int32_t n = 0;
   AngleSum sum(middle);
   std::int64_t squares = 0;
-  for (const Run run : region.runs) {
+  for (const PixelRun run : region.runs) {
     const unsigned near = within(reach, region.seed, run) & run.bits;
     if (near == 0) continue;
     const Angle* const angles = field.angles() + field.index(run) * kBlockPixels;
@@ -59,9 +59,9 @@ void filter(LevelLineField& field, Region& region, GradientMass& mass, Keep&& ke
   std::size_t kept = 0;
   AngleSum lost_angles(region.from);
   GradientMass lost_mass;
-  for (const Run run : region.runs) {
+  for (const PixelRun run : region.runs) {
     const unsigned bits = keep(run) & run.bits;
-    Run part = run;
+    PixelRun part = run;
     part.bits = static_cast<std::uint8_t>(run.bits & ~bits);
     if (part.bits != 0) {
       lost_mass.add(field, region.seed, part);
@@ -86,7 +86,7 @@ class Strip {
         dy_(r.dy),
         centre_(static_cast<std::int32_t>((std::int64_t{r.y_q8} * r.dx - std::int64_t{r.x_q8} * r.dy) >> 8)),
         reach_(reach << (Rectangle::kDirectionBits - 8)) {}
-  unsigned holding(Run run) const {
+  unsigned holding(PixelRun run) const {
     // Distance from the axis, 2^-14 px.
     const Int32x4 first =
         Int32x4{0, 1, 2, 3} * -dy_ + (run.row * dx_ - run.block * kBlockPixels * dy_ - centre_);
@@ -114,7 +114,7 @@ bool trim(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& 
     if (rectangle.across_sd > kMaxAcrossSd_q8) return false;
     const std::int32_t reach = std::max<std::int32_t>(256, 2 * rectangle.across_sd);
     const Strip strip(rectangle, reach);
-    filter(field, region, mass, [&](Run run) { return strip.holding(run); });
+    filter(field, region, mass, [&](PixelRun run) { return strip.holding(run); });
     if (region.size < min_size) return false;
     rectangle = fit_rectangle(region, mass);
   }
@@ -139,25 +139,25 @@ int count_held(const LevelLineField& field, const AngleRange& range, int y, int 
 }  // namespace
 
 bool tighten(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
-             std::int32_t min_size, std::span<Run> storage) {
+             std::int32_t min_size, std::span<PixelRun> storage) {
   if (is_dense(rectangle, region.size)) return true;
-  const Run seed = region.seed;
+  const PixelRun seed = region.seed;
   const Angle tolerance = spread_near_seed(field, region, rectangle);
   if (trim(field, region, mass, rectangle, min_size)) return true;
-  for (const Run run : region.runs) release(field, run);
+  for (const PixelRun run : region.runs) release(field, run);
   region = grow(field, seed, tolerance, storage);
   if (region.size < min_size) return false;
   mass = weigh(field, region);
   rectangle = fit_rectangle(region, mass);
   std::int32_t farthest = 0;
-  for (const Run run : region.runs)
+  for (const PixelRun run : region.runs)
     farthest = std::max({farthest, squared_distance(first_x(run), run.row, seed),
                          squared_distance(last_x(run), run.row, seed)});
   double squared_radius = farthest;
   for (int i = 0; i < 24 && !is_dense(rectangle, region.size); ++i) {
     squared_radius *= 0.75 * 0.75;
     const auto most = static_cast<std::int32_t>(squared_radius);
-    filter(field, region, mass, [&](Run run) { return within(most, seed, run); });
+    filter(field, region, mass, [&](PixelRun run) { return within(most, seed, run); });
     if (region.size < min_size) return false;
     rectangle = fit_rectangle(region, mass);
   }

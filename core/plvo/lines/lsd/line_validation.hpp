@@ -19,7 +19,7 @@ namespace plvo::lsd {
 // min_size pixels remain or the region does not become dense. storage: the memory that holds the region.
 // mass: the region's mass, as weigh() computes it.
 bool tighten(LevelLineField& field, Region& region, GradientMass& mass, Rectangle& rectangle,
-             std::int32_t min_size, std::span<Run> storage);
+             std::int32_t min_size, std::span<PixelRun> storage);
 
 // −log10 of the number of false alarms of the rectangle; a value ≥ 0 means a segment. The paper retries
 // failed rectangles with less width and at finer precisions. That would find a twentieth more segments, which

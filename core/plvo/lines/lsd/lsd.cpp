@@ -30,7 +30,7 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
   lsd::compute_field(band, field);
   counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
   const auto min_size = static_cast<std::int32_t>(min_region(search_.width, search_.height));
-  for (const lsd::Run seed : field.seeds.first(field.seed_count)) {
+  for (const lsd::PixelRun seed : field.seeds.first(field.seed_count)) {
     if ((field.open()[field.index(seed)] & seed.bits) == 0) continue;
     lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
     counts.grown_pixels += region.size;

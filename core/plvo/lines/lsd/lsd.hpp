@@ -76,7 +76,7 @@ class SegmentDetector {
   };
   struct Scratch {
     lsd::LevelLineField field;
-    std::span<lsd::Run> region;
+    std::span<lsd::PixelRun> region;
     std::span<Candidate> candidates;
   };
 
@@ -96,7 +96,7 @@ class SegmentDetector {
     Scratch scratch;
     const int band_height = band_rows(search) + 1;
     scratch.field = lsd::allocate_field(memory, search.width, band_height);
-    scratch.region = memory.take<lsd::Run>("lines/lsd", scratch_pixels(search.width, band_height) + 1);
+    scratch.region = memory.take<lsd::PixelRun>("lines/lsd", scratch_pixels(search.width, band_height) + 1);
     // Meaningful regions are disjoint, which bounds their number.
     const std::size_t bound =
         scratch_pixels(search.width, search.height) / min_region(search.width, search.height) + 1;
