@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kImageWidth = 320, kImageHeight = 240;
 
 std::string doubts(double fx, double fy, double cx, double cy, int width = 640, int height = 480) {
   CameraModel camera;
@@ -59,20 +59,21 @@ TEST(CalibrationCheck, GeometryThatCannotBeIsNamed) {
 
 // Boxes before a wall: each is nearer than what it hides and has a brightness of its own.
 struct BoxScene {
-  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(kWidth * kHeight, 120);
-  std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(kWidth * kHeight, 10000);  // 2 m
+  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(kImageWidth * kImageHeight, 120);
+  std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(kImageWidth * kImageHeight, 10000);  // 2 m
 
   explicit BoxScene(std::uint64_t seed) {
     Random random(seed);
     const auto up_to = [&random](int n) { return static_cast<int>(random.uniform() * n); };
     for (int k = 0; k < 40; ++k) {
-      const int x0 = up_to(kWidth - 40), y0 = up_to(kHeight - 40), w = 10 + up_to(30), h = 10 + up_to(30);
+      const int x0 = up_to(kImageWidth - 40), y0 = up_to(kImageHeight - 40), w = 10 + up_to(30),
+                h = 10 + up_to(30);
       const auto value = static_cast<std::uint8_t>(up_to(256));
       const auto units = static_cast<std::uint16_t>(9000 - 150 * k);
       for (int y = y0; y < y0 + h; ++y)
         for (int x = x0; x < x0 + w; ++x) {
-          grey[static_cast<std::size_t>(y * kWidth + x)] = value;
-          depth[static_cast<std::size_t>(y * kWidth + x)] = units;
+          grey[static_cast<std::size_t>(y * kImageWidth + x)] = value;
+          depth[static_cast<std::size_t>(y * kImageWidth + x)] = units;
         }
     }
   }
@@ -91,8 +92,8 @@ std::string findings(const Edit& edit, double units_per_metre = 5000, int frames
     BoxScene scene(static_cast<std::uint64_t>(i / 4));
     edit(scene.grey, scene.depth);
     RgbdFrame frame;
-    frame.colour = {scene.grey.data(), kWidth, kHeight, kWidth, PixelFormat::kGray8};
-    frame.depth = {scene.depth.data(), kWidth, kHeight, kWidth, 1 / units_per_metre};
+    frame.colour = {scene.grey.data(), kImageWidth, kImageHeight, kImageWidth, PixelFormat::kGray8};
+    frame.depth = {scene.depth.data(), kImageWidth, kImageHeight, kImageWidth, 1 / units_per_metre};
     keep(check.add(frame));
   }
   keep(check.finish());
@@ -139,9 +140,10 @@ TEST(FrameCheck, DepthInAnotherUnit) {
 TEST(FrameCheck, ACombOfDepthIsNotEmpty) {
   for (const int first : {0, 1})
     EXPECT_EQ(findings([first](auto&, auto& depth) {
-                for (int y = 0; y < kHeight; ++y)
-                  for (int x = 0; x < kWidth; ++x)
-                    if (x % 2 == first || y % 2 == first) depth[static_cast<std::size_t>(y * kWidth + x)] = 0;
+                for (int y = 0; y < kImageHeight; ++y)
+                  for (int x = 0; x < kImageWidth; ++x)
+                    if (x % 2 == first || y % 2 == first)
+                      depth[static_cast<std::size_t>(y * kImageWidth + x)] = 0;
               }),
               "")
         << first;
@@ -152,10 +154,10 @@ TEST(FrameCheck, DepthThatLiesMirroredOverColour) {
   const auto flip = [](bool left_right, bool up_down) {
     return findings([=](auto&, auto& depth) {
       const std::vector<std::uint16_t> copy = depth;
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-          depth[static_cast<std::size_t>(y * kWidth + x)] = copy[static_cast<std::size_t>(
-              (up_down ? kHeight - 1 - y : y) * kWidth + (left_right ? kWidth - 1 - x : x))];
+      for (int y = 0; y < kImageHeight; ++y)
+        for (int x = 0; x < kImageWidth; ++x)
+          depth[static_cast<std::size_t>(y * kImageWidth + x)] = copy[static_cast<std::size_t>(
+              (up_down ? kImageHeight - 1 - y : y) * kImageWidth + (left_right ? kImageWidth - 1 - x : x))];
     });
   };
   EXPECT_TRUE(contains(flip(true, false), "depth looks mirrored left to right against colour"))

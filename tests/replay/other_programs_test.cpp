@@ -15,7 +15,7 @@ using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
-Status read_text(const std::string& text, Calibration& calibration, const char* name = "camera.yaml") {
+Status read_as(const std::string& text, Calibration& calibration, const char* name = "camera.yaml") {
   const TemporaryFolder folder;
   write_file(folder / name, text);
   return read_calibration(folder / name, calibration);
@@ -35,7 +35,7 @@ const std::string kCamchain =
 
 TEST(OtherPrograms, KalibrsChainWithColourByItsTopic) {
   Calibration c;
-  const Status status = read_text(kCamchain, c, "camchain.yaml");
+  const Status status = read_as(kCamchain, c, "camchain.yaml");
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(c.camera.pinhole.fx, 615.1);
   EXPECT_EQ(c.camera.pinhole.fy, 615.2);
@@ -47,7 +47,7 @@ TEST(OtherPrograms, KalibrsChainWithColourByItsTopic) {
   EXPECT_EQ(c.guess, "");
   EXPECT_FALSE(c.depth_scale_given || c.readout_given || c.depth_camera.known);
   // What it does not know may stand beside it.
-  ASSERT_TRUE(read_text(kCamchain + "depth_scale: 1000\nreadout_s: 0.02\ndepth_tx: -0.015\n", c).ok());
+  ASSERT_TRUE(read_as(kCamchain + "depth_scale: 1000\nreadout_s: 0.02\ndepth_tx: -0.015\n", c).ok());
   EXPECT_TRUE(c.depth_units_per_metre == 1000 && c.camera.readout_s == 0.02);
   EXPECT_TRUE(c.depth_camera.known && c.depth_camera.as_colour && c.depth_camera.tx == -0.015);
 }
@@ -56,7 +56,7 @@ TEST(OtherPrograms, KalibrsChainThatDoesNotSayWhichIsColours) {
   std::string text = kCamchain;
   text.replace(text.find("color/image_raw"), 5, "other");
   Calibration c;
-  ASSERT_TRUE(read_text(text, c).ok());
+  ASSERT_TRUE(read_as(text, c).ok());
   EXPECT_EQ(c.camera.pinhole.fx, 385.1);
   const std::vector<std::string> assumed = c.assumptions();
   ASSERT_FALSE(assumed.empty());
@@ -65,7 +65,7 @@ TEST(OtherPrograms, KalibrsChainThatDoesNotSayWhichIsColours) {
       std::string::npos)
       << assumed[0];
   // One alone needs no topic.
-  ASSERT_TRUE(read_text(kCamchain.substr(0, kCamchain.find("cam1:")), c).ok());
+  ASSERT_TRUE(read_as(kCamchain.substr(0, kCamchain.find("cam1:")), c).ok());
   EXPECT_EQ(c.camera.pinhole.fx, 385.1);
   EXPECT_EQ(c.guess, "");
 }
@@ -82,7 +82,7 @@ const std::string kEuroc =
 TEST(OtherPrograms, Eurocs) {
   Calibration c;
   for (const std::string& text : {kEuroc, "%YAML:1.0\n" + kEuroc}) {
-    const Status status = read_text(text, c, "sensor.yaml");
+    const Status status = read_as(text, c, "sensor.yaml");
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(c.camera.pinhole.fy, 457.296);
     EXPECT_EQ(c.camera.distortion.k1, -0.28340811);
@@ -96,18 +96,18 @@ TEST(OtherPrograms, LensesAndModelsByTheirNames) {
   Calibration c;
   for (const char* name : {"equidistant", "equi"}) {
     ASSERT_TRUE(
-        read_text(camera + "distortion_model: " + name + "\ndistortion_coeffs: [1, 2, 3, 4]\n", c).ok());
+        read_as(camera + "distortion_model: " + name + "\ndistortion_coeffs: [1, 2, 3, 4]\n", c).ok());
     EXPECT_EQ(c.camera.distortion.model, LensModel::kEquidistant);
     EXPECT_EQ(c.camera.distortion.k4, 4);
   }
   for (const char* lens :
        {"", "distortion_model: none\ndistortion_coeffs: []\n", "distortion_model: radtan\n"}) {
-    ASSERT_TRUE(read_text(camera + lens, c).ok()) << lens;
+    ASSERT_TRUE(read_as(camera + lens, c).ok()) << lens;
     EXPECT_TRUE(c.camera.distortion.is_zero());
     EXPECT_FALSE(c.has_size);
   }
   const auto unsupported = [&](const std::string& text, std::string_view words) {
-    const Status status = read_text(text, c);
+    const Status status = read_as(text, c);
     EXPECT_EQ(status.code(), StatusCode::kUnsupported) << text;
     EXPECT_TRUE(says(status, words)) << status.message();
   };
@@ -116,7 +116,7 @@ TEST(OtherPrograms, LensesAndModelsByTheirNames) {
     unsupported("cam0:\n  camera_model: " + std::string(model) + "\n  intrinsics: [1, 2, 3, 4, 5]\n",
                 "camera_model '" + std::string(model) + "' is not supported, only pinhole");
   const auto damaged = [&](const std::string& text, std::string_view words) {
-    const Status status = read_text(text, c);
+    const Status status = read_as(text, c);
     EXPECT_EQ(status.code(), StatusCode::kDamaged) << text;
     EXPECT_TRUE(says(status, words)) << status.message();
   };
@@ -139,7 +139,7 @@ const std::string kOrbSlam2 =
 
 TEST(OtherPrograms, OrbSlams) {
   Calibration c, tum;
-  const Status status = read_text(kOrbSlam2, c, "TUM1.yaml");
+  const Status status = read_as(kOrbSlam2, c, "TUM1.yaml");
   ASSERT_TRUE(status.ok()) << status.message();
   ASSERT_TRUE(builtin_calibration("tum-fr1", tum).ok());
   EXPECT_EQ(c.camera.pinhole.fx, tum.camera.pinhole.fx);
@@ -154,21 +154,21 @@ TEST(OtherPrograms, OrbSlams) {
       "Camera1.cx: 320\nCamera1.cy: 240\nCamera1.k1: 0.1\nCamera1.k2: 0\nCamera1.p1: 0\nCamera1.p2: 0\n"
       "Camera.width: 640\nCamera.height: 480\nRGBD.DepthMapFactor: 1000.0\n"
       "IMU.T_b_c1: !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: f\n   data: [1, 0, 0, 0]\n";
-  ASSERT_TRUE(read_text(third, c).ok());
+  ASSERT_TRUE(read_as(third, c).ok());
   EXPECT_TRUE(c.camera.pinhole.fx == 600.5 && c.camera.distortion.k1 == 0.1);
   EXPECT_EQ(c.depth_units_per_metre, 1000);
   std::string other = third;
   other.replace(other.find("PinHole"), 7, "Rectified");
-  ASSERT_TRUE(read_text(other, c).ok());
+  ASSERT_TRUE(read_as(other, c).ok());
   EXPECT_TRUE(c.camera.distortion.is_zero()) << "rectified images have no lens";
   other = third + "Camera1.k3: 0.3\nCamera1.k4: 0.4\n";
   other.replace(other.find("PinHole"), 7, "KannalaBrandt8");
-  ASSERT_TRUE(read_text(other, c).ok());
+  ASSERT_TRUE(read_as(other, c).ok());
   EXPECT_TRUE(c.camera.distortion.model == LensModel::kEquidistant && c.camera.distortion.k4 == 0.4);
   other.replace(other.find("KannalaBrandt8"), 14, "Equirectangular");
-  EXPECT_EQ(read_text(other, c).code(), StatusCode::kUnsupported);
-  EXPECT_TRUE(says(read_text("Camera.fx: 500\n", c), "fx, fy, cx and cy must all be given"));
-  EXPECT_TRUE(says(read_text("Camera.fx: many\n", c), "'fx' needs a number"));
+  EXPECT_EQ(read_as(other, c).code(), StatusCode::kUnsupported);
+  EXPECT_TRUE(says(read_as("Camera.fx: 500\n", c), "fx, fy, cx and cy must all be given"));
+  EXPECT_TRUE(says(read_as("Camera.fx: many\n", c), "'fx' needs a number"));
 }
 
 // As Open3D's PinholeCameraIntrinsic writes it, with tabs.
@@ -180,7 +180,7 @@ const std::string kOpen3d =
 TEST(OtherPrograms, Open3ds) {
   Calibration c;
   for (const char* name : {"camera_intrinsic.json", "calibration.txt"}) {  // the content says what it is
-    const Status status = read_text(kOpen3d, c, name);
+    const Status status = read_as(kOpen3d, c, name);
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(c.camera.pinhole.fx, 615.19519);
     EXPECT_EQ(c.camera.pinhole.fy, 615.25);
@@ -188,10 +188,10 @@ TEST(OtherPrograms, Open3ds) {
     EXPECT_EQ(c.camera.pinhole.cy, 247.519196);
     EXPECT_TRUE(c.has_size && c.camera.width == 640 && c.camera.height == 480);
   }
-  EXPECT_TRUE(says(read_text("{\"intrinsic_matrix\": [615, 0, 298, 0, 615, 247, 0, 0, 1]}", c, "a.json"),
+  EXPECT_TRUE(says(read_as("{\"intrinsic_matrix\": [615, 0, 298, 0, 615, 247, 0, 0, 1]}", c, "a.json"),
                    "column by column: fx 0 0 0 fy 0 cx cy 1"));
-  EXPECT_FALSE(read_text("{\"intrinsic_matrix\": {}}", c, "a.json").ok());
-  EXPECT_FALSE(read_text("{\"intrinsic_matrix\": [615, 0", c, "a.json").ok());
+  EXPECT_FALSE(read_as("{\"intrinsic_matrix\": {}}", c, "a.json").ok());
+  EXPECT_FALSE(read_as("{\"intrinsic_matrix\": [615, 0", c, "a.json").ok());
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
-bool contains(const std::string& text, std::string_view words) {
+bool has_text(const std::string& text, std::string_view words) {
   return text.find(words) != std::string::npos;
 }
 
@@ -68,7 +68,7 @@ TEST_F(SequenceCalibration, TheOnlySettingsOfAnyNameAreTakenWithAWarning) {
   write_file(folder_ / "TUM1.yaml", settings);
   ASSERT_TRUE(find(folder_.path()).ok());
   EXPECT_EQ(calibration_.camera.pinhole.fx, 517.3);
-  EXPECT_TRUE(contains(guess_, "TUM1.yaml, the folder's only settings, is taken for it")) << guess_;
+  EXPECT_TRUE(has_text(guess_, "TUM1.yaml, the folder's only settings, is taken for it")) << guess_;
   EXPECT_EQ(calibration_files_in(folder_.path()), std::vector<fs::path>{folder_ / "TUM1.yaml"});
   // Of two, nobody knows which.
   write_file(folder_ / "other.yaml", settings);
@@ -90,7 +90,7 @@ TEST_F(SequenceCalibration, TumsOwnNameIsACameraAndOneLikeItAHint) {
     Calibration tum;
     ASSERT_TRUE(builtin_calibration(model, tum).ok());
     EXPECT_EQ(calibration_.camera.pinhole.cx, tum.camera.pinhole.cx);
-    EXPECT_TRUE(contains(guess_, "by its name it is of the camera " + model)) << guess_;
+    EXPECT_TRUE(has_text(guess_, "by its name it is of the camera " + model)) << guess_;
     for (const std::string& name :
          {std::string("fr") + number + "_kitchen", std::string("my_freiburg") + number + "_flat"}) {
       const Status status = find(make(name.c_str()));
@@ -111,20 +111,20 @@ TEST_F(SequenceCalibration, PlainNumbersOfTumsCamerasAreSaidToLackTheRest) {
     return missing_of_tum(folder_ / name, calibration_);
   };
   const std::string all = missing("walk", "517.3 516.5 318.6 255.3 5000");
-  EXPECT_TRUE(contains(all, "by its numbers this is TUM's camera tum-fr1")) << all;
-  EXPECT_TRUE(contains(all,
+  EXPECT_TRUE(has_text(all, "by its numbers this is TUM's camera tum-fr1")) << all;
+  EXPECT_TRUE(has_text(all,
                        "does not say: the lens, the rolling shutter, when depth is exposed, what the "
                        "stamps err; --camera-model tum-fr1 says it"))
       << all;
   const std::string lens =
       missing("walk", "517.306408 516.469215 318.643040 255.313989 5000 0.262 -0.953 -0.005 0.0026 1.163");
-  EXPECT_TRUE(contains(lens, "does not say: the rolling shutter, when depth is exposed, what the")) << lens;
-  EXPECT_TRUE(contains(missing("walk", "520.9 521.0 325.1 249.7"), "tum-fr2"));
-  EXPECT_TRUE(contains(missing("walk", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
+  EXPECT_TRUE(has_text(lens, "does not say: the rolling shutter, when depth is exposed, what the")) << lens;
+  EXPECT_TRUE(has_text(missing("walk", "520.9 521.0 325.1 249.7"), "tum-fr2"));
+  EXPECT_TRUE(has_text(missing("walk", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
   // The driver's numbers say nothing, the recording's name does; that of a bag, too.
   for (const char* name : {"rgbd_dataset_freiburg1_desk", "rgbd_dataset_freiburg1_desk.bag"})
     EXPECT_TRUE(
-        contains(missing(name, "525 525 319.5 239.5 5000"), "by its name this is TUM's camera tum-fr1"));
+        has_text(missing(name, "525 525 319.5 239.5 5000"), "by its name this is TUM's camera tum-fr1"));
   EXPECT_EQ(missing("fr1_desk", "525 525 319.5 239.5 5000"), "") << "a name like it is none of TUM's";
   EXPECT_EQ(missing("walk", "518 516.5 318.6 255.3 5000"), "");
   for (const char* model : {"tum-fr1", "tum-fr2", "tum-fr3"}) {

@@ -17,7 +17,7 @@ using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
-constexpr std::int64_t kTolerance = 20'000'000;
+constexpr std::int64_t kTolerance_ns = 20'000'000;
 
 // A list of `count` images, 1/30 s apart from `first_s` on; `unit` of them are a second.
 std::string list(const char* folder, double first_s, double unit = 1, int count = 30) {
@@ -32,7 +32,7 @@ class StampOrder : public ::testing::Test {
   Status read(const std::string& rgb, const std::string& depth) {
     write_file(folder_ / "rgb.txt", rgb);
     write_file(folder_ / "depth.txt", depth);
-    return read_tum_index(folder_.path(), {}, kTolerance, index_);
+    return read_tum_index(folder_.path(), {}, kTolerance_ns, index_);
   }
   TemporaryFolder folder_;
   SequenceIndex index_;
@@ -65,7 +65,7 @@ TEST_F(StampOrder, AClockThatStepsBackIsNamedWithItsStepAndLine) {
   for (int i = 0; i < 40; ++i)
     pairs += fmt::format("{0:.3f} a{1}.png {0:.3f} b{1}.png\n", i < 20 ? 9 + 0.1 * i : 8 + 0.1 * i, i);
   write_file(folder_ / "pairs.txt", pairs);
-  EXPECT_TRUE(says(read_tum_index(folder_.path(), folder_ / "pairs.txt", kTolerance, index_),
+  EXPECT_TRUE(says(read_tum_index(folder_.path(), folder_ / "pairs.txt", kTolerance_ns, index_),
                    "pairs.txt line 21: the clock steps back by 1.000 s"));
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Rooms {
+struct Modules {
   FeatureExtraction extraction;
   ReferenceTracking tracking;
   std::array<FrameFeatures, 2> frames;
@@ -38,34 +38,34 @@ class Pairs {
     config_.noise.angular_rate_error_rad_per_s = config_.noise.shared_depth_m = 0;
     config_.surfaces = false;
     arena_ = Arena(memory_);
-    memory_.allocate(arena_, Limits::vga());
+    modules_.allocate(arena_, Limits::vga());
     arena_.seal();
-    memory_.extraction.init(camera, config_);
+    modules_.extraction.init(camera, config_);
   }
 
   // The motion from the frame before.
   MotionEstimate next(const RgbdFrame& frame) {
     TrackResult result;
-    const DepthSampler depth = memory_.extraction.depth_sampler(frame);
-    FrameFeatures& current = memory_.frames[slot_];
+    const DepthSampler depth = modules_.extraction.depth_sampler(frame);
+    FrameFeatures& current = modules_.frames[slot_];
     const NoiseScales noise = config_.noise.initial;
     const Limits limits = Limits::vga();
     current.clear({static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
-    memory_.extraction.extract(frame, depth, true, arena_, current, result);
+    modules_.extraction.extract(frame, depth, true, arena_, current, result);
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
-      const Reference reference{&memory_.frames[1 - slot_], prior_, {}};
+      const Reference reference{&modules_.frames[1 - slot_], prior_, {}};
       const PropagatedPrior nothing;
       const MotionReference nobody;
-      const CurrentFrame now{current, memory_.extraction, depth, noise, nothing, nobody};
-      memory_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
+      const CurrentFrame now{current, modules_.extraction, depth, noise, nothing, nobody};
+      modules_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
       const Se3 T_found = motion.T_current_reference;
       if (motion.status == StatusCode::kOk)
-        memory_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
+        modules_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
     }
-    if (!has_reference_) memory_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
-    memory_.extraction.lift(depth, noise, arena_, current);
+    if (!has_reference_) modules_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
+    modules_.extraction.lift(depth, noise, arena_, current);
     prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
     has_reference_ = true;
     slot_ = 1 - slot_;
@@ -75,8 +75,8 @@ class Pairs {
  private:
   static std::size_t bytes() {
     Arena sizer = Arena::counting();
-    Rooms rooms;
-    rooms.allocate(sizer, Limits::vga());
+    Modules modules;
+    modules.allocate(sizer, Limits::vga());
     FeatureExtraction::reserve(sizer, Limits::vga());
     ReferenceTracking::reserve(sizer, Limits::vga());
     return sizer.peak() + kArenaAlignment;
@@ -85,7 +85,7 @@ class Pairs {
   Config config_;
   std::vector<std::byte> memory_;
   Arena arena_;
-  Rooms memory_;
+  Modules modules_;
   PairPrior prior_;
   std::size_t slot_ = 0;
   bool has_reference_ = false;
