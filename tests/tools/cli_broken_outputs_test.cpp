@@ -23,10 +23,10 @@ using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 
-constexpr int kFrames = 24;
+constexpr int kTrackedFrames = 24;
 
 const std::string& walk() {
-  static const std::string folder = test::simulated_sequence<kFrames>().string();
+  static const std::string folder = test::simulated_sequence<kTrackedFrames>().string();
   return folder;
 }
 
@@ -165,7 +165,7 @@ TEST_F(CliBrokenOutputs, TheOtherOutputsOfARunAreWritten) {
   const auto json = nlohmann::json::parse(read_file(folder_ / "json"));
   EXPECT_NE(json["failure"].get<std::string>().find("File too large"), std::string::npos);
   EXPECT_GT(json["frames"], 1);
-  EXPECT_LT(json["frames"], kFrames);
+  EXPECT_LT(json["frames"], kTrackedFrames);
   EXPECT_TRUE(read_file(folder_ / "page").ends_with("</html>\n\n"));
   ASSERT_EQ(plvo("run " + walk() + " --quiet --json " + path("json")).exit_code, 0);
   EXPECT_TRUE(nlohmann::json::parse(read_file(folder_ / "json"))["failure"].is_null());

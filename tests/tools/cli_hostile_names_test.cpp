@@ -21,7 +21,7 @@ using test::read_file;
 using test::run_command;
 using test::TemporaryFolder;
 
-constexpr int kFrames = 4;
+constexpr int kNamedFrames = 4;
 // ESC, a newline, CSI as C1 in UTF-8 and as a byte, and what HTML takes for the begin of a comment.
 const std::string kHostile = "a\x1b[31mb\nlost 0\u009b32m\x9b<!--<script>";
 const std::string kShown = "a\\x1b[31mb\\nlost 0\\u009b32m\\x9b<!--<script>";
@@ -37,7 +37,7 @@ void expect_one_line(const std::string& text) {
 class CliHostileNames : public ::testing::Test {
  protected:
   CliHostileNames() : walk_((folder_ / kHostile).string()) {
-    fs::copy(test::simulated_sequence<kFrames>(), walk_, fs::copy_options::recursive);
+    fs::copy(test::simulated_sequence<kNamedFrames>(), walk_, fs::copy_options::recursive);
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static CommandResult plvo(const std::string& arguments) {
@@ -124,7 +124,7 @@ TEST_F(CliHostileNames, AReasonInTheStatistics) {
   const CommandResult r = plvo("run " + quoted(walk_) + " --quiet --stats -");
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("rgb/x\\x1b[31m\\u009b\\x9b.png"), std::string::npos) << "the reason: " << r.out;
-  EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 1 + kFrames) << r.out;
+  EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 1 + kNamedFrames) << r.out;
   expect_one_line(r.err);
 }
 
