@@ -117,7 +117,7 @@ TEST_F(ReaderMemory, CovariancesOfTheShortestNumbers) {
 TEST_F(ReaderMemory, CalibrationsOfTheShortestEntries) {
   const auto fill = [](const std::string& start, const std::string& entry) {
     std::string text = start;
-    while (text.size() + entry.size() < (1u << 20)) text += entry;
+    while (text.size() + entry.size() < kMaxCalibrationBytes) text += entry;
     return text;
   };
   for (const auto& [name, text] : {std::pair<const char*, std::string>{"brackets", fill("a: ", "[")},
