@@ -59,7 +59,8 @@ TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
   std::vector<RecordedMessage> messages;
   for (const char* camera : {"/1", "/2"})
     for (RecordedMessage message : test::published(walk(), true)) {
-      message.topic = "/\x1b[31m\u009b\nx" + (camera + message.topic);
+      // A message on kNotRead ends a chunk.
+      if (message.topic != test::kNotRead) message.topic = "/\x1b[31m\u009b\nx" + (camera + message.topic);
       messages.push_back(message);
     }
   write_file(folder_ / "two.bag", test::bag_of(messages, "none"));
@@ -69,7 +70,9 @@ TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
     EXPECT_NE(r.exit_code, 0);
     EXPECT_NE(r.err.find("\\x1b[31m"), std::string::npos) << r.err;
     EXPECT_EQ(r.err.find('\x1b'), std::string::npos) << r.err;
-    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    // A newline in a name starts no line of the program's.
+    std::istringstream lines(r.err);
+    for (std::string line; std::getline(lines, line);) EXPECT_TRUE(line.starts_with("plvo: ")) << r.err;
   }
 }
 
