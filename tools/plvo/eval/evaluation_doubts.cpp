@@ -11,8 +11,10 @@ namespace {
 
 constexpr double kUsualScale = 0.05;  // off by no more
 constexpr double kExplained = 0.5;    // of the ATE, at most, may be left after scaling
-constexpr double kFollowed = 0.25;    // and of that of a camera that never moves, or the path is another
-constexpr double kFarNees = 2;        // times as much as expected, or as little
+// The ratio of the error that is left to that of a camera that never moves is the standard deviation of the
+// scale, if the errors of all poses are one error. The scale must differ from 1 by so many.
+constexpr double kScaleSigmas = 3;
+constexpr double kFarNees = 2;  // times as much as expected, or as little
 
 struct NamedNees {
   const char* of;
@@ -44,7 +46,7 @@ std::string doubt_about_scale(const Evaluation& e) {
   const AbsoluteError& ate = e.ate;
   if (!(ate.scale > 0) || std::abs(ate.scale - 1) <= kUsualScale ||
       ate.scaled_rmse_m > kExplained * ate.position_m.rmse ||
-      ate.scaled_rmse_m > kFollowed * e.ate_identity.rmse)
+      kScaleSigmas * ate.scaled_rmse_m > std::abs(ate.scale - 1) * e.ate_identity.rmse)
     return {};
   return fmt::format(
       "the estimate's lengths are {:.3g} times the true ones (scaled by {:.3g} the ATE is {:.1f} mm, not "
