@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rooms that use the heap and files throw becomes a status before it reaches C.
+// Turns exceptions of the modules that use the heap and files into a status before they reach C.
 #pragma once
 
 #include <exception>

@@ -16,7 +16,7 @@ Matrix<Size, Size> matrix(const double* values) {
 
 inline Vector3 vector3(const double* values) { return {values[0], values[1], values[2]}; }
 
-// Of the 3×4 matrix [R t].
+// The 3×4 matrix [R t].
 inline Se3 se3(const double* values) {
   Se3 T;
   for (int row = 0; row < 3; ++row) {

@@ -188,7 +188,7 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   plvo::c::give_struct(whole, caller);
 }
 
-// How many there are; up to `capacity` of them are written.
+// Writes up to `capacity` elements and returns how many there are.
 template <typename View, typename Element, typename Convert>
 std::size_t copy_views(std::span<const View> views, Element* out, std::size_t capacity, Convert convert) {
   if (out != nullptr)

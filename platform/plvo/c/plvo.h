@@ -33,7 +33,7 @@
 extern "C" {
 #endif
 
-/* Of the library, as MAJOR.MINOR.PATCH. */
+/* Version of the library, as MAJOR.MINOR.PATCH. */
 PLVO_API const char* plvo_version(void);
 
 enum {
@@ -82,7 +82,7 @@ typedef struct plvo_camera {
   double depth_readout_s; /* as readout_s, of the depth image */
   double distortion_more[3];
   int64_t lens;         /* PLVO_LENS_… */
-  double stamp_sigma_s; /* how far colour stamps err, standard deviation; 0: they are exact */
+  double stamp_sigma_s; /* error of the colour stamps, standard deviation; 0: exact */
 } plvo_camera;
 
 /* Capacities. They decide the memory; what does not fit is dropped by a stated rule and counted. */
@@ -106,7 +106,7 @@ enum {
   PLVO_REFERENCE_OF_PRESET = 0,
   PLVO_REFERENCE_PREVIOUS, /* the frame before */
   PLVO_REFERENCE_KEYFRAME,
-  PLVO_REFERENCE_BOTH, /* the keyframe and a recent frame */
+  PLVO_REFERENCE_BOTH,  /* the keyframe and a recent frame */
   PLVO_REFERENCE_WINDOW /* both and the keyframe before; needs plvo_limits.references = 3 */
 };
 
@@ -123,7 +123,7 @@ typedef struct plvo_config {
   int32_t preset;    /* PLVO_PRESET_… */
   int32_t features;  /* PLVO_FEATURES_… */
   int32_t reference; /* PLVO_REFERENCE_… */
-  uint64_t seed;     /* of the random generators */
+  uint64_t seed;     /* seeds the random generators */
   /* For plvo_result.stage_ns: a monotonic clock in nanoseconds, or NULL. */
   int64_t (*stage_clock)(void);
   /* What a frame may take, where somebody waits for it (plvo_frame_took); 0: as long as it takes. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recorded sequences behind sequence.h. The room of replay uses the heap and may throw where it ends; what it
-// throws becomes a status here.
+// Recorded sequences behind sequence.h. The replay module uses the heap and may throw when it runs out; its
+// exceptions become a status here.
 #include "plvo/c/sequence.h"
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work that may only have the processor when nobody else wants it.
+// Work that runs only when the processor is otherwise idle.
 #pragma once
 
 namespace plvo {

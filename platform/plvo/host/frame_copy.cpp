@@ -7,7 +7,7 @@
 namespace plvo {
 namespace {
 
-// Of rows of row_bytes that begin stride_bytes apart, into room for them, which is returned.
+// Copies rows of row_bytes that begin stride_bytes apart into the buffer, which is returned.
 template <typename T>
 const T* copy_rows(const T* from, std::ptrdiff_t stride, std::size_t row_length, int height,
                    std::vector<T>& to) {

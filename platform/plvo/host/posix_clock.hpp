@@ -16,7 +16,7 @@ class PosixClock final : public Clock {
 std::int64_t posix_monotonic_ns();
 // Processor time of the calling thread, for Config::stage_clock.
 std::int64_t posix_thread_cpu_ns();
-// Of all threads of this process together.
+// Processor time of all threads of this process.
 std::int64_t posix_process_cpu_ns();
 
 }  // namespace plvo

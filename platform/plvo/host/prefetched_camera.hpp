@@ -46,7 +46,7 @@ class PrefetchedCamera final : public RgbdCamera {
   // Counted from the first call: the slots in [taken_, read_) wait. The one before them belongs to the
   // reader.
   std::size_t read_ = 0, taken_ = 0;
-  bool ended_ = false;  // nobody will ask any more
+  bool ended_ = false;  // no further frame is requested
   bool last_read_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -20,7 +20,7 @@ void ignore_broken_outputs();
 // Lines on standard output. kIo with the operating system's reason.
 Status print(std::string_view text);
 
-// Lines on standard error. Nobody could be told that this fails.
+// Lines on standard error. A failure is not reported.
 void print_to_stderr(std::string_view text);
 
 }  // namespace plvo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread of its own for the second of two tasks; it waits, without taking time, while there is none.
+// Runs the second of two tasks on its own thread, which sleeps while there is no task.
 #pragma once
 
 #include <condition_variable>

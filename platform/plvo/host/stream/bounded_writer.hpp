@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines to a reader that may be slow, stuck or gone, without ever waiting for it: a bounded buffer, whole
-// lines only. A line that finds no room is dropped and counted. A file on a disk is written line by line
+// lines only. A line that does not fit is dropped and counted. A file on a disk is written line by line
 // instead (whole_write.hpp): it is no reader, and a full disk must not leave half a line.
 #pragma once
 
