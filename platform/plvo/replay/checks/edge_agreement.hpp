@@ -26,10 +26,10 @@ class EdgeAgreement {
 
  private:
   static constexpr int kColumns = 5, kRows = 4;
-  enum Place : std::uint8_t { kAsIs, kMirrored, kUpsideDown, kTurned, kPlaces };
+  enum Place : std::uint8_t { kAsIs, kMirrored, kUpsideDown, kTurned, kPlaceCount };
   struct Block {
     std::uint64_t jumps = 0;
-    std::array<double, kPlaces> contrast{};  // sums over the jumps
+    std::array<double, kPlaceCount> contrast{};  // sums over the jumps
   };
 
   void add_jump(const RgbdFrame& frame, int x, int y);
