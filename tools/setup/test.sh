@@ -50,7 +50,7 @@ briefly() {
   build clang --target golden_test fuzzers
   suite clang "golden_test $(fuzzers)" --tests-regex '^(golden_test|fuzz_.*)$'
   build asan --target core_and_reader_tests
-  suite asan "golden_test points_test lsd_test odometry_states_test replay_test rosbag_test c_api_test eval_test" \
+  suite asan "golden_test points_test lsd_test odometry_states_test replay_test rosbag_test eval_test" \
     --label-regex '^(core|golden|reader)$' --label-exclude '^calculation$'
   build tsan --target threaded_tests
   suite tsan "host_frame_ring_test host_pose_stream_test host_thread_pair_test live_view_test simulator_threads_test" \
