@@ -17,9 +17,8 @@ enum class TrackState : std::uint8_t {
   // frame yet. If it is ok() with a message, a new world starts: see Odometry::track.
   kInitialising,
   kTracking,  // the pose is new
-  // Status gives the reason; the pose is the last good one; the next good frame continues from it
-  kLost,
-  kPredicted,  // nothing could be seen, status gives the reason; the pose is new, from the priors alone
+  kLost,  // status gives the reason; the pose is the last good one, and the next good frame continues from it
+  kPredicted,  // no usable features, status gives the reason; the pose is new, from the priors alone
 };
 const char* to_string(TrackState state);
 
