@@ -33,7 +33,7 @@ bool sizes_differ(const fs::path& folder) {
   return false;
 }
 
-// Whether the file is one of ScanNet's, so that there is no calibration of the user's, which comes first.
+// Whether the file is one of ScanNet's; a calibration of the user's would have come first.
 bool is_scannets(const fs::path& folder, const fs::path& file) {
   const std::vector<fs::path> files = scannet_camera_files(folder);
   return std::find(files.begin(), files.end(), file) != files.end();
