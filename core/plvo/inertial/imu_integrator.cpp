@@ -151,7 +151,7 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   const bool whole = integrate(from_ns, stamp_ns, angle);
   if (whole && !first && seconds_ > kLeastSeconds) {
     last_rotation_ = rotation(seconds_, angle);
-    // A rotation that may be any carries no information.
+    // A rotation whose variance exceeds the bound carries no information.
     open_ = last_rotation_.covariance.diagonal().maxCoeff() <= kMostRotationVariance;
     if (open_) prior.rotation = last_rotation_;
   }

@@ -28,8 +28,8 @@ struct Limits {
   int height = 480;     // px
   int keypoints = 400;  // per frame
   int segments = 256;   // per frame
-  // Number of frames that the current one is matched with, 1 … 3: a policy needs as many as its name says.
-  // With 1 instead of 2, features take a third less memory and matches take half.
+  // Number of frames that the current one is matched with, 1 … 3; the policy sets the minimum
+  // (references_of). With 1 instead of 2, features take a third less memory and matches take half.
   int references = 2;
   // Horizontal bands of the image in which segments are searched one after the other, 1 … 8. All bands use
   // the same memory. A segment that crosses a border between bands comes out as two.
@@ -152,7 +152,7 @@ struct BudgetConfig {
 };
 
 // Called at the end of each stage of a frame; for matching and motion, several times a frame. A watchdog can
-// be fed here. It may not call the odometry.
+// be fed here. The hook must not call the odometry.
 struct StageHook {
   void (*call)(void* context, Stage stage) = nullptr;
   void* context = nullptr;

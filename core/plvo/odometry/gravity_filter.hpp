@@ -38,7 +38,7 @@ class GravityFilter {
   bool known() const { return known_; }
   // The estimate itself, for tests: the odometry only uses the poses that it corrects.
   const Vector3& down_in_world() const { return down_; }     // unit length
-  const Vector3& offset() const { return offset_; }          // in the camera's axes, for unit length
+  const Vector3& offset() const { return offset_; }          // in the camera's axes, as a share of g
   const Matrix6& covariance() const { return covariance_; }  // of (ε, β)
   void forget() { *this = GravityFilter(); }
 

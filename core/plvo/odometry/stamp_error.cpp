@@ -9,7 +9,7 @@ Matrix6 moved_by(const Vector6& rate, double sigma_s) {
   return moved.lazyProduct(moved.transpose());
 }
 
-// A velocity of the scene in the camera's frame has the opposite sign when the camera's own motion is meant.
+// Rate of a transform out of the camera: the camera moves against the scene, so the sign changes.
 Vector6 out_of_camera(const Matrix3& R, const Vector6& velocity) {
   Vector6 rate;
   rate.head<3>() = -(R * velocity.head<3>());

@@ -90,7 +90,7 @@ void RecordedCamera::warm_up() {
   // Decodes one pair beforehand: the image libraries then allocate their memory here and not in the first
   // frame.
   RgbdFrame first;
-  [[maybe_unused]] const Status told_again_by_the_first_call = next(first);
+  [[maybe_unused]] const Status reported_again_by_next = next(first);
   next_ = 0;
 }
 
