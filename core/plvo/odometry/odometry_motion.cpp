@@ -12,7 +12,7 @@ constexpr int kLongestPrediction = 3;
 
 // A first motion is accepted if at least this share of the features that it puts into the image are found. A
 // wrongly aligned image mostly finds less than a tenth. A search by features finds up to a fifth when it is a
-// brick off before a wall that repeats itself. A right motion in a blurred image may find as little: it is
+// brick off before a wall that repeats itself. A correct motion in a blurred image may find as little: it is
 // not refused, but other motions are searched as well.
 constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;

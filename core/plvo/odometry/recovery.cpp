@@ -13,7 +13,7 @@
 namespace plvo {
 namespace {
 
-// Probability with which a right pose passes the test.
+// Probability with which a correct pose passes the test.
 constexpr double kPlausible = 0.9999;
 
 // Not inlined: its matrices would otherwise stay on the stack while the motion is solved for.

@@ -37,8 +37,8 @@ std::string imu_line(const ImuSample& sample);
 Status refuse_imu_files(const std::filesystem::path& folder);
 
 // Writes both files into the folder: simulated samples (kCamera) with seven decimals, recorded ones with all
-// digits. An empty file of recorded samples is not written. Returns kIo with the operating
-// system's reason.
+// digits. An empty file of recorded samples is not written. Returns kIo with the operating system's
+// reason.
 Status write_imu_files(const std::filesystem::path& folder, const ImuRecording& recording,
                        ImuAxes axes = ImuAxes::kCamera);
 
