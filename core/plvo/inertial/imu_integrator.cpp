@@ -10,27 +10,28 @@
 namespace plvo {
 namespace {
 
-// Nobody shakes or turns a camera like this: what is beyond is no reading of a gyro or an accelerometer.
+// No camera moves like this: a larger value is not a reading of a gyro or an accelerometer.
 constexpr double kMostReading = 1e4;
 constexpr double kLeastSeconds = 1e-4;
-// Of the accelerometer, as a share of g.
+// Bound on the accelerometer's offset, as a share of g.
 constexpr double kMostOffset = 0.5;
-// Two unit vectors are at most 2 apart: the mean square of each component of a direction's error is at
+// Two unit vectors differ by at most 2, so the mean square of each component of a direction's error is at
 // most 4.
 constexpr double kMostDirectionVariance = 4;
-// Of a gyro, (rad/s)²: what ImuConfig lets its offset start with. It does not wander farther.
+// Bound on the variance of a gyro's offset, (rad/s)²: the largest initial one that ImuConfig allows. The
+// random walk does not exceed it.
 constexpr double kMostOffsetVariance = 1;
-// Differences of stamps within fit into 64 bits.
+// Differences of stamps within this bound fit into 64 bits.
 constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
 bool is_stamp(std::int64_t ns) { return ns >= -kFarthest_ns && ns <= kFarthest_ns; }
-// What a frame teaches at most, in standard deviations of the prior.
+// Bound on the correction by one frame, in standard deviations of the prior.
 constexpr double kMostSigmas = 5;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
 }
 
-// Linear between two samples.
+// Interpolates linearly between two samples.
 Vector3 value_at(const ImuSample& a, const ImuSample& b, std::int64_t stamp_ns) {
   const double u = seconds_between(a.stamp_ns, stamp_ns) / seconds_between(a.stamp_ns, b.stamp_ns);
   return a.value + u * (b.value - a.value);
@@ -64,8 +65,8 @@ Status ImuIntegrator::init(std::span<ImuSample> gyro, std::span<ImuSample> accel
   return {};
 }
 
-// R_now_before_ and, for the scale's error, the angle turned about each axis. Keeps the last sample at or
-// before `to`, from which the next interval goes on. False where samples are missing.
+// Integrates R_now_before_ and the angle of rotation about each axis, which the scale error needs. Keeps the
+// last sample at or before `to`, where the next interval continues. Returns false where samples are missing.
 bool ImuIntegrator::integrate(std::int64_t from_ns, std::int64_t to_ns, Vector3& angle) {
   Matrix3 R_before_now = Matrix3::Identity();
   angle.setZero();
@@ -86,7 +87,7 @@ bool ImuIntegrator::integrate(std::int64_t from_ns, std::int64_t to_ns, Vector3&
     if (b.stamp_ns > to_ns) break;
     gyro_.pop();
   }
-  // The last samples may still be on their way: the rate goes on as it was.
+  // The last samples may not have arrived yet: the rate is taken as constant.
   if (done_ns < to_ns && gyro_.size() > 0 && gyro_[0].stamp_ns <= done_ns) {
     const double seconds = seconds_between(done_ns, to_ns);
     whole = whole && seconds_between(gyro_[0].stamp_ns, to_ns) <= config_.longest_gap_s;
@@ -99,7 +100,7 @@ bool ImuIntegrator::integrate(std::int64_t from_ns, std::int64_t to_ns, Vector3&
   return whole && done_ns == to_ns;
 }
 
-// Of the samples after `from` up to `to`, which are used up.
+// Takes the mean of the samples after `from` up to `to`, and removes them.
 bool ImuIntegrator::mean_force(std::int64_t from_ns, std::int64_t to_ns, Vector3& force, int& count) {
   force.setZero();
   count = 0;
@@ -144,13 +145,13 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
     variance_[i] += std::clamp(kMostOffsetVariance - variance_[i], 0.0, wandered);
   }
   Vector3 angle;
-  // Without a frame before, the samples of a moment before this one still say where down is.
+  // Without a previous frame, the samples of the last moment still give the direction of gravity.
   constexpr std::int64_t kMoment_ns = 100'000'000;
   const std::int64_t from_ns = first ? stamp_ns - kMoment_ns : before_ns;
   const bool whole = integrate(from_ns, stamp_ns, angle);
   if (whole && !first && seconds_ > kLeastSeconds) {
     last_rotation_ = rotation(seconds_, angle);
-    // A rotation that may be any says nothing.
+    // A rotation whose variance exceeds the bound carries no information.
     open_ = last_rotation_.covariance.diagonal().maxCoeff() <= kMostRotationVariance;
     if (open_) prior.rotation = last_rotation_;
   }
@@ -158,13 +159,13 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   int count = 0;
   if (!mean_force(from_ns, stamp_ns, force, count)) return prior;
   const double force_squared = force.squaredNorm();
-  // Far from g it is thrown or dropped, and says nothing of where down is.
+  // A specific force far from g means that the sensor is thrown or dropped; it gives no direction of gravity.
   if (!(force_squared > 0.25 * kStandardGravity * kStandardGravity &&
         force_squared < 4 * kStandardGravity * kStandardGravity))
     return prior;
   const double interval = first ? 0.1 : std::max(seconds_, kLeastSeconds);
-  // Accelerations of one go that last longer than the interval fall into several readings, as if each were so
-  // much less sure.
+  // An acceleration that lasts longer than the interval affects several readings; their variance is larger by
+  // that factor.
   const double go = std::max(1.0, 2 * config_.acceleration_s / interval);
   const double variance = (config_.accelerometer_noise * config_.accelerometer_noise / interval +
                            config_.acceleration * config_.acceleration * go) /
@@ -177,9 +178,10 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   return prior;
 }
 
-// The estimate moved the prior's rotation by e, and left a covariance C' < C, C the prior's. Of the prior's
-// error the offset's is Δt b, in the sensor's axes: given e, b moves by P Δt C⁻¹ e, and its variance P by
-// that gain on C − C'. The estimate has used the prior; nothing is used twice.
+// The estimate rotates the prior's rotation by e and leaves the covariance C' < C, where C is the prior's.
+// The offset's error b contributes Δt b to the prior's error, in the sensor's axes. Given e, b changes by P
+// Δt C⁻¹ e, and its variance P by the square of that gain times C − C'. The estimate has already used the
+// prior, but no information is used twice.
 void ImuIntegrator::learn(const TrackResult& result) {
   const bool seen = result.state == TrackState::kTracking ||
                     (result.state == TrackState::kInitialising && result.status.ok());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the samples of a gyro and an accelerometer to the prior of a frame. Samples may come ahead of the
+// Turns the samples of a gyro and an accelerometer into the prior of a frame. Samples may arrive ahead of the
 // frames: they wait in the caller's memory.
 //
 //   plvo::ImuIntegrator imu;
@@ -9,10 +9,10 @@
 //   plvo::TrackResult result = odometry.track(frame, prior);
 //   imu.learn(result);
 //
-// The gyro's rates are taken for linear between samples and integrated from frame to frame (Forster et al.,
+// The gyro's rates are taken as linear between samples and integrated from frame to frame (Forster et al.,
 // "On-Manifold Preintegration for Real-Time Visual–Inertial Odometry", 2017, without the accelerometer's
-// part); its offset is a state of its own that learn() estimates. The accelerometer's mean over the interval
-// says where down is.
+// part). The gyro's offset is a separate state that learn() estimates. The accelerometer's mean over the
+// interval gives the direction of gravity.
 #pragma once
 
 #include <cstddef>
@@ -32,12 +32,12 @@ struct ImuSample {
   Vector3 value = Vector3::Zero();
 };
 
-// The samples that wait, oldest first, in a ring of the caller's memory; a full ring drops the oldest.
+// Waiting samples, oldest first, in a ring of the caller's memory; a full ring drops the oldest.
 class SampleRing {
  public:
   SampleRing() = default;
   explicit SampleRing(std::span<ImuSample> memory) : memory_(memory) {}
-  // False, and nothing changes, for a sample that is not later than the one before or not finite.
+  // Returns false, and changes nothing, for a sample that is not later than the one before or not finite.
   bool push(const ImuSample& sample);
   void pop() {
     first_ = (first_ + 1) % memory_.size();
@@ -53,20 +53,22 @@ class SampleRing {
 
 class ImuIntegrator {
  public:
-  // The memory holds what comes in between two calls of prior(): 0.2 s at 200 Hz is 40 samples; at least two
-  // each, or none for a sensor that is not there. kInvalidArgument for less, or for the config.
+  // The memory holds the samples between two calls of prior(): 0.2 s at 200 Hz is 40 samples. It must hold at
+  // least two of each sensor, or none for a missing sensor. Returns kInvalidArgument for less, or for an
+  // invalid config.
   Status init(std::span<ImuSample> gyro, std::span<ImuSample> accelerometer, const ImuConfig& config = {});
 
-  // In the order of their stamps, which count on the clock of the frames. False for a sample that is refused:
-  // not later than the one before, or not finite.
+  // Takes samples in the order of their stamps, which use the clock of the frames. Returns false for a
+  // refused sample: not later than the one before, or not finite.
   bool add_gyro(const ImuSample& sample) { return gyro_.push(sample); }
   bool add_acceleration(const ImuSample& sample) { return accelerometer_.push(sample); }
 
-  // Of the frame at this stamp, since the frame of the call before. Without rotation at the first call, and
-  // where samples are missing; without gravity where the accelerometer said nothing.
+  // Prior of the frame at this stamp, since the frame of the previous call. It has no rotation at the first
+  // call or where samples are missing, and no gravity where the accelerometer gave none.
   MotionPrior prior(std::int64_t stamp_ns);
 
-  // What became of the frame of the last prior: where it was tracked with it, the gyro's offset is learnt.
+  // Takes the result of the frame of the last prior: if it was tracked with the prior, the gyro's offset is
+  // learnt.
   void learn(const TrackResult& result);
 
   const Vector3& gyro_offset() const { return offset_; }             // rad/s, in the sensor's axes
@@ -78,17 +80,18 @@ class ImuIntegrator {
   RotationPrior rotation(double seconds, const Vector3& angle);
 
   ImuConfig config_;
-  Matrix3 turn_ = Matrix3::Identity();  // of rates, which keep their sense in axes of another hand
+  // For rates, which are axial vectors: a rotation also if the axes have another handedness
+  Matrix3 turn_ = Matrix3::Identity();
   SampleRing gyro_, accelerometer_;
   bool started_ = false;
   std::int64_t last_ns_ = 0, before_ns_ = 0;  // of the last call of prior(), and of the one before
   Matrix3 R_now_before_ = Matrix3::Identity();
   Vector3 offset_ = Vector3::Zero(), variance_ = Vector3::Zero();
-  // Of the last prior with a rotation, until learn() has used it.
+  // State of the last prior with a rotation, until learn() has used it.
   bool open_ = false;
   double seconds_ = 0;
   RotationPrior last_rotation_;
-  // Of the last frame that was seen.
+  // State of the last frame that was tracked.
   std::int64_t seen_ns_ = 0, reference_ns_ = 0;
   Matrix3 R_seen_reference_ = Matrix3::Identity();
   bool has_seen_ = false;

@@ -9,14 +9,14 @@
 namespace plvo {
 namespace {
 
-// One over the standard deviations; 0 where there is none.
+// Inverse standard deviations; 0 for a variance that is not positive.
 Vector6 inverse_deviations(const Matrix6& C) {
   Vector6 inverse;
   for (int i = 0; i < 6; ++i) inverse[i] = C(i, i) > 0 ? 1 / sqrt(C(i, i)) : 0;
   return inverse;
 }
 
-// Of what has no variance: 1 with itself, 0 with the rest.
+// Correlation matrix; an entry without variance has 1 with itself and 0 with the others.
 Matrix6 correlations(const Matrix6& C, const Vector6& inverse) {
   Matrix6 unit;
   for (int i = 0; i < 6; ++i)
@@ -26,11 +26,11 @@ Matrix6 correlations(const Matrix6& C, const Vector6& inverse) {
   return unit;
 }
 
-// Apart, for its matrices would else be on the stack of those who find nothing to do.
+// Not inlined: its matrices would otherwise be on the stack of callers whose covariance needs no repair.
 [[gnu::noinline]] void repair(Matrix6& C) {
   const Vector6 inverse = inverse_deviations(C);
   const Matrix6 unit = correlations(C, inverse);
-  // A unit diagonal bounds what may be: entries beyond ±1 come of a variance that is nothing but rounding.
+  // A unit diagonal bounds the correlations: entries beyond ±1 come from a variance that is pure rounding.
   const SymmetricEigen<6> eigen = symmetric_eigen<6>(unit.cwiseMax(-1).cwiseMin(1));
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j <= i; ++j) {

@@ -1,38 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a covariance must be, and how one that rounding or a long gap has spoilt becomes one again. Sums of
-// the form J C Jᵀ keep a covariance what it is up to rounding. Rounding matters where a large variance is
-// almost cancelled: by a measurement that is far surer, or by a lever arm that is taken back.
+// Conditions on a covariance, and their repair after rounding or a long gap. Sums of the form J C Jᵀ preserve
+// the conditions up to rounding. Rounding matters where a large variance is almost cancelled: by a much more
+// certain measurement, or by a lever arm that is reversed.
 #pragma once
 
 #include "plvo/math/types.hpp"
 
 namespace plvo {
 
-// The one bound of what a pose may be unsure of. No rotation is off by more than π: the mean square of each
-// component of its error is at most π². A position that is unsure by a kilometre says nothing that anybody
-// could use of images that show a few metres; so far a prior may reach, too (MotionPrior::validate).
+// The bound on the uncertainty of a pose. No rotation error exceeds π, so the mean square of each of its
+// components is at most π². A position with an uncertainty of a kilometre is useless for images that show a
+// few metres; a prior may have the same uncertainty (MotionPrior::validate).
 inline constexpr double kMostRotationVariance = 9.869604401089358;  // rad²
 inline constexpr double kMostPositionVariance = 1e6;                // m²
 
-// How exactly: relative to the standard deviations, i.e. of correlations.
+// Tolerance of the conditions, relative to the standard deviations, i.e. of correlations.
 inline constexpr double kCovarianceTolerance = 1e-9;
 
-// Of (position, orientation): the position may be farther away than the bound.
+// Whether the position may be farther away than the bound; C: of (position, orientation).
 inline bool may_be_anywhere(const Matrix6& C) {
   return !(C.diagonal().head<3>().maxCoeff() <= kMostPositionVariance);
 }
 
-// Finite, no negative variance, symmetric to the tolerance, no correlation matrix's eigenvalue below minus
-// the tolerance.
+// Whether C is finite, without negative variances, symmetric to the tolerance, and with no eigenvalue of the
+// correlation matrix below minus the tolerance.
 bool is_covariance(const Matrix6& C);
 
-// Unchanged, bit by bit, where it is a covariance. Otherwise it is made symmetric, what has no positive
-// variance becomes zero, and its correlations become the nearest semidefinite matrix (their negative
-// eigenvalues are set to zero). False where it is not finite.
+// Makes C a covariance; a valid one stays the same bit by bit. Otherwise C is made symmetric, rows and
+// columns without a positive variance become zero, and the correlations become the nearest semidefinite
+// matrix (their negative eigenvalues are set to zero). Returns false where C is not finite.
 bool make_covariance(Matrix6& C);
 
-// The same of (position, orientation), and no variance is beyond its bound: a row and a column whose variance
-// is are scaled, which keeps the correlations. scale: these factors, all ones where nothing was too large.
+// Does the same for (position, orientation), and bounds the variances. A row and a column with a variance
+// beyond its bound are scaled, which keeps the correlations. scale: these factors, all ones if no variance
+// was too large.
 bool make_bounded_covariance(Matrix6& C, Vector6* scale = nullptr);
 
 }  // namespace plvo

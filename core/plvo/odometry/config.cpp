@@ -12,7 +12,7 @@
 namespace plvo {
 namespace {
 
-// A kind of features that this build of the core leaves out.
+// Refuses a kind of features that this build of the core leaves out.
 Status check_built(Features features) {
   if (!kLinesBuilt && features != Features::kPoints)
     return {StatusCode::kUnsupported,
@@ -23,10 +23,10 @@ Status check_built(Features features) {
   return {};
 }
 
-// Keeps the first number that is outside its range. Each range stands once: the message is made from it.
+// Keeps the first number that is outside its range. Each range appears once; the message is built from it.
 class RangeCheck {
  public:
-  // What the entries that follow belong to.
+  // Sets the group that the following entries belong to.
   void group(const char* name) { group_ = name; }
 
   // Both bounds are allowed; NaN is not.
@@ -40,7 +40,7 @@ class RangeCheck {
     status_.append(" and ");
     append_bound(high);
   }
-  // Whole numbers are fewer instructions.
+  // Overloads for whole numbers take fewer instructions at the call.
   void require(const char* entry, double value, int low, int high) {
     require(entry, value, static_cast<double>(low), static_cast<double>(high));
   }
@@ -50,8 +50,9 @@ class RangeCheck {
   const Status& status() const { return status_; }
 
  private:
-  // In decimal: up to 1e12, with up to six decimals. Without the C library, and in doubles, since small
-  // processors divide those in hardware and 64-bit integers in a long function.
+  // Appends the bound in decimal: up to 1e12, with up to six decimals. It does without the C library. It
+  // works in doubles because small processors divide those in hardware, but 64-bit integers in a long
+  // function.
   void append_bound(double bound) {
     constexpr double kPerOne = 1e6;
     if (bound < 0) status_.append("-");

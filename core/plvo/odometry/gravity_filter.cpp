@@ -10,8 +10,8 @@ namespace plvo {
 namespace {
 
 constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
-// No accelerometer says where down is to better than a microradian. What is surer would cancel the variance
-// of a pose that may be turned anyhow (kMostRotationVariance) beyond a double's digits.
+// No accelerometer measures the direction of gravity to better than a microradian. A smaller variance would
+// cancel that of a pose with a very uncertain rotation (kMostRotationVariance) beyond the digits of a double.
 constexpr double kLeastReadingVariance = 1e-12;
 
 // ∂δ_current / ∂δ_from of advance().
@@ -73,16 +73,16 @@ void GravityFilter::start(const Vector3& z, const GravityPrior& reading, const M
   covariance_.block<3, 3>(3, 3) = offset;
 }
 
-// z = R_cw y + β + noise, y known: the pose is off by ω = [y]× R (β + noise), and not about y.
+// z = R_cw y + β + noise, with y known: the pose has the error ω = [y]× R (β + noise), and none about y.
 void GravityFilter::level(const GravityPrior& reading, PoseWithCovariance& pose) {
   const Vector3 y(0, 1, 0);
   Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
-  // A camera that hangs upside down is rolled over, so that it looks where it looked.
+  // A camera that hangs upside down is rolled by half a turn, which keeps its direction of view.
   const bool hangs = z.y() < 0;
   Matrix3 roll = Matrix3::Identity();
   if (hangs) roll(0, 0) = roll(1, 1) = -1;
   z = roll * z;
-  // The least turn from z to y; V = [z × y]×.
+  // The smallest rotation from z to y; V = [z × y]×.
   const Matrix3 V = y * z.transpose() - z * y.transpose();
   const Matrix3 R = renormalise(
       (Matrix3::Identity() + V + Matrix3(V.lazyProduct(V)) / (1 + z.y())).lazyProduct(roll).eval());
@@ -100,7 +100,7 @@ void GravityFilter::level(const GravityPrior& reading, PoseWithCovariance& pose)
 
 void GravityFilter::read(const GravityPrior& reading, PoseWithCovariance& from, PoseWithCovariance& current) {
   const Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
-  // Covariances of the errors of `from` and `current` with the orientation's of `current`.
+  // Covariances of the errors of `from` and `current` with the orientation error of `current`.
   const Matrix<6, 3> from_omega =
       from.covariance.lazyProduct(carry(from, current).transpose()).eval().block<6, 3>(0, 3);
   const Matrix<6, 3> current_omega = current.covariance.block<6, 3>(0, 3);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keyframes that were in use when the camera was lost. Nothing tells how far it moves until it sees again:
-// but when one of their views comes back, so does what was known of the pose. A list of slots of the
-// odometry's frames; the one that was kept longest makes way for a new one.
+// Keyframes that were in use when the camera was lost. The motion is unobserved until tracking resumes; when
+// the view of a kept keyframe comes back, its pose is usable again. The list holds slots of the odometry's
+// frames; a new one replaces the oldest.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace plvo {
 
-// What Limits::kept_keyframes may ask for, and that and Limits::references together.
+// Upper bound of Limits::kept_keyframes, and of its sum with Limits::references.
 inline constexpr int kMostKeptKeyframes = 4;
 inline constexpr int kMostOtherFrames = 6;
 
@@ -37,7 +37,7 @@ class KeptKeyframes {
         slots_[static_cast<std::size_t>(kept++)] = slots_[static_cast<std::size_t>(i)];
     count_ = kept;
   }
-  // Each in its turn; there must be one.
+  // Returns the slots in rotation; the list must not be empty.
   int next() {
     turn_ = (turn_ + 1) % count_;
     return slots_[static_cast<std::size_t>(turn_)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public API itself: what is refused, and the order in which a frame goes through the rooms.
+// The public API itself: which input is refused, and the order in which a frame passes through the modules.
 #include "plvo/odometry/odometry.hpp"
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 
 namespace plvo {
 
-// Here, not in the header: a user's program need not hold its code once more.
+// Defined here, not in the header, so that the user's program does not hold a second copy of this code.
 Odometry::Odometry() = default;
 
-// init and track stay calls of their own in whatever way a program is put together: what stack they need is
-// stated, and found in its call graph by their names.
+// init and track are never inlined: their stack need is documented, and a tool finds it in the call graph by
+// their names.
 [[gnu::noinline]] Status Odometry::init(std::span<std::byte> memory, const CameraModel& camera,
                                         const Config& config, const Limits& limits) {
-  // In place: another one on the stack, to be copied from, would be all that the stack of a board holds.
+  // Constructed in place: a temporary on the stack would fill the whole stack of a small board.
   ::new (static_cast<void*>(this)) Odometry;
   if (Status status = camera.validate(); !status.ok()) return status;
   if (Status status = config.validate(); !status.ok()) return status;
@@ -61,7 +61,7 @@ Status Odometry::check(const RgbdFrame& input) const {
   const int bytes_per_pixel = input.colour.format == PixelFormat::kGray8 ? 1 : 3;
   if (input.colour.stride_bytes < camera().width * bytes_per_pixel || input.depth.stride < camera().width)
     return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
-  // Within this range the squares of depths and of inverse depths are far from the ends of a double's.
+  // Within this range the squares of depths and of inverse depths are far from the limits of a double.
   if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
     return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
   if (has_stamp_ && input.stamp_ns <= last_stamp_ns_)
@@ -71,7 +71,7 @@ Status Odometry::check(const RgbdFrame& input) const {
 
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input) { return track(input, MotionPrior()); }
 
-// The one place where results leave: what is wrong with one is found here, whatever made it.
+// All results leave the library here, so every invalid one is found, whatever its cause.
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
@@ -137,8 +137,8 @@ void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackRe
   points_found_.matched = points_found_.inliers = 0;
 }
 
-// Every frame's points are looked for where descriptors alone find them again, else those of a frame that
-// will be matched later.
+// Whether the current frame needs points: always where only descriptors find them again, otherwise if the
+// frame will be matched later.
 bool Odometry::wants_points() const {
   if (!window_.has_keyframe() || !config().points.registered || relocalisation_is_due()) return true;
   const ReferenceConfig& references = config().references;
@@ -146,22 +146,22 @@ bool Odometry::wants_points() const {
   return references_of(references.policy) > 1 && !recent_is_young();
 }
 
-// Of the current frame, where they are wanted after all. Before the frame is the last one. Apart, for the
-// sampler would else be on the stack while the motion is solved for.
+// Finds the points of the current frame if they are needed after all. Works only before the frame becomes the
+// last one. Not inlined: the sampler would otherwise stay on the stack while the motion is solved for.
 [[gnu::noinline]] void Odometry::find_points(const DepthSampler& depth, TrackResult& result) {
   memory_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
                                  window_.current_frame().features.points, result);
 }
 
-// Of the current frame, which becomes a keyframe or is searched by descriptors; a recent frame is found again
-// by its image. Apart, as find_points.
+// Describes the points of the current frame when it becomes a keyframe or is searched by descriptors; a
+// recent frame is found again by its image. Not inlined, for the same reason as find_points.
 [[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
   memory_.extraction.describe_points(arena_, window_.current_frame().features.points, result);
 }
 
 double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
   if (!camera().depth_timing.known) return 0;
-  // Stamps farther apart than this do not belong to one frame, whoever paired them.
+  // Stamps farther apart than this do not belong to one frame.
   constexpr double kMost_s = 0.1;
   const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
   return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera().depth_timing.delay_s;

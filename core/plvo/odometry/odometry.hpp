@@ -7,9 +7,9 @@
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
 //   plvo::TrackResult result = odometry.track(frame);  // or track(frame, prior), with a gyro's help
 //
-// Memory: init allocates the caller's block once; nothing is taken or returned afterwards. Threads: an
-// Odometry is used by one thread at a time. Determinism: the same frames and config give the same bits on
-// every supported machine.
+// Memory: init divides the caller's block once; nothing is allocated or freed afterwards. Threads: one thread
+// at a time may use an Odometry. Determinism: the same frames and config give the same bits on every
+// supported machine.
 #pragma once
 
 #include <array>
@@ -35,9 +35,8 @@
 
 namespace plvo {
 
-// A look at what the last frame was made of, for drawing: pixels of the undistorted image. Valid until the
-// next call of track(). A track pairs a place in the reference with the place in this frame where it was
-// found.
+// The features of the last frame, for drawing: pixels of the undistorted image. Valid until the next call of
+// track(). A track pairs a position in the reference with the position in this frame where it was found.
 struct PointTrackView {
   float u_reference = 0, v_reference = 0, u = 0, v = 0;  // px
   bool inlier = false;
@@ -52,13 +51,13 @@ struct SegmentView {
 };
 struct FeatureView {
   GrayView image;                       // undistorted, grey
-  std::span<const Keypoint> keypoints;  // empty where none were looked for (recent_frames)
+  std::span<const Keypoint> keypoints;  // empty if none were searched (recent_frames)
   std::span<const SegmentView> segments, reference_segments;
   std::span<const PointTrackView> point_tracks;
   std::span<const LineTrackView> line_tracks;
 };
 
-// What init allocates, in order; an arena without memory counts it.
+// What init allocates, in order; an arena without memory counts the bytes.
 struct OdometryMemory {
   FeatureExtraction extraction;
   ReferenceTracking tracking;
@@ -76,14 +75,14 @@ struct OdometryMemory {
     extraction.allocate(memory, limits);
     tracking.allocate(memory, limits);
   }
-  // The stages of one frame come one after the other: of their scratch the largest counts.
+  // The stages of a frame run one after the other, so the largest scratch counts.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     FeatureExtraction::reserve(memory, limits);
     ReferenceTracking::reserve(memory, limits);
   }
 };
 
-// Bytes that init needs for these capacities, wherever the block starts.
+// Bytes that init needs for these capacities, whatever the alignment of the block.
 constexpr std::size_t required_bytes(const Limits& limits) {
   Arena sizer = Arena::counting();
   Window::Features features;
@@ -97,39 +96,40 @@ constexpr std::size_t required_bytes(const Limits& limits) {
 class Odometry {
  public:
   Odometry();
-  // Checks everything once, allocates `memory`, builds the tables. kOutOfMemory says how many bytes are
-  // needed.
+  // Checks all arguments, allocates from `memory` and builds the tables. The message of kOutOfMemory states
+  // how many bytes are needed.
   Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config = {},
               const Limits& limits = Limits::vga());
 
-  // Never fails: what went wrong is in the result's state and status. A frame of the wrong size, with null
-  // views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing. After a
-  // loss so long that the position may be anywhere (covariance.hpp) the first usable frame starts a new
-  // world, as the first one of all does: kInitialising, and the status is ok() with a message. What
-  // set_pose() said is forgotten with the world that was.
+  // Never fails: the state and the status of the result report all errors. A frame of the wrong size, with
+  // null views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
+  // After a loss so long that the position may be anywhere (covariance.hpp), the first usable frame starts a
+  // new world, like the very first frame: kInitialising, and the status is ok() with a message. The pose of
+  // set_pose() is forgotten with the old world.
   TrackResult track(const RgbdFrame& input);
-  // With what other sensors say of the frame. Their motion leads the search for features and joins the
-  // estimate as one more constraint: what vision leaves open then has a large covariance and is no loss, and
-  // a frame that shows nothing is kPredicted. Gravity holds roll and pitch of the pose. A prior that says
-  // nothing changes nothing; one that does not pass MotionPrior::validate() is refused with the frame.
+  // Tracks with measurements of other sensors. Their motion guides the search for features and joins the
+  // estimate as one more constraint. Directions that vision leaves open then have a large covariance but
+  // cause no loss, and a frame without usable features is kPredicted. Gravity corrects roll and pitch of the
+  // pose. An empty prior changes nothing; one that does not pass MotionPrior::validate() is refused with the
+  // frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
 
-  // As after init: the next usable frame defines the world, and what was learnt of the noise is forgotten.
-  // The budget of time stays: it is about the machine.
+  // Restores the state after init: the next usable frame defines the world, and the learnt noise is
+  // forgotten. The time budget stays, because it depends on the machine.
   void reset();
-  // The pose of the last frame that has one, in a world of the caller's, with the covariance of its
-  // ⊞-perturbation; before the first frame, that of the first usable one. Where down is, is learnt anew.
-  // Variances beyond the bound of covariance.hpp are taken as the bound. kInvalidArgument, and nothing
-  // changes: before init, for a rotation that is none (to 1e-6), a position beyond 1e8 m, a covariance that
-  // is not symmetric or has a negative eigenvalue, numbers that are not finite.
+  // Sets the pose of the last frame that has one, in a world of the caller's, with the covariance of its
+  // ⊞-perturbation; before the first frame, that of the first usable one. The direction of gravity is learnt
+  // anew. Variances beyond the bound of covariance.hpp are set to the bound. Returns kInvalidArgument, and
+  // changes nothing: before init, for a matrix that is not a rotation (to 1e-6), a position beyond 1e8 m, a
+  // covariance that is not symmetric or has a negative eigenvalue, or numbers that are not finite.
   Status set_pose(const Se3& T_world_camera, const Matrix6& covariance);
 
-  // For Config::budget: what the last call of track() took, by the caller's clock. How many features the next
-  // frames have depends on nothing else.
+  // For Config::budget: the duration of the last call of track(), by the caller's clock. The number of
+  // features of the next frames depends on nothing else.
   void frame_took(std::int64_t ns) { budget_.note(ns); }
 
-  // Who took what of the block (small code does not note it), and the high-water mark of the scratch behind
-  // it.
+  // Allocations in the block by owner (size-optimised code does not record them), and the high-water mark of
+  // the scratch behind it.
   std::span<const Arena::Record> memory_records() const;
   std::size_t memory_used() const;
   std::size_t memory_peak() const;
@@ -139,7 +139,7 @@ class Odometry {
  private:
   using References = std::array<Reference, kMaxReferences>;
 
-  // odometry.cpp: what is refused, and what a frame brings with it.
+  // odometry.cpp: checks of the input, and the processing of a frame.
   Status check(const RgbdFrame& input) const;
   void process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result);
   bool wants_points() const;
@@ -152,13 +152,13 @@ class Odometry {
   Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
   PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
   std::size_t list_references(std::int64_t stamp_ns, References& references) const;
-  // There is a recent frame, and it may be matched once more.
+  // Whether there is a recent frame that may be matched once more.
   bool recent_is_young() const {
     return window_.has_recent() && window_.recent_age() + 1 < config().references.recent_frames;
   }
   void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
 
-  // odometry_outcome.cpp: what becomes of a frame, and which one the next are matched with.
+  // odometry_outcome.cpp: the outcome of a frame, and which frames the next ones are matched with.
   void start_first(const MotionPrior& prior, TrackResult& result);
   void start_again(const MotionPrior& prior, TrackResult& result);
   void start_at(const PoseWithCovariance& pose, TrackResult& result);
@@ -174,12 +174,12 @@ class Odometry {
   void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
   const char* first_word_of_loss() const;
 
-  // odometry_pose.cpp: where the frames that are kept stand, and where other sensors alone lead.
+  // odometry_pose.cpp: poses of the kept frames, and poses from other sensors alone.
   void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
   void sense(const MotionPrior& prior, std::int64_t stamp_ns);
   PoseWithCovariance predicted_pose(const MotionPrior& prior, TrackResult& result) const;
 
-  // recovery.cpp: the view of a kept keyframe comes back.
+  // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
   bool recognise(int slot, FrameFeatures& features, const Vector6& velocity, const DepthSampler& depth,
                  const PoseWithCovariance& believed, TrackedMotion& tracked, TrackResult& result);
   bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
@@ -209,12 +209,12 @@ class Odometry {
   GravityFilter gravity_;
   NoiseScales noise_;                // learnt so far
   double depth_after_colour_s_ = 0;  // of the current frame
-  std::int64_t last_stamp_ns_ = 0;   // of the last frame that was looked at, good or not
+  std::int64_t last_stamp_ns_ = 0;   // of the last frame that was processed, good or not
   bool has_stamp_ = false;
   bool start_is_set_ = false;   // by set_pose()
   bool world_is_lost_ = false;  // and the next one has not started
   int lost_frames_ = 0;
-  FeatureCounts points_found_;  // of the latest frame where points were looked for
+  FeatureCounts points_found_;  // of the latest frame in which points were searched
   int view_slot_ = 0;           // whose keypoints features() shows
   std::size_t point_track_count_ = 0;
   std::size_t line_track_count_ = 0;

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the odometry expects the camera, and how it looks for the motion from there: which frames a new one
-// is matched with, what is known beforehand, and what is tried in which order.
+// Predicts the pose of the camera and searches for the motion from there: which frames are matched with the
+// current one, what is known beforehand, and which searches are tried in which order.
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo {
 namespace {
 
-// Beyond so many times the last motion's own time a prediction is worse than none.
+// A prediction over more than this multiple of the last motion's duration is worse than none.
 constexpr int kLongestPrediction = 3;
 
-// A first motion is_accepted where at least this share is found of what it puts into the image. An image that
-// is aligned where it does not belong mostly finds less than a tenth; a search by features, before a wall
-// that repeats itself and a brick off, a fifth. So does a right one in a blurred image: it is not refused,
-// but others are looked for as well.
+// A first motion is accepted if at least this share of the features that it puts into the image are found. A
+// wrongly aligned image mostly finds less than a tenth. A search by features finds up to a fifth when it is a
+// brick off before a wall that repeats itself. A correct motion in a blurred image may find as little: it is
+// not refused, but other motions are searched as well.
 constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
-// Or two ways lead to the same motion: within this distance (m and rad).
+// A motion is also accepted if two searches lead to it: within this distance (m and rad).
 constexpr double kSameMotion = 0.02;
 
 }  // namespace
 
-// How the camera moves while the frame is exposed, if it goes on as it did.
+// Motion of the camera during the exposure of the frame, if it goes on as before.
 Exposure Odometry::predict_exposure(std::int64_t stamp_ns) const {
   if (!window_.has_last()) return {};
   const PairPrior prior = prior_of(window_.last(), stamp_ns);
   return current_exposure(camera(), prior, prior.T_current_reference);
 }
 
-// The motion from the reference to now: as other sensors tell it, or if the camera goes on as it did between
-// the last two good frames.
+// Motion from the reference to the current frame: from other sensors, or else by constant velocity from the
+// last two good frames.
 Se3 Odometry::predict_motion(int reference, std::int64_t stamp_ns) const {
   const Window::Frame& last = window_.last_frame();
   const Se3 T_last_reference = last.pose.T_world_camera.inverse() * window_[reference].pose.T_world_camera;
@@ -55,8 +55,8 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return prior;
 }
 
-// The keyframe, which is the base, a recent frame, and the keyframe before, as far as the policy wants them.
-// Apart: what it makes them of is not on the stack while the motion is looked for.
+// Lists the keyframe, which is the base, a recent frame, and the previous keyframe, as the policy requires.
+// Not inlined: its temporaries are not on the stack during the search for the motion.
 [[gnu::noinline]] std::size_t Odometry::list_references(std::int64_t stamp_ns, References& references) const {
   std::size_t count = 0;
   const auto add = [&](int slot) {
@@ -70,10 +70,11 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
   return count;
 }
 
-// A first motion from the latest reference, by its image; failing that by features: where they are predicted,
-// or from each reference, wherever they may be, unless other sensors say where. Each leads to the motion from
-// all references. The first that is_accepted is taken, else the one that most agree with. The keyframe's
-// points are described, and those of the keyframe before, not a recent frame's.
+// Searches for a first motion from the latest reference by image alignment. If that fails, searches by
+// features: first near the prediction, then from each reference over a wide area, around the propagated prior
+// if there is one. Each first motion is refined with all references. The first that is_accepted() is taken,
+// else the one with most inliers. The points of both keyframes are described, those of a recent frame are
+// not.
 [[gnu::noinline]] void Odometry::estimate_motion(const DepthSampler& depth, TrackedMotion& tracked,
                                                  TrackResult& result) {
   References references;
@@ -89,7 +90,7 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     memory_.tracking.refine(all, current, T_current_base, arena_, tracked, result);
     return tracked.motion.status == StatusCode::kOk;
   };
-  // Of the motions that did not convince: where it led to, from where, and how many agree with it.
+  // The best of the motions that were not accepted: its result, its start, and its number of inliers.
   struct {
     Se3 motion, start;
     int inliers = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a frame: the first of a world, or of a new start after a loss; one with a motion; one
-// without. And which frame the next ones are matched with.
+// The outcome of a frame: it starts a world, starts anew after a loss, has a motion, or has none. Also
+// selects the frames that the next ones are matched with.
 #include <algorithm>
 
 #include "plvo/math/covariance.hpp"
@@ -27,7 +27,7 @@ Status hardly_anything(StatusCode code, const char* first_word, const TrackResul
       .append(features_3d(result));
 }
 
-// Why no motion was found, and what would help.
+// States why no motion was found, and what would help.
 Status explain_loss(const MotionEstimate& motion, const TrackResult& result, const char* first_word) {
   if (too_few_features(result)) return hardly_anything(motion.status, first_word, result);
   Status status(motion.status, first_word);
@@ -49,7 +49,7 @@ Status explain_loss(const MotionEstimate& motion, const TrackResult& result, con
 
 }  // namespace
 
-// The very first frame that can be used: it defines the world, unless set_pose() did, or gravity does.
+// Handles the very first usable frame: it defines the world, unless set_pose() or gravity did.
 void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
   result.state = TrackState::kInitialising;
   if (too_few_features(result)) {
@@ -78,9 +78,9 @@ void Odometry::start_first(const MotionPrior& prior, TrackResult& result) {
                    "a new world starts: where the camera is in the one before is not known any more"};
 }
 
-// After a loss, and after the references were given up: what the priors make of the last good pose, or that
-// pose itself, whose covariance grows by all the time that nobody saw. Where that leaves a position that may
-// be anywhere, it is the first frame of another world.
+// Starts anew after a loss, when the references were given up. The new pose is the last good pose propagated
+// by the priors, or that pose itself with the process noise of all the unobserved time. If the position may
+// then be anywhere, the frame is the first of another world.
 void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
   if (too_few_features(result)) {
     result.state = TrackState::kLost;
@@ -103,8 +103,8 @@ void Odometry::start_again(const MotionPrior& prior, TrackResult& result) {
   start_at(pose, result);
 }
 
-// Forgets all poses and what was said of them; what was learnt of the noise stays. The next usable frame is
-// the first of a new world.
+// Forgets all poses and what depends on them; the learnt noise stays. The next usable frame is the first of a
+// new world.
 void Odometry::forget_world() {
   window_.clear();
   frames_since_relocalisation_ = 0;
@@ -115,13 +115,13 @@ void Odometry::forget_world() {
   world_is_lost_ = true;
 }
 
-// Of a camera that is not chained to an earlier pose.
+// Takes in gravity for a camera that is not chained to an earlier pose.
 void Odometry::read_gravity(const MotionPrior& prior, PoseWithCovariance& pose) {
   PoseWithCovariance itself = pose;
   if (prior.gravity) gravity_.read(*prior.gravity, itself, pose);
 }
 
-// The current frame becomes the keyframe and the last good one, with no motion behind it.
+// Makes the current frame the keyframe and the last good one, without a motion before it.
 void Odometry::start_at(const PoseWithCovariance& pose, TrackResult& result) {
   describe_points(result);
   keep_image();
@@ -135,7 +135,7 @@ void Odometry::start_at(const PoseWithCovariance& pose, TrackResult& result) {
   propagated_prior_.restart();
 }
 
-// The last good pose's covariance by now, when nobody saw the motion since.
+// Adds the process noise of the unobserved motion since the last good frame to the covariance of its pose.
 void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const {
   const double seconds =
       static_cast<double>(elapsed_ns(window_.last_frame().features.stamp_ns, stamp_ns)) * 1e-9;
@@ -185,7 +185,7 @@ void Odometry::accept(const DepthSampler& depth, const TrackedMotion& tracked, c
   window_.advance(kept, keep_older);
 }
 
-// By what the last estimate found of them.
+// Judges the references by the inliers of the last estimate.
 Window::Kept Odometry::still_good() const {
   const ReferenceConfig& references = config().references;
   const bool window = references.policy == ReferencePolicy::kWindow;
@@ -200,18 +200,19 @@ Window::Kept Odometry::still_good() const {
       good(window_.keyframe(), 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
   if (both)
     kept.recent = recent_is_young() && good(window_.recent(), 1, kRecentInlierRatio);
-  else  // Without registration find() is the whole estimate, of the base alone.
+  else  // Without registration find() is the whole estimate, with the base alone.
     kept.recent = !config().points.registered || references_of(references.policy) == 1;
   kept.recent = kept.recent && kept.keyframe;
   return kept;
 }
 
-// Of the current frame, which is the latest reference from now on.
+// Keeps the image of the current frame, which is the latest reference from now on.
 void Odometry::keep_image() {
   memory_.tracking.keep_image(memory_.extraction.pyramid(), window_.current_frame().features.stamp_ns);
 }
 
-// Whether the last estimate, whose reference of this index was that frame, found this share of its features.
+// Whether the last estimate found this share of the frame's features; the frame was its reference of this
+// index.
 bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   const FrameFeatures& features = window_[slot].features;
   std::size_t available = features.lines.count_3d;
@@ -220,7 +221,7 @@ bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   return memory_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
 }
 
-// Too full a frame for the budget goes on costing what it did.
+// A frame with more features than the budget allows would keep the cost as high as before.
 bool Odometry::affordable(int slot) const {
   const FrameFeatures& features = window_[slot].features;
   const FeatureCapacity capacity = budget_.capacity();
@@ -234,8 +235,8 @@ void Odometry::lose(const MotionEstimate& motion, const MotionPrior& prior, Trac
   if (propagated_prior_.known()) (void)predicted_pose(prior, result);
   ++lost_frames_;
   if (lost_frames_ < config().references.max_lost_frames) return;
-  // Nothing is seen any more of what the reference saw. Unless its view comes back, the next usable frame
-  // starts anew at the last good pose.
+  // The views of the references are out of sight. Unless one comes back, the next usable frame starts anew at
+  // the last good pose.
   window_.give_up();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the frames that are kept stand in the world: set, forgotten, and gone on from by the priors alone.
+// Poses of the kept frames in the world: they are set, forgotten, and propagated by the priors alone.
 #include "plvo/math/symmetric_eigen.hpp"
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
@@ -8,10 +8,11 @@
 namespace plvo {
 namespace {
 
-// What a prior leaves out of the motion goes on as it did for so long, then stands still.
+// The velocity replaces a missing part of a prior for this long; after that the camera is taken to stand
+// still.
 constexpr std::int64_t kLongestCoast_ns = 300'000'000;
 
-// Beyond any place on Earth, in any system of coordinates; a double still tells 0.01 µm there.
+// Farther than any place on Earth, in any system of coordinates; a double still resolves 0.01 µm there.
 constexpr double kFarthestPose_m = 1e8;
 
 bool is_semidefinite_covariance(const Matrix6& C) {
@@ -51,8 +52,8 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   pose.covariance = covariance;
   start_is_set_ = true;
   world_is_lost_ = false;
-  window_.kept().clear();  // their poses are in the world that was
-  // The keyframe moves with the last frame: the motion between them stays what it is.
+  window_.kept().clear();  // their poses belong to the old world
+  // The keyframe moves with the last frame: the motion between them does not change.
   if (window_.has_last())
     window_.move_last(pose, Matrix6::Zero());
   else
@@ -60,14 +61,14 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   return {};
 }
 
-// What the caller is told of a pose: of its stamp, which may err.
+// Reports a pose at its stamp, with the error of the stamp.
 void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const {
   result.T_world_camera = pose.T_world_camera;
   result.pose_covariance =
       pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera().stamp_sigma_s);
 }
 
-// Takes in what the prior says of the motion since the frame before.
+// Takes in the motion of the prior since the frame before.
 void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
   if (!window_.has_last()) return;
   const Window::Frame& last = window_.last_frame();
@@ -77,8 +78,8 @@ void Odometry::sense(const MotionPrior& prior, std::int64_t stamp_ns) {
   propagated_prior_.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config().references);
 }
 
-// Where the priors alone lead, chained to the keyframe or, where there is none, to the last good frame. What
-// gravity corrects in it is this frame's alone: the frames that are kept have been seen, it has not.
+// Pose from the priors alone, chained to the keyframe or, without one, to the last good frame. The correction
+// by gravity applies to this frame only: the kept frames were observed, this one was not.
 PoseWithCovariance Odometry::predicted_pose(const MotionPrior& prior, TrackResult& result) const {
   const int anchor = window_.has_keyframe() ? window_.keyframe() : window_.last();
   const MotionReference last = window_.from_keyframe(window_.last());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What features() shows of the last frame.
+// The views of the last frame that features() returns.
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo {
@@ -13,7 +13,7 @@ std::size_t Odometry::fill_segment_views(const LineFeatures& lines, std::span<Se
   return lines.segments.size();
 }
 
-// Of the latest reference; without a motion there is nothing to show.
+// Fills the tracks of the latest reference; without a motion there are none.
 void Odometry::fill_track_views(const MotionEstimate& motion) {
   if (motion.status != StatusCode::kOk) return;
   const bool both = window_.has_recent();

@@ -6,8 +6,8 @@
 namespace plvo {
 namespace {
 
-// A guess of the rate errs by much the same from one frame to the next: its standard deviation, not its
-// variance, grows with the time.
+// The error of an assumed rate hardly changes from one frame to the next, so its standard deviation grows
+// with time, not its variance.
 Matrix3 process_noise_variance(double per_second, double before_s, double now_s) {
   constexpr double kLeast = 1e-12;
   const double variance = per_second * per_second * (now_s * now_s - before_s * before_s);
@@ -36,7 +36,7 @@ void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, 
     T_now_before.t = prior.translation->t_now_before;
     covariance.block<3, 3>(0, 0) = prior.translation->covariance;
   } else {
-    // Straight on, whichever way the camera turns meanwhile.
+    // The translation goes straight on, whatever the camera's rotation.
     T_now_before.t = seconds * (T_now_before.R * (T_current_last_.R * velocity.head<3>()));
     covariance.block<3, 3>(0, 0) = process_noise_variance(config.process_noise_m_per_s, before_s, seconds_);
   }

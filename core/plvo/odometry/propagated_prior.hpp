@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sensors other than the camera say of the motion since the last good frame: the priors of the frames
-// since then, one after the other. What a prior leaves out of the motion goes on as it did, and is as
-// uncertain as a motion that nobody sees.
+// Motion since the last good frame according to sensors other than the camera: the priors of the frames since
+// then, composed. A part of the motion that a prior lacks continues with the last velocity, with the process
+// noise of an unobserved motion.
 #pragma once
 
 #include "plvo/math/se3.hpp"
@@ -12,15 +12,15 @@ namespace plvo {
 
 class PropagatedPrior {
  public:
-  // A good frame: nothing has moved since.
+  // Called at a good frame: no motion since then.
   void restart() {
     *this = PropagatedPrior();
     whole_ = true;
   }
-  // A frame `seconds` after the one before. velocity: (v, ω) per second of the scene in the axes of the last
-  // good frame's camera, as of exposure.hpp, for what the prior does not tell. A prior that tells no motion
-  // ends what is known until the next restart(), and so does a motion that may lead anywhere
-  // (covariance.hpp).
+  // Appends the prior of a frame, `seconds` after the one before. velocity: (v, ω) per second of the scene in
+  // the axes of the last good frame's camera, as in exposure.hpp; it replaces what the prior lacks. After a
+  // prior without any motion the propagated prior is unknown until the next restart(); likewise once the
+  // position may be anywhere (covariance.hpp).
   void extend(const MotionPrior& prior, const Vector6& velocity, double seconds,
               const ReferenceConfig& config);
 

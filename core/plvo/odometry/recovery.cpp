@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Part of the odometry: what happens after a loss, when the view of a kept keyframe comes back. Descriptors
-// are matched over the whole image, whatever the pose is believed to be; the motion is then registered and
-// judged as always. It counts if it finds as much of the keyframe as a keyframe must show to stay one, and if
-// the pose that follows lies within what the unseen motion may have been: a room that looks alike is
-// elsewhere.
+// Part of the odometry: relocalisation after a loss, when the view of a kept keyframe comes back. Descriptors
+// are matched over the whole image, whatever the predicted pose; the motion is then registered and judged as
+// usual. It is accepted under two conditions. It finds the share of the keyframe's features that a keyframe
+// needs to be kept. And the resulting pose lies within the process noise of the unobserved motion: this
+// rejects a similar view elsewhere.
 #include <algorithm>
 
 #include "plvo/math/chi_square.hpp"
@@ -13,10 +13,10 @@
 namespace plvo {
 namespace {
 
-// Of poses that belong together, so many pass.
+// Probability with which a correct pose passes the test.
 constexpr double kPlausible = 0.9999;
 
-// Apart, for its matrices would else be on the stack while the motion is solved for.
+// Not inlined: its matrices would otherwise stay on the stack while the motion is solved for.
 [[gnu::noinline]] bool agree(const PoseWithCovariance& reference, const MotionEstimate& motion,
                              const PoseWithCovariance& b) {
   const PoseWithCovariance a = advance(reference, motion.T_current_reference, motion.C_H);
@@ -28,7 +28,8 @@ constexpr double kPlausible = 0.9999;
 
 }  // namespace
 
-// features: of the current frame, which moves at this velocity; believed: its pose otherwise.
+// Matches the current frame with a kept keyframe. features: of the current frame, which moves at this
+// velocity; believed: its pose without the relocalisation.
 bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& velocity,
                          const DepthSampler& depth, const PoseWithCovariance& believed,
                          TrackedMotion& tracked, TrackResult& result) {
@@ -39,9 +40,9 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
   prior.reference_velocity_known = window_[slot].motion_ns > 0;
   prior.reference_is_last = false;
   prior.depth_after_colour_s = depth_after_colour_s_;
-  const PropagatedPrior nothing;
-  const MotionReference nobody;
-  const CurrentFrame current{features, memory_.extraction, depth, noise_, nothing, nobody};
+  const PropagatedPrior no_prior;
+  const MotionReference no_last_frame;
+  const CurrentFrame current{features, memory_.extraction, depth, noise_, no_prior, no_last_frame};
   const Reference reference{&window_[slot].features, prior, {}};
   memory_.extraction.describe_points(arena_, features.points, result);
   const double anywhere_px = std::max(camera().width, camera().height);
@@ -55,7 +56,7 @@ bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& veloc
          agree(window_[slot].pose, tracked.motion, believed);
 }
 
-// Where tracking would start anew: the kept keyframe is taken up again if the camera looks where it did.
+// Called before tracking starts anew: takes up the kept keyframe again if its view is back.
 bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
                       TrackResult& result) {
   if (window_.kept().empty()) return false;
@@ -63,7 +64,7 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
   PoseWithCovariance believed = window_.last_frame().pose;
   add_process_noise(result.stamp_ns, believed.covariance);
   TrackResult trial = result;
-  // It stands still, for all that is known: what it did before says nothing any more.
+  // The camera is taken to stand still: its velocity before the loss is out of date.
   const bool found =
       recognise(slot, window_.current_frame().features, Vector6::Zero(), depth, believed, tracked, trial);
   result.stage_ns = trial.stage_ns;
@@ -76,9 +77,9 @@ bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, Track
   return true;
 }
 
-// Tracking goes on since a new start, whose pose nobody saw: if the camera is back at the view of a kept
-// keyframe, all poses are moved so that this frame's is the one that follows from there.
-// tracked: of the frame's own motion, which is accepted and not needed any more: room for another one.
+// Tracking has resumed with a new start, whose pose was not observed. If the view of a kept keyframe is back,
+// all poses are moved so that the pose of this frame is the one that follows from that keyframe.
+// tracked: holds the frame's own motion, which is accepted and no longer needed; it is overwritten.
 void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
   if (window_.kept().empty()) return;
   if (!relocalisation_is_due()) {
@@ -88,7 +89,8 @@ void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, Tra
   frames_since_relocalisation_ = 0;
   const int slot = window_.kept().next();
   Window::Frame& last = window_.last_frame();  // the frame just tracked
-  TrackResult trial;                           // the counts of the frame are those of its own tracking
+  // Separate: the counts of the frame are those of its own tracking
+  TrackResult trial;
   trial.stage_ns = result.stage_ns;
   const bool found =
       recognise(slot, last.features, last.velocity, depth, window_.last_frame().pose, tracked, trial);
@@ -99,8 +101,8 @@ void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, Tra
   result.returned = true;
 }
 
-// All poses are moved so that the last frame stands where `motion` leads from the kept keyframe. Apart, for
-// its matrices would else be on the stack while that keyframe is looked for.
+// Moves all poses so that the last frame is where `motion` leads from the kept keyframe. Not inlined: its
+// matrices would otherwise stay on the stack during the search for that keyframe.
 [[gnu::noinline]] void Odometry::move_to_relocalised_pose(int slot, const MotionEstimate& motion) {
   const PoseWithCovariance pose = advance(window_[slot].pose, motion.T_current_reference, motion.C_H);
   const MotionReference from = window_.from_keyframe(window_.last());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the time that a scope takes to one stage's account, by the clock of Config, and calls Config's hook at
-// its end; without them it does nothing.
+// Adds the duration of a scope to the time of a stage, by the clock of Config, and calls Config's hook at its
+// end. Without clock and hook it does nothing.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@ Matrix6 moved_by(const Vector6& rate, double sigma_s) {
   return moved.lazyProduct(moved.transpose());
 }
 
-// What leads out of the camera turns against the scene.
+// Rate of a transform out of the camera: the camera moves against the scene, so the sign changes.
 Vector6 out_of_camera(const Matrix3& R, const Vector6& velocity) {
   Vector6 rate;
   rate.head<3>() = -(R * velocity.head<3>());

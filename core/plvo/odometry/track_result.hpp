@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What track() says about one frame. Every number in it is finite, whatever the frame was; rotations are
-// rotations; covariances are symmetric and positive semidefinite to kCovarianceTolerance, and within the
-// bound of covariance.hpp.
+// The result of track() for one frame. All numbers are finite, whatever the frame; rotations are valid;
+// covariances are symmetric and positive semidefinite to kCovarianceTolerance, and within the bound of
+// covariance.hpp.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 namespace plvo {
 
 enum class TrackState : std::uint8_t {
-  // The first usable frame, from which tracking starts; or, where the status is not ok(), none yet. Where it
-  // is ok() and has a message, a new world starts: see Odometry::track.
+  // The first usable frame, from which tracking starts. If the status is not ok(), there has been no usable
+  // frame yet. If it is ok() with a message, a new world starts: see Odometry::track.
   kInitialising,
-  kTracking,   // the pose is new
-  kLost,       // status says why; the pose is the last good one; the next good frame goes on from there
-  kPredicted,  // nothing could be seen, status says why; the pose is new, from the priors alone
+  kTracking,  // the pose is new
+  kLost,  // status gives the reason; the pose is the last good one, and the next good frame continues from it
+  kPredicted,  // no usable features, status gives the reason; the pose is new, from the priors alone
 };
 const char* to_string(TrackState state);
 
@@ -26,8 +26,8 @@ enum class Stage : std::uint8_t { kImage, kPoints, kLines, kMatching, kMotion };
 inline constexpr int kStageCount = 5;
 const char* to_string(Stage stage);
 
-// Of this frame; the first three of points, where none were looked for (ReferenceConfig::recent_frames), of
-// the latest frame where they were.
+// Feature counts of this frame. If no points were searched in it (ReferenceConfig::recent_frames), the first
+// three of the points are those of the latest frame in which they were.
 struct FeatureCounts {
   int detected = 0;    // found, before the selection
   int dropped = 0;     // found, but beyond the capacity
@@ -42,23 +42,23 @@ struct TrackResult {
   std::int64_t stamp_ns = 0;
   std::int64_t reference_stamp_ns = 0;  // of the frame that this one was matched against
 
-  // Camera to world; the world is the camera frame of the first frame, unless Config::level_world or
-  // set_pose() say otherwise. Covariance of the ⊞-perturbation (position, then orientation; m and rad) in the
-  // axes of the world, accumulated from the motions, with what the stamp errs
-  // (CameraModel::stamp_sigma_s) at this frame alone. While lost, it is that of the last good pose; of a
-  // predicted pose it has grown by what the priors leave open.
+  // Camera to world. The world is the camera frame of the first frame, unless Config::level_world or
+  // set_pose() define another. The covariance is that of the ⊞-perturbation (position, then orientation; m
+  // and rad) in the axes of the world. It accumulates those of the motions and adds the stamp error
+  // (CameraModel::stamp_sigma_s) of this frame alone. While lost, pose and covariance are those of the last
+  // good frame; for a predicted pose the covariance includes the uncertainty of the priors.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
 
-  // Motion with respect to the reference, X_camera = T_camera_reference X_reference, and its covariance: C_H
-  // (23), what the matches with a keyframe err alike in every frame (common_mode_error.hpp), and what both
-  // stamps err.
+  // Motion with respect to the reference, X_camera = T_camera_reference X_reference. Its covariance is the
+  // sum of C_H (23), the common-mode error of the matches with a keyframe (common_mode_error.hpp), and the
+  // errors of both stamps.
   Se3 T_camera_reference;
   Matrix6 motion_covariance = Matrix6::Zero();
 
   FeatureCounts points;
   FeatureCounts lines;
-  // The pose was put right: the view of a keyframe was recognised that is older than a loss.
+  // The pose was corrected: the camera recognised the view of a keyframe from before a loss.
   bool returned = false;
   int ransac_iterations = 0;
   int lm_iterations = 0;
@@ -67,8 +67,9 @@ struct TrackResult {
   std::array<std::int64_t, kStageCount> stage_ns{};  // zero without Config::stage_clock
 };
 
-// Looked at where a result leaves the library: makes its covariances what is said above, bit by bit the same
-// where they are. False where a number is not finite or a rotation is none: then nobody may have it.
+// Called where a result leaves the library. Makes its covariances valid as described above; valid ones stay
+// the same bit by bit. Returns false where a number is not finite or a rotation is invalid: the caller must
+// not get such a result.
 bool make_sound(TrackResult& result);
 
 }  // namespace plvo

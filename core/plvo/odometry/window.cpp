@@ -52,8 +52,8 @@ void Window::move_last(const PoseWithCovariance& pose, const Matrix6& covariance
   set_pose(last_, pose);
 }
 
-// Limits for one reference have memory for the features of two frames: the reference, and the current frame,
-// which takes that of the last one unless the last one is the reference.
+// Limits for one reference provide memory for the features of two frames: the reference and the current
+// frame. The current frame takes over the memory of the last one unless that is the reference.
 FrameFeatures& Window::begin_frame() {
   FrameFeatures& mine = (*this)[current_].features;
   for (int slot = 0; slot < static_cast<int>(kFrames) && mine.points.points.empty(); ++slot) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames that the odometry keeps, the role of each, where they stand in the world, and how they stand to
-// each other. The window holds no policy: it is told which frame takes which role.
+// The frames that the odometry keeps: their roles, their poses in the world, and their relative poses. The
+// window decides nothing: the caller assigns the roles.
 //
 //   current   the frame that is being tracked
 //   last      the last frame that has a pose; the velocity is that between it and the one before
@@ -9,8 +9,8 @@
 //   older     the keyframe before, which is still matched (ReferencePolicy::kWindow)
 //   kept      keyframes from before a loss, which may come back into view (kept_keyframes.hpp)
 //
-// One frame can have several roles. Frames are named by their slots. Memory: the features of as many frames
-// as Limits ask for, from the arena; two frames without a role share it (begin_frame()).
+// One frame can have several roles. Slots identify the frames. Memory: the features of as many frames as
+// Limits ask for, from the arena; two frames without a role share it (begin_frame()).
 #pragma once
 
 #include <array>
@@ -29,11 +29,11 @@ namespace plvo {
 class Window {
  public:
   static constexpr int kNoFrame = -1;
-  // The current and the last frame, and those that are references or kept.
+  // The current and the last frame, the references and the kept keyframes.
   static constexpr std::size_t kFrames = 2 + kMostOtherFrames;
 
   struct Frame {
-    FrameFeatures features;  // of the current frame; the rest of it is known once it is tracked
+    FrameFeatures features;  // the current frame has only these until it is tracked
     PoseWithCovariance pose;
     // Twist of the scene in the camera's axes, per second (exposure.hpp), measured over the motion_ns since
     // the last good frame before it. When the next frame is tracked, it becomes the mean of both sides.
@@ -42,11 +42,11 @@ class Window {
   };
   // Covariance of T_frame_keyframe.
   struct RelativeCovariance {
-    Matrix6 independent = Matrix6::Zero();  // weighs it against what is matched with the keyframe
-    Matrix6 common_mode = Matrix6::Zero();  // besides: common_mode_error.hpp
+    Matrix6 independent = Matrix6::Zero();  // weight against the matches with the keyframe
+    Matrix6 common_mode = Matrix6::Zero();  // in addition: common_mode_error.hpp
     Matrix6 total() const { return independent + common_mode; }
   };
-  // Which references go on being matched.
+  // Which references are still matched.
   struct Kept {
     bool keyframe = false, recent = false, older = false;
   };
@@ -60,7 +60,7 @@ class Window {
   void init(const Features& features, int kept_keyframes);
   // Forgets all poses and roles; the memory, and which frame is current, stay.
   void clear();
-  // As after init().
+  // Restores the state after init().
   void reset() {
     clear();
     current_ = 0;
@@ -88,10 +88,9 @@ class Window {
   const Frame& last_frame() const { return (*this)[last_]; }
 
   // Stores the pose of a frame, with its covariance within the bound of covariance.hpp. A pose that is not
-  // finite is stored as it is: it is found where results leave the library.
+  // finite is stored unchanged: the check of the results finds it.
   void set_pose(int slot, PoseWithCovariance pose);
-  // T_frame_keyframe with the covariance that the estimate weighs it with; the identity for the keyframe, or
-  // without one.
+  // T_frame_keyframe with its covariance in the estimate; the identity for the keyframe, or without one.
   MotionReference from_keyframe(int slot) const;
   // Covariance of T_last_keyframe.
   const RelativeCovariance& last_motion() const { return last_motion_; }
@@ -104,18 +103,19 @@ class Window {
 
   // Gives the current frame memory for its features.
   FrameFeatures& begin_frame();
-  // The current frame becomes keyframe and last frame, without a motion behind it.
+  // Makes the current frame the keyframe and the last frame, without a motion before it.
   void start(const PoseWithCovariance& pose);
-  // A kept keyframe takes up its role again.
+  // Makes a kept keyframe the keyframe again.
   void resume(int slot);
-  // The current frame was tracked; covariance: of T_current_keyframe.
+  // Stores the covariance of T_current_keyframe of the tracked frame.
   void set_motion(const RelativeCovariance& covariance) { last_motion_ = covariance; }
-  // Velocity of the current frame, from its pose and the last frame's, motion_ns apart.
+  // Computes the velocity of the current frame from its pose and the last frame's, motion_ns apart; it also
+  // refines the velocity of the last frame.
   void set_velocity(std::int64_t motion_ns);
-  // The current frame becomes the last one and takes the roles that are not kept. keep_older: a keyframe that
-  // makes way goes on as the older one.
+  // Makes the current frame the last one and gives it the roles that are not kept. keep_older: a replaced
+  // keyframe becomes the older one.
   void advance(const Kept& kept, bool keep_older);
-  // No reference is seen any more: the keyframe joins the kept ones, and there is none.
+  // No reference is in view any more: the keyframe joins the kept ones, and its role stays empty.
   void give_up();
 
  private:

@@ -35,7 +35,7 @@ Status refusal(const fs::path& path, const char* what, const char* advice) {
           fmt::format("{} is {}, {}; see docs/formats.md", path.string(), what, advice)};
 }
 
-// Its metadata say so; the files beside them may be anything.
+// The metadata identify the folder; the other files in it may be of any kind.
 bool is_rosbag2_folder(const fs::path& path) {
   std::string text;
   return read_text_file(path / "metadata.yaml", kMaxTextBytes, text).ok() &&

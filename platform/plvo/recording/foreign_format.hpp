@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings in containers that plvo does not read, by their names and by how their files begin.
+// Detects recordings in containers that plvo does not read, by their names and the first bytes of the files.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace plvo {
 
-// kUnsupported, saying what it is and what to do, for MCAP and SQLite files and folders of rosbag2, for
-// Matroska videos, and for ROS 1 bags under another name than FILE.bag. Ok for everything else.
+// Returns kUnsupported, with the format and the remedy, for MCAP and SQLite files and folders of rosbag2, for
+// Matroska videos, and for ROS 1 bags with another name than FILE.bag. Returns ok for everything else.
 Status refuse_foreign_format(const std::filesystem::path& path);
 
 }  // namespace plvo

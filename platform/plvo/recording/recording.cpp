@@ -52,7 +52,7 @@ Status Recording::open(const fs::path& path, const CalibrationChoice& choose,
 
 Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& choose,
                               const RecordingOptions& options) {
-  // A folder that is no sequence should be told so before a missing calibration is.
+  // Reports a folder that is not a sequence before a missing calibration.
   {
     SequenceIndex index;
     if (Status status = read_sequence_index(folder, options.sequence, index); !status.ok()) return status;

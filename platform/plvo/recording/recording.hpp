@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded sequence, whatever it lies in: a folder (RecordedCamera) or a ROS 1 bag (BagCamera), which is
-// told by its name. Bags are read where plvo was built with libbz2 and liblz4.
+// A recorded sequence of any format: a folder (RecordedCamera) or a ROS 1 bag (BagCamera), which is
+// recognised by its name. Bags are supported if plvo was built with libbz2 and liblz4.
 #pragma once
 
 #include <filesystem>
@@ -20,46 +20,51 @@
 namespace plvo {
 
 bool is_bag_file(const std::filesystem::path& path);  // by its name, .bag
-// A folder, a bag, or a recording that is not read (foreign_format.hpp); no file of another kind.
+// True for a folder, a bag, or a recording that is not read (foreign_format.hpp); false for files of other
+// kinds.
 bool is_recording(const std::filesystem::path& path);
 
-// The true poses of a bag, which are not read out of it: FILE-groundtruth.txt beside FILE.bag, as TUM
-// publishes the two.
+// File of the true poses of a bag, which are not read from the bag itself: FILE-groundtruth.txt beside
+// FILE.bag, as TUM publishes the two.
 std::filesystem::path bag_ground_truth_file(const std::filesystem::path& bag);
-// Of a folder or a bag: as read_ground_truth. kNotFound says where they are looked for.
+// Reads the true poses of a folder or a bag, like read_ground_truth. The message of kNotFound names the
+// expected file.
 Status read_true_poses(const std::filesystem::path& recording, const SequenceOptions& options,
                        Trajectory& trajectory);
 
 struct RecordingOptions {
-  SequenceOptions sequence;  // of a bag: the tolerance, the scale and the range
+  SequenceOptions sequence;  // for a bag: the tolerance, the scale and the range
   BagTopicNames topics;
-  std::optional<double> depth_units_per_metre;  // of a bag's whole units, which are millimetres else
+  std::optional<double> depth_units_per_metre;  // of a bag's whole units; by default millimetres
 };
 
-// Finds the calibration to use. own: the one that the recording brings; kNotFound where it has none.
+// Finds the calibration to use. own: reads that of the recording; kNotFound if it has none.
 using OwnCalibration = std::function<Status(Calibration& calibration)>;
 using CalibrationChoice = std::function<Status(const OwnCalibration& own, Calibration& calibration)>;
 
 class Recording final : public RgbdCamera {
  public:
-  // All of what RecordedCamera or BagCamera returns, and what `choose` does. kUnsupported, with what to
-  // install, for a bag where they are left out, and for a recording that is not read (foreign_format.hpp).
+  // Returns the errors of RecordedCamera or BagCamera, and those of `choose`. Returns kUnsupported for a bag,
+  // with the packages to install, if plvo was built without bags; also for a recording that is not read
+  // (foreign_format.hpp).
   Status open(const std::filesystem::path& path, const CalibrationChoice& choose,
               const RecordingOptions& options = {});
 
   CameraModel model() const override { return calibration_.camera; }
-  // kDamaged, with what and why, for a pair that cannot be read; the next call goes on after it.
+  // Returns kDamaged, with the file and the reason, for a pair that cannot be read; the next call continues
+  // after it.
   Status next(RgbdFrame& frame) override { return camera_->next(frame); }
 
   std::size_t frame_count() const { return frame_count_; }  // in the chosen range
   std::size_t unpaired_colour() const { return unpaired_colour_; }
-  const Calibration& calibration() const { return calibration_; }  // in force, as of FrameFit
-  const WholeImage& whole_image() const { return whole_image_; }   // of width 0 where that is not known
-  bool has_ground_truth() const { return has_ground_truth_; }      // read_true_poses
-  // Sentences for whoever runs it, but for what the calibration assumes; also where opening failed.
+  const Calibration& calibration() const { return calibration_; }  // in force, see FrameFit
+  const WholeImage& whole_image() const { return whole_image_; }   // its width is 0 if the size is unknown
+  bool has_ground_truth() const { return has_ground_truth_; }      // see read_true_poses
+  // Hints for the user, in sentences, without the assumptions of the calibration; also valid after open()
+  // failed.
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  // What a gyro and an accelerometer recorded beside the images: as read_imu_files, or as read_bag_imu.
+  // Reads the samples of a gyro and an accelerometer, with read_imu_files or read_bag_imu.
   Status read_imu(ImuRecording& recording) { return read_imu_(recording); }
 
  private:
@@ -70,7 +75,7 @@ class Recording final : public RgbdCamera {
   // calibration: of the images as recorded.
   void add_doubts_about(const Calibration& calibration);
 
-  std::shared_ptr<RgbdCamera> camera_;  // not unique: it deletes the class that it was made with
+  std::shared_ptr<RgbdCamera> camera_;  // not unique: shared_ptr deletes the class that it was created with
   std::function<Status(ImuRecording& recording)> read_imu_;
   Calibration calibration_;
   WholeImage whole_image_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any camera at a chosen pace. Realtime gives each frame out no earlier than its stamp says, counted from the
-// first one; nothing is dropped: who is too slow falls behind, and catches up where the recording has gaps.
+// Delivers the frames of any camera at a chosen pace. Realtime delivers a frame no earlier than its stamp,
+// counted from the first one. No frame is dropped: a slow caller falls behind, and catches up where the
+// recording has gaps.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@ enum class Pace : std::uint8_t { kFast, kRealtime, kStep };
 
 class PacedCamera final : public RgbdCamera {
  public:
-  // All three are borrowed. wait_for_step: called before each frame of Pace::kStep; false ends the stream.
+  // All three objects are borrowed. wait_for_step: called before each frame with Pace::kStep; false ends the
+  // stream.
   PacedCamera(RgbdCamera& camera, Pace pace, Clock& clock, std::function<bool()> wait_for_step)
       : camera_(camera), pace_(pace), clock_(clock), wait_for_step_(std::move(wait_for_step)) {}
 

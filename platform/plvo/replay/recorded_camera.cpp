@@ -43,8 +43,8 @@ Status RecordedCamera::choose_range(const SequenceOptions& options) {
   return {};
 }
 
-// The first pair whose two headers can be read decides. A single damaged file must not stop a sequence; a
-// sequence that is wrong throughout must be refused before anything is written.
+// Takes the sizes of the first pair whose two headers can be read. A single damaged file must not stop a
+// sequence; a sequence that is wrong throughout must be refused before anything is written.
 Status RecordedCamera::find_image_sizes(ImageInfo& colour, ImageInfo& depth) {
   Status first_failure;
   for (const ImagePair& pair : index_.pairs) {
@@ -87,16 +87,17 @@ void RecordedCamera::warm_up() {
     }
   }
   decoder_.reserve(static_cast<std::size_t>(largest));
-  // One decoding beforehand lets the image libraries take, here and not in the first frame, what they take.
+  // Decodes one pair beforehand: the image libraries then allocate their memory here and not in the first
+  // frame.
   RgbdFrame first;
-  [[maybe_unused]] const Status told_again_by_the_first_call = next(first);
+  [[maybe_unused]] const Status reported_again_by_next = next(first);
   next_ = 0;
 }
 
 Status RecordedCamera::next(RgbdFrame& frame) {
   if (next_ >= index_.pairs.size()) return {StatusCode::kEndOfStream, "the sequence ends here"};
   const ImagePair& pair = index_.pairs[next_++];
-  frame.stamp_ns = pair.colour.stamp_ns;  // also of a frame that turns out to be damaged
+  frame.stamp_ns = pair.colour.stamp_ns;  // also for a damaged frame
   frame.depth_stamp_ns = pair.depth.stamp_ns;
   const WholeImage& whole = fit_.whole_image();
   Status status = decoder_.decode_rgb(folder_ / pair.colour.file, whole.width, whole.height, fit_.colour());

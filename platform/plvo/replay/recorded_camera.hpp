@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded folder as a camera. Every buffer is made by open(): the pixels (images/frame_fit.hpp) and the
-// bytes of the largest file; the views in a frame point into them. Pacing is PacedCamera's work.
+// A recorded folder as a camera. open() allocates every buffer: the pixels (images/frame_fit.hpp) and the
+// bytes of the largest file; the views in a frame point into them. PacedCamera controls the pace.
 #pragma once
 
 #include <cstddef>
@@ -19,21 +19,22 @@ namespace plvo {
 
 class RecordedCamera final : public RgbdCamera {
  public:
-  // Finds the frames, checks the first readable pair (sizes, bits) and the calibration against it. What the
-  // calibration leaves unsaid, the layout says: numbered frames have depth in millimetres. All of what
-  // read_sequence_index returns, and kInvalidArgument for an empty frame range, depth of which nobody says
-  // how it goes with colour, 8-bit depth, a calibration that does not fit (the images in the files), or a
-  // scale_down that does not.
+  // Finds the frames and checks the first readable pair (sizes, bits) and the calibration against it. Where
+  // the calibration has no depth scale, the layout determines it: numbered frames have depth in millimetres.
+  // Returns the errors of read_sequence_index, and kInvalidArgument for an empty frame range, depth without a
+  // specified relation to colour, 8-bit depth, a calibration that does not fit the images in the files, or a
+  // scale_down that does not fit.
   Status open(const std::filesystem::path& folder, const Calibration& calibration,
               const SequenceOptions& options = {});
 
   CameraModel model() const override { return calibration().camera; }
-  // kDamaged, with the file and why, for a pair that cannot be decoded; the next call goes on after it.
+  // Returns kDamaged, with the file and the reason, for a pair that cannot be decoded; the next call
+  // continues after it.
   Status next(RgbdFrame& frame) override;
 
   std::size_t frame_count() const { return index_.pairs.size(); }  // in the chosen range
   const SequenceIndex& index() const { return index_; }
-  // Of these three see FrameFit.
+  // See FrameFit for these three.
   const Calibration& calibration() const { return fit_.calibration(); }
   const WholeImage& whole_image() const { return fit_.whole_image(); }
   const std::string& remark() const { return fit_.remark(); }

@@ -6,7 +6,7 @@
 namespace plvo {
 namespace {
 
-// Ten seconds of 400 Hz between two frames: over more a gyro alone says little.
+// Ten seconds at 400 Hz between two frames; over a longer time a gyro alone is of little use.
 constexpr std::size_t kWaiting = 4096;
 
 }  // namespace
@@ -19,7 +19,8 @@ Status RecordedImu::init(ImuRecording recording, const ImuConfig& config) {
   return integrator_.init(gyro_memory_, accelerometer_memory_, config);
 }
 
-// Up to the first sample after the frame, between which and the one before the rate is interpolated.
+// Adds the samples up to the first one after the frame: the rate is interpolated between it and the one
+// before.
 MotionPrior RecordedImu::prior(std::int64_t stamp_ns) {
   const auto until_after = [&](const std::vector<ImuSample>& samples, std::size_t& next, auto add) {
     while (next < samples.size()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a recording as the priors of its frames: what a live sensor would have sent until the frame
-// was there is handed to the integrator of core/plvo/inertial, no more.
+// Turns the samples of a recording into the priors of its frames. The integrator of core/plvo/inertial gets
+// only the samples that a live sensor would have sent until the frame.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace plvo {
 class RecordedImu {
  public:
   Status init(ImuRecording recording, const ImuConfig& config);
-  // As of ImuIntegrator.
+  // The same as in ImuIntegrator.
   MotionPrior prior(std::int64_t stamp_ns);
   void learn(const TrackResult& result) { integrator_.learn(result); }
   const ImuIntegrator& integrator() const { return integrator_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names are compared without regard to capitals (ASCII).
+// Lower case for comparing names without regard to case (ASCII).
 #pragma once
 
 #include <string>

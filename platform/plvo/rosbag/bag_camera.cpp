@@ -15,7 +15,7 @@ namespace plvo {
 namespace {
 
 constexpr const char* kCompressedImage = "sensor_msgs/CompressedImage";
-constexpr std::size_t kMostOfEncoding = 40;  // letters; those that are known are shorter
+constexpr std::size_t kMostOfEncoding = 40;  // letters; the known names are shorter
 constexpr const char* kTumColour = "/camera/rgb/image_color";
 constexpr const char* kTumDepth = "/camera/depth/image";
 
@@ -73,7 +73,7 @@ Status BagCamera::read_image(const BagMessage& message, ImageMessage& image) {
   return status.ok() ? parse_image(bytes_, image) : status;
 }
 
-// Of each topic's first image that can be read.
+// Reads the encoding of each topic's first readable image.
 void BagCamera::find_encodings() {
   encodings_.assign(bag_.topics().size(), {});
   for (std::size_t i = 0; i < encodings_.size(); ++i)
@@ -90,7 +90,7 @@ std::vector<std::size_t> BagCamera::candidates(bool depth) const {
   std::vector<std::size_t> topics, grey;
   for (std::size_t i = 0; i < encodings_.size(); ++i) {
     if (!(depth ? is_depth_encoding(encodings_[i]) : is_colour_encoding(encodings_[i]))) continue;
-    // Infrared is recorded as mono16, too: it is depth where nothing else is.
+    // Infrared is recorded as mono16, too: it counts as depth only if there is no other.
     (encodings_[i] == "mono16" ? grey : topics).push_back(i);
   }
   return topics.empty() ? grey : topics;
@@ -181,7 +181,7 @@ Status BagCamera::in_order(std::size_t topic, Messages& messages) {
   return {};
 }
 
-// A topic is in the order of its file unless its clock was set back; then sorting would mix what was seen
+// A topic is in the order of its file unless its clock was set back; then sorting would mix images from
 // before and after.
 Status BagCamera::check_clock(std::size_t topic) const {
   std::vector<std::int64_t> stamps;
@@ -238,7 +238,7 @@ Status BagCamera::pair_up(const SequenceOptions& options) {
   return {};
 }
 
-// The first pair that can be read decides, as in folders.
+// Takes the sizes of the first readable pair, as in folders.
 Status BagCamera::find_sizes(ImageSize& colour, ImageSize& depth, bool& metres) {
   Status first_failure;
   for (const auto& pair : pairs_) {
@@ -302,7 +302,7 @@ Status BagCamera::read_depth(const BagMessage& message) {
 Status BagCamera::next(RgbdFrame& frame) {
   if (next_ >= pairs_.size()) return {StatusCode::kEndOfStream, "the bag ends here"};
   const auto& [colour, depth] = pairs_[next_++];
-  frame.stamp_ns = colour.stamp_ns;  // also of a frame that turns out to be damaged
+  frame.stamp_ns = colour.stamp_ns;  // also for a damaged frame
   frame.depth_stamp_ns = depth.stamp_ns;
   Status status = read_colour(colour);
   std::size_t topic = colour_topic_;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
-// Of a record; longer ones are not what they seem.
+// Largest header of a record; a longer one means damage.
 constexpr std::uint32_t kMaxHeader = 1u << 16;
 constexpr std::uint32_t kMaxConnection = 1u << 22;  // the text of a message's definition
 constexpr std::size_t kMaxTopics = 10'000;
@@ -25,13 +25,13 @@ constexpr std::size_t kMaxName = 512;  // of a topic or its type
 
 enum Op : std::uint8_t { kMessageData = 2, kFileHeader = 3, kChunkOp = 5, kConnection = 7 };
 
-// Without the old content, which would take its memory beside the new.
+// Drops the old content first, so that old and new memory do not exist at once.
 void resize_anew(std::vector<unsigned char>& bytes, std::size_t size) {
   if (bytes.capacity() < size) std::vector<unsigned char>().swap(bytes);
   bytes.resize(size);
 }
 
-// name=value, each after its length.
+// Finds a field among name=value entries, each after its length.
 std::string_view field_of(std::span<const unsigned char> fields, std::string_view name) {
   WireReader wire(fields);
   while (wire.left() > 0) {
@@ -55,13 +55,13 @@ struct BagFile::Record {
   std::vector<unsigned char> header;
   std::uint64_t data = 0;  // position
   std::uint32_t data_bytes = 0;
-  bool whole = false;  // its data ends where the bytes do, or before
+  bool whole = false;  // its data ends within the available bytes
 
   std::string_view field(std::string_view name) const { return field_of(header, name); }
   std::uint32_t number(std::string_view name) const {
     return static_cast<std::uint32_t>(number_of(field(name), 4));
   }
-  // 0: there is none.
+  // 0: the record has none.
   std::uint8_t op() const {
     const std::string_view value = field("op");
     return value.size() == 1 ? static_cast<std::uint8_t>(value[0]) : std::uint8_t{0};
@@ -167,7 +167,7 @@ BagFile::End BagFile::scan_messages(Source& source, std::uint64_t begin, std::ui
     if (source.unpacked == nullptr) stopped_at_ = position;
     if (const End read = read_record(source, position, end, record); read != End::kWhole) return read;
     if (record.op() == kChunkOp) {
-      // Where either goes on beyond its end, the length of the outer one is damaged.
+      // If either exceeds its end, the length of the outer one is damaged.
       if (source.unpacked == nullptr && !(outer.whole && record.whole)) return End::kOverrun;
       failure_ = {StatusCode::kDamaged,
                   fmt::format("{}: at byte {} a chunk lies within another, which no recorder writes; rosbag "
@@ -213,7 +213,7 @@ void BagFile::take_record(const Record& record, Source& source) {
 BagFile::End BagFile::scan_chunk(Source& file, const Record& record) {
   Chunk chunk;
   if (!compression_of(record.field("compression"), chunk.compression)) return End::kBroken;
-  // Of what is not compressed the messages before a cut can be read where they are.
+  // In an uncompressed chunk, the messages before a cut can be read in place.
   if (chunk.compression == BagCompression::kNone)
     return scan_messages(file, record.data, std::min(file_bytes_, record.data + record.data_bytes), record);
   chunk.position = record.data;
@@ -255,7 +255,7 @@ void BagFile::add_connection(const Record& record, std::span<const unsigned char
 Status BagFile::keep_message(const Record& record, std::size_t topic, Source& source) {
   const bool image = topics_[topic].type == kImageType;
   const bool first_info = topics_[topic].type == kCameraInfoType && messages_[topic].empty();
-  unsigned char start[12];  // of the message's header: a count, then the stamp
+  unsigned char start[12];  // of the message's header: a counter, then the stamp
   if (!(image || first_info) || record.data_bytes < sizeof start || !source.read(record.data, start))
     return {};
   if (image && ++images_ > kMostImages)

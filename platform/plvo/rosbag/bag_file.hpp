@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The container of ROS 1, `#ROSBAG V2.0`: records one after the other, many of them in chunks that may be
-// compressed (http://wiki.ros.org/Bags/Format/2.0). The index at the end is not used: it is missing where a
-// recording was cut short, and then every message before the cut is still there. Nothing of what a file
-// claims is believed before it is compared with the file's size and the bounds below.
+// The container of ROS 1, `#ROSBAG V2.0`: a sequence of records, many of them in chunks that may be
+// compressed (http://wiki.ros.org/Bags/Format/2.0). The index at the end is not used: a truncated recording
+// has no index, but still has every message before the cut. All sizes in a file are first compared with the
+// file's size and the bounds below.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 
 namespace plvo {
 
-// Of a message, and of a compressed chunk, packed and unpacked: an image of kMaxImageSide² with four bytes a
-// pixel, and what is around it.
+// Largest message and largest compressed chunk, packed and unpacked: an image of kMaxImageSide² with four
+// bytes a pixel, and its surroundings.
 inline constexpr std::uint32_t kMaxPiece = 72u << 20;
 
 struct BagTopic {
@@ -32,30 +32,31 @@ struct BagTopic {
 struct BagMessage {
   static constexpr std::uint32_t kInFile = UINT32_MAX;
 
-  std::int64_t stamp_ns = 0;   // of the message's header, not of its receipt
+  std::int64_t stamp_ns = 0;   // from the message's header, not the time of receipt
   std::uint64_t position = 0;  // in the file, or in the unpacked chunk
   std::uint32_t bytes = 0;
-  std::uint32_t chunk = kInFile;  // which of the compressed ones
+  std::uint32_t chunk = kInFile;  // index of the compressed chunk
 };
 
 class BagFile {
  public:
-  // Reads all of it once. Kept are the places of images, kMostImages at the most, and of the first
-  // camera_info of each topic. kNotFound, kInvalidArgument (not a regular file; more images), kDamaged (not a
-  // bag; a chunk within a chunk), kUnsupported (another version, encryption).
+  // Reads the whole file once. Keeps the positions of images, at most kMostImages, and of the first
+  // camera_info of each topic. Returns kNotFound, kInvalidArgument (not a regular file; more images),
+  // kDamaged (not a bag; a chunk within a chunk), kUnsupported (another version, encryption).
   Status open(const std::filesystem::path& path);
 
   const std::vector<BagTopic>& topics() const { return topics_; }
-  // Those that are kept of one of topics(), in the file's order.
+  // The kept messages of one of topics(), in the file's order.
   const std::vector<BagMessage>& messages(std::size_t topic) const { return messages_[topic]; }
-  // What is wrong with the file, of which the rest can be used; empty where nothing is.
+  // Describes damage of a file whose rest can be used; empty if there is none.
   const std::string& remark() const { return remark_; }
 
-  // The bytes of one. kDamaged, also for one that is larger than kMaxPiece; kIo.
+  // Reads the bytes of a message. Returns kDamaged, also for one that is larger than kMaxPiece; kIo.
   Status read(const BagMessage& message, std::vector<unsigned char>& bytes);
 
-  // Reads all of the file once more: each message of the type goes to `visit`, in the file's order; the bytes
-  // of one that is larger than kMaxPiece are left out. What `visit` returns ends it. kIo.
+  // Reads the whole file once more. Each message of the type goes to `visit`, in the file's order; one that
+  // is larger than kMaxPiece goes without its bytes. An error that `visit` returns ends the reading. Returns
+  // that error, or kIo.
   using Visit = std::function<Status(std::size_t topic, std::span<const unsigned char> bytes)>;
   Status visit(std::string_view type, const Visit& visit);
 
@@ -70,21 +71,22 @@ class BagFile {
     std::vector<unsigned char> bytes;
   };
   struct Record;
-  // The bytes in which records stand: the file, or a chunk of it that was unpacked.
+  // The bytes that contain the records: the file, or an unpacked chunk of it.
   struct Source {
     std::function<bool(std::uint64_t position, std::span<unsigned char> bytes)> read;
     const Chunk* unpacked = nullptr;
     std::uint32_t number = BagMessage::kInFile;  // of the chunk, once one of its messages is kept
   };
-  enum class End : std::uint8_t { kWhole, kCut, kBroken, kOverrun };  // into the next chunk
+  enum class End : std::uint8_t { kWhole, kCut, kBroken, kOverrun };  // kOverrun: into the next chunk
 
   bool read_file(std::uint64_t position, std::span<unsigned char> bytes);
   Status cannot_be_read_any_more() const;
   Status check_version();
-  // From one end to the other; messages go to take_message_, whose failure ends it.
+  // Reads the file from begin to end. Messages go to take_message_; its failure ends the reading.
   End scan_file();
   End scan_chunk(Source& file, const Record& record);
-  // Connections and messages. A chunk among them ends it, so that nothing recurses on what a file says.
+  // Reads connections and messages. A chunk among them ends the reading, so that the content of a file cannot
+  // cause a recursion.
   End scan_messages(Source& source, std::uint64_t begin, std::uint64_t end, const Record& outer);
   End read_record(Source& source, std::uint64_t position, std::uint64_t end, Record& record);
   void take_record(const Record& record, Source& source);
@@ -99,12 +101,12 @@ class BagFile {
   std::uint64_t file_bytes_ = 0;
   std::uint64_t index_position_ = 0;
   std::vector<BagTopic> topics_;
-  std::map<std::uint32_t, std::size_t> connections_;  // by the bag's number: whose topic it is
+  std::map<std::uint32_t, std::size_t> connections_;  // topic by the bag's connection number
   std::vector<std::vector<BagMessage>> messages_;     // of each topic
-  std::size_t images_ = 0;                            // that are kept
-  std::vector<Chunk> chunks_;                         // compressed ones that hold messages that are kept
+  std::size_t images_ = 0;                            // number of kept images
+  std::vector<Chunk> chunks_;                         // compressed chunks with kept messages
   std::string remark_;
-  // While it is read from one end to the other.
+  // State while the file is read from begin to end.
   std::function<Status(const Record& record, std::size_t topic, Source& source)> take_message_;
   Status failure_;
   std::uint64_t stopped_at_ = 0;

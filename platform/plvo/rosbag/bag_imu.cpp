@@ -23,7 +23,7 @@ struct ImuTopic {
   std::size_t damaged = 0;
 };
 
-// Which sensor is looked for.
+// The sensor that is searched.
 struct Sensor {
   const char *name, *one;
   Samples ImuTopic::*samples;
@@ -37,7 +37,7 @@ void drop_if_zero(Samples& samples) {
   if (zero) samples.clear();
 }
 
-// All that the bag has.
+// Reads all IMU topics of the bag.
 Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
   for (std::size_t i = 0; i < bag.topics().size(); ++i)
     if (bag.topics()[i].type == kImuType) topics.push_back({i, {}, {}, 0});
@@ -72,7 +72,7 @@ std::string in_words(const BagFile& bag, const std::vector<ImuTopic*>& topics) {
   return listed(names, kMostLetters);
 }
 
-// Stays nullptr where the bag has no such sensor and none was named.
+// chosen is nullptr if the bag has no such sensor and none was named.
 Status choose(const BagFile& bag, std::vector<ImuTopic>& topics, const Sensor& sensor,
               const std::string& wanted, ImuTopic*& chosen) {
   std::vector<ImuTopic*> candidates;
@@ -94,7 +94,7 @@ Status choose(const BagFile& bag, std::vector<ImuTopic>& topics, const Sensor& s
   return {};
 }
 
-// left_out: grows by as many as there are too many of one stamp or not finite.
+// Sorts samples by stamp. left_out: grows by the number of samples that are not finite or repeat a stamp.
 Status take_in_order(Samples& from, const std::string& topic, Samples& samples, std::size_t& left_out) {
   const std::size_t all = from.size();
   std::erase_if(from, [](const ImuSample& s) { return !s.value.allFinite(); });

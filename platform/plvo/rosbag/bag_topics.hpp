@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a ROS 1 bag is read, by the names of its topics.
+// The topics of a ROS 1 bag that are read, by their names.
 #pragma once
 
 #include <string>
 
 namespace plvo {
 
-// An empty name leaves the choice to plvo. Images: TUM's (/camera/rgb/image_color, /camera/depth/image) where
-// the bag has it, else the one topic whose encoding is of that kind; camera_info beside colour; gyro and
-// accelerometer: the one topic of sensor_msgs/Imu that has such readings.
+// An empty name leaves the choice to plvo. Images: TUM's topics (/camera/rgb/image_color,
+// /camera/depth/image) if the bag has them, else the only topic with a fitting encoding. camera_info: the one
+// beside colour. Gyro and accelerometer: the only topic of sensor_msgs/Imu with such readings.
 struct BagTopicNames {
   std::string colour, depth, camera_info, gyro, accelerometer;
 };

@@ -11,7 +11,7 @@ namespace plvo {
 namespace {
 
 bool unpack_bz2(std::span<const unsigned char> packed, std::span<unsigned char> unpacked) {
-  // The library's interface is older than const; it does not write to what it reads.
+  // The interface of the library is older than const; it does not write to its input.
   auto* from = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));
   auto written = static_cast<unsigned int>(unpacked.size());
   const int error = BZ2_bzBuffToBuffDecompress(reinterpret_cast<char*>(unpacked.data()), &written, from,

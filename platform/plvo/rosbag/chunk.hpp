@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pieces that a bag is compressed in.
+// Unpacks the compressed chunks of a bag.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@ namespace plvo {
 
 enum class BagCompression : unsigned char { kNone, kBz2, kLz4 };
 
-// By the name in the bag; false for another.
+// Finds the compression by its name in the bag. Returns false for an unknown one.
 bool compression_of(std::string_view name, BagCompression& compression);
 
-// unpacked: of the size that the bag says. kDamaged where the bytes do not give exactly as many;
+// unpacked: has the size stated in the bag. Returns kDamaged if the bytes do not unpack to exactly this size;
 // kOutOfMemory.
 Status unpack_chunk(BagCompression compression, std::span<const unsigned char> packed,
                     std::span<unsigned char> unpacked);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What messages of errors about topics are made of.
+// Parts of error messages about topics.
 #pragma once
 
 #include <fmt/core.h>
@@ -14,7 +14,8 @@
 
 namespace plvo {
 
-// "/a, /b and 3 more": as many as most_letters hold, for a status is short, and one at least.
+// Lists names as "/a, /b and 3 more": as many as fit into most_letters, because a status is short, but at
+// least one.
 inline std::string listed(const std::vector<std::string>& names,
                           std::size_t most_letters = static_cast<std::size_t>(-1)) {
   std::string text;
@@ -26,7 +27,7 @@ inline std::string listed(const std::vector<std::string>& names,
   return text;
 }
 
-// Where all headers on a topic have one stamp: there is no order in such messages.
+// Error for a topic whose headers all have one stamp: its messages have no order.
 inline Status not_stamped(const char* what, std::size_t count, const std::string& topic,
                           std::int64_t stamp_ns) {
   return {StatusCode::kInvalidArgument,

@@ -17,13 +17,13 @@ namespace {
 constexpr const char* kCutOff = "the message ends early";
 
 std::int64_t take_header(WireReader& wire) {
-  wire.u32();  // a count
+  wire.u32();  // a counter
   const std::int64_t stamp_ns = wire.time_ns();
   wire.text();  // the name of the frame
   return stamp_ns;
 }
 
-// How a pixel lies in memory: where its red, green and blue are.
+// Layout of a pixel in memory: positions of red, green and blue.
 struct ColourLayout {
   std::string_view encoding;
   std::size_t bytes, red, green, blue;
@@ -32,14 +32,14 @@ constexpr ColourLayout kColourLayouts[] = {{"rgb8", 3, 0, 1, 2},  {"bgr8", 3, 2,
                                            {"rgba8", 4, 0, 1, 2}, {"bgra8", 4, 2, 1, 0},
                                            {"8UC3", 3, 2, 1, 0},  {"mono8", 1, 0, 0, 0}};
 
-// nullptr for an encoding that is not of colour.
+// Returns nullptr for an encoding that is not of colour.
 const ColourLayout* colour_layout(std::string_view encoding) {
   for (const ColourLayout& layout : kColourLayouts)
     if (layout.encoding == encoding) return &layout;
   return nullptr;
 }
 
-// 0 for an encoding that is not read.
+// Returns 0 for an encoding that is not supported.
 std::size_t pixel_bytes(std::string_view encoding) {
   if (const ColourLayout* layout = colour_layout(encoding)) return layout->bytes;
   if (encoding == "16UC1" || encoding == "mono16") return 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and strings as ROS 1 puts them on the wire and into bags: little-endian, a string after its length.
-// What lies beyond the end reads as nothing, and ok() is false from then on.
+// Reads numbers and strings in the format of ROS 1 messages and bags: little-endian, with the length before
+// each string. A read beyond the end returns zero or an empty string, and ok() is false from then on.
 #pragma once
 
 #include <bit>
@@ -34,7 +34,7 @@ class WireReader {
     return {reinterpret_cast<const char*>(taken.data()), taken.size()};
   }
   std::string_view text() { return text(u32()); }
-  // Seconds and nanoseconds.
+  // Reads seconds and nanoseconds.
   std::int64_t time_ns() {
     const std::int64_t seconds = u32();
     return 1'000'000'000 * seconds + u32();

@@ -4,7 +4,7 @@
 namespace plvo {
 namespace {
 
-// With fewer than these a frame is no reference.
+// A frame with fewer features than these cannot serve as a reference.
 constexpr std::size_t kLeastKeypoints = 40;
 constexpr std::size_t kLeastSegments = 16;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time that keeps its promise: after a frame that took too long the next ones have fewer features, in steps
-// of a fixed order, and after many frames with time to spare one step more again. No clock is read here: the
-// caller says what a frame took (Odometry::frame_took), and the same words give the same steps.
+// Keeps the time of a frame within a budget. After a frame that took too long, the next ones have fewer
+// features, in steps of a fixed order. After many frames with time to spare, the number rises by one step. No
+// clock is read here: the caller reports the duration of a frame (Odometry::frame_took), and the same reports
+// give the same steps.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace plvo {
 
-// How many features of a frame are kept.
+// Capacity for the features of a frame.
 struct FeatureCapacity {
   std::size_t keypoints = 0;
   std::size_t segments = 0;
@@ -19,15 +20,16 @@ struct FeatureCapacity {
 
 class FeatureBudget {
  public:
-  // Each takes a quarter: of the keypoints, of the segments, of the keypoints, … After the last of them a
-  // third of either is left.
+  // Each step removes a quarter: of the keypoints, of the segments, of the keypoints, … After the last step a
+  // third of each is left.
   static constexpr int kSteps = 8;
-  // After a step so many frames are not judged: they are matched with references that are as full as before.
+  // After a step this many frames are not judged: their references still have the previous number of
+  // features.
   static constexpr int kSettlingFrames = 2;
 
   void init(const BudgetConfig& config, const Limits& limits);
 
-  // What the last frame took. Without a budget it has no effect.
+  // Takes in the duration of the last frame. It has no effect without a budget.
   void note(std::int64_t took_ns);
 
   int step() const { return step_; }  // 0: all that fit, … kSteps

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLineLevel = 1;
 
-// The rows from begin to before end.
+// The rows from begin up to, but not including, end.
 ColourView rows(const ColourView& colour, int begin, int end) {
   ColourView part = colour;
   part.data += begin * colour.stride_bytes;
@@ -123,7 +123,7 @@ void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
     points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
   }
   result.points.with_depth =
-      static_cast<int>(points.keypoints.size());  // the detector passes over what has none
+      static_cast<int>(points.keypoints.size());  // the detector skips pixels without depth
   result.points.detected = summary.candidates;
   result.points.dropped = static_cast<int>(points.keypoints.dropped());
 }
@@ -139,8 +139,8 @@ void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise
 void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
                                     PointFeatures& points) const {
   if constexpr (!kPointsBuilt) return;
-  // A registered patch is a landmark by definition, wherever its centre lies: only its depth is uncertain.
-  // The little across the ray keeps its covariance invertible.
+  // A registered patch is a landmark by definition, whatever its centre: only its depth is uncertain. The
+  // small variance across the ray keeps its covariance invertible.
   constexpr double kPatchCentre_px = 0.02;
   const PointConfig& config = config_->points;
   const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
@@ -151,7 +151,7 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
       const auto u = static_cast<double>(keypoint.u);
       const auto v = static_cast<double>(keypoint.v);
       const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
-      // One whose window turns out to have no usable depth is at the camera's centre: "no 3D point".
+      // A keypoint whose window has no usable depth is placed at the camera's centre: "no 3D point".
       points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
                                        depth_scale * depth.sigma_m);
       points.masks[i] = depth.depth_m > 0
@@ -214,7 +214,7 @@ void FeatureExtraction::lift_segments(const DepthSampler& depth, const NoiseScal
         lines.descriptors[i] = describe_segment(pyramid_.level(kLineLevel), 1.0 / (1 << kLineLevel), segment);
     }
   });
-  // Those with 3D come first.
+  // Segments with 3D come first.
   for (std::size_t i = 0; i < lifted.size(); ++i) {
     if (lifted[i] == 0) continue;
     const std::size_t to = lines.count_3d++;

@@ -31,8 +31,8 @@ class FeatureExtraction {
     segment_search_ = segment_search(limits);
     segment_detector_ = memory.take<SegmentDetector>("segment detector", 1);
   }
-  // Scratch: the stages come one after the other, so the largest counts; on two cores the points have their
-  // own.
+  // Reserves the scratch. The stages run one after the other, so the largest counts; on two cores the points
+  // have their own.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     {
       const ScratchScope scope(memory);
@@ -62,35 +62,36 @@ class FeatureExtraction {
   const CameraModel& camera() const { return camera_; }
   const Config& config() const { return *config_; }  // after init
 
-  // A sampler of the frame's own depth: as long as the frame's views are valid.
+  // Returns a sampler of the frame's own depth; it is valid as long as the frame's views.
   DepthSampler depth_sampler(const RgbdFrame& frame) const {
     return {frame.depth, map_, config_->depth_noise};
   }
 
-  // Fills `features` from `frame`, whose sizes were checked; counts and times go to `result`. Points and
-  // lines have no 3D yet. Without `points` these are left for find_points.
+  // Extracts the features of `frame`, whose sizes were checked; counts and times go to `result`. Points and
+  // lines have no 3D yet. If `points` is false, find_points can find them later.
   void extract(const RgbdFrame& frame, const DepthSampler& depth, bool points, Arena& scratch,
                FrameFeatures& features, TrackResult& result);
-  // P1 of the last frame, unless its points were looked for before.
+  // P1 for the last frame, unless its points were searched before.
   void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
                    TrackResult& result) const;
-  // P4 of the last frame, whose points were found, unless they were described before.
+  // P4 for the last frame, whose points were found, unless they were described before.
   void describe_points(Arena& scratch, PointFeatures& points, TrackResult& result) const;
-  // What a reference needs besides lines: lift_points, and samples of surfaces. When the motion during the
-  // exposure is known as well as it will be.
+  // Computes what a reference needs besides lines: lift_points, and samples of surfaces. Call it when the
+  // best estimate of the motion during the exposure is known.
   void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
             FrameFeatures& features) const;
-  // L2, L3, for the motion during the exposure. The segments that get 3D move to the front and are described.
-  // Again, with a better idea of the motion, these are lifted anew where depth was exposed apart from colour;
-  // one that has no 3D any more keeps what it had.
+  // L2 and L3, for the motion during the exposure. The segments that get 3D move to the front and are
+  // described. A second call, with a better motion, lifts these again if depth and colour have different
+  // exposures; a segment that cannot be lifted again keeps its old line.
   void lift_lines(const DepthSampler& depth, const Exposure& exposure, const NoiseScales& noise,
                   Arena& scratch, LineFeatures& lines, TrackResult& result) const;
 
-  // Of the last frame: what matching refines against.
+  // Image of the last frame, which matching registers against.
   const Pyramid& pyramid() const { return pyramid_; }
 
  private:
-  // On half the resolution. In bands, what is found is bounded as well.
+  // Segments are searched at half the resolution. With several bands, the number of candidates is bounded as
+  // well.
   static constexpr SegmentSearch segment_search(const Limits& limits) {
     SegmentSearch search{(limits.width + 1) / 2, (limits.height + 1) / 2, limits.line_bands};
     if (limits.line_bands > 1) search.most_candidates = 8 * static_cast<std::size_t>(limits.segments);
@@ -99,7 +100,7 @@ class FeatureExtraction {
   static constexpr std::size_t pixels_of(int width, int height) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
-  // Of an arena that holds what reserve_detection counts, wherever it starts.
+  // Bytes of an arena that holds what reserve_detection counts, whatever its alignment.
   static constexpr std::size_t point_scratch(int width, int height) {
     Arena sizer = Arena::counting();
     reserve_detection(sizer, width, height);
@@ -117,15 +118,16 @@ class FeatureExtraction {
   void lift_segments_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
   bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                  Line3d& line) const;
-  // P2, P3, and what belongs to each keypoint's own surface.
+  // P2 and P3, and the depth mask of each keypoint.
   void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
 
   CameraModel camera_;
-  std::optional<Config> config_;  // until init none: the code that makes one is the user's
+  // Empty until init: the code that constructs a Config stays in the user's program
+  std::optional<Config> config_;
   UndistortionMap map_;
   Pyramid pyramid_;
   SegmentSearch segment_search_;
-  std::span<SegmentDetector> segment_detector_;  // one
+  std::span<SegmentDetector> segment_detector_;  // size 1
 };
 
 }  // namespace plvo

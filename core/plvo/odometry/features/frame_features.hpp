@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that is kept of a frame: its features in 2D and 3D. They serve as the reference for later frames: the
-// next one, or many, when the frame is a keyframe.
+// All that is kept of a frame: its features in 2D and 3D. They serve as the reference for the next frame, or
+// for many frames if the frame is a keyframe.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct FrameFeatures {
   LineFeatures lines;
   SurfaceFeatures surfaces;
 
-  // Empty, with capacity for so many of what was allocated.
+  // Removes all features and sets the capacity, within what was allocated.
   void clear(const FeatureCapacity& capacity) {
     points.clear(capacity.keypoints);
     lines.clear(capacity.segments);

@@ -6,8 +6,8 @@
 namespace plvo {
 namespace {
 
-// The segment where the motion puts its line; one that cannot be seen goes far outside the image, where
-// nothing matches.
+// The segment where the motion puts its line. A line out of view goes far outside the image, where it has no
+// match.
 Segment predict(const Pinhole& pinhole, const Exposure& exposure, const Segment& segment, const Line3d& line,
                 const Se3& T_current_reference) {
   constexpr double kNowhere_px = -1e5;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matches the reference's 3D lines to the current frame's, near where a motion puts them.
+// Matches the 3D lines of the reference with those of the current frame, near their positions under a motion.
 #pragma once
 
 #include "plvo/base/arena.hpp"
@@ -12,14 +12,14 @@
 
 namespace plvo {
 
-// Indices are those of the 3D lines of both frames. Lines that the motion puts behind the camera are left
-// out. reference_lines: the reference's 3D lines at its mid-exposure; exposure: of the current frame.
+// Matches hold indices into the 3D lines of both frames. Lines that the motion puts behind the camera are
+// left out. reference_lines: the reference's 3D lines at its mid-exposure; exposure: of the current frame.
 void match_predicted_lines(const Pinhole& pinhole, const Exposure& exposure, const LineFeatures& reference,
                            std::span<const Line3d> reference_lines, const LineFeatures& current,
                            const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
                            FixedVector<Match>& matches);
 
-// Its scratch.
+// Reserves the scratch of match_predicted_lines.
 constexpr void reserve_line_tracking(Arena& memory, int segments) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(segments);

@@ -15,20 +15,20 @@ constexpr double kMedian1 = 0.4549;
 constexpr double kMedian2 = 1.3863;
 constexpr double kMedian4 = 3.3567;
 // Squared distances, in the model's SDs, beyond which a residual is a wrong match rather than noise. RANSAC
-// takes for inliers what lies within the 99 % quantile of χ²: 11.34 for a point's three degrees of freedom,
-// 13.28 for a line's four. Noise with twice the SD that the models state must be able to show, so here it is
-// four times these. A sample of a surface has one degree of freedom, and only lies far off if the scale has
-// yet to be learnt: points' bound, 6.7 SDs, serves it too.
+// takes residuals within the 99 % quantile of χ² as inliers: 11.34 for the three degrees of freedom of a
+// point, 13.28 for the four of a line. Noise with twice the SD of the models must stay observable, so the
+// bounds here are four times these. A surface sample has one degree of freedom; its residual is only far off
+// while the scale is not learnt yet. So it has the bound of points, 6.7 SDs.
 constexpr double kFarthestPoint = 45;
 constexpr double kFarthestLine = 53;
 constexpr double kFarthestSurface = 45;
 constexpr std::size_t kLeastMatches = 12;
-// One frame may not say more than this, and the scales stay within these bounds.
+// Bounds on the influence of one frame, and on the scales.
 constexpr double kMostOfAFrame = 4;
 constexpr double kLeastScale = 0.04;
-// A rendered depth image has no smooth error at all.
+// A rendered depth image has no smooth error.
 constexpr double kLeastSharedScale = 0.0025;
-// A sample of a surface is a mean of many readings.
+// A surface sample is a mean of many readings, so its scale may be smaller.
 constexpr double kLeastSurfaceScale = 0.0025;
 constexpr double kMostScale = 25;
 
@@ -42,7 +42,7 @@ double median_over(FixedVector<double>& values, double expected) {
   return *middle / expected;
 }
 
-// Of one point match: e across the image against its covariance, and along the ray.
+// Squared normalised residuals of one point match: across the image, and along the ray.
 struct PointResidual {
   double image = 0, depth = 0;
 };

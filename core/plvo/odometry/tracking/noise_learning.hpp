@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the models of the noise are right, from the residuals that the estimate leaves: variance
-// components, one for points across the image, one for their depth, one for lines, one for surfaces. Medians,
-// so that neither outliers nor the scale itself decide who has a say; over the last reference, whose motion
-// is small: what shows is the measurement's noise and not that of a long way.
+// Learns the scales of the noise models from the residuals of the estimate: variance components, one for
+// points across the image, one for their depth, one for lines, one for surfaces. Medians are used, so that
+// neither outliers nor the scale itself decide which residuals count. Only the latest reference is used: its
+// motion is small, so the residuals show the noise of the measurement and not that of a long motion.
 #pragma once
 
 #include <span>
@@ -19,19 +19,19 @@
 namespace plvo {
 
 // Median of the squared normalised residuals over that of χ²(dof), for each kind; 1 where there are too few
-// to tell. Scratch: see reserve_noise_learning.
+// residuals. Scratch: see reserve_noise_learning.
 NoiseScales residual_scales(const Pinhole& pinhole, const PointConstraints& points,
                             const LineConstraints& lines, const Se3& T_current_reference, Arena& scratch);
 
-// The same of surfaces; 1 without any.
+// The same ratio for surfaces; 1 without any.
 double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_reference, Arena& scratch);
 
-// What the shared errors' estimate says of their variances: the mean square of each kind's parameters, with
-// what is not known of them, over the prior's (expectation maximisation of a variance component); 1 for a
-// kind that there is not.
+// Ratios for the variances of the nuisance parameters: the mean square of each kind's parameters plus their
+// remaining variance, over the prior's variance (expectation maximisation of a variance component); 1 for a
+// kind that is not estimated.
 void note_nuisance(const NuisanceParameters& shared, const NuisanceEstimate& estimate, NoiseScales& observed);
 
-// One step of `scales` towards what a frame showed, observed times the scales themselves.
+// Moves `scales` one step towards what a frame showed; observed is a factor on the scales.
 void learn(const NoiseConfig& config, const NoiseScales& observed, NoiseScales& scales);
 
 constexpr void reserve_noise_learning(Arena& memory, const Limits& limits) {

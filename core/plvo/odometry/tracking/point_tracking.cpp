@@ -8,21 +8,21 @@
 namespace plvo {
 namespace {
 
-// What only serves to find the motion roughly need not be registered finely.
+// The search for a first motion needs no fine registration.
 constexpr AlignmentOptions kRough{.max_iterations = 5, .tolerance_px = 0.1};
 
-// σ_p of a keypoint where registration put it, in pixels of its level.
+// σ_p of a registered keypoint, in pixels of its level.
 double registered_sigma_px(const PointConfig& config, const Alignment& alignment) {
   return sqrt(config.sigma_px * config.sigma_px + alignment.sigma_px * alignment.sigma_px);
 }
 
-// Where the current image is expected to show something, and how deep.
+// Expected pixel and depth of a keypoint in the current image.
 struct Expected {
   Vector2 pixel = Vector2::Zero();
   double depth_m = DepthSampler::kUnknown;
 };
 
-// The reference keypoint's 3D point after the motion; false where that is out of sight.
+// Projects the reference keypoint's 3D point after the motion. Returns false where that is out of view.
 bool predict(const TrackingView& view, const Point3d& point, const Se3& T_current_reference,
              Expected& expected) {
   if (!(point.p.z() > 0)) return false;
@@ -50,8 +50,8 @@ void add_track(const TrackingView& view, std::size_t i, const Vector2& pixel, do
   point.p = view.exposure.at_mid_exposure(point.p);
 }
 
-// What a small patch around reference point p becomes, taken to face the camera there: by the derivative of
-// its projection after the motion.
+// Warp of a small patch around reference point p, which is taken to face the reference camera: the derivative
+// of its projection after the motion.
 PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current_reference) {
   Matrix<3, 2> facing = T_current_reference.R.block<3, 2>(0, 0);
   facing.col(0) *= p.z() / pinhole.fx;
@@ -59,13 +59,14 @@ PatchWarp warp_of(const Pinhole& pinhole, const Vector3& p, const Se3& T_current
   return {project_derivative(pinhole, T_current_reference * p) * facing};
 }
 
-// Registers the keypoint's patch around where it is expected and, if it is there and has depth, adds a track.
+// Registers the keypoint's patch around its expected position. Adds a track if the patch is found and has
+// depth.
 void register_keypoint(const TrackingView& view, const PointFeatures& reference, std::size_t i,
                        const Expected& expected, const AlignmentOptions& options, const PatchWarp& warp,
                        PointTracks& tracks) {
   const Keypoint& keypoint = reference.keypoints[i];
   const double scale = 1 << keypoint.level;
-  // The patch is centred on a whole pixel, the keypoint is not: the offset goes with it.
+  // The patch is centred on a whole pixel, but the keypoint is not: the offset is kept.
   const double offset_x = static_cast<double>(keypoint.u) / scale - keypoint.x;
   const double offset_y = static_cast<double>(keypoint.v) / scale - keypoint.y;
   const Alignment alignment = align_patch(
@@ -76,13 +77,13 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
             scale * registered_sigma_px(view.config, alignment), expected.depth_m, tracks);
 }
 
-// The room from `first` on.
+// The free capacity from `first` on.
 PointTracks from(const PointTracks& tracks, std::size_t first) {
   return {FixedVector<Match>(tracks.matches.storage().subspan(first)), tracks.pixels.subspan(first),
           tracks.points.subspan(first)};
 }
 
-// `later`, whose room begins at or behind the last of `tracks`, moves up to it.
+// Appends `later` to `tracks`. The storage of `later` begins at or behind the last of `tracks`.
 void append(const PointTracks& later, PointTracks& tracks) {
   for (std::size_t i = 0; i < later.matches.size(); ++i) {
     const std::size_t track = tracks.matches.size();

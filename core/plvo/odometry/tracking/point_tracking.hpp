@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the reference's keypoints in the current frame and lifts what was found to 3D: through descriptors,
-// which need no good idea of the motion, to get one; and, with a good idea of it, by registering the patch of
-// every reference keypoint where it must be — which does not depend on the detector finding the same corner
-// again, and so yields several times as many matches.
+// Finds the reference's keypoints in the current frame and lifts them to 3D, in two ways. Descriptors need no
+// good prediction and serve to find a first motion. With a good motion, the patch of every reference keypoint
+// is registered at its predicted position. Registration does not depend on the detector finding the same
+// corner again, so it yields several times as many matches.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@
 
 namespace plvo {
 
-// Reference keypoint matches[i].reference was found at pixels[i], and is points[i] there; matches[i].current
-// is i.
+// Tracks: reference keypoint matches[i].reference was found at pixels[i] and has the 3D point points[i]
+// there; matches[i].current is i.
 struct PointTracks {
   FixedVector<Match> matches;
   std::span<Vector2> pixels;  // level-0 px
@@ -37,7 +37,7 @@ struct PointTracks {
   }
 };
 
-// The current frame as the tracker sees it.
+// What the tracker needs of the current frame.
 struct TrackingView {
   const Pinhole& pinhole;
   const PointConfig& config;
@@ -48,20 +48,21 @@ struct TrackingView {
   const Executor& executor;
 };
 
-// Through descriptors, within radius_px of where T_current_reference puts the reference keypoints; registered
-// roughly from there, or, without registration, where the current frame's detector put them.
-// reference_points: those of the reference's keypoints, at its mid-exposure.
+// Tracks by descriptors, within radius_px of the positions that T_current_reference predicts for the
+// reference keypoints. With registration, matches are then registered roughly; without, they lie where the
+// current frame's detector put them. reference_points: those of the reference's keypoints, at its
+// mid-exposure.
 void track_by_descriptor(const TrackingView& view, const PointFeatures& reference,
                          std::span<const Point3d> reference_points, const PointFeatures& current,
                          const Se3& T_current_reference, double radius_px, Arena& scratch,
                          PointTracks& tracks);
 
-// By registration alone, from where T_current_reference puts them.
+// Tracks by registration alone, from the positions that T_current_reference predicts.
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,
                      std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks);
 
-// Scratch of track_by_descriptor.
+// Reserves the scratch of track_by_descriptor.
 constexpr void reserve_tracking(Arena& memory, int keypoints, int width, int height) {
   const ScratchScope scope(memory);
   const auto n = static_cast<std::size_t>(keypoints);

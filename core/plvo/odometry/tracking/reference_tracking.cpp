@@ -10,28 +10,30 @@
 namespace plvo {
 namespace {
 
-// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian do.
-// The second takes its last step unseen when that is a fifth of what the sensor can tell: what is left then
-// is less than a twentieth.
+// The first motion only has to lead the second search to within a pixel: a millimetre and a milliradian
+// suffice. The second takes its last step without another check when that step is a fifth of the sensor's
+// resolution: the remaining error is then less than a twentieth.
 constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4};
 constexpr LmOptions kFineSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
-// Sparse alignment, at most: rounds over a level, and Gauss–Newton steps in each. After a step of less (m and
-// rad) another round is in vain.
+// Limits of the sparse alignment: rounds over a level, and Gauss–Newton steps in each. After a step smaller
+// than kAligned (m and rad) another round brings nothing.
 constexpr int kCoarseRounds = 4;
 constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
 constexpr double kAligned = 5e-4;
 
 // All references are matched with the same measurements of the current frame: their residuals correlate by ½,
-// and n such weigh as n / (1 + (n − 1) / 2) independent ones.
+// and n such residuals weigh as n / (1 + (n − 1) / 2) independent ones.
 double weight_of_one(std::size_t references) { return 2 / (1 + static_cast<double>(references)); }
 
-// What vision leaves open a sensed motion holds, and its covariance says how well: no reason to give up.
-constexpr double kHeld = 1e6;
+// With a propagated prior, the covariance states how uncertain the directions are that vision leaves open.
+// The bounds on the SDs are then this large, so that no estimate fails by them.
+constexpr double kUnboundedSigma = 1e6;
 
-// The sets of constraints of an estimate, by which it counts inliers: points and lines of each reference,
-// then the sensed motion, then surfaces, of which nothing is asked by number.
+// Order of the constraint sets of an estimate: points and lines of each reference, then the propagated prior,
+// then surfaces. Inliers of points and lines are counted by this index; surfaces are never looked up by
+// index.
 constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
 constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
 constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
@@ -52,7 +54,7 @@ void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, Tr
   result.lm_iterations += estimate.lm.iterations;
 }
 
-// What the matches with each reference say of the motion; empty for a reference that there is not.
+// Constraints from the matches with each reference; empty for a missing reference.
 struct FeatureConstraints {
   std::array<PointConstraints, kMaxReferences> points;
   std::array<LineConstraints, kMaxReferences> lines;
@@ -64,9 +66,9 @@ FeatureConstraints constraints_of(std::span<const RowTimeCompensation> features,
                                   Arena& scratch) {
   static_assert(kMaxReferences == 3);
   const double weight = weight_of_one(features.size());
-  const RowTimeCompensation nothing;
+  const RowTimeCompensation empty;
   const auto at = [&](std::size_t r) -> const RowTimeCompensation& {
-    return r < features.size() ? features[r] : nothing;
+    return r < features.size() ? features[r] : empty;
   };
   const auto count = [&](std::size_t r, std::size_t matches) { return r < features.size() ? matches : 0; };
   const auto points = [&](std::size_t r) {
@@ -124,7 +126,7 @@ std::size_t latest_of(std::span<const Reference> references) {
 
 bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
                       const CameraModel& camera, const Se3& T_current_base) {
-  // Nearly always they are that share of all features, in view or not.
+  // Nearly always the inliers are that share of all features, in view or not.
   std::size_t all = 0;
   for (const Reference& reference : references)
     all += reference.features->points.keypoints.size() + reference.features->lines.count_3d;
@@ -147,7 +149,8 @@ bool is_share_of_view(int inliers, double share, std::span<const Reference> refe
   return inliers >= share * in_view;
 }
 
-// Relative to the first of them; the last good frame's besides, where it is no reference.
+// Sets the poses relative to the first reference, and that of the last good frame, which may not be a
+// reference.
 ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Reference> references,
                                                         const MotionReference& last,
                                                         MotionReferences& poses) {
@@ -182,7 +185,7 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
   if (sensed.known()) {
     prior.set_reference(at.last_frame, 0);
     sets[set_count++] = &prior;
-    motion_config.max_sigma_m = motion_config.max_sigma_rad = kHeld;
+    motion_config.max_sigma_m = motion_config.max_sigma_rad = kUnboundedSigma;
   }
   for (SurfaceConstraints& set : constraints.surfaces)
     if (set.size() > 0) sets[set_count++] = &set;
@@ -200,7 +203,7 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
   count(tracked.motion, std::span(tracks_).first(features.size()), result);
   if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
     const std::size_t latest = at.latest;
-    // With the poses as they were known: moved to what they show, matches show less than they err.
+    // The residuals use the poses as known before: with adjusted poses they would be smaller than the noise.
     const Se3 T_current_latest = motions_to_current(tracked.motion.T_current_reference, poses)[latest];
     const Pinhole& pinhole = current.extraction.camera().pinhole;
     tracked.observed = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
@@ -210,7 +213,7 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
   }
 }
 
-// Apart: what it puts on the stack is gone when the motion is solved for.
+// Not inlined: its variables are off the stack when the motion is solved for.
 [[gnu::noinline]] bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current,
                                                 Arena& scratch, Se3& T_current_reference,
                                                 TrackResult& result) const {
@@ -220,14 +223,15 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
   const StageTimer timer(config, result, Stage::kMatching);
   const ScratchScope scope(scratch);
   const PointFeatures& features = reference.features->points;
-  const std::span<AlignmentWindow> room = SparseAlignment::take_windows(scratch);
+  const std::span<AlignmentWindow> storage = SparseAlignment::take_windows(scratch);
   const Pyramid& pyramid = current.extraction.pyramid();
   Se3 T = reference.prior.T_current_reference;
   AlignmentStep step;
   const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
     for (int round = 0; round < rounds; ++round) {
       const ScratchScope exposed(scratch);
-      // What a rolling shutter does depends on the motion: anew for each better idea of it.
+      // The effect of a rolling shutter depends on the motion, so it is compensated anew for each better
+      // motion.
       const RowTimeCompensation at =
           compensate_row_times_of_points(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
@@ -237,8 +241,8 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
     }
     return true;
   };
-  if (!take_rounds(alignment_.cut_coarse(features, room), kCoarseRounds) || !step.trusted()) return false;
-  if (!take_rounds(SparseAlignment::cut_fine(features, room), kFineRounds)) return false;
+  if (!take_rounds(alignment_.cut_coarse(features, storage), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(SparseAlignment::cut_fine(features, storage), kFineRounds)) return false;
   T_current_reference = T;
   return true;
 }
@@ -264,9 +268,9 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
                           tracks_[0].lines);
-    tracks_[0].surfaces.clear();  // projecting them takes a good idea of the motion
+    tracks_[0].surfaces.clear();  // projecting them needs a good estimate of the motion
   }
-  // Without registration this is the whole estimate, else it only leads to it.
+  // Without registration this is the whole estimate, otherwise only its start.
   const bool whole = !config.points.registered;
   const NuisanceParameters shared =
       whole ? nuisance_parameters(config.noise, features.current_exposure, current.noise)

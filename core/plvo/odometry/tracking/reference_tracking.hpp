@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. A first motion, from
-// one reference, comes from align(), by the images, or where that fails from find(), by descriptors; refine()
-// registers the features of all references with it and solves for one motion over all of them.
+// one reference, comes from align(), by the images, or if that fails from find(), by descriptors. Then
+// refine() registers the features of all references with it and solves for one motion over all of them.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace plvo {
 
-// A frame to match against, and what is known beforehand. pose: relative to the base, the first of the
+// A frame to match with, and what is known beforehand. pose: relative to the base, the first of the
 // references.
 struct Reference {
   const FrameFeatures* features = nullptr;
@@ -32,18 +32,18 @@ struct Reference {
   MotionReference pose;
 };
 
-// Of the references, the one that was taken last.
+// Index of the reference with the latest stamp.
 std::size_t latest_of(std::span<const Reference> references);
 
-// Whether so many inliers are at least this share of what this motion from the base puts into the image:
-// points, and lines by their middles, of all references.
+// Whether the number of inliers is at least this share of the features that the motion from the base puts
+// into the image: points, and lines by their midpoints, of all references.
 bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
                       const CameraModel& camera, const Se3& T_current_base);
 
-// What was found of one reference in the current frame.
+// Tracks of one reference in the current frame.
 struct ReferenceTracks {
   PointTracks points;
-  std::span<std::uint8_t> point_inliers;  // a flag for each of points.matches
+  std::span<std::uint8_t> point_inliers;  // one flag per element of points.matches
   FixedVector<Match> lines;               // indices of both frames' 3D lines
   std::span<std::uint8_t> line_inliers;
   FixedVector<SurfaceMatch> surfaces;
@@ -64,17 +64,17 @@ struct ReferenceTracks {
 // The frame that is being tracked.
 struct CurrentFrame {
   FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
-  const FeatureExtraction& extraction;  // of its image; with the camera and the configuration of both
+  const FeatureExtraction& extraction;  // of its image; holds camera and configuration
   const DepthSampler& depth;
   const NoiseScales& noise;
-  const PropagatedPrior& sensed;  // since the last good frame,
-  const MotionReference& last;    // whose pose this is, relative to the base
+  const PropagatedPrior& sensed;  // motion since the last good frame
+  const MotionReference& last;    // pose of the last good frame, relative to the base
 };
 
 struct TrackedMotion {
   MotionEstimate motion;  // from the base
-  Exposure exposure;      // how the camera moved while the current frame was exposed
-  NoiseScales observed;   // what the residuals say of the noise
+  Exposure exposure;      // motion of the camera during the exposure of the current frame
+  NoiseScales observed;   // observed scales of the noise
 };
 
 class ReferenceTracking {
@@ -84,7 +84,7 @@ class ReferenceTracking {
       tracks_[r].allocate(memory, limits);
     alignment_.allocate(memory, limits.width, limits.height);
   }
-  // Scratch: the larger of the stages, which come one after the other.
+  // Reserves the scratch of the largest stage; the stages run one after the other.
   static constexpr void reserve(Arena& memory, const Limits& limits) {
     const ScratchScope scope(memory);
     {
@@ -101,27 +101,27 @@ class ReferenceTracking {
                 static_cast<std::size_t>(limits.segments), static_cast<std::size_t>(limits.surfaces));
   }
 
-  // Of the frame with this stamp, for align(), until the next call.
+  // Keeps the image of the frame with this stamp, for align(), until the next call.
   void keep_image(const Pyramid& pyramid, std::int64_t stamp_ns) { alignment_.keep(pyramid, stamp_ns); }
 
-  // T_current_reference of the reference whose image was kept, by sparse image alignment, from its prior.
-  // False for any other, and where the alignment cannot be trusted.
+  // Finds T_current_reference of the reference whose image was kept, by sparse image alignment, from its
+  // prior. Returns false for any other reference, and where the alignment cannot be trusted.
   bool align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
              Se3& T_current_reference, TrackResult& result) const;
-  // T_current_reference of one reference: features are looked for within radius_px of where its prior has
-  // them. Where points are not registered this is the whole estimate.
+  // Finds T_current_reference of one reference; features are searched within radius_px of the positions that
+  // its prior predicts. Without registration this is the whole estimate.
   void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
             TrackedMotion& tracked, TrackResult& result);
-  // The motion from the base, from all references at once (1 … Limits::references), registered from
+  // Estimates the motion from the base with all references at once (1 … Limits::references), registered from
   // T_current_base.
   void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
               Arena& scratch, TrackedMotion& tracked, TrackResult& result);
 
-  // Of the last call, in the order of its references.
+  // Tracks of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  // Of poses: the latest reference's, and the last good frame's.
+  // Indices into the poses: the latest reference, and the last good frame.
   struct Indices {
     std::size_t latest, last_frame;
   };

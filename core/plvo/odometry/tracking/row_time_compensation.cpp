@@ -4,10 +4,10 @@
 namespace plvo {
 namespace {
 
-// A mean velocity over longer than this says nothing of the moment of exposure.
+// A mean velocity over a longer interval does not predict that during the exposure.
 constexpr double kLongestInterval_s = 0.2;
 
-// Since the last good frame, if this is the motion from the reference.
+// Velocity since the last good frame, given this motion from the reference.
 Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
   if (prior.velocity_known) return prior.velocity;
   if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s))

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a rolling shutter out of the features of a pair. Each frame needs the camera's velocity while it was
-// exposed, and the velocity is what the pair is about to tell: so this is done for every guess of the motion
-// anew. The reference moves as the mean of before and after. The current frame moves as it did since the last
-// good frame, plus half of what extrapolating the change of velocity would add: all of it would add its noise
-// too. What matters is the difference of the two: a common velocity shifts the rows of both images alike.
+// Removes the effect of a rolling shutter from the features of a pair of frames. This needs the camera's
+// velocity during each exposure, which follows from the motion between them. So the compensation is repeated
+// for every estimate of the motion. The reference has the mean velocity of the intervals before and after it.
+// The current frame has the velocity since the last good frame plus half of the extrapolated change; the full
+// change would add its noise too. Only the difference of the two matters: a common velocity shifts the rows
+// of both images alike.
 #pragma once
 
 #include <span>
@@ -16,18 +17,18 @@
 
 namespace plvo {
 
-// What is known of a pair before its features are looked at.
+// What is known of a pair before its features are matched.
 struct PairPrior {
-  Se3 T_current_reference;                       // as expected
+  Se3 T_current_reference;                       // the predicted motion
   Se3 T_reference_last;                          // of the last good frame, which may be the reference itself
   double seconds_since_last = 0;                 // from the last good frame to the current one
-  Vector6 reference_velocity = Vector6::Zero();  // per second, as of exposure.hpp
+  Vector6 reference_velocity = Vector6::Zero();  // per second, as in exposure.hpp
   bool reference_velocity_known = false;
   bool reference_is_last = true;
   Vector6 last_velocity = Vector6::Zero();  // of the last good frame
   bool last_velocity_known = false;
-  double depth_after_colour_s = 0;  // of the current frame, as of exposure.hpp
-  // Of the current frame, where it is known without the motion from the reference.
+  double depth_after_colour_s = 0;  // of the current frame, as in exposure.hpp
+  // Velocity of the current frame, if it is known without the motion from the reference.
   Vector6 velocity = Vector6::Zero();
   bool velocity_known = false;
 };
@@ -39,15 +40,15 @@ struct RowTimeCompensation {
   std::span<const SurfaceSample> reference_surfaces;
 };
 
-// How the camera moved while the current frame was exposed, if this is the motion.
+// Motion of the camera during the exposure of the current frame, given this motion from the reference.
 Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference);
 
-// Of the reference's points alone; otherwise as below.
+// Compensates the reference's points only; otherwise as below.
 RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairPrior& prior,
                                                    const Se3& T_current_reference,
                                                    const FrameFeatures& reference, Arena& scratch);
-// Copies into the scratch what changes; with a global shutter nothing does, and the features are used as they
-// are.
+// Copies the changed features into the scratch. With a global shutter there are no changes, and the features
+// are used without a copy.
 RowTimeCompensation compensate_row_times(const CameraModel& camera, const PairPrior& prior,
                                          const Se3& T_current_reference, const FrameFeatures& reference,
                                          const FrameFeatures& current, Arena& scratch);

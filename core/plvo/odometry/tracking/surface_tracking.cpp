@@ -7,7 +7,7 @@ namespace plvo {
 namespace {
 
 constexpr double kLeastCosine = 0.9;  // between the normals
-// Farther off than so many σ and this share of the depth it is another surface.
+// A sample whose distance exceeds this many σ plus this share of the depth lies on another surface.
 constexpr double kPlaneGateSigmas = 5;
 constexpr double kPlaneGateShare = 0.01;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the reference's samples of surfaces in the current frame's depth image, where the motion puts them
-// (projective association: Blais & Levine, 1995): on a surface it does not matter where along it that is.
+// Finds the surface samples of the reference in the current frame's depth image, at the positions that the
+// motion predicts (projective association: Blais & Levine, 1995). The position along the surface does not
+// matter.
 #pragma once
 
 #include <span>
@@ -14,8 +15,8 @@
 
 namespace plvo {
 
-// depth: with the exposure of the current frame. reference: at its mid-exposure. Those whose place shows no
-// surface, one that faces elsewhere, or one too far off have no match.
+// depth: with the exposure of the current frame. reference: at its mid-exposure. A sample has no match if
+// there is no surface at its position, or one with another orientation, or one too far off.
 void track_surfaces(const DepthSampler& depth, const Pinhole& pinhole, const NoiseConfig& config,
                     double noise_scale, std::span<const SurfaceSample> reference,
                     const Se3& T_current_reference, FixedVector<SurfaceMatch>& matches);

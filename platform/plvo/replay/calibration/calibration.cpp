@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kBuiltinNames = {"tum-fr1", "tum-fr2", "tum-fr3", "7scenes",
                                                            "kinect-v1-default"};
-// TUM's computer stamped colour in steps of 4 ms (the 32 and 36 ms between two of fr1's), at random within
-// one.
+// TUM's computer stamped colour in steps of 4 ms (fr1 has intervals of 32 and 36 ms); the error is random
+// within a step.
 constexpr double kTumStampSigma_s = 0.0012;
-// A Kinect v1's colour camera, as ROS's driver (openni_camera) has it for those that were not calibrated.
+// A Kinect v1's colour camera: the default of ROS's driver (openni_camera) for uncalibrated ones.
 constexpr Pinhole kKinectColour = {525, 525, 319.5, 239.5};
-// Its colour camera sits to the right of the depth camera (kinect_frames.launch of openni_launch).
+// Its colour camera is to the right of the depth camera (kinect_frames.launch of openni_launch).
 constexpr double kKinectDepth_tx = -0.025;
 
 Status validate_depth_camera(const DepthCamera& depth, int width, int height) {
@@ -147,15 +147,15 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   Calibration result;
   result.has_size = true;
   CameraModel& camera = result.camera;
-  camera.readout_s = kKinectReadout_s;  // all of these are Kinects v1 or their relatives
+  camera.readout_s = kKinectReadout_s;  // all of these are Kinects v1 or similar sensors
   result.readout_given = true;
   result.depth_scale_given =
-      name.starts_with("tum-");  // a Kinect's own depth is in whatever its program wrote
+      name.starts_with("tum-");  // the unit of a Kinect's depth depends on the recording program
   if (name.starts_with("tum-")) camera.stamp_sigma_s = kTumStampSigma_s;
   if (name == "tum-fr1") {
     camera.pinhole = {517.306408, 516.469215, 318.643040, 255.313989};
     camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
-    // These recordings stamp depth some 15 ms later than it was exposed (docs/sensors.md).
+    // In these recordings, the stamp of depth is some 15 ms later than its exposure (docs/sensors.md).
     camera.depth_timing = {.known = true, .delay_s = -0.015, .readout_s = kKinectReadout_s};
   } else if (name == "tum-fr2") {
     camera.pinhole = {520.908620, 521.007327, 325.141442, 249.701764};

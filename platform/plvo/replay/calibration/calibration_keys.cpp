@@ -27,7 +27,7 @@ constexpr auto kKeys = std::to_array<Key>({
     {"p2", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.p2; }},
     {"k3", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k3; }},
     {"readout_s", KeyKind::kSensor, [](N& n) -> double& { return n.calibration.camera.readout_s; }},
-    // Keys alone from here on.
+    // The following have keys only, no place among the numbers.
     {"k4", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k4; }},
     {"k5", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k5; }},
     {"k6", KeyKind::kLens, [](N& n) -> double& { return n.calibration.camera.distortion.k6; }},
@@ -159,7 +159,8 @@ Status Collector::finish(Calibration& calibration) {
   }
   result.depth_scale_given = given("depth_scale");
   result.readout_given = given("readout_s");
-  // Where depth's delay is known, its rows are taken to roll as colour's unless the file says otherwise.
+  // If the delay of depth is known, the readout of depth is taken to equal that of colour unless the file has
+  // another.
   DepthTiming& depth = result.camera.depth_timing;
   depth.known = given("depth_delay_s");
   if (given("depth_readout_s") && !depth.known)

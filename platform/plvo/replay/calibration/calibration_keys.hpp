@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names that calibration files use, in one table: which number of a Calibration each one sets. A new
-// property of the sensor becomes readable (as a key in text and in YAML, and beside a ROS camera_info) and is
-// written by calibration_text() when it gets a row there. Internal to this room.
+// The keys of calibration files, in one table: each sets one number of a Calibration. A new property of the
+// sensor only needs a row in the table. It can then be read (as a key in text and in YAML, and beside a ROS
+// camera_info), and calibration_text() writes it. Internal to this folder.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ struct Numbers {
 };
 
 enum class KeyKind : std::uint8_t {
-  kLens,          // a camera_info says these in its own words
+  kLens,          // a camera_info has its own words for these
   kSize,          // likewise
-  kSensor,        // what a camera_info does not know
-  kDepthPinhole,  // likewise; all of it, or nothing where it is colour's
-  kDepthPlace,    // likewise: where the depth camera is, and how it is turned
+  kSensor,        // not part of a camera_info
+  kDepthPinhole,  // likewise; all four keys, or none if the pinhole is that of colour
+  kDepthPlace,    // likewise: position and orientation of the depth camera
 };
 
 struct Key {
@@ -35,28 +35,28 @@ struct Key {
   double& (*of)(Numbers& numbers);
 };
 
-// The first kPlaces of them, in this order, are also the numbers of the form without keys.
+// All keys. The first kPlaces of them, in this order, are also the numbers of the form without keys.
 std::span<const Key> keys();
 inline constexpr std::size_t kPlaces = 11;
 inline constexpr std::size_t kMaxKeys = 32;
 
-// The one key whose value is a word: the name of the lens's model, as in a camera_info.
+// The only key whose value is a word: the name of the lens model, as in a camera_info.
 inline constexpr std::string_view kLensModelKey = "distortion_model";
 bool is_key(std::string_view name);  // one of keys(), or kLensModelKey
 
-// Collects what a file says, key by key, and makes a calibration of it.
+// Collects the content of a file, key by key, and builds a calibration from it.
 class Collector {
  public:
   explicit Collector(const std::filesystem::path& path) : path_(path) {}
 
-  // kDamaged for a key that is not in the table, a value that is none, or a key said twice; kUnsupported for
-  // a lens that is not known.
+  // Returns kDamaged for a key that is not in the table, an invalid value, or a repeated key; kUnsupported
+  // for an unknown lens model.
   Status set(std::string_view key, std::string_view value);
   void set_place(std::size_t place, double value);
-  // Where other words than the keys say it.
+  // Sets the lens of a format with other words than the keys.
   void set_lens(const Pinhole& pinhole, const Distortion& distortion);
   void set_guess(std::string guess) { numbers_.calibration.guess = std::move(guess); }
-  // The calibration, once fx, fy, cx and cy are all there.
+  // Builds the calibration, once fx, fy, cx and cy are all given.
   Status finish(Calibration& calibration);
 
  private:
@@ -74,7 +74,7 @@ class Collector {
 bool parse_number(std::string_view text, double& value);
 Status damaged(const std::filesystem::path& path, std::string_view what);
 
-// The content of a text file and of a YAML file; `path` is for messages.
+// Parse the content of a text file and of a YAML file; `path` is for messages.
 Status parse_text(const std::filesystem::path& path, std::string_view content, Calibration& calibration);
 Status parse_yaml(const std::filesystem::path& path, const std::string& content, Calibration& calibration);
 

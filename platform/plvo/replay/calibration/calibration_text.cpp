@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations as plain text: numbers by their place, keys, or numbers first and then keys; and the writer of
-// the same.
+// Reads and writes calibrations as plain text: numbers by their place, keys, or numbers followed by keys.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -19,7 +18,7 @@ constexpr std::string_view kForm =
     "'fx fy cx cy [depth_scale [k1 k2 p1 p2 k3 [readout_s]]]', or the matrix fx 0 cx, 0 fy cy, 0 0 1, also "
     "of four rows and columns";
 
-// Row by row: of 3 rows and columns, or of 4, which are the identity's beside the camera's.
+// Row by row: a 3×3 matrix, or a 4×4 matrix with the identity around the camera's entries.
 bool is_camera_matrix(const std::vector<double>& m) {
   if (m.size() != 9 && m.size() != 16) return false;
   const std::size_t columns = m.size() == 9 ? 3 : 4;
@@ -36,12 +35,12 @@ bool is_of_depth_camera(const Key& key, const DepthCamera& depth) {
          (key.kind == KeyKind::kDepthPlace || (key.kind == KeyKind::kDepthPinhole && !depth.as_colour));
 }
 
-// Written where depth's own time is known, as one.
+// These are written together, if the timing of depth is known.
 bool is_depth_timing(const Key& key) {
   return key.kind == KeyKind::kSensor && key.name.starts_with("depth_") && key.name != "depth_scale";
 }
 
-// Words without comments; ':', '=', ',' count as white space, and so do the brackets of a printed matrix.
+// Words without comments; ':', '=', ',' count as white space, like the brackets of a printed matrix.
 std::vector<std::string_view> words_of(std::string_view content) {
   std::vector<std::string_view> words;
   while (!content.empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations in YAML: our keys, or ROS's camera_info as the calibration tools write it (image_width,
+// Reads calibrations in YAML: plvo's keys; ROS's camera_info as the calibration tools write it (image_width,
 // camera_matrix: {data: …}, distortion_model, distortion_coefficients: {data: …}) and as a printed message
-// shows it (width, K or k, D or d), or what other programs write (other_programs.cpp). JSON is YAML.
+// shows it (width, K or k, D or d); and the formats of other programs (other_programs.cpp). JSON is YAML.
 #include <string>
 #include <vector>
 
@@ -28,7 +28,7 @@ Status from_camera_info(const fs::path& path, const YAML::Node& root, Collector&
                   first_of(root, {"image_height", "height"}));
 }
 
-// What other formats do not know may stand beside their words.
+// Properties that other formats lack may be added with plvo's keys.
 Status set_sensor_keys(const YAML::Node& root, Collector& collector) {
   for (const Key& key : keys()) {
     if (key.kind == KeyKind::kLens || key.kind == KeyKind::kSize) continue;

@@ -29,7 +29,7 @@ bool speaks_of_colour(const std::string& topic) {
   return name.find("rgb") != name.npos || name.find("color") != name.npos || name.find("colour") != name.npos;
 }
 
-// The names by which Kalibr and EuRoC know the lenses of a camera_info.
+// Translates the names of lens models of Kalibr and EuRoC to those of a camera_info.
 std::string lens_name(const std::string& model) {
   if (model == "radtan" || model == "radial-tangential") return "plumb_bob";
   if (model == "equi") return "equidistant";
@@ -57,7 +57,7 @@ Status from_intrinsics(const fs::path& path, const YAML::Node& camera, Collector
   return set_size(collector, size[0], size[1]);
 }
 
-// Colour's camera is the one whose topic says so, else the first.
+// Takes the camera whose topic names colour, else the first.
 Status from_chain(const fs::path& path, const YAML::Node& root, Collector& collector) {
   std::string first, colour;
   int cameras = 0;

@@ -18,7 +18,7 @@ constexpr const char* kDepthIntrinsic = "intrinsic/intrinsic_depth.txt";
 constexpr const char* kColourExtrinsic = "intrinsic/extrinsic_color.txt";
 constexpr const char* kDepthExtrinsic = "intrinsic/extrinsic_depth.txt";
 
-// The identity without the file.
+// Returns the identity if there is no file.
 Status read_extrinsic(const fs::path& path, Se3& extrinsic) {
   extrinsic = {};
   std::error_code error;

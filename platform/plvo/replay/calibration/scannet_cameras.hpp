@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two cameras of what was exported of ScanNet's .sens: 4×4 matrices in the folder intrinsic,
-// intrinsic_color.txt and intrinsic_depth.txt, in pixels of either image, and, optional, extrinsic_color.txt
-// and extrinsic_depth.txt. An extrinsic maps from its camera to the frame that both share, which ScanNet's
-// own programs have in the colour camera.
+// Reads the two cameras of an export of ScanNet's .sens: 4×4 matrices in the folder intrinsic.
+// intrinsic_color.txt and intrinsic_depth.txt are in pixels of their own image; extrinsic_color.txt and
+// extrinsic_depth.txt are optional. An extrinsic maps from its camera to a common frame, which ScanNet's own
+// programs place in the colour camera.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,14 @@
 
 namespace plvo {
 
-// Those of the files that are there.
+// The files that exist.
 std::vector<std::filesystem::path> scannet_camera_files(const std::filesystem::path& folder);
 
-// Both intrinsics are there.
+// Whether both intrinsics exist.
 bool has_scannet_cameras(const std::filesystem::path& folder);
 
-// Colour's camera, and depth's as one of its own. As read_calibration and read_matrix_pose.
+// Reads the colour camera, and the depth camera as a separate one. Returns the errors of read_calibration and
+// read_matrix_pose.
 Status read_scannet_cameras(const std::filesystem::path& folder, Calibration& calibration);
 
 }  // namespace plvo

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Colour and depth of the first pair whose headers can be read.
+// Compares colour and depth of the first pair whose headers can be read.
 bool sizes_differ(const fs::path& folder) {
   SequenceIndex index;
   if (!read_sequence_index(folder, {}, index).ok()) return false;
@@ -33,14 +33,13 @@ bool sizes_differ(const fs::path& folder) {
   return false;
 }
 
-// No calibration of the user's comes before.
+// Whether the file is one of ScanNet's; a calibration of the user's would have come first.
 bool is_scannets(const fs::path& folder, const fs::path& file) {
   const std::vector<fs::path> files = scannet_camera_files(folder);
   return std::find(files.begin(), files.end(), file) != files.end();
 }
 
-// Without a file of a name that is known: the only one of the kinds that a program's settings have, whatever
-// its name.
+// If no file has a known name: the only file in a format of program settings, whatever its name.
 std::optional<fs::path> only_settings_in(const fs::path& folder) {
   std::optional<fs::path> only;
   std::error_code error;
@@ -60,14 +59,14 @@ std::string name_of(const fs::path& recording) {
 
 constexpr std::array<std::string_view, 3> kTumModels = {"tum-fr1", "tum-fr2", "tum-fr3"};
 
-// The camera's own name in those of the benchmark's recordings; empty for another name.
+// The camera's name in the names of the benchmark's recordings; empty for another name.
 std::string_view tum_model_of(std::string_view name) {
   for (const std::string_view model : kTumModels)
     if (name.starts_with(fmt::format("rgbd_dataset_freiburg{}_", model.back()))) return model;
   return {};
 }
 
-// Names that people give them, and others as well.
+// Matches names that users give such recordings, but other recordings may have them too.
 std::string_view tum_model_perhaps(std::string_view name) {
   for (const std::string_view model : kTumModels)
     if (name.find(fmt::format("freiburg{}", model.back())) != name.npos ||
@@ -76,7 +75,7 @@ std::string_view tum_model_perhaps(std::string_view name) {
   return {};
 }
 
-// The benchmark publishes them with one digit after the point, too.
+// The benchmark also publishes them with one digit after the point.
 bool same_pinhole(const Pinhole& a, const Pinhole& b) {
   constexpr double kRounded_px = 0.1;
   return std::abs(a.fx - b.fx) < kRounded_px && std::abs(a.fy - b.fy) < kRounded_px &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of the YAML formats share. Its functions throw YAML::Exception for a value of the wrong
+// Functions that the readers of the YAML formats share. They throw YAML::Exception for a value of the wrong
 // kind; parse_yaml catches it. Internal to this folder.
 #pragma once
 
@@ -19,10 +19,10 @@ namespace plvo::calibration_form {
 using YamlReader = Status (*)(const std::filesystem::path& path, const YAML::Node& root,
                               Collector& collector);
 
-// Kalibr's and EuRoC's, ORB-SLAM's or Open3D's, by the keys that the root has; nullptr for none of them.
+// Selects the reader for Kalibr and EuRoC, ORB-SLAM or Open3D by the keys of the root; nullptr if none fits.
 YamlReader reader_of_other_programs(const YAML::Node& root);
 
-// The value of the first key that is there; an undefined node where none is.
+// The value of the first existing key; an undefined node if there is none.
 inline YAML::Node first_of(const YAML::Node& map, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (map[key]) return map[key];
@@ -31,7 +31,7 @@ inline YAML::Node first_of(const YAML::Node& map, std::initializer_list<const ch
 
 inline std::string text_of(const YAML::Node& node) { return node ? node.as<std::string>() : std::string(); }
 
-// A list of numbers, also one with the key `data`; empty where there is no node.
+// Reads a list of numbers, also one under the key `data`; empty without a node.
 inline std::vector<double> numbers(const YAML::Node& node) {
   if (!node) return {};
   const YAML::Node data = node.IsMap() ? node["data"] : node;
@@ -47,7 +47,7 @@ inline Status set_size(Collector& collector, const YAML::Node& width, const YAML
   return status.ok() && height ? set(collector, "height", height) : status;
 }
 
-// What is wrong with a lens, as a fault of the file.
+// Turns an error of the lens into one of the file.
 inline Status of_file(const std::filesystem::path& path, const Status& lens) {
   const bool unsupported = lens.code() == StatusCode::kUnsupported;
   return Status(unsupported ? StatusCode::kUnsupported : StatusCode::kDamaged, path.string())

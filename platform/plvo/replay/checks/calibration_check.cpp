@@ -16,7 +16,7 @@ constexpr double kNearMiddle = 0.05;
 constexpr double kLeastAspect = 1 / 1.05, kMostAspect = 1.05;
 constexpr double kNarrowest_deg = 15, kWidest_deg = 150;
 
-// How far the principal point is from the middle, in widths and heights of the image; the larger of the two.
+// Distance of the principal point from the middle, in widths and heights of the image; the larger of the two.
 double from_middle(double cx, double cy, int width, int height) {
   return std::max(std::abs((cx + 0.5) / width - 0.5), std::abs((cy + 0.5) / height - 0.5));
 }

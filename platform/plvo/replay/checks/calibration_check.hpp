@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations that can be taken, but are hardly those of the camera.
+// Finds calibrations that are valid but hardly those of the camera.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace plvo {
 
-// A sentence for each doubt, with its usual cause and what to do; empty for a plausible camera. camera: of
-// images of width × height, as they were recorded. Doubtful is:
-// the principal point is more than a tenth of the image from its middle; fx and fy differ by more than 5 %;
-// the image shows less than 15° or more than 150°.
+// Returns a sentence for each doubt, with its usual cause and the remedy; empty for a plausible camera.
+// camera: of images of width × height, as recorded. A calibration is doubtful if the principal point is more
+// than a tenth of the image from its middle, if fx and fy differ by more than 5 %, or if the image shows less
+// than 15° or more than 150°.
 std::vector<std::string> doubts_about(const CameraModel& camera, int width, int height);
 
 }  // namespace plvo

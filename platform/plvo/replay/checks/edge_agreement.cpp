@@ -8,10 +8,10 @@
 namespace plvo {
 namespace {
 
-constexpr int kRowStep = 3;        // odd, for some sensors leave every second row empty
+constexpr int kRowStep = 3;        // odd, because some sensors leave every second row empty
 constexpr int kMostHole_px = 16;   // between the two sides of a jump: shadows of the projector
-constexpr int kReach_px = 3;       // what registration may err
-constexpr int kMostContrast = 64;  // so that a few sharp edges do not outvote the rest
+constexpr int kReach_px = 3;       // error of the registration
+constexpr int kMostContrast = 64;  // limits the weight of a few sharp edges
 constexpr int kFewestRatio = 10;   // a jump is a tenth of the nearer depth or more
 constexpr std::uint64_t kFewestJumps = 20;
 constexpr int kFewestBlocks = 8;
@@ -20,10 +20,10 @@ constexpr double kLeastGain = 1.3;
 
 int brightness(const ColourView& colour, int x, int y) {
   const int bytes = colour.format == PixelFormat::kGray8 ? 1 : 3;
-  return colour.data[y * colour.stride_bytes + x * bytes + bytes / 2];  // green stands in the middle
+  return colour.data[y * colour.stride_bytes + x * bytes + bytes / 2];  // green is the middle channel
 }
 
-// The strongest horizontal contrast within reach.
+// The strongest horizontal contrast within kReach_px.
 int contrast(const ColourView& colour, int x, int y) {
   int most = 0;
   for (int i = std::max(x - kReach_px, 1); i <= std::min(x + kReach_px, colour.width - 2); ++i)
@@ -49,7 +49,7 @@ void EdgeAgreement::add(const RgbdFrame& frame) {
   const DepthView& depth = frame.depth;
   for (int y = 0; y < depth.height; y += kRowStep) {
     const std::uint16_t* row = depth.data + y * depth.stride;
-    int last = -1;  // the pixel before that has depth
+    int last = -1;  // the last pixel with depth
     for (int x = 0; x < depth.width; ++x) {
       if (row[x] == 0) continue;
       if (last >= 0 && x - last <= kMostHole_px) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does depth lie over colour as it is, or mirrored? Where depth jumps, something nearer ends, and colour
-// mostly has an edge. So the contrast of colour is taken within a few pixels of each jump, and at the place
-// that the jump would have in an image mirrored left to right, upside down, or both. Over many frames, blocks
-// of the image tell independently of each other which of the four fits best.
+// Tests whether depth fits colour as it is, or mirrored. A jump in depth is the border of a nearer object,
+// where colour mostly has an edge. So the contrast of colour is measured within a few pixels of each jump,
+// and at the position of the jump in an image mirrored left to right, upside down, or both. Over many frames,
+// blocks of the image give independent votes for one of the four.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ class EdgeAgreement {
  public:
   void add(const RgbdFrame& frame);
 
-  // "mirrored left to right", "upside down" or "turned by 180 degrees", where that fits significantly better
-  // than depth as it is: 1.3 times the contrast over all blocks, and the mean of the blocks' ratios is three
-  // of its standard errors above zero, over 8 blocks or more. Where colour and depth have nothing in common
-  // the latter happens once in a hundred; where depth fits as it is, the mean lies below zero. Empty
-  // otherwise.
+  // Returns "mirrored left to right", "upside down" or "turned by 180 degrees" if that fits significantly
+  // better than depth as it is. Two conditions must hold over 8 blocks or more: 1.3 times the contrast over
+  // all blocks, and a mean of the blocks' ratios that is three of its standard errors above zero. If colour
+  // and depth are unrelated, the second holds once in a hundred; if depth fits as it is, the mean is below
+  // zero. Returns an empty string otherwise.
   std::string misfit() const;
 
  private:

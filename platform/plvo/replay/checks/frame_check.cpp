@@ -8,12 +8,12 @@
 namespace plvo {
 namespace {
 
-constexpr int kPixelStep = 3;  // columns and rows; odd, for some sensors leave every second one empty
-constexpr int kBlack = 20;     // grey levels: no brighter pixel is in black images
+constexpr int kPixelStep = 3;  // columns and rows; odd, because some sensors leave every second one empty
+constexpr int kBlack = 20;     // grey levels: black images have no brighter pixel
 constexpr int kBlank = 10;     // grey levels between the darkest and the brightest pixel
 constexpr double kEmpty = 0.005;
 constexpr double kFarMedian_m = 8;
-// Of a recording that is too deep by a factor of five, even what is nearest is far off.
+// In a recording that is too deep by a factor of five, even the nearest depth is large.
 constexpr double kFarNearest_m = 3, kFarFarthest_m = 8;
 constexpr double kNearFarthest_m = 1;
 

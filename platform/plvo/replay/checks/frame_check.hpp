@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks at the first frames of a camera, whatever it is, for what makes a run go wrong without an error:
-// black colour, empty depth, depth in another unit, depth that lies mirrored over colour. It changes nothing,
-// and takes about a millisecond in each of them.
+// Checks the first frames of any camera for faults that spoil a run without an error: black colour, empty
+// depth, depth in another unit, depth that is mirrored against colour. It changes nothing and takes about a
+// millisecond per frame.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@ namespace plvo {
 
 class FrameCheck {
  public:
-  // The findings, a sentence each with its remedy, when enough frames were seen; each once.
+  // Returns the findings after enough frames, once: a sentence each, with its remedy.
   std::vector<std::string> add(const RgbdFrame& frame);
-  // The same at the end of a sequence that is shorter.
+  // Returns the findings at the end of a shorter sequence.
   std::vector<std::string> finish();
 
  private:
@@ -27,7 +27,7 @@ class FrameCheck {
   static constexpr double kBin_m = 0.02;
 
   void look(const RgbdFrame& frame);
-  // The least depth that `share` of the depths seen do not exceed.
+  // The smallest depth that is not exceeded by this share of the depths so far.
   double depth_quantile(double share) const;
   std::string finding_of_colour() const;
   std::string finding_of_unit() const;
@@ -36,7 +36,7 @@ class FrameCheck {
   bool done_ = false;
   int darkest_ = 255, brightest_ = 0;
   std::uint64_t pixels_ = 0, depths_ = 0;
-  std::array<std::uint32_t, kBins> histogram_{};  // of depth; the last bin has what lies beyond
+  std::array<std::uint32_t, kBins> histogram_{};  // of depth; the last bin counts all depths beyond
   double units_per_metre_ = 0;
   EdgeAgreement edges_;
 };

@@ -8,8 +8,8 @@
 namespace plvo {
 namespace {
 
-// The depth pixel that covers the middle of each of `colour` pixels, which are `factor` of `whole` ones wide.
-// turn: 0 or 1, the one before or after a middle that lies between two.
+// For each colour pixel, the depth pixel that covers its centre; a pixel of `colour` is `factor` pixels of
+// `whole` wide. turn: 0 or 1 takes the one before or after a centre that lies between two.
 std::vector<int> covering(int colour, int factor, int whole, int depth, int turn) {
   std::vector<int> index(static_cast<std::size_t>(colour));
   for (int i = 0; i < colour; ++i) {
@@ -66,8 +66,8 @@ void DepthRegistration::warp_own_camera(const std::uint16_t* depth, std::uint16_
   const int height = colour_.height;
   std::fill_n(registered, static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
               std::uint16_t{0});
-  constexpr double kOverlap_px = 0.01;  // so that rounding leaves no seams
-  constexpr double kMost_px = 64;       // a depth pixel close to the colour camera is not made larger
+  constexpr double kOverlap_px = 0.01;  // avoids seams by rounding
+  constexpr double kMost_px = 64;       // limits the size of a depth pixel close to the colour camera
   const double scale_x = 0.5 * colour_.pinhole.fx / depth_.pinhole.fx;
   const double scale_y = 0.5 * colour_.pinhole.fy / depth_.pinhole.fy;
   for (int v = 0; v < height_; ++v) {
@@ -78,7 +78,7 @@ void DepthRegistration::warp_own_camera(const std::uint16_t* depth, std::uint16_
       const Vector3 p = T_camera_depth_ * back_project(depth_.pinhole, u, v, d);
       if (!(p.z() > 0)) continue;
       Vector2 px = project(colour_.pinhole, p);
-      // Far outside, a lens may fold back in.
+      // Far outside the image, the distortion may map back into it.
       if (!(px.x() > -width && px.x() < 2 * width && px.y() > -height && px.y() < 2 * height)) continue;
       if (!colour_.distortion.is_zero()) px = distort_pixel(colour_, px);
       const double seen_z = p.z() / metres_per_unit_ + 0.5;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth images of another size, or of another camera, as the colour camera would have seen them.
+// Registers depth images of another size, or of another camera, to the view of the colour camera.
 //   same view   depth is registered to colour, only smaller or larger: each colour pixel gets the depth pixel
-//               that covers its middle. Where the middle lies between two, pixels get the one before and the
-//               one after in turns, so that the whole does not move by half a depth pixel.
-//   own camera  each depth pixel is taken to 3D by depth's pinhole, moved to the colour camera, and imaged by
-//               it with its lens, as large as it is seen from there; where several land on one pixel the
-//               nearest wins. Pixels that no depth pixel lands on stay 0.
-// Depth is never blended.
+//               that covers its centre. Where the centre lies between two, pixels take the one before and the
+//               one after alternately, so that the image does not shift by half a depth pixel.
+//   own camera  each depth pixel is lifted to 3D with the depth pinhole, transformed to the colour camera and
+//               projected with its lens, at the size that it has there; where several cover a pixel the
+//               nearest wins. Pixels that no depth pixel covers stay 0.
+// Depth is never interpolated.
 #pragma once
 
 #include <cstdint>
@@ -18,26 +18,26 @@
 
 namespace plvo {
 
-// Of the images that are not registered to colour: no lens.
+// The camera of depth images that are not registered to colour; it has no distortion.
 struct DepthCamera {
   bool known = false;
-  Pinhole pinhole = {0, 0, 0, 0};  // px of the depth image; not looked at where it is colour's
-  // T_camera_depth: from depth's optical frame to colour's, metres and a quaternion.
+  Pinhole pinhole = {0, 0, 0, 0};  // px of the depth image; ignored if as_colour
+  // T_camera_depth: from the optical frame of depth to that of colour, metres and a quaternion.
   double tx = 0, ty = 0, tz = 0, qx = 0, qy = 0, qz = 0, qw = 1;
-  bool as_colour = false;  // the pinhole is colour's, and so is the size of the images
+  bool as_colour = false;  // pinhole and image size are those of colour
 };
 
 class DepthRegistration {
  public:
-  // Whether images of these sizes can have the same view: their shapes agree to a pixel of depth.
+  // Whether images of these sizes can have the same view: their aspect ratios agree to a pixel of depth.
   static bool same_view(int colour_width, int colour_height, int depth_width, int depth_height);
 
-  // Takes all memory. depth.known false: the same view. metres_per_unit: of the depth images.
-  // colour: the camera of the images that depth is for; whole: from what those were scaled down.
+  // Allocates all memory. depth.known false: the same view. metres_per_unit: of the depth images. colour: the
+  // camera of the images that depth is registered to; whole: the images that those were scaled down from.
   void init(const CameraModel& colour, const WholeImage& whole, const DepthCamera& depth, int depth_width,
             int depth_height, double metres_per_unit);
 
-  // depth: depth_width × depth_height; registered: of colour's size; rows without gaps; they must not
+  // depth: depth_width × depth_height; registered: of the size of colour; rows without gaps. The two must not
   // overlap.
   void warp(const std::uint16_t* depth, std::uint16_t* registered) const;
 
@@ -50,7 +50,7 @@ class DepthRegistration {
   Se3 T_camera_depth_;
   int width_ = 0, height_ = 0;  // of depth
   double metres_per_unit_ = 0.001;
-  // Of the depth pixel, for each column and row of colour: by turns.
+  // Index of the depth pixel for each column and row of colour; the two alternate.
   std::vector<int> column_[2], row_[2];
 };
 

@@ -53,7 +53,8 @@ Status FrameFit::choose_registration(const ImageSize& colour, const ImageSize& d
             fmt::format("colour is {}x{} but depth is {}x{}; where they differ, say depth's own camera: "
                         "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
                         colour.width, colour.height, depth.width, depth.height)};
-  // The calibration must be known to be colour's: that of a smaller depth image would be read without a word.
+  // Only with a size is the calibration known to be that of colour: one for a smaller depth image would pass
+  // unnoticed.
   if (calibration_.has_size &&
       DepthRegistration::same_view(colour.width, colour.height, depth.width, depth.height))
     return {};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recording's images go through on their way to the odometry, whatever they are recorded in: images
-// that are larger than the core takes, or that one asks for smaller, are scaled down (image_reduction.hpp);
-// depth of its own size or camera is registered to colour (depth_registration.hpp). It owns the pixels: the
-// reader puts what was recorded into colour() and depth(), and gets frames that look into them.
+// Prepares the images of a recording of any format for the odometry. Images that are larger than the core
+// takes, or that the user wants smaller, are scaled down (image_reduction.hpp). Depth of its own size or
+// camera is registered to colour (depth_registration.hpp). The class owns the pixels: the reader writes the
+// recorded images into colour() and depth(), and gets frames that point into them.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace plvo {
 
-// What 16 bits hold at the most is no depth, in whatever unit and whoever recorded it: sensors and exporters
-// write it where they see nothing, and for what is further than they can say. It becomes 0.
+// The largest 16-bit value is not a depth, whatever the unit and the recorder: sensors and exporters write it
+// for missing depth and for depth beyond their range. It becomes 0.
 inline constexpr std::uint16_t kDepthBeyondRange = 65535;
 
 struct ImageSize {
@@ -27,26 +27,26 @@ struct ImageSize {
 
 class FrameFit {
  public:
-  // Sizes as they are recorded; calibration: of colour in that size. scale_down 0: by as little as the images
-  // need. Takes all memory. kInvalidArgument for depth of which nobody says how it goes with colour, a
-  // calibration that does not fit, or a factor that does not.
+  // Sizes are those of the recording; calibration: of colour in that size. scale_down 0: the smallest factor
+  // that the images need. Allocates all memory. Returns kInvalidArgument if the relation of depth to colour
+  // is not specified, or if the calibration or the factor does not fit.
   Status init(const Calibration& calibration, const ImageSize& colour, const ImageSize& depth,
               int scale_down);
 
   const Calibration& calibration() const { return calibration_; }  // in force; with the size of the frames
-  // As recorded; after an init() that failed without a word on scale_down, of width 0.
+  // Size as recorded; its width is 0 after an init() that failed before the check of scale_down.
   const WholeImage& whole_image() const { return whole_; }
-  // "… are scaled down …", where nobody asked for it; else empty.
+  // "… are scaled down …" if the user did not ask for it; else empty.
   const std::string& remark() const { return remark_; }
 
   std::span<std::uint8_t> colour() { return whole_.factor > 1 ? whole_colour_ : colour_; }  // RGB
   std::span<std::uint16_t> depth() { return registers_ ? raw_depth_ : depth_; }
-  // Of what stands in colour() and depth(), where 65535 becomes 0, none; valid until they are written to.
-  // Stamps are left alone.
+  // Makes a frame of the pixels in colour() and depth(), where 65535 becomes 0 (no depth). The frame is valid
+  // until they are written to. Stamps are not changed.
   void fit(RgbdFrame& frame);
 
  private:
-  // Refused where the calibration does not say how depth goes with colour.
+  // Fails if the calibration does not specify the relation of depth to colour.
   Status choose_registration(const ImageSize& colour, const ImageSize& depth);
   Status choose_scale(const ImageSize& colour, int scale_down);
 
@@ -55,9 +55,9 @@ class FrameFit {
   std::string remark_;
   bool registers_ = false;
   DepthRegistration registration_;
-  std::vector<std::uint8_t> whole_colour_;  // where it is scaled down
+  std::vector<std::uint8_t> whole_colour_;  // used if it is scaled down
   std::vector<std::uint8_t> colour_;
-  std::vector<std::uint16_t> raw_depth_;  // where it is registered
+  std::vector<std::uint16_t> raw_depth_;  // used if it is registered
   std::vector<std::uint16_t> depth_;
 };
 

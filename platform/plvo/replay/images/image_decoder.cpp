@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using PngContext = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 
-// Texts and colour profiles of a PNG unpack to as much as they like; nothing of them is wanted.
+// Bounds on the texts and colour profiles of a PNG, which may unpack to any size and are not used.
 constexpr std::size_t kMaxChunk = 1u << 20;
 constexpr std::size_t kMaxChunks = 4u << 20;  // together
 
@@ -43,7 +43,7 @@ Status check_size(const fs::path& path, const ImageInfo& info) {
 PngContext open_png(std::span<const unsigned char> file) {
   PngContext png(spng_ctx_new(0), spng_ctx_free);
   if (png != nullptr) {
-    // The size is judged by check_size, in words.
+    // The size is judged by check_size, which gives a readable message.
     spng_set_chunk_limits(png.get(), kMaxChunk, kMaxChunks);
     spng_set_png_buffer(png.get(), file.data(), file.size());
   }
@@ -63,7 +63,7 @@ Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
 
 Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t bytes, int format) {
   int error = spng_decode_image(png, pixels, bytes, format, 0);
-  // On to the end: the checksum of the last piece of the image is compared only then.
+  // Reads to the end: only then is the checksum of the last part of the image compared.
   if (error == 0) error = spng_decode_chunks(png);
   if (error != 0)
     return image_error(StatusCode::kDamaged, path,
@@ -139,8 +139,8 @@ Status ImageDecoder::decode_rgb(const fs::path& path, int width, int height, std
     return wrong_size(path, info.width, info.height, width, height);
   if (netpbm) return with_name(path, read_netpbm_rgb(file_, header, rgb));
   if (!jpeg) return png_pixels(png.get(), path, rgb.data(), rgb.size(), SPNG_FMT_RGB8);
-  // A JPEG that ends early decodes to grey bars with a mere warning: it counts as damaged here.
-  // A progressive one may go over its pixels as often as it likes: not more than 500 times here.
+  // TurboJPEG decodes a JPEG that ends early to grey bars with a mere warning: here it counts as damaged. A
+  // progressive JPEG may contain any number of scans: here at most 500.
   if (tjDecompress2(jpeg_, file_.data(), file_.size(), rgb.data(), width, 0, height, TJPF_RGB,
                     TJFLAG_LIMITSCANS) != 0)
     return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image files into the caller's pixels: PNG of any colour type (libspng), JPEG (TurboJPEG), PGM and PPM
-// (netpbm.hpp) as RGB; grey PNG and PGM of 16 bits as depth. One file buffer is reused; after reserve() it
-// does not grow. What a header claims is compared with the limits below before anything of that size is
+// Decodes image files into the caller's pixels: PNG of any colour type (libspng), JPEG (TurboJPEG), PGM and
+// PPM (netpbm.hpp) as RGB; grey PNG and PGM of 16 bits as depth. One file buffer is reused; after reserve()
+// it does not grow. The size in a header is compared with the limits below before memory of that size is
 // allocated.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace plvo {
 
-inline constexpr int kMaxImageSide = 4096;  // px of a file; what the core cannot take is made smaller
+inline constexpr int kMaxImageSide = 4096;  // px of a file; images beyond the core's limit are scaled down
 inline constexpr std::uintmax_t kMaxImageBytes = 64u
                                                  << 20;  // of a file; no 8-bit image of that size has as many
 
@@ -26,7 +26,8 @@ struct ImageInfo {
   int bits = 0;  // per channel
   bool grey = false;
 
-  // kInvalidArgument, with what to do, for what cannot be depth. Of a file of this name.
+  // Returns kInvalidArgument, with the remedy, for an image that cannot be depth. path: names the file in the
+  // message.
   Status check_is_depth(const std::filesystem::path& path) const;
 };
 
@@ -37,17 +38,17 @@ class ImageDecoder {
   ImageDecoder& operator=(const ImageDecoder&) = delete;
   ~ImageDecoder();
 
-  // The largest file that will be read, in bytes. Touches the memory, so that it is there and not only
-  // promised.
+  // Sets the size of the largest file that will be read, in bytes. Writes to the memory, so that the system
+  // really provides it.
   void reserve(std::size_t file_bytes) { file_.resize(file_bytes); }
 
-  // Messages name the file. kNotFound: no such file; kDamaged: not an image, or cut off; kInvalidArgument:
-  // larger than the limits, or no regular file.
+  // Messages name the file. Returns kNotFound: no such file; kDamaged: not an image, or cut off;
+  // kInvalidArgument: larger than the limits, or not a regular file.
   Status read_header(const std::filesystem::path& path, ImageInfo& info);
-  // rgb: width·height·3 bytes. kInvalidArgument when the image has another size.
+  // rgb: width·height·3 bytes. Returns kInvalidArgument if the image has another size.
   Status decode_rgb(const std::filesystem::path& path, int width, int height, std::span<std::uint8_t> rgb);
-  // depth: width·height values in the file's unit. kInvalidArgument for another size or a depth of other than
-  // 16 bits.
+  // depth: width·height values in the file's unit. Returns kInvalidArgument for another size, or for depth
+  // without 16 bits.
   Status decode_depth(const std::filesystem::path& path, int width, int height,
                       std::span<std::uint16_t> depth);
 
@@ -58,7 +59,7 @@ class ImageDecoder {
   bool is_jpeg() const;
 
   std::vector<unsigned char> file_;
-  void* jpeg_ = nullptr;  // TurboJPEG's handle, made when the first JPEG is met
+  void* jpeg_ = nullptr;  // TurboJPEG's handle, created for the first JPEG
 };
 
 }  // namespace plvo

@@ -20,7 +20,7 @@ Status check_reduction(int factor, int width, int height) {
     return {StatusCode::kInvalidArgument, "images are scaled down by a whole number, from 1 on"};
   const int small_width = width / factor, small_height = height / factor;
   const bool fits = std::max(small_width, small_height) <= Limits::kMostSide;
-  // Images that are too small as they are get their own words elsewhere.
+  // Images that are too small without scaling get another message elsewhere.
   if (fits && (factor == 1 || std::min(small_width, small_height) >= Limits::kLeastSide)) return {};
   return {StatusCode::kInvalidArgument,
           fmt::format("images of {}x{} scaled down by {} are {}x{}, and plvo takes {}x{} to {}x{}", width,
@@ -29,15 +29,14 @@ Status check_reduction(int factor, int width, int height) {
 }
 
 CameraModel reduced(const CameraModel& camera, int factor) {
-  if (factor == 1) return camera;  // to the last bit
+  if (factor == 1) return camera;  // exact to the last bit
   CameraModel small = camera;
   small.width = camera.width / factor;
   small.height = camera.height / factor;
   const double s = factor;
   small.pinhole = {camera.pinhole.fx / s, camera.pinhole.fy / s, (camera.pinhole.cx + 0.5) / s - 0.5,
                    (camera.pinhole.cy + 0.5) / s - 0.5};
-  // Of the time from the first row to the last, what lies between the middles of the first small row and the
-  // last.
+  // Share of the readout between the centres of the first and the last row of the small image.
   const double share = s * (small.height - 1) / (camera.height - 1);
   small.readout_s *= share;
   small.depth_timing.readout_s *= share;

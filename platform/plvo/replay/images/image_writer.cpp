@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A recording at 30 Hz has 33 ms for a pair of images. On those of a real Kinect (640x480) level 1 with one
-// filter takes 14 ms and 655 kB, level 3 with the filter chosen anew for each row 39 ms and 610 kB.
+// A recording at 30 Hz has 33 ms for a pair of images. For those of a real Kinect (640x480), level 1 with one
+// filter takes 14 ms and 655 kB; level 3 with a filter chosen per row takes 39 ms and 610 kB.
 constexpr int kCompressionLevel = 1;
 constexpr int kColourFilter = SPNG_FILTER_CHOICE_SUB;
 constexpr int kDepthFilter = SPNG_FILTER_CHOICE_NONE;
 
-// Rows without gaps, top to bottom, as libspng wants them.
+// Writes rows without gaps, top to bottom, as libspng requires.
 Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::uint8_t> pixels, int filter) {
   const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> png(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   if (png == nullptr) return {StatusCode::kOutOfMemory, "no memory to encode a PNG image"};
@@ -45,7 +45,7 @@ Status write_rows(const fs::path& path, spng_ihdr header, std::span<const std::u
   int reason = std::fwrite(file.get(), 1, bytes, stream) == bytes ? 0 : errno;
   if (std::fclose(stream) != 0 && reason == 0) reason = errno;
   if (reason == 0) return {};
-  // What is not whole is taken away again: a cut image helps nobody, and its space does. A device stays.
+  // Removes an incomplete file: a cut image is useless, and its space is needed. A device is not removed.
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
   return output_failed("write", path, reason);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels into image files: PNG for what must stay exact (colour, depth), JPEG in memory for what is only
-// looked at.
+// Writes pixels into image files: PNG for exact images (colour, depth), JPEG in memory for display.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace plvo {
 
-// kIo, with the operating system's reason, when the file cannot be written whole.
+// Returns kIo, with the operating system's reason, if the file cannot be written completely.
 Status write_png(const std::filesystem::path& path, const ColourView& image);
 Status write_png(const std::filesystem::path& path, const DepthView& image);  // 16-bit grey
 

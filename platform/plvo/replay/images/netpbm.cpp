@@ -14,8 +14,8 @@ constexpr std::string_view kBlank = " \t\n\v\f\r";
 
 bool is_blank(unsigned char c) { return kBlank.find(static_cast<char>(c)) != kBlank.npos; }
 
-// The next whole number of the header, from 1 to 65535: after blanks and comments, which go from # to the end
-// of the line. 0 for what is none.
+// Takes the next whole number of the header, from 1 to 65535. Skips blanks and comments, which go from # to
+// the end of the line. Returns 0 for anything else.
 int take_number(Bytes file, std::size_t& at) {
   while (at < file.size() && (is_blank(file[at]) || file[at] == '#')) {
     if (file[at] == '#')
@@ -33,7 +33,7 @@ int take_number(Bytes file, std::size_t& at) {
 
 std::size_t bytes_of_number(const NetpbmHeader& header) { return header.most > 255 ? 2 : 1; }
 
-// The pixels' bytes; empty where the file ends before they do.
+// The bytes of the pixels; empty if the file ends before they do.
 Bytes pixels_of(Bytes file, const NetpbmHeader& header) {
   const std::size_t pixels = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::size_t wanted = pixels * (header.grey ? 1 : 3) * bytes_of_number(header);

@@ -35,7 +35,7 @@ struct Kind {
 };
 struct Layout {
   Kind colour, depth, pose;
-  bool in_millimetres = false;  // depth, of who defined the layout; else most probably
+  bool in_millimetres = false;  // unit of depth: certain by the definition of the layout, or only likely
   std::string unclear;          // why it cannot be read; else empty
 };
 
@@ -46,7 +46,8 @@ bool has_ending(std::string_view name, Ending ending) {
   return ends_as_image(name) && (ending == Ending::kImage || ends_as_jpeg(name) == (ending == Ending::kJpeg));
 }
 
-// What stands between prefix and suffix; nothing for a name of another form, or one that begins with a dot.
+// The part of a name between prefix and suffix; empty for a name of another form, or one that begins with a
+// dot.
 std::optional<std::string> middle(const std::string& name, const Kind& kind) {
   if (name.starts_with('.') || !has_ending(name, kind.ending)) return {};
   const std::string stem = fs::path(name).stem().string();
@@ -61,8 +62,8 @@ bool parse_frame_number(const std::string& text, std::uint32_t& number) {
   return error == std::errc() && end == text.data() + text.size() && text.size() <= kMaxDigits;
 }
 
-// What stands before and after the only number in the names of images, and whether some are JPEG and some are
-// not.
+// Prefix and suffix around the only number in the names of images, and whether some images are JPEG and some
+// are not.
 struct Endings {
   bool jpeg = false, other = false;
 };
@@ -100,7 +101,8 @@ std::string replaced(std::string text, std::size_t at, std::string_view word, st
   return text.replace(at, word.size(), by);
 }
 
-// Colour and depth side by side: names that differ in a word, or, without one, in what kind of image it is.
+// Layout with colour and depth in one folder: their names differ in a word, or, without one, in the image
+// format.
 std::optional<Layout> layout_of_one_folder(const fs::path& folder) {
   const Forms forms = forms_in(folder);
   for (const auto& [form, endings] : forms) {
@@ -131,8 +133,8 @@ std::optional<Layout> layout_of_one_folder(const fs::path& folder) {
   return {};
 }
 
-// The folder whose name is one of these, else the only one whose name begins with one, in small letters or
-// not; `unclear` is told of several. Folders without numbered images do not count.
+// Finds the folder whose name is one of these; else the only one whose name begins with one of them, in any
+// case. Several candidates set `unclear`. Folders without numbered images do not count.
 std::optional<Kind> folder_of(const fs::path& folder, std::span<const std::string_view> names,
                               std::string& unclear) {
   std::map<std::string, Kind> found;
@@ -159,7 +161,7 @@ std::optional<Kind> folder_of(const fs::path& folder, std::span<const std::strin
   return found.begin()->second;
 }
 
-// Colour and depth in folders of their own.
+// Layout with colour and depth in separate folders.
 std::optional<Layout> layout_of_two_folders(const fs::path& folder) {
   constexpr auto kColour =
       std::to_array<std::string_view>({"color", "colour", "rgb", "image", "images", "img"});
@@ -184,7 +186,7 @@ std::optional<Layout> layout_of(const fs::path& folder) {
   return layout ? layout : layout_of_one_folder(folder);
 }
 
-// Without the folder there are none.
+// A missing folder yields no files.
 Status list_files(const fs::path& folder, const Kind& kind, Numbered& files) {
   std::error_code error;
   for (fs::directory_iterator entry(folder / kind.folder, error), end; !error && entry != end;
@@ -217,7 +219,7 @@ Status list_files(const fs::path& folder, const Kind& kind, Numbered& files) {
           fmt::format("cannot list {}: {}", (folder / kind.folder).string(), error.message())};
 }
 
-// Frames may have been taken out evenly, but where some are missing between others, a copy may be incomplete.
+// Evenly omitted frames are no gaps; but where some are missing between others, a copy may be incomplete.
 std::string gaps(const std::vector<std::uint32_t>& numbers) {
   std::uint32_t step = UINT32_MAX;
   for (std::size_t i = 1; i < numbers.size(); ++i) step = std::min(step, numbers[i] - numbers[i - 1]);

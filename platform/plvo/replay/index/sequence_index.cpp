@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What is nothing else does not count.
+// A name that consists of the extension alone does not count.
 bool ends(std::string_view name, std::string_view extension) {
   return name.size() > extension.size() &&
          in_small_letters(name.substr(name.size() - extension.size())) == extension;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recorded folder offers, whichever layout it has: pairs of images with stamps, and where each frame
-// has a file for its true pose, those.
+// The content of a recorded folder, whatever its layout: pairs of images with stamps, and the files of true
+// poses if each frame has one.
 #pragma once
 
 #include <cstddef>
@@ -32,27 +32,28 @@ struct SequenceIndex {
   std::size_t unpaired_depth = 0;
   bool joint_list = false;         // one list names the pairs, not rgb.txt and depth.txt
   bool numbered = false;           // numbered_index.hpp
-  bool in_millimetres = false;     // depth of numbered frames, for sure; else most probably
+  bool in_millimetres = false;     // unit of depth of numbered frames: certain, or only likely
   std::vector<StampedFile> poses;  // of numbered frames
-  std::string remark;              // what whoever runs the sequence should know; empty where there is nothing
+  std::string remark;              // a hint for the user; empty if there is none
 };
 
 struct SequenceOptions {
   std::int64_t tolerance_ns = 20'000'000;  // largest difference of the stamps in a pair
-  std::filesystem::path associations;      // instead of rgb.txt and depth.txt
+  std::filesystem::path associations;      // replaces rgb.txt and depth.txt
   double frames_per_s = 30;                // of numbered frames, which have no stamps
-  int scale_down = 0;                      // image_reduction.hpp; 0: by as little as the images need
+  int scale_down = 0;                      // image_reduction.hpp; 0: the smallest factor that the images need
   std::size_t first_frame = 0;             // of the pairs: [first_frame, end_frame)
   std::size_t end_frame = std::numeric_limits<std::size_t>::max();
 };
 
-// As read_numbered_index for a folder of numbered frames (is_numbered_folder), else as read_tum_index. Frames
-// are not chosen here. kNotFound for a missing folder, kUnsupported for a recording of OpenNI2.
+// Does the same as read_numbered_index for a folder of numbered frames (is_numbered_folder), else as
+// read_tum_index. The range of frames is not applied here. Returns kNotFound for a missing folder,
+// kUnsupported for a recording of OpenNI2.
 Status read_sequence_index(const std::filesystem::path& folder, const SequenceOptions& options,
                            SequenceIndex& index);
 
-// The true poses: groundtruth.txt, or the pose files of numbered frames, of which those with numbers that are
-// not finite are left out and counted in ignored_rows. kNotFound when there are neither.
+// Reads the true poses: groundtruth.txt, or the pose files of numbered frames. Pose files with numbers that
+// are not finite are left out and counted in ignored_rows. Returns kNotFound if there are neither.
 Status read_ground_truth(const std::filesystem::path& folder, const SequenceOptions& options,
                          Trajectory& trajectory);
 

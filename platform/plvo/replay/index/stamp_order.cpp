@@ -12,19 +12,19 @@
 namespace plvo {
 namespace {
 
-constexpr long double kMost_ns = 9e18L;              // that an int64 surely holds
+constexpr long double kMost_ns = 9e18L;              // safely within an int64
 constexpr double kShortSteps = 0.75, kGapSteps = 3;  // of the median
 constexpr double kOffsetSteps = 1.5;
-constexpr double kSameSteps = 0.5;  // how far the two ends of the lists may disagree
+constexpr double kSameSteps = 0.5;  // tolerance between the offsets at the two ends
 constexpr double kSameShare = 0.1;
 constexpr std::size_t kFewestForOffset = 5;
 
-// Stamps may lie further apart than an int64 can say.
+// The difference of two stamps may exceed an int64.
 double seconds(std::int64_t later, std::int64_t earlier) {
   return static_cast<double>((static_cast<long double>(later) - static_cast<long double>(earlier)) * 1e-9L);
 }
 
-// How uneven the steps forward of a list are: a gap counts for two steps that are too short.
+// Measures how uneven the forward steps of a list are: a gap counts like two steps that are too short.
 int unevenness(const std::vector<std::int64_t>& stamps, double median_s) {
   int uneven = 0;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
@@ -36,7 +36,7 @@ int unevenness(const std::vector<std::int64_t>& stamps, double median_s) {
   return uneven;
 }
 
-// Sorting makes the list less even, not more.
+// The clock was set back if sorting makes the steps more uneven.
 bool is_clock_step(const std::vector<std::int64_t>& stamps) {
   const double median_s = static_cast<double>(median_step_ns(stamps)) * 1e-9;
   if (median_s <= 0) return false;
@@ -83,7 +83,7 @@ std::optional<std::int64_t> clock_offset_ns(const std::vector<std::int64_t>& fir
   if (least_s <= kOffsetSteps * step_s || std::signbit(begin_s) != std::signbit(end_s) ||
       std::abs(begin_s - end_s) > std::max(kSameSteps * step_s, kSameShare * std::min(least_s, shorter_s)))
     return {};
-  // Frames may be missing at either end: the pairs say it to less than a step.
+  // Frames may be missing at either end: the pairs give the offset to less than a step.
   const auto rough = static_cast<long double>(begin_s + end_s) / 2 * 1e9L;
   std::vector<std::int64_t> shifted;
   for (const std::int64_t stamp : second) {

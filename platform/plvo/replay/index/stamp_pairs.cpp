@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint32_t kNone = UINT32_MAX;
 
-// A stamp of either list in the common order of both, linked with its neighbours that are still without a
-// partner.
+// A stamp of either list in the common order of both. It is linked with the adjacent stamps that are still
+// without a partner.
 struct Node {
   std::int64_t stamp_ns = 0;
   std::uint32_t index = 0;
@@ -40,7 +40,7 @@ std::vector<Node> merge(const std::vector<std::int64_t>& first, const std::vecto
   return nodes;
 }
 
-// Neighbours of different lists. Stamps may lie further apart than an int64 can say.
+// Adjacent stamps of different lists. Their difference may exceed an int64.
 struct Candidate {
   std::uint64_t distance = 0;
   std::uint32_t left = 0, right = 0;  // nodes
@@ -82,7 +82,7 @@ class Pairing {
   }
 
  private:
-  // In the first and in the second list.
+  // Indices in the first and in the second list.
   std::pair<std::size_t, std::size_t> indices(std::uint32_t left, std::uint32_t right) const {
     const Node &a = nodes_[left], &b = nodes_[right];
     return a.is_second ? std::pair<std::size_t, std::size_t>(b.index, a.index)

@@ -31,8 +31,8 @@ std::vector<std::int64_t> stamps_of(const std::vector<StampedFile>& files) {
   return stamps;
 }
 
-// Stamps that run backwards or repeat are refused, not repaired: which of the two images is right, nobody can
-// know. lines: where in the list each of the files is.
+// Stamps that run backwards or repeat are refused, not repaired: it is unknown which of the two images is
+// right. lines: the line of each file in the list.
 Status check_order(const fs::path& list, const std::vector<StampedFile>& files,
                    const std::vector<int>& lines) {
   const std::vector<std::int64_t> stamps = stamps_of(files);
@@ -56,8 +56,8 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-// Takes a file's name off the front: the words up to the first one that ends as an image's name does, with
-// what is between them; without such an end, one word.
+// Takes a file's name off the front: all words up to the first one with the ending of an image, with the
+// blanks between them. Without such an ending, it takes one word.
 std::string take_name(std::string_view& line) {
   line = trim(line);
   const std::string_view whole = line;
@@ -70,7 +70,7 @@ std::string take_name(std::string_view& line) {
   return std::string(take_word(line));
 }
 
-// Whether a part of the path is one of the names that folders of depth, or of colour, have.
+// Whether a part of the path is one of these folder names.
 bool names(std::string_view path, std::initializer_list<std::string_view> folders) {
   for (const fs::path& part : fs::path(path))
     if (std::find(folders.begin(), folders.end(), part.string()) != folders.end()) return true;
@@ -86,7 +86,7 @@ bool depth_first(const std::vector<StampedFile>& left, const std::vector<Stamped
   return all(left, {"depth"}) && all(right, {"rgb", "color", "colour"});
 }
 
-// `columns` pairs of stamp and file name a line, into one list per pair.
+// Reads `columns` pairs of stamp and file name from each line, into one list per column.
 Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* lists) {
   std::string content;
   if (Status status = read_text_file(list, kMaxTextBytes, content); !status.ok()) {
@@ -132,7 +132,7 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
   return {};
 }
 
-// The files of pairs are moved out of the lists.
+// Moves the files of pairs out of the lists.
 Status pair_up(std::vector<StampedFile>& colour, std::vector<StampedFile>& depth, std::int64_t tolerance_ns,
                SequenceIndex& index) {
   const std::vector<std::int64_t> colour_stamps = stamps_of(colour), depth_stamps = stamps_of(depth);
