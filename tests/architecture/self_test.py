@@ -7,6 +7,7 @@ import unittest
 import dependencies
 import figures
 import links
+import paths
 import ran
 import rules
 
@@ -249,6 +250,22 @@ class Links(unittest.TestCase):
     def test_a_readme_without_what_a_newcomer_asks_for_is_named(self):
         with Tree(self.PAGES) as root:
             self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README))
+
+
+class Paths(unittest.TestCase):
+    def found(self, text):
+        with Tree({"core/plvo/math/se3.hpp": "", "core/plvo/math/se3.cpp": "", "docs/a.md": text}) as root:
+            return paths.check(root)
+
+    def test_paths_that_exist_pass(self):
+        self.assertEqual(self.found("`core/plvo/math/` `core/plvo/math/se3.{hpp,cpp}`, `core/plvo/*/se3.hpp` `docs/a.md` `se2.hpp` core/no.hpp\n"
+                                    "`core/plvo/NAME/se3.hpp`\n```sh\ncat `core/no.hpp`\n```\n"), [])
+
+    def test_a_path_that_does_not_exist_is_named(self):
+        for bad in ("core/plvo/math/se2.hpp", "core/plvo/math/se3.{hpp,h}", "core/plvo/*/so3.hpp", "tests/no_test.cpp", "cat docs/b.md"):
+            errors = self.found(f"# A\n`{bad}`\n")
+            self.assertEqual(len(errors), 1, (bad, errors))
+            self.assertTrue(errors[0].startswith("docs/a.md:2:"), errors)
 
 
 if __name__ == "__main__":

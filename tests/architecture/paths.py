@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every path of the repository that a page names in backticks exists. Globs match at least one file; {a,b} stands for both."""
+import pathlib
+import re
+import sys
+
+FOLDERS = ("core", "hal", "platform", "tools", "tests", "docs")
+
+
+def expand(pattern):
+    """The paths that a name with {a,b} stands for."""
+    match = re.search(r"\{([^{}]*)\}", pattern)
+    if not match:
+        return [pattern]
+    return [path for part in match.group(1).split(",")
+            for path in expand(pattern[:match.start()] + part.strip() + pattern[match.end():])]
+
+
+def spans(text):
+    """(line number, text) of everything in single backticks, outside of blocks of code."""
+    plain = re.sub(r"^```.*?^```$", lambda block: "\n" * block.group(0).count("\n"), text, flags=re.S | re.M)
+    for match in re.finditer(r"`([^`\n]+)`", plain):
+        yield plain.count("\n", 0, match.start()) + 1, match.group(1)
+
+
+def exists(root, path):
+    """Placeholders in capitals (tools/plvo/cli/NAME/NAME.cpp) stand for any name."""
+    path = re.sub(r"NAME|\bX\b|…", "*", path.rstrip("/"))
+    return any(root.glob(path)) if re.search(r"[*?\[]", path) else (root / path).exists()
+
+
+def check(root):
+    root = pathlib.Path(root)
+    errors = []
+    for page in sorted((*root.glob("*.md"), *root.glob("docs/**/*.md"))):
+        if page.name == "CHANGELOG.md":  # it names what was there
+            continue
+        for line, text in spans(page.read_text(encoding="utf-8")):
+            for word in text.split():
+                if not re.match(rf"(?:{'|'.join(FOLDERS)})/\S", word):
+                    continue
+                for path in expand(re.sub(r"(?::\d+)?[,;:.)]*$", "", word)):
+                    if not exists(root, path):
+                        errors.append(f"{page.relative_to(root)}:{line}: {path}: there is no such file")
+    return errors
+
+
+def main():
+    errors = check(sys.argv[1])
+    print("\n".join(errors) if errors else "every path on the pages exists")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
