@@ -10,6 +10,7 @@ import links
 import paths
 import ran
 import rules
+import words
 
 LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
 
@@ -266,6 +267,26 @@ class Paths(unittest.TestCase):
             errors = self.found(f"# A\n`{bad}`\n")
             self.assertEqual(len(errors), 1, (bad, errors))
             self.assertTrue(errors[0].startswith("docs/a.md:2:"), errors)
+
+
+class Words(unittest.TestCase):
+    def found(self, name, text):
+        with Tree({name: text}) as root:
+            return words.check(root)
+
+    def test_other_words_and_exempt_files_pass(self):
+        old = " ".join((*words.IDENTIFIERS, *words.PHRASES))
+        self.assertEqual(self.found("CHANGELOG.md", old), [])
+        self.assertEqual(self.found("tests/fuzz/seeds/tum/a.txt", old), [])
+        self.assertEqual(self.found("tests/host/a_test.cpp", "TEST(A, IdleConnectionsLockNobodyOut) {}  // the houses"), [])
+
+    def test_every_replaced_word_is_named(self):
+        for old in (*words.IDENTIFIERS, *words.PHRASES):
+            for name in ("docs/a.md", "core/plvo/base/a.hpp", "tests/CMakeLists.txt", "tools/a.py"):
+                errors = self.found(name, f"// one\n// ({old}) two\n")
+                self.assertEqual(len(errors), 1, (old, name, errors))
+                self.assertTrue(errors[0].startswith(f"{name}:2:"), errors)
+        self.assertEqual(len(self.found("core/plvo/base/a.hpp", "// by the " + "front" + "\n// door\n")), 1)
 
 
 if __name__ == "__main__":
