@@ -2,7 +2,7 @@
 """Reads every #include and names each dependency between modules that the design forbids.
 
 tools -> platform -> hal -> core; inside the core odometry -> points | lines | surfaces | motion -> image -> camera -> math
--> base. An dependency may skip layers downwards. Points, lines, surfaces and motion do not know each other. No cycle anywhere.
+-> base. A dependency may skip layers downwards. Points, lines, surfaces and motion do not know each other. No cycle anywhere.
 A path on disk is the include: "plvo/<module>/<file>.hpp" is the file <layer>/plvo/<module>/<file>.hpp of exactly one layer.
 """
 import pathlib
