@@ -65,9 +65,9 @@ Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result);
 
-// Words when the best-fit scale is off by more than 5 % and explains the absolute error: it takes at least
-// half of it away, and leaves at most a quarter of what a camera that never moves would score. Of a bad
-// estimate any scale fits a little better. Else empty.
+// A warning if the best-fit scale differs from 1 by more than 5 %, removes at least half of the absolute
+// error, and differs by more than three times the ratio of the error that is left to that of a camera that
+// never moves. Otherwise empty: any scale fits a bad estimate a little better.
 std::string doubt_about_scale(const Evaluation& evaluation);
 // That, and what a NEES far from what a true covariance gives most often is, with what to try.
 std::vector<std::string> doubts_about(const Evaluation& evaluation);
