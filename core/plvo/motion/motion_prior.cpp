@@ -2,11 +2,12 @@
 #include "plvo/motion/motion_prior.hpp"
 
 #include "plvo/math/cholesky.hpp"
+#include "plvo/math/covariance.hpp"
 
 namespace plvo {
 namespace {
 
-constexpr double kLeastVariance = 1e-16, kMostVariance = 1e6;
+constexpr double kLeastVariance = 1e-16, kMostVariance = kMostPositionVariance;
 constexpr double kFarthest_m = 1000;
 
 Status refuse(const char* part, const char* requirement) {

@@ -18,7 +18,7 @@ constexpr double kFarthestPose_m = 1e8;
 bool is_semidefinite_covariance(const Matrix6& C) {
   if (!C.allFinite()) return false;
   const double largest = C.cwiseAbs().maxCoeff();
-  return largest <= 1e6 && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
+  return largest <= kMostPositionVariance && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
          symmetric_eigen<6>(C).values.minCoeff() >= -1e-9 * largest;
 }
 

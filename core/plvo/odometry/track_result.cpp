@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/track_result.hpp"
 
-#include "plvo/math/covariance.hpp"
-
 namespace plvo {
 
 const char* to_string(TrackState state) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "plvo/base/status.hpp"
+#include "plvo/math/covariance.hpp"
 #include "plvo/math/se3.hpp"
 
 namespace plvo {

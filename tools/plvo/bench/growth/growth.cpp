@@ -43,7 +43,8 @@ void add_growth(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<GrowthArguments>();
   GrowthOptions& options = arguments->growth;
   CLI::App* command = app.add_subcommand(
-      "growth", "How a frame's cost grows: with the image, the room for features, hard images, along a walk");
+      "growth",
+      "How a frame's cost grows: with the image, the capacity for features, hard images, along a sequence");
   command
       ->add_option("folders", arguments->folders,
                    "Recorded sequences in TUM's layout, for the table of a walk's frames (default: none)")

@@ -28,7 +28,7 @@ class Planner {
     GrowthTable table{"Image size", "size", {}};
     table.rows.push_back({"320×240, tiny", add_case(0.5, tiny, options_.frames)});
     table.rows.push_back({"320×240, Limits::qvga", add_case(0.5, qvga, options_.frames)});
-    table.rows.push_back({"320×240, room of VGA", add_case(0.5, {}, options_.frames)});
+    table.rows.push_back({"320×240, capacities of VGA", add_case(0.5, {}, options_.frames)});
     for (const GrowthTable::Row& row : table.rows)
       plan_.bounds.push_back({row.name + " / 640×480", row.measured, Of::kMeanOfUsual, kMostOfVga});
     table.rows.push_back({"640×480", 0});
@@ -113,10 +113,10 @@ Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>&
     if (table == "sizes") {
       planner.add_sizes();
     } else if (table == "points") {
-      planner.add_capacities("Room for points", "Limits::keypoints", &StageSetting::keypoints,
+      planner.add_capacities("Capacity for keypoints", "Limits::keypoints", &StageSetting::keypoints,
                              {100, 200, Limits{}.keypoints, 1000, 2000});
     } else if (table == "segments") {
-      planner.add_capacities("Room for segments", "Limits::segments", &StageSetting::segments,
+      planner.add_capacities("Capacity for segments", "Limits::segments", &StageSetting::segments,
                              {20, 50, 100, 200, Limits{}.segments, 400});
     } else if (table == "images") {
       planner.add_images();

@@ -20,8 +20,8 @@ JobOptions measuring(const GrowthCase& one) {
 }
 
 std::string describe(const GrowthCase& one) {
-  return fmt::format("{}, room for {} points, {} segments", one.sequence.sequence, one.setting.keypoints,
-                     one.setting.segments);
+  return fmt::format("{}, capacity for {} keypoints, {} segments", one.sequence.sequence,
+                     one.setting.keypoints, one.setting.segments);
 }
 
 Status render(const GrowthPlan& plan) {

@@ -121,11 +121,11 @@ void add_stages(CLI::App& app, int& exit_code) {
       "As plvo run --preset tiny, but for --keypoints, --segments and --surfaces where they are given");
   command
       ->add_option("--keypoints", options->setting.keypoints,
-                   fmt::format("Room for so many (default {})", options->setting.keypoints))
+                   fmt::format("Capacity (default {})", options->setting.keypoints))
       ->type_name("NUMBER");
   command
       ->add_option("--segments", options->setting.segments,
-                   fmt::format("Room for so many (default {})", options->setting.segments))
+                   fmt::format("Capacity (default {})", options->setting.segments))
       ->type_name("NUMBER");
   command
       ->add_option("--surfaces", options->setting.surfaces,
