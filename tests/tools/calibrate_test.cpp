@@ -160,12 +160,11 @@ SimulatorOptions small_desk() {
 TimingSearch search_of(Film& film) {
   TimingSearch search;
   search.find_readouts = false;
-  search.on_progress = [](const std::string&) { return true; };
   search.track = [&film](const SensorTiming& timing, std::vector<TrackedRecording>& recordings) {
     film.rewind();
     recordings.emplace_back();
     return track_recording(
-        film, with_timing(film.model(), timing), 1000, [] { return true; }, recordings.back());
+        film, with_timing(film.model(), timing), 1000, [] {}, recordings.back());
   };
   return search;
 }
@@ -195,7 +194,7 @@ TEST(FindTiming, ThreadsAndRepetitionChangeNothing) {
   Film film(*camera, 16);
   std::vector<TrackedRecording> recordings(1);
   ASSERT_TRUE(track_recording(
-                  film, with_timing(film.model(), {}), 1000, [] { return true; }, recordings[0])
+                  film, with_timing(film.model(), {}), 1000, [] {}, recordings[0])
                   .ok());
   ASSERT_GE(recordings[0].pairs.size(), 12u);
   const SensorTiming timing{0.004, 0.01, 0.02};

@@ -58,14 +58,13 @@ class Search {
       if (pass == 0) rough_search();
       const Vector3 before = x_;
       fine_search();
-      if (stopped_) return {StatusCode::kEndOfStream, "interrupted"};
       result_.passes.push_back(timing_at(x_));
       task_.on_result(fmt::format("pass {}: {}", pass + 1, words_of(x_)));
       result_.settled = pass > 0 && is_small(x_ - before);
     }
     result_.timing = timing_at(x_);
     draw_curves();
-    return stopped_ ? Status(StatusCode::kEndOfStream, "interrupted") : Status();
+    return {};
   }
 
  private:
@@ -117,12 +116,9 @@ class Search {
     places_ = places;
     place_ = 0;
   }
-  // The costs of each pair; empty once the search was stopped.
+  // The costs of each pair.
   std::vector<double> costs_at(const Vector3& x, std::size_t step) {
-    if (stopped_) return {};
-    stopped_ = !task_.on_progress(
-        fmt::format("pass {}: {} {}/{}, {}", pass_ + 1, what_, ++place_, places_, words_of(x)));
-    if (stopped_) return {};
+    task_.on_progress(fmt::format("pass {}: {} {}/{}, {}", pass_ + 1, what_, ++place_, places_, words_of(x)));
     return disagreement(recordings_, timing_at(x), step, task_.threads);
   }
   double cost_at(const Vector3& x, std::size_t step) {
@@ -135,7 +131,7 @@ class Search {
   void rough_line(const Vector3& step, int reach) {
     const Vector3 centre = x_;
     double least = std::numeric_limits<double>::infinity();
-    for (int k = -reach; k <= reach && !stopped_; ++k) {
+    for (int k = -reach; k <= reach; ++k) {
       const Vector3 x = bounded(centre + k * step);
       const double cost = cost_at(x, rough_step());
       if (cost < least) {
@@ -201,7 +197,6 @@ class Search {
     begin("fine search", design.rows());
     for (Eigen::Index place = 0; place < design.rows(); ++place) {
       const std::vector<double> sums = costs_at(centre + steps * design.row(place).transpose(), 1);
-      if (stopped_) return;
       for (std::size_t i = 0; i < sums.size(); ++i) costs(piece[i], place) += sums[i];
     }
     const QuadraticMinimum minimum = fit_quadratic(design, costs);
@@ -233,7 +228,6 @@ class Search {
     begin("curves", static_cast<Eigen::Index>(places.size()));
     for (const auto& [i, x] : places) {
       const double cost = cost_at(x, rough_step());
-      if (stopped_) return;
       result_.curves[static_cast<std::size_t>(i)].push_back(
           {x(i), cost / static_cast<double>(std::max<std::size_t>(1, matches))});
     }
@@ -246,7 +240,6 @@ class Search {
   int pass_ = 0;
   const char* what_ = "";
   Eigen::Index place_ = 0, places_ = 0;
-  bool stopped_ = false;
 };
 
 }  // namespace

@@ -40,8 +40,8 @@ struct TimingResult {
 struct TimingSearch {
   // Tracks the recordings anew with this timing.
   std::function<Status(const SensorTiming&, std::vector<TrackedRecording>&)> track;
-  // Called often, with what is being done; false ends the search (kEndOfStream).
-  std::function<bool(const std::string&)> on_progress;
+  // Called often, with what is being done.
+  std::function<void(const std::string&)> on_progress = [](const std::string&) {};
   // Called twice in each pass: with what was tracked, and with what was found.
   std::function<void(const std::string&)> on_result = [](const std::string&) {};
   SensorTiming start;

@@ -101,7 +101,7 @@ void find_velocities(TrackedRecording& recording) {
 }  // namespace
 
 Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_t most_frames,
-                       const std::function<bool()>& on_frame, TrackedRecording& recording) {
+                       const std::function<void()>& on_frame, TrackedRecording& recording) {
   recording = {};
   recording.camera = camera;
   Config config;
@@ -114,7 +114,8 @@ Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_
   Odometry odometry;
   if (Status status = odometry.init(memory, camera, config, limits); !status.ok()) return status;
   int stretch = 0;
-  while (recording.frames.size() < most_frames && on_frame()) {
+  while (recording.frames.size() < most_frames) {
+    on_frame();
     RgbdFrame frame;
     const Status status = source.next(frame);
     if (status.code() == StatusCode::kDamaged || status.code() == StatusCode::kTimeout) continue;

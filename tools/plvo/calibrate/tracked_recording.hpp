@@ -46,9 +46,9 @@ struct TrackedRecording {
   std::vector<FramePair> pairs;  // by rising current frame; both velocities are known
 };
 
-// Reads at most most_frames frames. on_frame is called before each and may end the reading by returning
-// false. Not ok when the odometry refuses the camera; damaged frames are passed over.
+// Reads at most most_frames frames. on_frame is called before each. Not ok when the odometry refuses the
+// camera; damaged frames are passed over.
 Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_t most_frames,
-                       const std::function<bool()>& on_frame, TrackedRecording& recording);
+                       const std::function<void()>& on_frame, TrackedRecording& recording);
 
 }  // namespace plvo::calibrate

@@ -119,7 +119,6 @@ class Calibrate {
     search.threads = options_.threads;
     search.on_progress = [this](const std::string& line) {
       if (console_.wants_line()) console_.show_line(line);
-      return true;
     };
     search.on_result = [this](const std::string& line) { console_.write(LogLevel::kInfo, line); };
     search.track = [this](const calibrate::SensorTiming& timing,
@@ -181,7 +180,6 @@ class Calibrate {
         if (console_.wants_line())
           console_.show_line(
               fmt::format("{}: tracking frame {} of at most {}", opened.name, number, shares[i]));
-        return true;
       };
       const CameraModel camera = calibrate::with_timing(calibration_.camera, timing);
       PrefetchedCamera prefetched(*opened.camera);
