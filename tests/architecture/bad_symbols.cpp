@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that the core must not do, so that the check of its symbols can be seen to fail.
+// Does everything that the core must not do, to test that the check of its symbols can fail.
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Builds a stranger's project that takes plvo in by add_subdirectory, and compares its golden run with ours.
-# Sources are joined, which takes a third of the time.
+# Builds another project that includes plvo by add_subdirectory, and compares its golden run with the stored one.
+# A unity build takes a third of the time.
 # cmake -DPLVO=<source> -DWORK=<folder> -DGENERATOR=<generator> -DCOMPILER=<c++> -P embedding_test.cmake
 foreach(step
     "-S;${PLVO}/tests/architecture/embedding;-B;${WORK};-G;${GENERATOR};-DPLVO=${PLVO};-DCMAKE_CXX_COMPILER=${COMPILER};-DCMAKE_BUILD_TYPE=Debug;-DCMAKE_UNITY_BUILD=ON;-DCMAKE_UNITY_BUILD_BATCH_SIZE=12"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A shared library shows the functions that its headers mark, in version PLVO_0, and nothing else.
+"""Checks that a shared library exports exactly the functions that its headers mark, in version PLVO_0.
 usage: exports.py LIBRARY HEADER…"""
 import pathlib
 import re

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A figure stands on one page, and the others refer to it: a copy stays behind when the figure changes. The README's table repeats
-figures of docs/results/ on purpose: they must be equal, and its best peer must be the best one there."""
+"""Checks that each measured value is on one page only and that the others link to it: a copy becomes outdated when the value
+changes. The README's table repeats values of docs/results/ on purpose: they must be equal, and its best peer must be the best there."""
 import pathlib
 import re
 import sys
 
-# (what, how a page would state it, the page that may)
+# (the value, a pattern of its statement, the page that may state it)
 ONE_PAGE = [
     ("bytes of stack", r"\d[\d.,]* ?(?:KiB|kB|bytes) (?:of |for the )?stack|\bstack\b[^.|]{0,60}?\d[\d.,]* ?(?:KiB|kB)\b", "docs/memory.md"),
     ("bytes of code", r"\d ?(?:KiB|kB)\b[^.|]{0,40}\b(?:flash|code)\b|\b(?:flash|code size)\b[^.|]{0,30}?\d+ ?(?:KiB|kB)\b", "docs/memory.md"),
@@ -33,7 +33,7 @@ def check_one_page(root):
 
 
 def tables(text):
-    """The tables of a page, each a list of rows, a row by its columns' names."""
+    """Yields the tables of a page. A table is a list of rows; a row is a dictionary with the names of the columns as keys."""
     plain = text.replace("*", "").replace("`", "")
     for block in re.findall(r"(?:^\|.*\n)+", plain, re.M):
         head, _, *rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in block.splitlines()]
@@ -44,13 +44,13 @@ def with_columns(text, *names):
     return [rows for rows in tables(text) if rows and all(name in rows[0] for name in names)]
 
 
-# The columns of docs/results/recordings.md and of the table there that stands beside the paper's, which has fewer decimals.
+# Columns of docs/results/recordings.md -> columns of its comparison with the paper, which has fewer decimals.
 COLUMNS = {"mm per frame": "mm/frame", "° per frame": "°/frame", "mm per s": "mm/s", "° per s": "°/s"}
 RECORDINGS, LIGHTING = "docs/results/recordings.md", "docs/results/lighting.md"
 
 
 def expected_rows(recordings, lighting):
-    """The README's table as docs/results/ has it: a row by the name of its sequence."""
+    """Returns the README's table as computed from docs/results/: name of the sequence -> row."""
     rows, peers = {}, {}
     for row in (row for table in with_columns(recordings, "sequence", "system", "mm per s") for row in table):
         if row["system"] == "plvo, both":

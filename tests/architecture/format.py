@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every C++ file is as clang-format (with the .clang-format of plvo) would write it. Without clang-format: skipped."""
+"""Checks that clang-format, with the .clang-format of plvo, changes no C++ file. Skipped without clang-format."""
 import shutil
 import subprocess
 import sys

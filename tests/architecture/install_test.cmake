@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build to a fresh prefix, looks at what came, and builds a stranger's project against it.
+# Installs the build to a new prefix, checks the installed files, and builds another project with them.
 # cmake -DBUILD=<build> -DWORK=<folder> -DCONSUMER=<folder> -DCOMPILER=<c++> -DFLAGS=<flags> [-DCPP_PAGE=<folder>] -P install_test.cmake
 cmake_minimum_required(VERSION 3.22)
 function(run)
@@ -12,7 +12,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} -E env --unset=DESTDIR ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 
-# The headers: the doors, what they include, and nothing else.
+# The installed headers must be the public ones and those that they include.
 set(include ${WORK}/prefix/include)
 set(reached plvo/odometry/odometry.hpp plvo/inertial/imu_integrator.hpp plvo/camera/camera_info.hpp plvo/hal/clock.hpp
   plvo/hal/log.hpp plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp plvo/hal/task_pair.hpp)
@@ -53,7 +53,7 @@ if(CPP_PAGE)
   run(${CMAKE_COMMAND} --build ${WORK}/page)
 endif()
 
-# pkg-config, for both languages; the shared library shows the functions of its headers and nothing else.
+# pkg-config, for both languages; the shared library must export exactly the functions of its headers.
 file(GLOB_RECURSE pc ${WORK}/prefix/plvo-core.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every relative link of a page leads to a file that is there, and to a heading of it. What a newcomer asks for first is one link
-away from the README."""
+"""Checks that every relative link of a page leads to an existing file and heading, and that the README links directly to what a new
+user needs first."""
 import pathlib
 import re
 import sys
 
-# (what is looked for, the page and the heading that has it)
+# (topic, page and heading)
 FROM_README = [
     ("a camera driver of one's own", "docs/cpp.md#a-camera-driver-of-your-own"),
     ("covariance", "docs/cpp.md#pose-and-covariance"),
@@ -22,7 +22,7 @@ def without_code(text):
 
 
 def anchors(text):
-    """The headings of a page as GitHub makes anchors of them, and the anchors that a page sets itself."""
+    """Returns the anchors that GitHub makes from the headings of a page, and the explicit anchors of the page."""
     found = set(re.findall(r'<a id="([^"]+)">', text))
     for heading in re.findall(r"^#+ (.*)$", without_code(text), re.M):
         heading = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading)
@@ -33,7 +33,7 @@ def anchors(text):
 
 
 def links(text):
-    """(line number, target) of every link of a page, outside of blocks of code."""
+    """Yields (line number, target) for every link of a page outside of code blocks."""
     plain = without_code(text)
     for match in re.finditer(r"\]\(([^()\s]*(?:\([^()\s]*\))?[^()\s]*)\)", plain):
         yield plain.count("\n", 0, match.start()) + 1, match.group(1)

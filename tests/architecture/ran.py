@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ran.py RESULTS PRESET NAME…: what ctest --output-junit RESULTS says of a suite that passed. It must have run each NAME, and
-may have skipped nothing but what tests/allowed_skips.txt names for this preset and this machine. So a suite does not pass because
-tests were not built, or found nothing to work on."""
+"""ran.py RESULTS PRESET NAME…: checks the file of ctest --output-junit RESULTS of a suite that passed. The suite must have run each
+NAME and may have skipped only the tests that tests/allowed_skips.txt lists for this preset and this machine. This way a suite cannot
+pass because tests were not built or had no data."""
 import fnmatch
 import os
 import pathlib
@@ -19,7 +19,7 @@ def may_mount():
 
 
 def circumstances(preset):
-    """The words of the list's first column that hold here."""
+    """Returns the conditions of the list's first column that apply to this preset and machine."""
     shared = os.environ.get("PLVO_SHARED") or ALLOWED.parent.parent.parent / "shared"
     here = {"always", preset}
     if not (pathlib.Path(shared) / "data").is_dir():
@@ -37,7 +37,7 @@ def allowed(text, here):
 
 
 def skipped(test):
-    """The names of what was skipped within an entry of ctest: of GoogleTest's tests, or else the entry's own."""
+    """Returns the names of the skipped tests of a ctest entry: those of GoogleTest's tests, or else the name of the entry."""
     output = test.findtext("system-out") or ""
     of_pytest = re.search(r"^(?:.*, )?\d+ skipped\b", output, re.M)
     if test.get("status") not in ("notrun", "disabled") and not of_pytest:

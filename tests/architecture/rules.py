@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules of plvo that a reader of the text alone can check: licence lines; what core and hal may include and
-call; no trace of the machine that the code was written on. Prints the sizes of the files as a report."""
+"""Checks the rules of plvo that need only the text: licence lines; the headers and functions that core and hal may use; no path of
+a developer's machine. Also prints a report of file sizes."""
 import pathlib
 import re
 import statistics
@@ -36,7 +36,7 @@ FORBIDDEN = {
     r"\b(?:noexcept\s*\(\s*false)": "exceptions",
 }
 
-# Written so that this file does not match itself.
+# Split so that this file does not match itself.
 TRACES = re.compile("/" + r"(?:home|root|Users|tmp/(?:wt|bash|hub)|work)/")
 
 
@@ -76,7 +76,7 @@ def check(root):
 
 
 def sizes(root):
-    """A report, not a rule: the design wants a median of 110 to 150 lines and few files above 400."""
+    """Returns a report, not a rule: the design aims at a median of 110 to 150 lines and few files above 400."""
     count = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in sources.files(root)}
     if not count:
         return "no files"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The checks of plvo must be able to fail: each is shown a made-up tree that breaks its rule."""
+"""Tests that the checks of plvo can fail: each check gets a synthetic tree that breaks its rule."""
 import pathlib
 import tempfile
 import unittest
@@ -49,7 +49,7 @@ GOOD = {
 }
 
 
-class Arrows(unittest.TestCase):
+class Dependencies(unittest.TestCase):
     def found(self, extra):
         with Tree({**GOOD, **extra}) as root:
             return dependencies.check(root)
@@ -57,7 +57,7 @@ class Arrows(unittest.TestCase):
     def test_a_good_tree_passes(self):
         self.assertEqual(self.found({}), [])
 
-    def test_every_forbidden_arrow_is_named(self):
+    def test_every_forbidden_dependency_is_named(self):
         bad = {
             "core/plvo/base/up.hpp": "plvo/math/se3.hpp",
             "core/plvo/points/sideways.cpp": "plvo/lines/match.hpp",
@@ -68,14 +68,14 @@ class Arrows(unittest.TestCase):
             "core/plvo/odometry/to_platform.cpp": "plvo/replay/replay.hpp",
             "hal/plvo/hal/to_platform.hpp": "plvo/replay/replay.hpp",
             "platform/plvo/replay/to_tools.cpp": "plvo/cli/run.hpp",
-            "core/plvo/attic/new_room.cpp": "plvo/base/status.hpp",
-            "tools/plvo/cli/nowhere.cpp": "plvo/cellar/door.hpp",
+            "core/plvo/unlisted/new_module.cpp": "plvo/base/status.hpp",
+            "tools/plvo/cli/nowhere.cpp": "plvo/missing/missing.hpp",
         }
         for path, header in bad.items():
             errors = self.found({path: include(header), "tools/plvo/cli/run.hpp": include()})
             self.assertTrue(any(error.startswith(path + ":2:") for error in errors), (path, errors))
 
-    def test_roundabout_spellings_do_not_help(self):
+    def test_unusual_spellings_are_found(self):
         for text in ('#include "../odometry/odometry.hpp"', '#include "odometry.hpp"', '# include <plvo/odometry/odometry.hpp>',
                      '  #  include   "plvo/odometry/odometry.hpp"  // why not'):
             self.assertTrue(self.found({"core/plvo/math/clever.cpp": LICENCE + text + "\n"}), text)
@@ -84,7 +84,7 @@ class Arrows(unittest.TestCase):
         text = LICENCE + '// #include "plvo/odometry/odometry.hpp"\n/* \n#include "plvo/lines/match.hpp"\n*/\n'
         self.assertEqual(self.found({"core/plvo/math/prose.cpp": text}), [])
 
-    def test_a_circle_between_modules_of_one_floor_is_named(self):
+    def test_a_cycle_between_modules_of_one_layer_is_named(self):
         errors = self.found({"platform/plvo/replay/a.cpp": include("plvo/host/b.hpp"),
                              "platform/plvo/host/b.hpp": include("plvo/replay/replay.hpp")})
         self.assertTrue(any("cycle" in error for error in errors), errors)
@@ -112,7 +112,7 @@ class Rules(unittest.TestCase):
             self.assertTrue(self.found("core/plvo/base/a.cpp", LICENCE + line + "\n"), line)
             self.assertTrue(self.found("hal/plvo/hal/a.hpp", LICENCE + line + "\n"), line)
 
-    def test_other_floors_may(self):
+    def test_other_layers_may_use_them(self):
         self.assertEqual(self.found("platform/plvo/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
 
     def test_a_path_of_one_machine_is_named(self):
@@ -135,13 +135,13 @@ class Ran(unittest.TestCase):
     def errors(self, entries, may_skip=(), names=()):
         return list(ran.check(f"<testsuite>{''.join(entries)}</testsuite>", may_skip, names))
 
-    def test_what_ran_passes(self):
+    def test_tests_that_ran_pass(self):
         self.assertEqual(self.errors([entry("a_test"), entry("fuzz_bag", output="no test was skipped")], names=["fuzz_bag"]), [])
 
-    def test_what_was_not_built_is_named(self):
+    def test_tests_that_were_not_built_are_named(self):
         self.assertEqual(self.errors([entry("golden_test")], names=["golden_test", "fuzz_bag"]), ["fuzz_bag did not run"])
 
-    def test_what_was_skipped_did_not_run(self):
+    def test_skipped_tests_did_not_run(self):
         self.assertIn("a_test did not run", self.errors([entry("a_test", "notrun")], may_skip=["a_test"], names=["a_test"]))
 
     def test_a_skip_that_the_list_does_not_name_is_named(self):
@@ -150,14 +150,14 @@ class Ran(unittest.TestCase):
         self.assertTrue(errors[0].startswith("Kinds/A.There/0 was skipped (a_test)"), errors)
         self.assertEqual(self.errors([SKIPPED], may_skip=["A.Here", "*/A.There/*"]), [])
 
-    def test_so_are_programs_without_googletest_and_python_tests(self):
+    def test_skips_without_googletest_are_named(self):
         for skipped in (entry("b_test", "notrun", "SKIPPED: no Chromium here"), entry("b_test", "disabled"),
                         entry("b_test", output="sss  [100%]\n3 skipped in 0.01s"),
                         entry("b_test", output="..s  [100%]\n2 passed, 1 skipped in 0.01s")):
             self.assertEqual(len(self.errors([skipped])), 1, skipped)
             self.assertEqual(self.errors([skipped], may_skip=["b_test"]), [])
 
-    def test_the_list_holds_where_it_says(self):
+    def test_rows_of_the_list_apply_under_their_condition(self):
         text = "# why\nalways A.A  # why\nasan *.B\nno-shared C.C\n"
         self.assertEqual(ran.allowed(text, {"always", "release"}), {"A.A"})
         self.assertEqual(ran.allowed(text, {"always", "asan", "no-shared"}), {"A.A", "*.B", "C.C"})
@@ -227,7 +227,7 @@ class Figures(unittest.TestCase):
     def test_a_sequence_that_is_not_in_the_results_is_named(self):
         self.assertEqual(len(self.found(readme=README.replace("| rpy", "| other"))), 1)
 
-    def test_nothing_compared_is_a_failure(self):
+    def test_no_comparison_is_a_failure(self):
         self.assertTrue(self.found(readme="", recordings=""))
 
 
@@ -239,16 +239,16 @@ class Links(unittest.TestCase):
         with Tree({**self.PAGES, **changed}) as root:
             return list(links.check_links(root))
 
-    def test_links_that_lead_somewhere_pass(self):
+    def test_valid_links_pass(self):
         self.assertEqual(self.found(), [])
 
-    def test_a_link_that_leads_nowhere_is_named(self):
+    def test_broken_links_are_named(self):
         for bad in ("[x](docs/c.md)", "[x](docs/b.md#three)", "[x](#no-heading)", "[x](docs/b.md#no-heading)"):
             errors = self.found(**{"README.md": "# A\n" + bad})
             self.assertEqual(len(errors), 1, bad)
             self.assertTrue(errors[0].startswith("README.md:2:"), errors)
 
-    def test_a_readme_without_what_a_newcomer_asks_for_is_named(self):
+    def test_missing_links_of_the_readme_are_named(self):
         with Tree(self.PAGES) as root:
             self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks of plvo share: which files there are, and what of a C++ file is code."""
+"""Functions shared by the checks of plvo: list the files, and extract the code of a C++ file."""
 import pathlib
 import re
 
@@ -9,7 +9,7 @@ SCRIPTS = (".py", ".sh", ".cmake")
 
 
 def files(root, layers=LAYERS, suffixes=CODE):
-    """Every file below these layers, in a fixed order."""
+    """Yields every file below these layers, in a fixed order."""
     root = pathlib.Path(root)
     for layer in layers:
         for path in sorted((root / layer).rglob("*")):
@@ -22,7 +22,7 @@ _NOISE = re.compile(
 
 
 def code_only(text):
-    """The text with comments and literals blanked; line numbers stay."""
+    """Returns the text without comments and literals; line numbers do not change."""
     def blank(match):
         token = match.group(0)
         if token[0] == '"':
@@ -32,7 +32,7 @@ def code_only(text):
 
 
 def includes(text):
-    """(line number, 'quote' or 'angle', header) of every #include outside comments."""
+    """Yields (line number, 'quote' or 'angle', header) for every #include outside of comments."""
     without_comments = re.sub(r"//[^\n]*|/\*.*?\*/", lambda m: "\n" * m.group(0).count("\n"), text, flags=re.S)
     for number, line in enumerate(without_comments.splitlines(), 1):
         match = re.match(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', line)

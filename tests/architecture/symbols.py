@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the symbols of the core's archive: what it asks of the outside world must be on a short list, it must
-hold no variable that changes, and no function that a linker may replace. So no path through the core can reach a heap, a
-file, a libm that differs, or a copy of an inline function that its user compiled with other switches."""
+"""Checks the symbols of the core's archive: its undefined symbols must be on a short list, and it must contain no mutable variable
+and no function that a linker may replace. Therefore no path through the core reaches a heap, a file, a platform-dependent libm, or a
+copy of an inline function that the user compiled with other options."""
 import argparse
 import re
 import subprocess
 import sys
 
-# What any C++ compiler may ask for, freestanding or not; and sqrt, which IEEE 754 rounds exactly.
+# Functions that any C++ compiler may call, freestanding or not; and sqrt, which IEEE 754 rounds exactly.
 ALLOWED = {"memcpy", "memmove", "memset", "bcmp", "memcmp", "strlen", "sqrt", "_GLOBAL_OFFSET_TABLE_"}
 # 32-bit ARM: helpers of the compiler's own run-time library for 64-bit integers and block moves.
 ALLOWED_PATTERN = re.compile(
     r"__aeabi_(?:u?l(?:div|2d|2f|asr|lsl|lsr|cmp|mul)(?:mod)?|u?ldivmod|u?idiv(?:mod)?|[df]2u?lz|mem(?:cpy|move|set|clr)[48]?"
     r"|unwind_cpp_pr[012])$|__(?:u?div|u?mod)[dst]i3$")
-# Debug builds keep their assertions; the address sanitizer's builds are not examined.
+# Debug builds keep their assertions. Builds with the address sanitizer are not checked.
 DEBUG_ONLY = {"__assert_fail", "__assert_func"}
 
 
 def read(nm, archive):
-    """(undefined names, mutable variables, weak functions) over all members together."""
+    """Returns (undefined names, mutable variables, weak functions) of all members together."""
     out = subprocess.run([nm, archive], capture_output=True, text=True, check=True).stdout
     defined, undefined, mutable, weak = set(), set(), set(), set()
     for line in out.splitlines():
@@ -32,7 +32,7 @@ def read(nm, archive):
         defined.add(name)
         if kind in "VW":
             weak.add(name)
-        # Read-only data that needs relocation is listed as data too, but in a section of its own name.
+        # Read-only data that needs relocation is also listed as data, but in a section of its own.
         if kind in "bBdDgGsSC" and not re.match(r"(?:\$|DW\.ref\.|_ZTV|_ZTS|_ZTI)", name):
             mutable.add(name)
     return undefined - defined, mutable, weak

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""clang-tidy over the sources of core and hal, two at a time, with the flags of this build. Without clang-tidy: skipped.
-A source is read again only when it, a header of plvo or the rules have changed since it was last found good."""
+"""Runs clang-tidy on the sources of core and hal, two at a time, with the flags of this build. Skipped without clang-tidy.
+A source is checked again only if it, a header of plvo or the rules have changed since it last passed."""
 import concurrent.futures
 import hashlib
 import pathlib

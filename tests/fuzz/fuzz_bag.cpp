@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a ROS bag, of which every message is read and taken for an image, for a camera_info and for
-// readings of an IMU; and any bytes as a message.
+// Any bytes as a ROS bag: each message is read and parsed as an image, as a camera_info and as readings of an
+// IMU. Also any bytes as a message.
 #include <string_view>
 #include <vector>
 

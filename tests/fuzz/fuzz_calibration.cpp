@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a calibration, in each of its forms and of other programs': read or refused with words, and
-// what is accepted is usable.
+// Any bytes as a calibration, in each of our formats and those of other programs. The reader refuses them
+// with a message, or returns a usable calibration.
 #include <string>
 #include <string_view>
 
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!status.ok() || !calibration.validate(640, 480).ok()) continue;
     fuzz::require(!calibration.depth_camera.known || calibration.depth_camera.as_colour ||
                   back_project(calibration.depth_camera.pinhole, 0, 0, 1).allFinite());
-    // What was read is written so that it is read again, to the last bit.
+    // A calibration that was read survives writing and reading, to the last bit.
     const std::string text = calibration_text(calibration);
     Calibration again;
     const auto written =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as an image file, decoded as colour and as depth into buffers that the address sanitizer watches.
+// Any bytes as an image file, decoded as colour and as depth into buffers that the address sanitizer checks.
 #include <string_view>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG files whose checksums are right whatever their chunks hold, and JPEG files with any frame header: bytes
-// that plain mutation never gets past the first checksum. What the reader takes has a size within its limits.
+// PNG files with arbitrary chunks and correct checksums, and JPEG files with any frame header. Plain mutation
+// never passes the first checksum. An accepted image has a size within the reader's limits.
 #include <array>
 #include <string>
 #include <string_view>
@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 16> kTypes = {"IHDR", "IDAT", "PLTE", "tR
                                                      "tEXt", "iCCP", "sPLT", "gAMA", "sBIT", "bKGD",
                                                      "hIST", "eXIf", "IDAT", "IEND"};
 
-// The first 13 bytes are the header; then a type and a length come before each chunk's bytes.
+// The first 13 bytes are the header. Then each chunk is a type, a length and its bytes.
 std::string as_png(std::string_view bytes) {
   std::string file = "\x89PNG\r\n\x1a\n";
   const auto add = [&file](std::string_view type, std::string_view data) {
@@ -77,7 +77,7 @@ void check(const std::string& file) {
   if (!status.ok()) return fuzz::require(!std::string_view(status.message()).empty());
   fuzz::require(info.width > 0 && info.height > 0 && info.width <= kMaxImageSide &&
                 info.height <= kMaxImageSide);
-  if (info.width * info.height > 1 << 16) return;  // enough for the sanitizers to watch
+  if (info.width * info.height > 1 << 16) return;  // enough for the sanitizers to check
   const auto pixels = static_cast<std::size_t>(info.width * info.height);
   std::vector<std::uint8_t> rgb(3 * pixels);
   std::vector<std::uint16_t> depth(pixels);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a gyro's and an accelerometer's readings: what is accepted is finite and goes forward in time,
-// and is the same again once it was written.
+// Any bytes as readings of a gyro and an accelerometer. Accepted readings are finite, have increasing stamps,
+// and survive writing and reading.
 #include "plvo/replay/imu_files.hpp"
 #include "scratch_file.hpp"
 

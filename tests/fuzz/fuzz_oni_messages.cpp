@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as what a player of .oni files sends, which a damaged recording may have taken over: no image
-// leaves that is not of the stream's size and within its bytes.
+// Any bytes as the messages of a player of .oni files, which may come from a damaged recording. Every image
+// that is returned has the size of the stream and lies within its bytes.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace plvo;
   using Message = OniMessageReader::Message;
   if (size == 0) return 0;
-  // The first byte: how many bytes come at once.
+  // The first byte gives the number of bytes that arrive at once.
   const std::size_t step = 1 + data[0];
   ++data;
   --size;
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           image.stream == FramePairer::kColour ? reader.recording()->colour : reader.recording()->depth;
       if (image.data == nullptr) continue;
       fuzz::require(image.width == format.width && image.height == format.height && image.stamp_us >= 0);
-      unsigned sum = 0;  // the address sanitizer looks on
+      unsigned sum = 0;  // reads every byte, for the address sanitizer
       for (std::size_t i = 0; i < format.image_bytes(); ++i) sum += image.data[i];
       fuzz::require(sum <= 255 * format.image_bytes());
     }

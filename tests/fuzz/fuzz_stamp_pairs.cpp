@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two lists of stamps and a tolerance from any bytes: the fast pairing equals the one that looks at every
-// pair.
+// Two lists of stamps and a tolerance from any bytes: the fast pairing equals an exhaustive one.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -43,10 +42,11 @@ Pairs slow(const std::vector<std::int64_t>& a, const std::vector<std::int64_t>& 
 
 }  // namespace
 
-// A byte says which list and how far the next stamp is; the first byte is the tolerance, the second the unit.
+// The first byte is the tolerance, the second the unit. Each further byte gives the list and the step of the
+// next stamp.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
-  constexpr std::size_t kMost = 40;  // of either list: the slow one takes the third power
+  constexpr std::size_t kMost = 40;  // per list; the exhaustive pairing takes cubic time
   const std::int64_t unit = data[1] % 3 == 0 ? 1 : data[1] % 3 == 1 ? 1'000'000 : std::int64_t{1} << 57;
   const std::int64_t tolerance =
       data[0] == 255 ? std::numeric_limits<std::int64_t>::max() : data[0] % 63 * unit;

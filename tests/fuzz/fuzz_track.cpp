@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a camera, a configuration, and some frames with their priors: every configuration is refused
-// or works, and every result is sound (tests/support/sound.hpp), whatever the pixels, the depth, the stamps,
-// the priors and the poses that are set were. Zeros are the usual: the default configuration, and a textured
-// wall that is tracked.
+// Any bytes as a camera, a configuration, and some frames with their priors. Each configuration works or is
+// refused. Every result is sound (tests/support/sound.hpp) for any pixels, depths, stamps, priors and poses
+// that are set. Zero bytes give the default case: the default configuration, and a textured wall that is
+// tracked.
 #include <algorithm>
 #include <cstring>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace plvo;
 
-// Reads values off the input; zeros when it is used up.
+// Reads values from the input; zeros once it is used up.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -29,7 +29,7 @@ class Bytes {
     size_ -= n;
     return value;
   }
-  // The usual one, mostly a sensible number, now and then any bit pattern at all.
+  // Returns the default for a zero byte, mostly a plausible number otherwise, and sometimes any bit pattern.
   double number(double usual, double low, double high) {
     const auto how = take<std::uint8_t>();
     if (how == 0) return usual;
@@ -50,10 +50,10 @@ class Bytes {
   std::size_t size_;
 };
 
-// Images are as small as may be where tracking can start, for keypoints are 17 px from the border: the most
-// executions a second.
+// The smallest images in which tracking can start (keypoints keep 17 px from the border) give the most
+// executions per second.
 constexpr int kMostSide = 96;
-// Many references and kept keyframes, or the least of everything.
+// Many references and kept keyframes, or the minimum of everything.
 constexpr Limits kLimits[] = {{.width = kMostSide,
                                .height = kMostSide,
                                .keypoints = 80,
@@ -139,10 +139,11 @@ CameraModel read_camera(Bytes& bytes) {
   return camera;
 }
 
-// A frame of its own memory, which ends where the last row does.
+// A frame in its own memory, which ends with the last row.
 class Picture {
  public:
-  // Blocks of grey that move a little from frame to frame before a wall, or noise, or flat.
+  // A frame with blocks of grey that move a little from frame to frame in front of a wall, or noise, or a
+  // uniform image.
   RgbdFrame paint(const CameraModel& camera, Bytes& bytes) {
     RgbdFrame frame;
     const auto kind = bytes.take<std::uint8_t>();
@@ -194,7 +195,7 @@ Vector3 read_vector(Bytes& bytes, double most) {
   return v;
 }
 
-// Of three axes that are turned against the camera's.
+// A covariance whose principal axes are rotated against the camera's.
 Matrix3 read_covariance(Bytes& bytes) {
   const Matrix3 R = rotation_exp(read_vector(bytes, 2));
   Vector3 variances;
@@ -214,7 +215,7 @@ MotionPrior read_prior(Bytes& bytes) {
   return prior;
 }
 
-// From a nanosecond to a century, and back.
+// A time step from a nanosecond to a century, forward or backward.
 std::int64_t read_step(Bytes& bytes) {
   constexpr std::int64_t kFrame_ns = 33'333'333;
   const auto how = bytes.take<std::uint8_t>();
@@ -223,7 +224,7 @@ std::int64_t read_step(Bytes& bytes) {
   return -(std::int64_t{1} << (how - 223));
 }
 
-// What a caller may do between two frames; mostly nothing.
+// Simulates calls between two frames; mostly none.
 void act(Bytes& bytes, Odometry& odometry) {
   const auto action = bytes.take<std::uint8_t>();
   if (action < 200) return;
@@ -250,7 +251,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!odometry.init(memory, camera, config, limits).ok()) return 0;
 
   static Picture picture;
-  // As an unsigned number, which wraps where stamps reach their end: such a frame is refused.
+  // Unsigned, so that it wraps around at the largest stamp; such a frame is refused.
   std::uint64_t stamp_ns = bytes.one_in(8) ? bytes.take<std::uint64_t>() : 0;
   for (int i = 0; i < 10 && !bytes.empty(); ++i) {
     RgbdFrame frame = picture.paint(camera, bytes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a trajectory in each format, as the pose file of a numbered frame, and as the files of
-// covariances: what is accepted is sorted and finite.
+// covariances. Accepted data are sorted and finite.
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/eval/uncertainty_file.hpp"
 #include "plvo/replay/index/numbered_index.hpp"

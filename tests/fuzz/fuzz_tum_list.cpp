@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a TUM folder's lists: rgb.txt and depth.txt (split at the first zero byte), or an associations
-// file.
+// Any bytes as the lists of a TUM folder: rgb.txt and depth.txt (split at the first zero byte), or an
+// associations file.
 #include <algorithm>
 #include <string_view>
 

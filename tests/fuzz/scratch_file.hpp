@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers take paths: the fuzzer's bytes go to a file of this process's own, in memory where the machine
-// has /dev/shm.
+// The readers take paths, so the fuzzer's bytes go to a file that only this process uses; it lies in memory
+// if the machine has /dev/shm.
 #pragma once
 
 #include <unistd.h>
@@ -37,7 +37,7 @@ inline std::filesystem::path write_scratch(const std::string& name, const std::u
   return path;
 }
 
-// What must hold whatever the bytes were; a fuzzer reports an abort.
+// A property that must hold for any bytes; the fuzzer reports an abort.
 inline void require(bool condition) {
   if (!condition) std::abort();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From samples to priors: against rotations that are integrated in a hundred times finer steps, with noise
-// and offsets as stated, with samples missing, and with nonsense.
+// Priors from samples: compared with rotations that are integrated in a hundred times finer steps, with noise
+// and offsets as stated, with missing samples, and with invalid input.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,12 +18,12 @@ using test::Gaussian;
 constexpr double kGravity = 9.80665;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// A hand's turning, rad/s, in the camera's axes.
+// Angular velocity of a hand-held camera, rad/s, in the camera's axes.
 Vector3 rate(double t) {
   return {0.8 * std::sin(5 * t), 0.6 * std::cos(3 * t) + 0.2, 0.5 * std::sin(7 * t + 1)};
 }
 
-// R_world_camera at t, in steps of 20 µs.
+// R_from_to, integrated in steps of 20 µs.
 Matrix3 slow_reference(double from_s, double to_s) {
   Matrix3 R = Matrix3::Identity();
   const int steps = static_cast<int>((to_s - from_s) * 5e4 + 0.5);
@@ -39,7 +39,7 @@ struct Imu {
       : gyro(samples), accelerometer(samples) {
     status = integrator.init(gyro, accelerometer, config);
   }
-  // 200 Hz in (from, to].
+  // Samples at 200 Hz in (from, to].
   template <typename Noise>
   void feed(double from_s, double to_s, Noise noise) {
     for (int k = static_cast<int>(from_s * 200) + 1; k <= static_cast<int>(to_s * 200 + 1e-9); ++k) {
@@ -57,12 +57,12 @@ struct Imu {
 
 std::int64_t stamp(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
 
-TEST(ImuIntegrator, TurnsAsFarAsAFineIntegrationDoes) {
+TEST(ImuIntegrator, AgreesWithAFineIntegration) {
   Imu imu({}, 1024);
   ASSERT_TRUE(imu.status.ok());
   imu.feed(-0.1, 3.5);
-  EXPECT_FALSE(imu.integrator.prior(stamp(0.5)).rotation) << "since when?";
-  // Frames between samples, too.
+  EXPECT_FALSE(imu.integrator.prior(stamp(0.5)).rotation) << "there is no previous frame";
+  // The stamps of frames lie between samples, too.
   for (int i = 1; i < 30; ++i) {
     const double before = 0.5 + (i - 1) * 0.0333, now = 0.5 + i * 0.0333;
     const MotionPrior prior = imu.integrator.prior(stamp(now));
@@ -73,8 +73,8 @@ TEST(ImuIntegrator, TurnsAsFarAsAFineIntegrationDoes) {
   }
 }
 
-// What track() is given with a frame must not be refused: the frame would be, too.
-TEST(ImuIntegrator, WhateverTheGapsItsPriorsAreTaken) {
+// Every prior must pass validate(): track() refuses a frame with its prior.
+TEST(ImuIntegrator, GivesValidPriorsForAnyGaps) {
   ImuConfig config;
   config.longest_gap_s = 10;
   config.gyro_offset_walk = 1;
@@ -96,7 +96,7 @@ TEST(ImuIntegrator, WhateverTheGapsItsPriorsAreTaken) {
   }
 }
 
-TEST(ImuIntegrator, SaysHowSureItIs) {
+TEST(ImuIntegrator, CovarianceAgreesWithTheError) {
   ImuConfig config;
   config.gyro_offset_sigma = 0.01;
   config.gyro_offset_walk = 0;
@@ -119,7 +119,7 @@ TEST(ImuIntegrator, SaysHowSureItIs) {
   EXPECT_NEAR(nees, 3, 0.6);
 }
 
-TEST(ImuIntegrator, LearnsTheOffsetOfTheGyroAndKnowsHowWell) {
+TEST(ImuIntegrator, LearnsTheGyroOffsetAndItsVariance) {
   ImuConfig config;
   config.gyro_scale_sigma = 0;
   config.gyro_offset_walk = 0;
@@ -127,7 +127,7 @@ TEST(ImuIntegrator, LearnsTheOffsetOfTheGyroAndKnowsHowWell) {
   constexpr int kTrials = 60;
   constexpr double kSeen_rad = 1e-3;
   constexpr int kFrames = 120;
-  std::vector<Matrix3> truths;  // how each frame has turned since the one before
+  std::vector<Matrix3> truths;  // rotation of each frame since the previous one
   for (int i = 0; i < kFrames; ++i) {
     const double now = 0.1 + i * 0.0333;
     truths.push_back(slow_reference(now - 0.0333, now).transpose());
@@ -147,7 +147,7 @@ TEST(ImuIntegrator, LearnsTheOffsetOfTheGyroAndKnowsHowWell) {
       result.stamp_ns = stamp(now);
       result.reference_stamp_ns = i == 0 ? result.stamp_ns : stamp(now - 0.0333);
       if (i > 0) {
-        // What an estimate that has used the prior makes of a sight of 1 mrad.
+        // The estimate after the prior is combined with an observation of 1 mrad SD.
         const Matrix3& truth = truths[static_cast<std::size_t>(i)];
         const Matrix3 seen = rotation_exp(Vector3(kSeen_rad * gaussian.vector<3>())) * truth;
         const Matrix3 C = prior.rotation->covariance;
@@ -168,7 +168,7 @@ TEST(ImuIntegrator, LearnsTheOffsetOfTheGyroAndKnowsHowWell) {
   EXPECT_NEAR(nees, 1, 0.35);
 }
 
-TEST(ImuIntegrator, WithoutSamplesItSaysNothing) {
+TEST(ImuIntegrator, GivesNoPriorWithoutSamples) {
   Imu imu;
   imu.feed(-0.1, 0.2);
   (void)imu.integrator.prior(stamp(0.1));
@@ -178,7 +178,7 @@ TEST(ImuIntegrator, WithoutSamplesItSaysNothing) {
   imu.feed(0.5, 0.7);
   EXPECT_FALSE(imu.integrator.prior(stamp(0.60)).rotation) << "a gap of 300 ms";
   EXPECT_TRUE(imu.integrator.prior(stamp(0.63)).rotation);
-  // A ring that was too small for the interval.
+  // The ring is too small for the interval.
   Imu small({}, 8);
   small.feed(0, 0.1);
   (void)small.integrator.prior(stamp(0.1));
@@ -209,7 +209,7 @@ TEST(ImuIntegrator, RefusesNonsense) {
   config.R_camera_imu(0, 0) = 2;
   EXPECT_EQ(Imu(config).status.code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(Imu({}, 1).status.code(), StatusCode::kInvalidArgument);
-  // Stamps whose differences do not fit say nothing, and change nothing.
+  // Stamps whose differences overflow give no prior and change nothing.
   Imu far;
   far.feed(-0.1, 0.2);
   (void)far.integrator.prior(stamp(0.1));
@@ -218,8 +218,8 @@ TEST(ImuIntegrator, RefusesNonsense) {
   EXPECT_TRUE(far.integrator.prior(stamp(0.13)).rotation);
 }
 
-TEST(ImuIntegrator, DownIsWhereTheForceIsNot) {
-  // A sensor whose x points down, y right, z forward: axes of the other hand.
+TEST(ImuIntegrator, DownIsOppositeToTheForce) {
+  // The sensor's x points down, y right, z forward: left-handed axes.
   ImuConfig config;
   config.R_camera_imu << 0, 1, 0, 1, 0, 0, 0, 0, 1;
   Imu imu(config);
@@ -232,11 +232,12 @@ TEST(ImuIntegrator, DownIsWhereTheForceIsNot) {
   ASSERT_TRUE(prior.gravity);
   EXPECT_LT((prior.gravity->down.normalized() - Vector3(0, 1, 0)).norm(), 1e-12);
   EXPECT_TRUE(prior.validate().ok());
-  // Turning about the sensor's x is turning about the camera's y, against the sense: the hands differ.
+  // A rotation about the sensor's x is one about the camera's y in the opposite sense, because the handedness
+  // differs.
   prior = imu.integrator.prior(stamp(0.2));
   ASSERT_TRUE(prior.rotation);
   EXPECT_LT((rotation_log(prior.rotation->R_now_before) - Vector3(0, 0.05, 0)).norm(), 1e-9);
-  // Falling.
+  // Free fall.
   for (int k = 60; k < 80; ++k)
     ASSERT_TRUE(imu.integrator.add_acceleration({k * kSecond / 200, {0.1, 0, 0}}));
   (void)imu.integrator.prior(stamp(0.3));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every number of Config and Limits has a range, which is checked and which the message tells. The ranges are
-// written down here once more, so that none moves unnoticed.
+// Each number of Config and Limits has a range; init checks it and the message states it. The test repeats
+// the ranges, so that every change of one is noticed.
 #include "plvo/odometry/config.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 namespace plvo {
 namespace {
 
-// A number by its name, with its least and its largest value as the message tells them, put into settings
-// that are good but for it.
+// A number by its name, with its bounds as the message states them. with() puts a value into settings that
+// are otherwise valid.
 struct Entry {
   std::string name, low, high;
   std::function<Status(double)> with;
@@ -127,7 +127,7 @@ std::vector<Entry> all_entries() {
           PLVO_LIMIT(surfaces, "0", "1000")};
 }
 
-TEST(Config, EveryNumberIsHeldToItsRangeAndTheMessageTellsIt) {
+TEST(Config, RefusesEveryNumberOutsideItsRangeAndStatesTheRange) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Entry& entry : all_entries()) {
     const std::string refusal =
@@ -146,8 +146,8 @@ TEST(Config, EveryNumberIsHeldToItsRangeAndTheMessageTellsIt) {
   }
 }
 
-// One of the four kept keyframes makes way for a third reference.
-TEST(Config, ThreeReferencesLeaveThreeKeptKeyframes) {
+// One of the four kept keyframes is replaced by the third reference.
+TEST(Config, AllowsThreeKeptKeyframesWithThreeReferences) {
   Limits limits;
   limits.references = 3;
   limits.kept_keyframes = 3;
@@ -156,7 +156,7 @@ TEST(Config, ThreeReferencesLeaveThreeKeptKeyframes) {
   EXPECT_STREQ(limits.validate().message(), "config: Limits::kept_keyframes must lie between 0 and 3");
 }
 
-TEST(Config, WhatWeRecommendIsAllowed) {
+TEST(Config, AcceptsTheRecommendedSettings) {
   for (const Config& config : {Config{}, Config::paper(), Config::tiny()})
     EXPECT_TRUE(config.validate().ok()) << config.validate().message();
   for (const Limits& limits : {Limits{}, Limits::vga(), Limits::qvga(), Limits::tiny()})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The budget of time: which steps it takes on which words, and what they do to the features of a frame; and
-// the hook between stages.
+// The time budget: the steps that follow from given durations, and their effect on the features of a frame.
+// Also the hook between stages.
 #include "plvo/odometry/features/feature_budget.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ void note(FeatureBudget& budget, std::int64_t took_ns, int times) {
   for (int i = 0; i < times; ++i) budget.note(took_ns);
 }
 
-TEST(FeatureBudget, EachStepTakesAQuarterOfOneKindInTurns) {
+TEST(FeatureBudget, EachStepRemovesAQuarterOfAlternatingKinds) {
   FeatureBudget budget = make_budget();
   std::vector<std::size_t> keypoints{budget.capacity().keypoints}, segments{budget.capacity().segments};
   for (int i = 0; i < FeatureBudget::kSteps; ++i) {
@@ -43,7 +43,7 @@ TEST(FeatureBudget, EachStepTakesAQuarterOfOneKindInTurns) {
   EXPECT_EQ(budget.step(), FeatureBudget::kSteps) << "there is no further step";
 }
 
-TEST(FeatureBudget, ALeastNumberStaysUnlessThereWereFewer) {
+TEST(FeatureBudget, KeepsAMinimumUnlessThereWereFewer) {
   FeatureBudget budget;
   budget.init(kConfig, {160, 120, 60, 12});
   note(budget, kTooLong, 100);
@@ -51,7 +51,7 @@ TEST(FeatureBudget, ALeastNumberStaysUnlessThereWereFewer) {
   EXPECT_EQ(budget.capacity().segments, 12U);
 }
 
-TEST(FeatureBudget, AFrameAfterAStepIsNotJudged) {
+TEST(FeatureBudget, IgnoresTheFramesAfterAStep) {
   FeatureBudget budget = make_budget();
   budget.note(kTooLong);
   note(budget, kTooLong, FeatureBudget::kSettlingFrames);
@@ -65,7 +65,7 @@ TEST(FeatureBudget, GoesUpAfterEnoughQuickFramesInARow) {
   note(budget, kTooLong, 2 * (1 + FeatureBudget::kSettlingFrames));
   ASSERT_EQ(budget.step(), 2);
   note(budget, kInTime, 100);
-  EXPECT_EQ(budget.step(), 2) << "in time is not time to spare";
+  EXPECT_EQ(budget.step(), 2) << "within the budget, but without time to spare";
   note(budget, kQuick, 4);
   budget.note(kInTime);
   note(budget, kQuick, 4);
@@ -78,7 +78,7 @@ TEST(FeatureBudget, GoesUpAfterEnoughQuickFramesInARow) {
   EXPECT_EQ(budget.step(), 0) << "there is nothing above all the features";
 }
 
-TEST(FeatureBudget, WithoutOneNothingIsTooLong) {
+TEST(FeatureBudget, HasNoEffectWithoutABudget) {
   FeatureBudget budget = make_budget(BudgetConfig{});
   note(budget, 1'000'000'000'000, 10);
   EXPECT_EQ(budget.step(), 0);
@@ -113,7 +113,7 @@ class BudgetedOdometry : public ::testing::Test {
 
 TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
   Config config = budgeted();
-  config.references.recent_frames = 1;  // points are looked for in every frame
+  config.references.recent_frames = 1;  // points are detected in every frame
   init(config);
   const std::vector<int> steps = {0, 1, 1, 1, 2, 2, 2, 3};
   FeatureBudget expected;
@@ -122,7 +122,7 @@ TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
     const TrackResult result = odometry_.track(sequence_.render(static_cast<int>(i)));
     EXPECT_EQ(result.feature_step, steps[i]);
     EXPECT_EQ(odometry_.features().keypoints.size(), expected.capacity().keypoints)
-        << "there is texture enough";
+        << "there is enough texture";
     EXPECT_LE(odometry_.features().segments.size(), expected.capacity().segments);
     EXPECT_GT(result.points.dropped, 0);
     if (i > 0) {
@@ -133,8 +133,8 @@ TEST_F(BudgetedOdometry, KeepsAsManyFeaturesAsTheStepSays) {
   }
 }
 
-// A keyframe from before a step would cost for as long as it lasts what it did then.
-TEST_F(BudgetedOdometry, AKeyframeThatIsTooFullIsGivenUp) {
+// A keyframe from before a step would still cost as much time as it did then.
+TEST_F(BudgetedOdometry, ReplacesAKeyframeWithTooManyFeatures) {
   Config config = budgeted();
   config.references.keyframe_inlier_ratio = 0;  // it would stay for ever
   init(config);
@@ -149,7 +149,7 @@ TEST_F(BudgetedOdometry, AKeyframeThatIsTooFullIsGivenUp) {
   EXPECT_EQ(result.reference_stamp_ns, sequence_.stamp_ns(3));
 }
 
-TEST_F(BudgetedOdometry, TheSameWordsGiveTheSameBits) {
+TEST_F(BudgetedOdometry, EqualDurationsGiveEqualBits) {
   const auto walk = [this](const Config& config, bool tell) {
     init(config);
     std::vector<std::uint64_t> prints;
@@ -163,11 +163,11 @@ TEST_F(BudgetedOdometry, TheSameWordsGiveTheSameBits) {
   EXPECT_EQ(walk(budgeted(), true), first);
   const auto plain = walk(Config{}, false);
   EXPECT_NE(plain, first);
-  EXPECT_EQ(walk(Config{}, true), plain) << "without a budget the words have no effect";
-  EXPECT_EQ(walk(budgeted(), false), plain) << "nor has a budget without words";
+  EXPECT_EQ(walk(Config{}, true), plain) << "durations have no effect without a budget";
+  EXPECT_EQ(walk(budgeted(), false), plain) << "a budget has no effect without durations";
 }
 
-TEST_F(BudgetedOdometry, ABudgetOutOfRangeIsRefused) {
+TEST_F(BudgetedOdometry, RefusesABudgetOutOfRange) {
   for (const BudgetConfig& wrong :
        {BudgetConfig{.frame_ns = -1}, BudgetConfig{.frame_ns = 1, .patience_frames = 0},
         BudgetConfig{.frame_ns = 1, .spare_share = 1.5}}) {
@@ -177,7 +177,7 @@ TEST_F(BudgetedOdometry, ABudgetOutOfRangeIsRefused) {
   }
 }
 
-TEST_F(BudgetedOdometry, TheHookIsCalledAfterEachStage) {
+TEST_F(BudgetedOdometry, CallsTheHookAfterEachStage) {
   std::vector<Stage> stages;
   Config config;
   config.stage_hook = {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gravity against a dense filter that knows nothing of blocks, and over a long chain of poses that drift.
+// Compares the gravity filter with a dense filter without block structure, and tests it over a long chain of
+// drifting poses.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -29,8 +30,9 @@ Matrix6 diagonal(double sigma_m, double sigma_rad) {
   return C;
 }
 
-// δ of `from` and `current`, ε, β: one Gaussian of 18 dimensions, its Jacobian by differences.
-TEST(GravityFilter, IsADenseKalmanStep) {
+// The errors δ of `from` and `current`, ε and β are one Gaussian of 18 dimensions; its Jacobian comes from
+// finite differences.
+TEST(GravityFilter, EqualsADenseKalmanStep) {
   Gaussian random(4);
   const Vector3 g = Vector3(0.1, 0.9, 0.2).normalized();
   PoseWithCovariance from;
@@ -62,7 +64,7 @@ TEST(GravityFilter, IsADenseKalmanStep) {
     P.block<6, 6>(12, 6) = P.block<6, 6>(6, 12).transpose();
     return P;
   };
-  // Two frames on, where the last keyframe has drifted as well.
+  // Two frames later; the last keyframe has drifted too.
   from = advance(current, {rotation_exp({0.1, 0.3, 0.2}), {0.2, -0.1, 0.3}}, diagonal(0.01, 0.02));
   current = advance(from, {rotation_exp({0.2, 0.1, -0.3}), {0.1, 0.4, 0.2}}, C_motion);
   reading.down = current.T_world_camera.R.transpose() * g + normal3(random, 0.03);
@@ -79,7 +81,7 @@ TEST(GravityFilter, IsADenseKalmanStep) {
     x[i] = 1e-6;
     J.col(i) = (predicted(x) - predicted(-x)) / 2e-6;
   }
-  // Only what lies across the direction counts.
+  // Only the component across the direction counts.
   const Vector3 d = current.T_world_camera.R.transpose() * hold.down_in_world();
   const Vector3 u = d.cross(Vector3(1, 0, 0)).normalized();
   Dense U(2, 3);
@@ -108,7 +110,7 @@ TEST(GravityFilter, IsADenseKalmanStep) {
   EXPECT_LT((hold_after.covariance() - after.block<6, 6>(12, 12)).norm(), 1e-6 * P.norm());
 }
 
-TEST(GravityFilter, AReadingLevelsTheWorld) {
+TEST(GravityFilter, LevelsTheWorldByAReading) {
   const Vector3 y(0, 1, 0);
   for (const Vector3& down :
        {Vector3(0, 1, 0), Vector3(0.1, 0.9, 0.2), Vector3(-0.7, 0.1, 0.4), Vector3(0, 0, 1),
@@ -126,23 +128,23 @@ TEST(GravityFilter, AReadingLevelsTheWorld) {
     EXPECT_EQ(pose.T_world_camera.t, Vector3(0, 0, 0));
     EXPECT_TRUE(hold.known());
     EXPECT_EQ(hold.down_in_world(), y);
-    // Roll and pitch as unsure as the reading, the heading, which makes the world, not at all.
+    // Roll and pitch have the uncertainty of the reading. The heading is exact, because it defines the world.
     const Matrix3 C = pose.covariance.block<3, 3>(3, 3);
     EXPECT_NEAR(C(0, 0), 5e-4, 1e-15);
     EXPECT_NEAR(C(2, 2), 5e-4, 1e-15);
     EXPECT_EQ(C(1, 1), 0);
     EXPECT_EQ((pose.covariance.block<3, 6>(0, 0).norm()), 0);
-    // The camera looks where it looked, unless straight up or down: the turn is about a horizontal axis,
-    // after a roll of one that hangs upside down.
+    // The camera keeps its viewing direction, unless it looks straight up or down: the rotation is about a
+    // horizontal axis, after a roll if the camera hangs upside down.
     const bool hangs = down.y() < 0;
     const Matrix3 roll = hangs ? Matrix3(Vector3(-1, -1, 1).asDiagonal()) : Matrix3(Matrix3::Identity());
     EXPECT_NEAR(rotation_log(R * roll).y(), 0, 1e-12) << down.transpose();
   }
 }
 
-// A cheap accelerometer in a camera that turns to and fro: the tilt is off by what it says at the first pose,
-// and by what it says after more readings, which is less.
-TEST(GravityFilter, ALevelWorldIsAsLevelAsItSays) {
+// A cheap accelerometer in a camera that rotates back and forth. The tilt error agrees with its covariance at
+// the first pose, and with the smaller covariance after more readings.
+TEST(GravityFilter, TiltOfALevelWorldAgreesWithItsCovariance) {
   constexpr double kNoise = 0.05, kOffset = 0.02, kStep = 1e-3;
   constexpr int kWalks = 400, kReadings = 60;
   const Vector3 y(0, 1, 0);
@@ -162,7 +164,7 @@ TEST(GravityFilter, ALevelWorldIsAsLevelAsItSays) {
     GravityFilter hold;
     hold.level(reading(), pose);
     const auto look = [&](double& tilt, double& nees) {
-      // R_true = Exp(ω) R: what of ω lies across y.
+      // R_true = Exp(ω) R: the component of ω across y.
       const Vector3 off = pose.T_world_camera.R * R_true.transpose() * y - y;
       const Vector2 omega(-off.z(), off.x());
       Matrix2 C;
@@ -177,18 +179,18 @@ TEST(GravityFilter, ALevelWorldIsAsLevelAsItSays) {
       pose = advance(from, {R_now_before, Vector3::Zero()}, diagonal(1e-3, kStep));
       R_true = R_true * (rotation_exp(normal3(random, kStep)) * R_now_before).transpose();
       hold.read(reading(), from, pose);
-      EXPECT_EQ(hold.down_in_world(), y) << "this is what the world is made by";
+      EXPECT_EQ(hold.down_in_world(), y) << "the reading defines this world";
     }
     look(last, nees_last);
   }
-  // 2 degrees of freedom over 400 walks: SD 0.1 of the mean.
+  // 2 degrees of freedom over 400 walks: the mean has an SD of 0.1.
   EXPECT_NEAR(nees_first, 2, 0.4);
   EXPECT_NEAR(nees_last, 2, 0.4);
   EXPECT_NEAR(std::sqrt(first), std::sqrt(2.0) * std::hypot(kNoise, kOffset), 0.01);
   EXPECT_LT(std::sqrt(last), 0.4 * std::sqrt(first));
 }
 
-TEST(GravityFilter, AJoltIsLeftOut) {
+TEST(GravityFilter, IgnoresAJolt) {
   PoseWithCovariance pose;
   pose.covariance = diagonal(0.01, 0.001);
   GravityFilter hold;
@@ -208,10 +210,10 @@ TEST(GravityFilter, AJoltIsLeftOut) {
 
 struct Drift {
   double tilt_rad = 0, heading_rad = 0;  // at the end
-  double nees = 0;                       // of the orientation about the two level axes, per dimension
+  double nees = 0;                       // of the orientation about the two horizontal axes, per dimension
 };
 
-// A camera that looks about, from keyframe to keyframe with errors of the stated covariance; its
+// A camera that looks around. The motions between keyframes have errors of the stated covariance; its
 // accelerometer has an offset.
 Drift walk(std::uint64_t seed, bool gravity) {
   Gaussian random(seed);
@@ -264,7 +266,7 @@ TEST(GravityFilter, StopsTheDriftOfRollAndPitch) {
   // 0.004 rad √1500 about each of two axes: 0.22 rad.
   EXPECT_GT(std::sqrt(free), 0.15);
   EXPECT_LT(std::sqrt(held), 0.05);
-  EXPECT_GT(std::sqrt(heading), 0.08) << "gravity says nothing of the heading";
+  EXPECT_GT(std::sqrt(heading), 0.08) << "gravity does not correct the heading";
   EXPECT_NEAR(nees, 1, 3 * std::sqrt(1.0 / kWalks))
       << "three standard deviations of the mean of 2 · 30 squares";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory the odometry takes: a floor and a ceiling, exactly what required_bytes says, and
-// docs/memory.md true.
+// Memory of the odometry: it lies between a floor and a ceiling, equals required_bytes, and agrees with
+// docs/memory.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,12 +14,11 @@
 namespace plvo {
 namespace {
 
-// At compile time: a caller may make the block a static array.
+// At compile time: a caller may use a static array as the block.
 static_assert(required_bytes(Limits::vga()) <= kVgaCeiling);
 static_assert(required_bytes(Limits::qvga()) <= kQvgaCeiling);
 static_assert(required_bytes(Limits::tiny()) <= kTinyCeiling);
-// A grey image and its gradients alone need this much: less would mean that a room no longer counts what it
-// takes.
+// A grey image and its gradients alone need this much. With less, a module would not count its memory.
 static_assert(required_bytes(Limits::vga()) > 640 * 480 * 2);
 static_assert(required_bytes(Limits::qvga()) > 320 * 240 * 2);
 static_assert(required_bytes(Limits::tiny()) > 320 * 240 * 2);
@@ -37,7 +36,7 @@ const MemoryUse& tiny() {
   return use;
 }
 
-TEST(Memory, EveryByteOfInitHasAName) {
+TEST(Memory, RecordsEveryByteOfInit) {
   for (const MemoryUse* use : {&vga(), &qvga(), &tiny()}) {
     ASSERT_FALSE(use->rows.empty());
     std::size_t sum = 0;
@@ -49,7 +48,7 @@ TEST(Memory, EveryByteOfInitHasAName) {
   }
 }
 
-// Bytes, VGA, QVGA, tiny: a little more than a room takes today. The whole has ceilings of its own.
+// Bytes for VGA, QVGA, tiny: a little more than each module takes today. The totals have their own ceilings.
 struct Ceiling {
   const char* who;
   std::size_t bytes[3];
@@ -63,12 +62,12 @@ constexpr Ceiling kCeilings[] = {
     {"surface features", {52'000, 0, 0}},           {"surface tracks", {58'000, 0, 0}},
 };
 
-TEST(Memory, NoRoomTakesMoreThanItsCeiling) {
+TEST(Memory, EveryModuleStaysBelowItsCeiling) {
   const MemoryUse* const uses[] = {&vga(), &qvga(), &tiny()};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto rooms = std::count_if(std::begin(kCeilings), std::end(kCeilings),
-                                     [&](const Ceiling& c) { return c.bytes[i] > 0; });
-    EXPECT_EQ(static_cast<std::ptrdiff_t>(uses[i]->rows.size()), rooms) << "a room without a ceiling";
+    const auto modules = std::count_if(std::begin(kCeilings), std::end(kCeilings),
+                                       [&](const Ceiling& c) { return c.bytes[i] > 0; });
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(uses[i]->rows.size()), modules) << "a module without a ceiling";
     for (const MemoryUse::Row& row : uses[i]->rows) {
       const auto* ceiling = std::find_if(std::begin(kCeilings), std::end(kCeilings),
                                          [&](const Ceiling& c) { return row.who == c.who; });
@@ -78,14 +77,14 @@ TEST(Memory, NoRoomTakesMoreThanItsCeiling) {
   }
 }
 
-TEST(Memory, TheScratchFitsBehindWhatInitTook) {
+TEST(Memory, ScratchFitsBehindTheMemoryOfInit) {
   for (const MemoryUse* use : {&vga(), &qvga(), &tiny()}) {
     EXPECT_GT(use->peak, use->used) << "frames were tracked, so scratch was taken";
     EXPECT_LE(use->peak, use->required);
   }
 }
 
-TEST(Memory, InitTakesExactlyWhatItAsksFor) {
+TEST(Memory, InitNeedsExactlyTheRequiredBytes) {
   constexpr Limits kLimits = Limits::qvga();
   std::vector<std::byte> memory(required_bytes(kLimits));
   CameraModel camera{320, 240, {260, 260, 160, 120}, {}};
@@ -98,7 +97,7 @@ TEST(Memory, InitTakesExactlyWhatItAsksFor) {
   EXPECT_EQ(odometry.init({}, camera, Config{}, kLimits).code(), StatusCode::kOutOfMemory);
 }
 
-TEST(Memory, AMisalignedBlockOfTheRequiredSizeIsEnough) {
+TEST(Memory, AcceptsAMisalignedBlockOfTheRequiredSize) {
   constexpr Limits kLimits = Limits::qvga();
   std::vector<std::byte> memory(required_bytes(kLimits) + 1);
   CameraModel camera{320, 240, {260, 260, 160, 120}, {}};
@@ -110,7 +109,7 @@ TEST(Memory, ThePageIsTrue) {
   if (sizeof(void*) != 8) GTEST_SKIP() << "the page is about 64-bit machines";
   std::stringstream committed;
   committed << std::ifstream(PLVO_MEMORY_DOC).rdbuf();
-  // What follows is about accuracy, stacks and code, and other tests'..
+  // The rest of the page is about accuracy, stacks and code; other tests check it.
   const std::size_t end = committed.str().find(kMemoryPageEnd);
   ASSERT_NE(end, std::string::npos) << "the page has no heading" << kMemoryPageEnd;
   const std::string page = memory_page({vga(), qvga(), tiny()}) + committed.str().substr(end);

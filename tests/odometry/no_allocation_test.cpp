@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// After the caller has handed over the block, neither init nor track takes or returns a byte of the heap:
-// over a whole sequence, with frames that are lost, refused, and found again.
+// After the caller has provided the block, neither init nor track allocates or frees heap memory. Tested over
+// a whole sequence with lost, refused and recovered frames.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -44,7 +44,7 @@ TEST_P(NoAllocation, OverASequenceWithLostFrames) {
   const auto track = [&](const RgbdFrame& frame) {
     guard.arm();
     const TrackResult result = odometry.track(frame);
-    // For those who have a budget: down, and up again.
+    // For configurations with a budget: one step down, later up again.
     odometry.frame_took(result.stamp_ns < sequence.stamp_ns(9) ? 2 : 0);
     guard.disarm();
     return result;
@@ -58,7 +58,7 @@ TEST_P(NoAllocation, OverASequenceWithLostFrames) {
       if (lost > 0) ++tracked_after_loss;
     }
     if (i == 10) {
-      // Frames that are refused at the door: no picture, an old stamp, another size.
+      // Frames that are refused: without an image, with an old stamp, of another size.
       RgbdFrame blind = sequence.render(i + 1);
       blind.depth.data = nullptr;
       RgbdFrame small = sequence.render(i + 1);
@@ -69,7 +69,7 @@ TEST_P(NoAllocation, OverASequenceWithLostFrames) {
   }
   EXPECT_EQ(guard.taken(), 0);
   EXPECT_EQ(guard.returned(), 0);
-  // The stretch that was watched must have been the one that was meant.
+  // Checks that the sequence contained the intended cases.
   EXPECT_EQ(lost, 3);
   EXPECT_EQ(refused, 3);
   EXPECT_GE(tracked, 15);

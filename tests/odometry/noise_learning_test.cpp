@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the models of the noise are right, on matches whose noise is as many times the model's as we say.
+// Learns the noise scales from matches whose noise variance is a known multiple of the model's.
 #include "plvo/odometry/tracking/noise_learning.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using test::SimulatedPair;
 
 constexpr double kSigma_px = 0.7;
 
-// p as measured: noise across the image and along the ray, each with so many times the variance that the
-// covariance states.
+// A measurement of p. The noise variances across the image and along the ray are multiples of those in the
+// covariance.
 Point3d observe(Gaussian& gaussian, const Vector3& p, const NoiseScales& truth) {
   const Pinhole pinhole;
   const Vector2 pixel = project(pinhole, p);
@@ -51,7 +51,7 @@ void add_line(Gaussian& gaussian, SimulatedPair& pair, const NoiseScales& truth,
   }
 }
 
-// A small motion, as between two frames; the first outlier_share of either kind are wrong.
+// A small motion, as between two frames. The first outlier_share of points and of lines are wrong matches.
 SimulatedPair simulate(std::uint64_t seed, int points, int lines, const NoiseScales& truth,
                        double outlier_share = 0) {
   Gaussian gaussian(seed);
@@ -69,19 +69,19 @@ NoiseScales shown_by(const SimulatedPair& pair) {
 }
 
 constexpr int kMany = 4000;
-// Of the median of n squared numbers over its expected value: 1 / (2 f(m) m √n), f the density of χ² with 1,
-// 2 and 4 degrees of freedom at its median m.
+// Relative SD of the median of n squared numbers: 1 / (2 f(m) m √n), where f is the density of χ² with 1, 2
+// and 4 degrees of freedom at its median m.
 double sampling_sd(int dof, double n) { return (dof == 1 ? 2.33 : dof == 2 ? 1.44 : 0.95) / std::sqrt(n); }
 
-// Four SD of the sampling, and a little for the gate, which cuts the tail of noise larger than modelled, and
-// for depth noise that shows across the image.
+// Tolerance: four SDs of the sampling, plus an allowance. The gate cuts the tail of noise that is larger than
+// modelled, and depth noise also appears across the image.
 void expect_about(const NoiseScales& shown, const NoiseScales& truth, double n, double allowance) {
   EXPECT_NEAR(shown.image / truth.image, 1, 4 * sampling_sd(2, n) + allowance);
   EXPECT_NEAR(shown.depth / truth.depth, 1, 4 * sampling_sd(1, n) + allowance);
   EXPECT_NEAR(shown.lines / truth.lines, 1, 4 * sampling_sd(4, n) + allowance);
 }
 
-TEST(ResidualScales, ShowHowManyTimesTheNoiseIsWhatItsModelSays) {
+TEST(ResidualScales, EstimateTheRatioOfNoiseToItsModel) {
   for (const NoiseScales& truth :
        {NoiseScales{1, 1, 1}, NoiseScales{0.25, 0.25, 0.25}, NoiseScales{2, 2, 2}, NoiseScales{1, 0.25, 1},
         NoiseScales{3, 1, 0.5}, NoiseScales{0.5, 2, 3}, NoiseScales{1, 1, 0.1}}) {
@@ -92,7 +92,7 @@ TEST(ResidualScales, ShowHowManyTimesTheNoiseIsWhatItsModelSays) {
   }
 }
 
-TEST(ResidualScales, WrongMatchesDoNotMatter) {
+TEST(ResidualScales, AreRobustToWrongMatches) {
   for (const NoiseScales& truth : {NoiseScales{1, 1, 1}, NoiseScales{1, 0.25, 2}}) {
     const NoiseScales shown = shown_by(simulate(22, kMany, kMany, truth, 0.2));
     std::printf("with outliers: image %.2f: %.3f, depth %.2f: %.3f, lines %.2f: %.3f\n", truth.image,
@@ -101,7 +101,7 @@ TEST(ResidualScales, WrongMatchesDoNotMatter) {
   }
 }
 
-TEST(ResidualScales, TooFewFeaturesShowNothing) {
+TEST(ResidualScales, AreOneForTooFewFeatures) {
   const NoiseScales truth{0.1, 0.1, 0.1};
   const NoiseScales few = shown_by(simulate(23, 11, 11, truth));
   EXPECT_EQ(few.image, 1);
@@ -111,7 +111,7 @@ TEST(ResidualScales, TooFewFeaturesShowNothing) {
   EXPECT_LT(enough.image, 0.5);
   EXPECT_LT(enough.depth, 0.5);
   EXPECT_LT(enough.lines, 0.5);
-  // The kinds are counted apart, and what lies too far out or is not a number is not counted.
+  // The kinds are counted separately. Residuals that are too large or NaN are not counted.
   const NoiseScales points_only = shown_by(simulate(23, 40, 11, truth));
   EXPECT_LT(points_only.image, 0.5);
   EXPECT_EQ(points_only.lines, 1);
@@ -124,7 +124,7 @@ TEST(ResidualScales, TooFewFeaturesShowNothing) {
   EXPECT_EQ(one_less.lines, 1);
 }
 
-TEST(ResidualScales, GiveTheirScratchBackAndReserveEnoughOfIt) {
+TEST(ResidualScales, ReserveEnoughScratchAndReleaseIt) {
   Limits limits;
   limits.keypoints = 300;
   limits.segments = 100;
@@ -159,7 +159,7 @@ TEST(Learning, MovesByItsRate) {
   EXPECT_EQ(scales.lines, before.lines);
 }
 
-TEST(Learning, OneFrameSaysNoMoreThanFourfold) {
+TEST(Learning, OneFrameCountsAtMostFourfold) {
   NoiseConfig config;
   config.learning_rate = 0.2;
   NoiseScales scales;
@@ -181,24 +181,24 @@ TEST(Learning, StaysWithinItsBounds) {
   EXPECT_EQ(scales.image, 25);
   EXPECT_EQ(scales.depth, 0.04);
   EXPECT_EQ(scales.lines, 1);
-  // And comes back from there.
+  // The scales return from their bounds.
   learn(config, {0.5, 2, 1}, scales);
   EXPECT_LT(scales.image, 25);
   EXPECT_GT(scales.depth, 0.04);
 }
 
-// Estimates of the shared errors as a frame makes them: drawn with the true SD, seen with a noise of their
-// own, and shrunk towards the prior as that noise deserves.
+// Estimates of the nuisance parameters as a frame gives them: drawn with the true SD, observed with noise,
+// and shrunk towards the prior accordingly.
 TEST(Learning, SettlesAtTheTrueSizeOfNuisanceParameters) {
   NoiseConfig config;
   CameraModel camera;
   camera.readout_s = 0.03;
   Gaussian gaussian(7);
-  // Far larger and far smaller than where it starts; with little and with much of it seen.
+  // True SDs far smaller and far larger than the initial one, observed with little and with much noise.
   for (const double truth : {0.2, 2.5})
     for (const double seen_with : {0.5, 2.0}) {
       NoiseScales scales;
-      double mean_turning = 0;
+      double mean_angular_rate = 0;
       double mean_depth = 0;
       constexpr int kFrames = 4000;
       for (int frame = 0; frame < kFrames; ++frame) {
@@ -216,15 +216,15 @@ TEST(Learning, SettlesAtTheTrueSizeOfNuisanceParameters) {
         note_nuisance(prior, estimate, shown);
         learn(config, shown, scales);
         if (frame < kFrames / 2) continue;
-        mean_turning += 2 * scales.angular_rate / kFrames;
+        mean_angular_rate += 2 * scales.angular_rate / kFrames;
         mean_depth += 2 * scales.shared_depth / kFrames;
       }
-      EXPECT_NEAR(std::sqrt(mean_turning) / truth, 1, 0.25) << truth << ", " << seen_with;
+      EXPECT_NEAR(std::sqrt(mean_angular_rate) / truth, 1, 0.25) << truth << ", " << seen_with;
       EXPECT_NEAR(std::sqrt(mean_depth) / truth, 1, 0.25) << truth << ", " << seen_with;
     }
 }
 
-TEST(Learning, WhatThereIsNotShowsNothing) {
+TEST(Learning, AbsentNuisanceParametersGiveOne) {
   NoiseScales shown;
   note_nuisance(NuisanceParameters{}, {}, shown);
   EXPECT_EQ(shown.angular_rate, 1);
@@ -232,7 +232,8 @@ TEST(Learning, WhatThereIsNotShowsNothing) {
 }
 
 TEST(Learning, SettlesAtTheTruth) {
-  // Covariances carry the scales learnt so far, as in the odometry: what is shown is what is left to learn.
+  // Covariances include the scales learnt so far, as in the odometry; the residuals show only the remaining
+  // factor.
   const NoiseScales truth{2, 0.25, 3};
   NoiseConfig config;
   NoiseScales scales{1, 1, 1};
@@ -241,7 +242,7 @@ TEST(Learning, SettlesAtTheTruth) {
                            truth.lines / scales.lines};
     learn(config, shown_by(simulate(100 + frame, 200, 60, left)), scales);
   }
-  // The rate averages over about 20 frames.
+  // The learning rate averages over about 20 frames.
   EXPECT_NEAR(scales.image / truth.image, 1, 0.15);
   EXPECT_NEAR(scales.depth / truth.depth, 1, 0.2);
   EXPECT_NEAR(scales.lines / truth.lines, 1, 0.2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public API: what init and track refuse, what happens when there is nothing to see, and that nothing a
-// frame may hold leads to a number that is not one.
+// The public API: what init and track refuse, how they treat frames that show nothing, and that results are
+// finite for any content of a frame.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,8 @@
 namespace plvo {
 namespace {
 
-constexpr Limits kStateLimits{160, 120, 250, 64, 2, 1, 0};  // no keyframe is kept: recovery_test.cpp
+constexpr Limits kStateLimits{160, 120, 250, 64,
+                              2,   1,   0};  // no keyframe is kept: recovery_test.cpp tests that
 static_assert(required_bytes(Limits::vga()) <= 8 * 1024 * 1024);
 
 bool contains(const Status& status, const std::string& text) {
@@ -34,7 +35,7 @@ bool same_pose(const TrackResult& a, const TrackResult& b) {
   return a.T_world_camera.R == b.T_world_camera.R && a.T_world_camera.t == b.T_world_camera.t;
 }
 
-// Frames are rendered once for the whole program; a copy owns its pixels, so that a test may spoil it.
+// Renders each frame once for the whole program. A copy owns its pixels, so a test may change it.
 class Recorded {
  public:
   explicit Recorded(const RgbdFrame& frame)
@@ -90,7 +91,7 @@ struct Instance {
     const TrackResult result = odometry.track(frame);
     EXPECT_TRUE(finite(result));
     EXPECT_EQ(result.stamp_ns, frame.stamp_ns);
-    // A reason exactly when something went wrong.
+    // The status has a message exactly if something went wrong.
     if (result.state == TrackState::kTracking) {
       EXPECT_TRUE(result.status.ok()) << result.status.message();
     }
@@ -111,16 +112,16 @@ double position_error(const TrackResult& result, int i) {
   return (result.T_world_camera.t - truth.t).norm();
 }
 
-TEST(OdometryInit, ATooSmallBlockIsToldTheSizeThatIsNeeded) {
+TEST(OdometryInit, StatesTheRequiredSizeForATooSmallBlock) {
   std::vector<std::byte> memory(required_bytes(kStateLimits) - 1);
   Odometry odometry;
   const Status status = odometry.init(memory, camera(), {}, kStateLimits);
   EXPECT_EQ(status.code(), StatusCode::kOutOfMemory);
   EXPECT_TRUE(contains(status, std::to_string(required_bytes(kStateLimits)))) << status.message();
-  EXPECT_EQ(odometry.track(good(0)).status.code(), StatusCode::kInvalidArgument) << "it stays closed";
+  EXPECT_EQ(odometry.track(good(0)).status.code(), StatusCode::kInvalidArgument) << "it stays uninitialised";
 }
 
-TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
+TEST(OdometryInit, RefusesInvalidArgumentsByName) {
   std::vector<std::byte> memory(required_bytes(kStateLimits));
   Odometry odometry;
   const auto init = [&](const CameraModel& c, const Config& config, const Limits& limits) {
@@ -154,12 +155,12 @@ TEST(OdometryInit, RefusesNonsenseAndNamesIt) {
   EXPECT_TRUE(contains(init(camera(), {}, {160, 120, 0, 64}), "keypoints"));
   EXPECT_TRUE(contains(init(camera(), {}, {160, 120, 250, -1}), "segments"));
   EXPECT_TRUE(contains(init(camera(), {}, {4000, 120, 250, 64}), "width"));
-  // And a good one afterwards is taken.
+  // A valid init succeeds afterwards.
   EXPECT_TRUE(odometry.init(memory, camera(), {}, kStateLimits).ok());
   EXPECT_EQ(odometry.track(good(0)).state, TrackState::kInitialising);
 }
 
-TEST(OdometryTrack, BeforeInitIsRefused) {
+TEST(OdometryTrack, IsRefusedBeforeInit) {
   Odometry odometry;
   const TrackResult result = odometry.track(good(0));
   EXPECT_EQ(result.state, TrackState::kLost);
@@ -169,7 +170,7 @@ TEST(OdometryTrack, BeforeInitIsRefused) {
   EXPECT_TRUE(odometry.features().keypoints.empty());
 }
 
-TEST(OdometryTrack, WhatIsRefusedChangesNothing) {
+TEST(OdometryTrack, ARefusedFrameChangesNothing) {
   Instance disturbed, undisturbed;
   ASSERT_TRUE(disturbed.status.ok()) << disturbed.status.message();
   for (int i = 0; i < 6; ++i) {
@@ -186,8 +187,8 @@ TEST(OdometryTrack, WhatIsRefusedChangesNothing) {
     bad[6].depth.metres_per_unit = 0;
     bad[7].depth.metres_per_unit = std::numeric_limits<double>::quiet_NaN();
     bad[8].depth.metres_per_unit = 1e-300;
-    bad[9].stamp_ns = good(i).stamp_ns;       // twice the same
-    bad[10].stamp_ns = good(i).stamp_ns - 1;  // time running backwards
+    bad[9].stamp_ns = good(i).stamp_ns;       // the same stamp twice
+    bad[10].stamp_ns = good(i).stamp_ns - 1;  // a stamp in the past
     bad[11].stamp_ns = std::numeric_limits<std::int64_t>::min();
     for (std::size_t k = 0; k < bad.size(); ++k) {
       const TrackResult refused = disturbed.track(bad[k]);
@@ -217,7 +218,7 @@ TEST(OdometryTrack, EveryChoiceOfFeaturesTracks) {
       }
     }
     SCOPED_TRACE(testing::Message() << "features " << static_cast<int>(features));
-    // A picture of 160×120 offers few lines.
+    // An image of 160×120 contains few lines.
     EXPECT_GE(tracked, features == Features::kLines ? 5 : 9) << result.status.message();
     if (features != Features::kLines) {
       EXPECT_LT(position_error(result, 9), 0.05);
@@ -225,7 +226,7 @@ TEST(OdometryTrack, EveryChoiceOfFeaturesTracks) {
   }
 }
 
-TEST(OdometryTrack, LostInTheDarkAndFoundAgainAtTheSamePose) {
+TEST(OdometryTrack, RecoversTheSamePoseAfterDarkness) {
   for (bool no_depth : {false, true}) {
     Instance instance;
     TrackResult before;
@@ -246,7 +247,7 @@ TEST(OdometryTrack, LostInTheDarkAndFoundAgainAtTheSamePose) {
   }
 }
 
-TEST(OdometryTrack, NothingToSeeAtTheStartWaits) {
+TEST(OdometryTrack, WaitsForAFirstUsableFrame) {
   Instance instance;
   for (int i = 0; i < 3; ++i) {
     const Recorded frame = dark(i);
@@ -258,8 +259,8 @@ TEST(OdometryTrack, NothingToSeeAtTheStartWaits) {
   EXPECT_EQ(instance.track(good(4)).state, TrackState::kTracking);
 }
 
-TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
-  // The loss counts from the last good frame to the first one after it, not only until the reference is given
+TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
+  // The loss lasts from the last good frame to the first one after it, not only until the reference is given
   // up.
   for (int dark_frames : {4, 12}) {
     Config config;
@@ -292,7 +293,7 @@ TEST(OdometryTrack, ALongLossStartsAnewAtTheLastPoseWithAWiderCovariance) {
   }
 }
 
-TEST(OdometryTrack, GarbageIsNeverMoreThanLost) {
+TEST(OdometryTrack, RandomFramesGiveFiniteResults) {
   Config config;
   config.references.max_lost_frames = 3;
   Instance instance(config);
@@ -309,14 +310,14 @@ TEST(OdometryTrack, GarbageIsNeverMoreThanLost) {
         unit = static_cast<std::uint16_t>(i % 2 == 0 ? random.below(65536) : random.below(3) * 32767);
     RgbdFrame view = frame.frame();
     view.depth.metres_per_unit = i % 5 == 0 ? 0.99 : i % 5 == 1 ? 1e-6 : 0.001;
-    (void)instance.track(view);  // looks whether everything is finite
+    (void)instance.track(view);  // checks that the result is finite
   }
   TrackResult result;
   for (int i = 18; i < kStateFrames; ++i) result = instance.track(good(i));
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
 }
 
-TEST(OdometryTrack, StampsMayLieAnywhere) {
+TEST(OdometryTrack, AcceptsAnyIncreasingStamps) {
   Instance instance;
   const std::int64_t stamps[] = {
       std::numeric_limits<std::int64_t>::min(), -5, 0, 1, std::numeric_limits<std::int64_t>::max() - 1,
@@ -328,7 +329,7 @@ TEST(OdometryTrack, StampsMayLieAnywhere) {
   }
 }
 
-TEST(OdometryTrack, AKeyframeStaysAsLongAsItIsSeen) {
+TEST(OdometryTrack, KeepsAKeyframeWhileItHasEnoughInliers) {
   const auto references = [](ReferencePolicy policy, double ratio) {
     Config config;
     config.references.policy = policy;
@@ -344,10 +345,10 @@ TEST(OdometryTrack, AKeyframeStaysAsLongAsItIsSeen) {
   };
   const std::vector<std::int64_t> previous = references(ReferencePolicy::kPreviousFrame, 0.5);
   for (int i = 1; i < 12; ++i) EXPECT_EQ(previous[static_cast<std::size_t>(i)], good(i - 1).stamp_ns);
-  // With a ratio of 1 no keyframe is ever good enough, with 0 the first one stays.
+  // With a ratio of 1 every keyframe is replaced; with 0 the first one stays.
   EXPECT_EQ(references(ReferencePolicy::kKeyframe, 1), previous);
   for (std::int64_t stamp : references(ReferencePolicy::kKeyframe, 0)) EXPECT_EQ(stamp, good(0).stamp_ns);
-  // In between it changes now and then, and never back.
+  // With a ratio in between the keyframe changes sometimes, and never back.
   const std::vector<std::int64_t> some = references(ReferencePolicy::kKeyframe, 0.4);
   int changes = 0;
   for (std::size_t i = 1; i < some.size(); ++i) {
@@ -357,12 +358,12 @@ TEST(OdometryTrack, AKeyframeStaysAsLongAsItIsSeen) {
   EXPECT_LT(changes, 11);
 }
 
-TEST(OdometryTrack, TwoInstancesAndAnyBlockGiveTheSameBits) {
+TEST(OdometryTrack, GivesTheSameBitsInAnyInstanceAndBlock) {
   Instance one;
   Instance other({}, 13);
   ASSERT_TRUE(other.status.ok()) << other.status.message();
   for (std::byte& byte : other.memory) byte = std::byte{0xcd};
-  // What the block held before init does not matter either.
+  // The previous content of the block does not matter either.
   ASSERT_TRUE(other.odometry.init(std::span(other.memory).subspan(13), camera(), {}, kStateLimits).ok());
   for (int i = 0; i < 8; ++i) {
     const Recorded night = dark(i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits with room for one reference: the same bits in less memory, whatever happens to the frames; and the
-// policies that such Limits have no room for are refused.
+// Limits for one reference: the same bits as with more, in less memory, for any sequence of frames. Policies
+// with more references are refused.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -17,7 +17,7 @@ Limits with_references(Limits limits, int references) {
   return limits;
 }
 
-// A line a frame: its result, its features and the tracks of them, as one sees them from outside.
+// One hash per frame, of its result, its features and their tracks, as the public API shows them.
 std::vector<std::uint64_t> walk(Config config, const Limits& limits) {
   config.references.max_lost_frames = 3;
   ProceduralSequence sequence(limits.width, limits.height);
@@ -28,7 +28,7 @@ std::vector<std::uint64_t> walk(Config config, const Limits& limits) {
   std::vector<std::uint64_t> prints;
   int tracked = 0, lost = 0;
   for (int i = 0; i < 24; ++i) {
-    // Lost and found again; lost for good, and started anew.
+    // A short loss, and then one that is so long that tracking restarts.
     const bool dark = i == 6 || i == 7 || (i >= 12 && i < 16);
     const TrackResult result = odometry.track(dark ? sequence.render_dark(i) : sequence.render(i));
     tracked += result.state == TrackState::kTracking ? 1 : 0;
@@ -56,7 +56,7 @@ Config keyframe_only() {
   return config;
 }
 
-TEST(OneReference, TheSameBitsInLessMemory) {
+TEST(OneReference, GivesTheSameBitsInLessMemory) {
   constexpr Limits kOne = Limits::tiny();
   static_assert(kOne.references == 1);
   const Limits two = with_references(kOne, 2);
@@ -65,13 +65,13 @@ TEST(OneReference, TheSameBitsInLessMemory) {
     EXPECT_EQ(walk(config, kOne), walk(config, two));
 }
 
-TEST(OneReference, AKeyframeThatChangesWithEveryFrame) {
+TEST(OneReference, AllowsAKeyframeThatChangesWithEveryFrame) {
   Config config = keyframe_only();
   config.references.keyframe_inlier_ratio = 1;
   EXPECT_EQ(walk(config, Limits::tiny()), walk(config, with_references(Limits::tiny(), 2)));
 }
 
-TEST(OneReference, APolicyOfTwoIsRefused) {
+TEST(OneReference, RefusesAPolicyOfTwo) {
   constexpr Limits kLimits = Limits::tiny();
   std::vector<std::byte> memory(required_bytes(kLimits));
   Odometry odometry;

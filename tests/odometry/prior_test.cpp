@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// track() with a prior, on frames whose true poses are known: what is refused, that a prior which says
-// nothing changes no bit, a covered lens, and what gravity holds. And reset() and set_pose().
+// track() with a prior, on frames with known true poses: refused priors, an empty prior that changes no bit,
+// a covered lens, and corrections by gravity. Also reset() and set_pose().
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -58,7 +58,7 @@ struct WithPrior {
   Odometry odometry;
 };
 
-TEST(OdometryPrior, OneThatSaysNothingChangesNoBit) {
+TEST(OdometryPrior, AnEmptyPriorChangesNoBit) {
   for (const bool paper : {false, true}) {
     const Config config = paper ? Config::paper() : Config();
     WithPrior without(config), with(config);
@@ -69,7 +69,7 @@ TEST(OdometryPrior, OneThatSaysNothingChangesNoBit) {
   }
 }
 
-TEST(OdometryPrior, ABadOneIsRefusedWithItsFrameAndChangesNothing) {
+TEST(OdometryPrior, AnInvalidPriorIsRefusedWithItsFrameAndChangesNothing) {
   WithPrior without, with;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 6; ++i) {
@@ -88,7 +88,7 @@ TEST(OdometryPrior, ABadOneIsRefusedWithItsFrameAndChangesNothing) {
   }
 }
 
-TEST(OdometryPrior, AGoodOneIsOneMoreMeasurement) {
+TEST(OdometryPrior, AValidPriorIsOneMoreMeasurement) {
   WithPrior without, with;
   double alone = 0, helped = 0;
   for (int i = 0; i < kPriorFrames; ++i) {
@@ -136,19 +136,19 @@ void expect_to_go_on_by_the_prior(const Config& config, double most_left_with_wh
     EXPECT_EQ(again.state, TrackState::kTracking) << again.status.message();
     EXPECT_LT((again.T_world_camera.t - truth(14).t).norm(), 0.02);
     EXPECT_LT(worst(again.pose_covariance, 0), (with_wheels ? most_left_with_wheels : 0.01) * variance_m)
-        << "what was seen before is found again";
+        << "the keyframe is found again";
   }
 }
 
-TEST(OdometryPrior, AFrameThatShowsNothingGoesOnByIt) {
+TEST(OdometryPrior, PredictsAFrameThatShowsNothing) {
   Config config;
-  // What the keyframe errs in every frame stays, however often it is found again.
+  // The common-mode error of the keyframe stays, however many frames are matched with it.
   expect_to_go_on_by_the_prior(config, 0.9);
   config.noise.common_mode_share = 0;
   expect_to_go_on_by_the_prior(config, 0.7);
 }
 
-TEST(OdometryPrior, WithoutOneInBetweenTheChainEnds) {
+TEST(OdometryPrior, AMissingPriorEndsThePrediction) {
   WithPrior instance;
   for (int i = 0; i < 4; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
   MotionPrior prior;
@@ -156,16 +156,17 @@ TEST(OdometryPrior, WithoutOneInBetweenTheChainEnds) {
   EXPECT_EQ(instance.cover(4, prior).state, TrackState::kPredicted);
   EXPECT_EQ(instance.cover(5).state, TrackState::kLost);
   prior.rotation = gyro(5, 6);
-  EXPECT_EQ(instance.cover(6, prior).state, TrackState::kLost) << "of frame 5 nobody knows";
-  EXPECT_EQ(instance.track(7, prior).state, TrackState::kTracking) << "found where it was, as ever";
+  EXPECT_EQ(instance.cover(6, prior).state, TrackState::kLost) << "the motion of frame 5 is unknown";
+  EXPECT_EQ(instance.track(7, prior).state, TrackState::kTracking) << "tracked again from the keyframe";
 }
 
-// With the lens covered for so long that the references are given up, it starts anew where the priors led.
-TEST(OdometryPrior, ALongCoverIsBridged) {
+// The lens is covered until the references are given up. Tracking then restarts at the pose that the priors
+// predict.
+TEST(OdometryPrior, PredictsThroughALongCover) {
   Config config;
   config.references.max_lost_frames = 4;
   Limits limits = kPriorLimits;
-  limits.kept_keyframes = 0;  // the view that was lost is not looked for
+  limits.kept_keyframes = 0;  // no relocalisation at the view from before the loss
   WithPrior instance(config, limits);
   for (int i = 0; i < 6; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);
   for (int i = 6; i < 16; ++i) {
@@ -182,16 +183,16 @@ TEST(OdometryPrior, ALongCoverIsBridged) {
   EXPECT_TRUE(anew.status.ok()) << anew.status.message();
   EXPECT_LT((anew.T_world_camera.t - truth(16).t).norm(), 0.02);
   EXPECT_LT(angle_between(anew.T_world_camera.R, truth(16).R), 5e-3);
-  EXPECT_GT(worst(anew.pose_covariance, 0), 9e-6) << "ten unseen millimetres, each of its own";
+  EXPECT_GT(worst(anew.pose_covariance, 0), 9e-6) << "ten unobserved steps of a millimetre, independent";
   EXPECT_EQ(instance.track(17).state, TrackState::kTracking);
 }
 
-TEST(OdometryPrior, GravityUprightsATiltedPose) {
+TEST(OdometryPrior, GravityLevelsATiltedPose) {
   WithPrior instance;
   MotionPrior prior;
   prior.gravity = level(0);
   ASSERT_EQ(instance.track(0, prior).state, TrackState::kInitialising);
-  // Where down is, is known from here on; the pose is then tilted by hand, as drift would.
+  // From here on, the direction of gravity is known. The test then tilts the pose, as drift would.
   TrackResult result;
   for (int i = 1; i < kPriorFrames; ++i) {
     prior.gravity = level(i);
@@ -202,7 +203,7 @@ TEST(OdometryPrior, GravityUprightsATiltedPose) {
   EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
 }
 
-// A frame without light tells nothing of gravity's direction in the world but its own.
+// In a dark frame, gravity corrects only the pose of that frame; the filter's estimate stays.
 TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
   WithPrior instance;
   MotionPrior prior;
@@ -230,8 +231,8 @@ TEST(OdometryPrior, GravityCorrectsAPredictedFrameToo) {
   EXPECT_LT(angle_between(upright.T_world_camera.R, truth(6).R), 0.02);
 }
 
-// What the sequence calls its world hangs askew in the level one.
-TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
+// The world of the sequence is tilted with respect to the level world.
+TEST(OdometryLevel, TheFirstGravityDefinesTheWorld) {
   const Matrix3 R_level_truth = rotation_exp({0.3, 0, -0.2});
   const auto down = [&](int i, const Vector3& error, double sigma) {
     MotionPrior prior;
@@ -256,9 +257,9 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
   const auto tilt = [&](int i, const TrackResult& result) {
     return (result.T_world_camera.R * truth(i).R.transpose() * R_level_truth.transpose() * y - y).norm();
   };
-  EXPECT_NEAR(tilt(3, first), 0.06, 0.01) << "as wrong as the reading";
+  EXPECT_NEAR(tilt(3, first), 0.06, 0.01) << "the error of the reading";
   EXPECT_GT(worst(first.pose_covariance, 3), 0.003);
-  // The motion is what it is without; the tilt is put right by better readings.
+  // The motion is the same as without gravity; better readings correct the tilt.
   (void)plain.track(3);
   for (int i = 4; i < kPriorFrames; ++i) {
     const TrackResult result = instance.track(i, down(i, Vector3::Zero(), 0.01));
@@ -270,7 +271,7 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
       EXPECT_LT(worst(result.pose_covariance, 3), 1e-4);
     }
   }
-  // A pose that was set comes before it, and reset() begins anew.
+  // A pose from set_pose() takes precedence over gravity; reset() starts again.
   instance.odometry.reset();
   EXPECT_EQ(instance.track(0).status.code(), StatusCode::kNotFound);
   const Se3 mine{rotation_exp({0.1, 0.2, 0.3}), {1, 2, 3}};
@@ -280,14 +281,14 @@ TEST(OdometryLevel, TheWorldIsMadeByTheFirstGravity) {
   EXPECT_LT(boxminus(set.T_world_camera, mine).norm(), 1e-12);
 }
 
-TEST(OdometryReset, IsAsAfterInit) {
+TEST(OdometryReset, RestoresTheStateAfterInit) {
   WithPrior fresh, used;
   for (int i = 0; i < 8; ++i) (void)used.track(i);
   used.odometry.reset();
   for (int i = 0; i < 8; ++i) EXPECT_EQ(fingerprint(used.track(i)), fingerprint(fresh.track(i))) << i;
 }
 
-TEST(OdometrySetPose, MovesTheWorldUnderneath) {
+TEST(OdometrySetPose, MovesTheWorld) {
   WithPrior plain, moved;
   const Se3 T_new{rotation_exp({0.3, -0.4, 0.5}), {10, -20, 30}};
   Matrix6 C = Matrix6::Identity() * 1e-4;
@@ -306,7 +307,7 @@ TEST(OdometrySetPose, MovesTheWorldUnderneath) {
     EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6) << i;
     EXPECT_GT(worst(b.pose_covariance, 3), 0.9e-4);
   }
-  // Before the first frame.
+  // set_pose() before the first frame.
   WithPrior early;
   ASSERT_TRUE(early.odometry.set_pose(T_new, C).ok());
   const TrackResult first = early.track(0);

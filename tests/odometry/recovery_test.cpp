@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Back at a view from before a loss, the pose is known again: at once where the lens is uncovered at the same
-// view, later where tracking had started anew elsewhere. And a place that only looks alike is not taken for
-// it.
+// Relocalisation at a view from before a loss: at once if the lens is uncovered at the same view, later if
+// tracking has restarted elsewhere. A different place that looks alike is rejected.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +28,7 @@ class Walk {
     config.references.max_lost_frames = 3;
     return config;
   }
-  // Frame `view` of the sequence (kDark: nothing to see), taken now.
+  // Takes frame `view` of the sequence now (kDark: a frame that shows nothing).
   TrackResult see(int view) {
     RgbdFrame frame = view == kDark ? sequence_.render_dark(0) : sequence_.render(view);
     frame.stamp_ns = frame.depth_stamp_ns = ProceduralSequence::stamp_ns(taken_++);
@@ -54,15 +53,15 @@ double distance_to_truth(const TrackResult& result, int view) {
 }
 
 constexpr int kOut = 6;    // the last view before the loss
-constexpr int kAway = 50;  // where the camera has gone meanwhile
+constexpr int kAway = 50;  // the camera's position after the loss
 
-TEST(Recovery, ALensThatWasCoveredGoesOnWhereItWas) {
+TEST(Recovery, ResumesAtTheKeyframeAfterACoveredLens) {
   for (const int kept : {0, 1}) {
     Walk walk(kept);
     TrackResult before;
     for (int view = 0; view <= kOut; ++view) before = walk.see(view);
     for (int i = 0; i < 10; ++i) EXPECT_EQ(walk.see(kDark).state, TrackState::kLost);
-    // Uncovered, five views on.
+    // Uncovered, five views later.
     const TrackResult after = walk.see(kOut + 5);
     EXPECT_EQ(after.returned, kept > 0);
     EXPECT_EQ(after.state, kept > 0 ? TrackState::kTracking : TrackState::kInitialising);
@@ -70,9 +69,9 @@ TEST(Recovery, ALensThatWasCoveredGoesOnWhereItWas) {
     std::printf("%d kept: %.1f mm beside the truth\n", kept, 1e3 * error);
     if (kept > 0) {
       EXPECT_LT(error, 0.015);
-      EXPECT_LT(after.pose_covariance(0, 0), 1e-4) << "not that of a motion nobody saw";
+      EXPECT_LT(after.pose_covariance(0, 0), 1e-4) << "without process noise";
     } else {
-      EXPECT_GT(error, 0.03) << "the test would not tell";
+      EXPECT_GT(error, 0.03) << "without relocalisation the error is large";
     }
     const TrackResult next = walk.see(kOut + 6);
     EXPECT_EQ(next.state, TrackState::kTracking) << next.status.message();
@@ -80,12 +79,12 @@ TEST(Recovery, ALensThatWasCoveredGoesOnWhereItWas) {
   }
 }
 
-TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
+TEST(Recovery, RestoresTheOldPoseAtAKeptKeyframe) {
   for (const int kept : {0, 1, 2}) {
     Walk walk(kept);
     for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
     for (int i = 0; i < 12; ++i) (void)walk.see(kDark);
-    // Elsewhere: a new start, at a pose that is wrong by the unseen way.
+    // Elsewhere: a restart at a pose whose error is the unobserved motion.
     TrackResult result = walk.see(kAway);
     EXPECT_EQ(result.state, TrackState::kInitialising);
     EXPECT_FALSE(result.returned);
@@ -105,7 +104,7 @@ TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
         EXPECT_GT(sigma, 0.1);
       }
     }
-    EXPECT_EQ(returns, kept > 0 ? 1 : 0) << "once known again, there is nothing to return to";
+    EXPECT_EQ(returns, kept > 0 ? 1 : 0) << "a keyframe is relocalised only once";
     std::printf("%d kept: %.1f mm beside the truth at the end\n", kept, 1e3 * distance_to_truth(result, 0));
     if (kept > 0)
       EXPECT_LT(distance_to_truth(result, 0), 0.05);
@@ -114,9 +113,9 @@ TEST(Recovery, WhoComesBackHasTheOldPoseAgain) {
   }
 }
 
-TEST(Recovery, AViewThatCannotBeTheOldOneIsNotTakenForIt) {
-  // The camera is said to move by at most a millimetre a second while nobody sees: what looks like the old
-  // view from a hand's breadth beside must be another place.
+TEST(Recovery, RejectsASimilarViewBeyondTheUncertainty) {
+  // The process noise allows at most a millimetre per second of unobserved motion. So a similar view from a
+  // few centimetres away must be another place.
   Config config = Walk::quick_to_give_up();
   config.references.process_noise_m_per_s = config.references.process_noise_rad_per_s = 1e-3;
   Walk walk(1, config);
@@ -129,7 +128,7 @@ TEST(Recovery, AViewThatCannotBeTheOldOneIsNotTakenForIt) {
   EXPECT_EQ(after.T_world_camera.t, before.T_world_camera.t);
 }
 
-TEST(Recovery, APoseThatTheCallerSetsForgetsWhatWasKept) {
+TEST(Recovery, SetPoseDropsTheKeptKeyframes) {
   Walk walk(1);
   for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
   for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
@@ -137,7 +136,7 @@ TEST(Recovery, APoseThatTheCallerSetsForgetsWhatWasKept) {
   EXPECT_FALSE(walk.see(kOut).returned);
 }
 
-TEST(KeptKeyframes, TheOldestMakesWay) {
+TEST(KeptKeyframes, ReplacesTheOldest) {
   KeptKeyframes kept;
   kept.init(2);
   kept.keep(4);
@@ -157,7 +156,7 @@ TEST(KeptKeyframes, TheOldestMakesWay) {
   EXPECT_TRUE(kept.empty());
   kept.init(0);
   kept.keep(7);
-  EXPECT_TRUE(kept.empty()) << "no room was asked for";
+  EXPECT_TRUE(kept.empty()) << "the capacity is zero";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames a frame is matched with, and how its points are found there: by default the keyframe and the
-// last frame at once, registered; with the paper's settings the last frame alone, by descriptors.
+// The references of a frame, and how its points are found there. By default these are the keyframe and a
+// recent frame together, with registration; with the paper's settings the last frame alone, by descriptors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr int kShownFrames = 10;
 
 using Pixels = std::set<std::pair<float, float>>;
 
-// What one frame showed.
+// The features and tracks of one frame.
 struct Shown {
   TrackResult result;
   Pixels keypoints;
@@ -29,7 +29,7 @@ struct Shown {
   std::size_t line_tracks = 0;
 };
 
-// step: of the frames of the sequence, so many at a time.
+// Runs the odometry over every step-th frame of the sequence.
 std::vector<Shown> run(const Config& config, int step = 1) {
   ProceduralSequence sequence(kThreeReferences.width, kThreeReferences.height);
   std::vector<std::byte> memory(required_bytes(kThreeReferences));
@@ -65,14 +65,14 @@ bool same_places(const std::vector<SegmentView>& a, const std::vector<SegmentVie
   });
 }
 
-// The last frame before frame i that points were looked for in.
+// The last frame before frame i in which points were detected.
 std::size_t recent_to(const std::vector<Shown>& all, std::size_t i) {
   while (i-- > 0)
     if (!all[i].keypoints.empty()) break;
   return i;
 }
 
-// The tracks and the segments of the reference in frame i are those of that frame.
+// Expects that the tracks and reference segments of frame i belong to the recent frame.
 void expect_shows_the_recent_frame(const std::vector<Shown>& all, std::size_t i) {
   const Shown& now = all[i];
   const Shown& recent = all[recent_to(all, i)];
@@ -83,7 +83,7 @@ void expect_shows_the_recent_frame(const std::vector<Shown>& all, std::size_t i)
   EXPECT_EQ(now.result.points.with_depth, static_cast<int>(all[recent_to(all, i + 1)].keypoints.size())) << i;
 }
 
-TEST(References, PointsAreLookedForInFramesThatAreMatchedLater) {
+TEST(References, DetectsPointsOnlyInFramesThatAreMatchedLater) {
   Config config;
   const std::vector<Shown> some = run(config);
   config.references.recent_frames = 1;
@@ -101,18 +101,18 @@ TEST(References, PointsAreLookedForInFramesThatAreMatchedLater) {
   EXPECT_GE(searched, kShownFrames / 3);
 }
 
-TEST(References, BothTheKeyframeAndARecentFrameServeByDefault) {
+TEST(References, UsesTheKeyframeAndARecentFrameByDefault) {
   const std::vector<Shown> all = run(Config{});
   std::size_t keyframe = 0;
   int with_both = 0;
   for (std::size_t i = 1; i < all.size(); ++i) {
     const TrackResult& result = all[i].result;
     ASSERT_EQ(result.state, TrackState::kTracking);
-    // The keyframe stays or becomes the frame before.
+    // The keyframe stays, or the previous frame becomes the keyframe.
     if (result.reference_stamp_ns != all[keyframe].result.stamp_ns) keyframe = i - 1;
     EXPECT_EQ(result.reference_stamp_ns, all[keyframe].result.stamp_ns) << i;
     expect_shows_the_recent_frame(all, i);
-    // What is counted is of all references, what is shown of the last one.
+    // Counts include all references; the view shows only the last one.
     const int shown = static_cast<int>(all[i].point_tracks.size());
     if (keyframe == i - 1) {
       EXPECT_EQ(result.points.matched, shown) << i;
@@ -122,17 +122,17 @@ TEST(References, BothTheKeyframeAndARecentFrameServeByDefault) {
     ++with_both;
     EXPECT_GT(result.points.matched, shown + 10) << i;
     EXPECT_LT(count(all[i].point_tracks, all[keyframe].keypoints, true), shown) << i;
-    // The motion is that from the keyframe.
+    // The motion is relative to the keyframe.
     const Se3 expected = result.T_world_camera.inverse() * all[keyframe].result.T_world_camera;
     EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
   }
   EXPECT_GE(with_both, 3) << "a keyframe must be kept for some frames";
 }
 
-// Three references have more matches together than so many times those of the last frame, two have not.
+// Three references have more than this many times the matches of the last frame; two have fewer.
 constexpr double kOfThree = 2.4;
 
-// With a keyframe every few frames.
+// A configuration that changes the keyframe every few frames.
 Config window_config(double older_inlier_ratio) {
   Config config;
   config.references.policy = ReferencePolicy::kWindow;
@@ -142,7 +142,7 @@ Config window_config(double older_inlier_ratio) {
 }
 std::vector<Shown> run_window(double older_inlier_ratio) { return run(window_config(older_inlier_ratio), 4); }
 
-TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
+TEST(References, AWindowStillMatchesThePreviousKeyframe) {
   const std::vector<Shown> window = run_window(0.1);
   int after_a_change = 0, with_three = 0;
   for (std::size_t i = 2; i < window.size(); ++i) {
@@ -157,7 +157,7 @@ TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
     EXPECT_LT(boxminus(result.T_camera_reference, expected).cwiseAbs().maxCoeff(), 1e-9) << i;
     const int shown = static_cast<int>(window[i].point_tracks.size());
     if (result.reference_stamp_ns == window[i - 1].result.stamp_ns) {
-      // The keyframe is the last frame: what is matched besides is the keyframe before.
+      // The keyframe is the last frame, so the other matches are with the previous keyframe.
       ++after_a_change;
       EXPECT_GT(result.points.matched, shown + 10) << i;
     } else if (result.reference_stamp_ns != window[0].result.stamp_ns) {
@@ -168,7 +168,7 @@ TEST(References, AWindowGoesOnMatchingTheKeyframeBefore) {
   EXPECT_GE(with_three, 1);
 }
 
-TEST(References, AnOlderKeyframeIsLeftWhenLittleOfItIsFound) {
+TEST(References, DropsAnOlderKeyframeWithFewInliers) {
   const std::vector<Shown> window = run_window(1);
   int longer = 0;
   for (std::size_t i = 2; i < window.size(); ++i) {
@@ -176,12 +176,12 @@ TEST(References, AnOlderKeyframeIsLeftWhenLittleOfItIsFound) {
     if (window[i].result.reference_stamp_ns != window[i - 1].result.stamp_ns)
       longer += window[i].result.points.matched > kOfThree * shown ? 1 : 0;
   }
-  EXPECT_EQ(longer, 0) << "never all of it is found, so it serves for one frame";
+  EXPECT_EQ(longer, 0) << "not all of its features are inliers, so it is used for one frame";
 }
 
-// The frames of a window stand to each other as they did, wherever the caller puts the last of them: right
-// after a change of keyframes (frame 4), and when all three are apart (frame 6).
-TEST(References, AWindowMovesAsOne) {
+// set_pose() keeps the relative poses of the frames in a window: directly after a change of keyframes (frame
+// 4), and when all three frames differ (frame 6).
+TEST(References, SetPoseKeepsTheRelativePosesOfAWindow) {
   for (const int moved : {4, 6}) {
     ProceduralSequence sequence(kThreeReferences.width, kThreeReferences.height);
     std::vector<std::byte> memory(required_bytes(kThreeReferences)),
@@ -206,7 +206,7 @@ TEST(References, AWindowMovesAsOne) {
   }
 }
 
-TEST(References, APolicyNeedsLimitsForAllThatItNames) {
+TEST(References, RefusesAPolicyWithMoreReferencesThanLimits) {
   Limits limits = kThreeReferences;
   limits.references = 2;
   Config config;
@@ -218,7 +218,7 @@ TEST(References, APolicyNeedsLimitsForAllThatItNames) {
   EXPECT_STREQ(status.message(), "config: references.policy needs Limits::references = 3");
 }
 
-TEST(References, AKeyframeAloneIsWhatIsShown) {
+TEST(References, ShowsTheTracksOfASingleKeyframe) {
   Config config;
   config.references.policy = ReferencePolicy::kKeyframe;
   config.references.keyframe_inlier_ratio = 0;
@@ -239,10 +239,10 @@ TEST(References, ThePaperUsesTheLastFrameAndNoRegistration) {
     expect_shows_the_recent_frame(all, i);
     const int shown = static_cast<int>(all[i].point_tracks.size());
     EXPECT_EQ(all[i].result.points.matched, shown) << i;
-    // Without registration a point is where the detector put it.
+    // Without registration, a point is where the detector put it.
     EXPECT_EQ(count(all[i].point_tracks, all[i].keypoints, false), shown) << i;
   }
-  // With it hardly any is, so this can be told.
+  // With registration hardly any point is, so the test can distinguish the two.
   const std::vector<Shown> registered = run(Config{});
   for (std::size_t i = 1; i < registered.size(); ++i)
     EXPECT_LT(count(registered[i].point_tracks, registered[i].keypoints, false),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that turns ever faster looks at points through a rolling shutter. What each row saw is computed
-// from the motion itself; the features at mid-exposure must then agree with one motion between the two
-// frames.
+// A camera with increasing angular velocity observes points through a rolling shutter. The exact motion gives
+// what each row shows. The features at mid-exposure must then agree with one motion between the two frames.
 #include "plvo/odometry/tracking/row_time_compensation.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ constexpr double kFrame_s = 1.0 / 30;
 constexpr double kReadout_s = 0.0261;
 constexpr int kPoints = 200;
 
-// T_camera(t)_world: angular velocity and speed change at a constant rate.
+// T_camera(t)_world; angular velocity and speed change at a constant rate.
 struct Motion {
   Vector3 omega, omega_rate, v;
   Se3 at(double t) const { return {rotation_exp(t * omega + 0.5 * t * t * omega_rate), t * v}; }
@@ -37,7 +36,7 @@ struct Frame {
   }
 };
 
-// What the frame taken at time t sees of the world's points: each at its own row's moment.
+// Observes the world's points in the frame at time t, each at the exposure time of its row.
 void see(const CameraModel& camera, const Motion& motion, double t, const std::vector<Vector3>& world,
          FrameFeatures& features) {
   features.points.keypoints.clear();
@@ -76,7 +75,7 @@ class RowTimeCompensationOfAPair : public testing::Test {
     return prior;
   }
 
-  // RMS distance (m) of the current points from where the motion puts the reference's.
+  // RMS distance (m) of the current points from the moved points of the reference.
   double disagreement(const Motion& motion, const PairPrior& prior, const CameraModel& camera) {
     see(camera_, motion, 0, world_, reference_.features);
     see(camera_, motion, kFrame_s, world_, current_.features);
@@ -98,7 +97,7 @@ class RowTimeCompensationOfAPair : public testing::Test {
   Frame reference_, current_;
 };
 
-TEST_F(RowTimeCompensationOfAPair, ASteadyTurnIsTakenOutWhole) {
+TEST_F(RowTimeCompensationOfAPair, RemovesAConstantRotationCompletely) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   const double raw = disagreement(steady, prior(steady), CameraModel{});
   const double corrected = disagreement(steady, prior(steady), camera_);
@@ -106,7 +105,7 @@ TEST_F(RowTimeCompensationOfAPair, ASteadyTurnIsTakenOutWhole) {
   EXPECT_LT(corrected, 0.1 * raw);
 }
 
-TEST_F(RowTimeCompensationOfAPair, OfAChangeOfSpeedThreeQuartersAre) {
+TEST_F(RowTimeCompensationOfAPair, RemovesThreeQuartersOfAnAcceleration) {
   const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
   const double raw = disagreement(faster, prior(faster), CameraModel{});
   const double corrected = disagreement(faster, prior(faster), camera_);
@@ -114,7 +113,7 @@ TEST_F(RowTimeCompensationOfAPair, OfAChangeOfSpeedThreeQuartersAre) {
   EXPECT_LT(corrected, 0.35 * raw);
 }
 
-TEST_F(RowTimeCompensationOfAPair, TheFirstPairOfAllKnowsOneVelocityOnly) {
+TEST_F(RowTimeCompensationOfAPair, UsesOneVelocityForTheFirstPair) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior first = prior(steady);
   first.reference_velocity_known = first.last_velocity_known = false;
@@ -122,7 +121,7 @@ TEST_F(RowTimeCompensationOfAPair, TheFirstPairOfAllKnowsOneVelocityOnly) {
 }
 
 TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
-  // The last good frame stood half-way; since then the turn has become faster.
+  // The last good frame lies half-way; since then the angular velocity has increased.
   const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
   PairPrior keyframe = prior(faster);
   keyframe.reference_is_last = false;
@@ -134,7 +133,7 @@ TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
   EXPECT_LT(disagreement(faster, keyframe, camera_), 0.35 * disagreement(faster, keyframe, CameraModel{}));
 }
 
-TEST_F(RowTimeCompensationOfAPair, AfterALongGapNobodyGuesses) {
+TEST_F(RowTimeCompensationOfAPair, AssumesNoVelocityAfterALongGap) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior late = prior(steady);
   late.seconds_since_last = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results are numbers and covariances, whatever the stamps say: after a gap of years, in the world that
-// starts then, and over a long sequence of all that may happen to an odometry.
+// Results are finite and covariances are valid for any stamps: after a gap of years, in the new world that
+// starts then, and over a long sequence of random events.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t kSoundSecond_ns = 1'000'000'000;
 constexpr std::int64_t kSoundFrame_ns = kSoundSecond_ns / 30;
 constexpr int kGivenUpAfter = 2;  // lost frames
-constexpr int kNothing = -1;      // of views: one in which there is nothing to see
+constexpr int kNothing = -1;      // a view that shows nothing
 
 class SmallCamera {
  public:
@@ -31,7 +31,7 @@ class SmallCamera {
     const Status status = odometry.init(memory_, sequence_.camera(), config, limits);
     EXPECT_TRUE(status.ok()) << status.message();
   }
-  // A view of the sequence, so long after the one before.
+  // Tracks a view of the sequence, after_ns after the previous one.
   TrackResult see(int view, std::int64_t after_ns = kSoundFrame_ns, const MotionPrior& prior = {}) {
     RgbdFrame frame = view == kNothing ? sequence_.render_dark(0) : sequence_.render(view);
     stamp_ns_ += after_ns;
@@ -51,7 +51,7 @@ class SmallCamera {
   std::int64_t stamp_ns_ = 0;
 };
 
-// A gyro's and an accelerometer's, of a camera that was at `before` and is at `view`.
+// Prior of a gyro and an accelerometer, for a camera that moved from `before` to `view`.
 MotionPrior surely(int before, int view) {
   MotionPrior prior;
   const Matrix3 R_now = ProceduralSequence::T_world_camera(view).R.transpose();
@@ -61,7 +61,7 @@ MotionPrior surely(int before, int view) {
   return prior;
 }
 
-// Four good frames, and four in which there is nothing to see.
+// Four good frames, and four that show nothing.
 void lose(SmallCamera& camera) {
   for (int i = 0; i < 4; ++i) (void)camera.see(i, kSoundFrame_ns, surely(i > 0 ? i - 1 : 0, i));
   for (int i = 0; i < 4; ++i) (void)camera.see(kNothing, kSoundFrame_ns, surely(3, 3));
@@ -72,7 +72,7 @@ MotionPrior gravity_alone(int view) {
   return prior;
 }
 
-TEST(SoundResults, AGapOfYearsAfterALoss) {
+TEST(SoundResults, SurviveAGapOfYearsAfterALoss) {
   for (const std::int64_t gap_s :
        {10'000'000LL, 100'000'000LL, 300'000'000LL, 1'800'000'000LL, 4'000'000'000LL})
     for (const int view : {4, 25, 60}) {
@@ -84,8 +84,8 @@ TEST(SoundResults, AGapOfYearsAfterALoss) {
     }
 }
 
-// Half a metre a second: that is a kilometre after 2000 s.
-TEST(SoundResults, APositionThatMayBeAnywhereStartsANewWorld) {
+// Half a metre per second is a kilometre after 2000 s.
+TEST(SoundResults, AnUnboundedPositionStartsANewWorld) {
   for (const bool with_gravity : {false, true})
     for (const bool far : {false, true}) {
       SmallCamera camera;
@@ -104,7 +104,7 @@ TEST(SoundResults, APositionThatMayBeAnywhereStartsANewWorld) {
       } else {
         EXPECT_LT((start.T_world_camera.t - before.T_world_camera.t).norm(), 1e-3) << "the last good pose";
         EXPECT_GT(start.pose_covariance(0, 0), 0.8 * kMostPositionVariance);
-        // Gravity holds roll and pitch, whatever nobody saw of the turn.
+        // Gravity bounds roll and pitch, in spite of the unobserved rotation.
         EXPECT_EQ(start.pose_covariance.diagonal().tail<3>().minCoeff() < 0.1, with_gravity);
       }
       const TrackResult next = camera.see(61);
@@ -116,7 +116,7 @@ TEST(SoundResults, APositionThatMayBeAnywhereStartsANewWorld) {
     }
 }
 
-TEST(SoundResults, ANewWorldThatShallBeLevelWaitsForGravity) {
+TEST(SoundResults, ANewLevelWorldWaitsForGravity) {
   Config config;
   config.level_world = true;
   SmallCamera camera(config);
@@ -132,7 +132,7 @@ TEST(SoundResults, ANewWorldThatShallBeLevelWaitsForGravity) {
   EXPECT_LT((start.T_world_camera.R * gravity.gravity->down - Vector3(0, 1, 0)).norm(), 1e-9);
 }
 
-TEST(SoundResults, WhatLeavesIsLookedAt) {
+TEST(SoundResults, AreCheckedBeforeTheyAreReturned) {
   TrackResult result;
   EXPECT_TRUE(make_sound(result));
   result.pose_covariance = Matrix6::Identity() * 1e9;
@@ -153,7 +153,7 @@ TEST(SoundResults, WhatLeavesIsLookedAt) {
   EXPECT_TRUE(refused([&](TrackResult& bad) { bad.mean_brightness = nan; }));
 }
 
-TEST(SoundResults, ASetPoseIsBoundedToo) {
+TEST(SoundResults, SetPoseBoundsTheCovariance) {
   SmallCamera camera;
   (void)camera.see(0);
   EXPECT_TRUE(
@@ -163,13 +163,13 @@ TEST(SoundResults, ASetPoseIsBoundedToo) {
             StatusCode::kInvalidArgument);
 }
 
-// What may happen, drawn at random: views that go on or jump, darkness, stamps from a nanosecond to years
-// apart, priors of every kind and precision, poses that are set, new starts.
-TEST(SoundResults, OverALongSequenceOfAllThatMayHappen) {
+// Random events: views that continue or jump, darkness, stamps from a nanosecond to years apart, priors of
+// every kind and precision, set_pose(), and reset().
+TEST(SoundResults, SurviveALongSequenceOfRandomEvents) {
   Limits limits = SmallCamera::kSmallest;
   limits.references = 3;
   limits.kept_keyframes = 2;
-  int worlds = 0;  // that start after another one
+  int worlds = 0;  // number of worlds that follow another one
   for (int run = 0; run < 4; ++run) {
     Config config;
     config.references.policy = static_cast<ReferencePolicy>(run);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From two depth images to constraints: a corridor and a room, ray-cast with a Kinect's noise, seen before
-// and after a known motion. And the odometry with surfaces: the same bits again, memory only where asked for.
+// Constraints from two depth images: a corridor and a room, ray-cast with a Kinect's noise, before and after
+// a known motion. Also the odometry with surfaces: the same bits again, and memory only if Limits ask for it.
 #include "plvo/odometry/tracking/surface_tracking.hpp"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ struct Pair {
 
 Se3 walk() { return {rotation_exp({0.01, -0.03, 0.02}), {0.02, -0.01, -0.06}}; }
 
-TEST(SurfaceTracking, FindsTheSurfacesWhereTheTrueMotionPutsThem) {
+TEST(SurfaceTracking, FindsTheSurfacesAtTheTrueMotion) {
   Pair pair(closed(corridor()), walk(), 1);
   ASSERT_GT(pair.features.samples.size(), 60U);
   EXPECT_GT(pair.storage.size(), 0.7 * static_cast<double>(pair.features.samples.size()));
@@ -94,12 +94,12 @@ TEST(SurfaceTracking, FindsTheSurfacesWhereTheTrueMotionPutsThem) {
   double sum = 0;
   for (std::size_t i = 0; i < set.size(); ++i) sum += set.mahalanobis_squared(i, pair.truth, 1e9);
   const double mean = sum / static_cast<double>(set.size());
-  // The variance is that of one reading, in both frames; a plane through 49 of them errs by a 49th, which the
-  // odometry learns. Three standard deviations of the mean of so many squares.
+  // The modelled variance is that of one reading, in both frames. A plane through 49 readings has a 49th of
+  // it, which the odometry learns. Tolerance: three standard deviations of the mean of the squares.
   EXPECT_NEAR(49 * mean, 1, 3 * std::sqrt(2.0 / static_cast<double>(set.size())));
 }
 
-TEST(SurfaceTracking, ARoomFixesTheMotionACorridorLeavesItsAxisOpen) {
+TEST(SurfaceTracking, ARoomFixesTheMotionButACorridorLeavesItsAxisOpen) {
   double along_room = 0, along = 0, across = 0;
   constexpr int kPairs = 6;
   for (std::uint64_t seed = 1; seed <= kPairs; ++seed) {
@@ -110,17 +110,17 @@ TEST(SurfaceTracking, ARoomFixesTheMotionACorridorLeavesItsAxisOpen) {
     along += axis.dot(open * axis) / kPairs;
     across += walk().R.col(0).dot(open * walk().R.col(0)) / kPairs;
   }
-  // 1/1e3 is 30 mm: less than that is not claimed of the corridor's axis.
+  // 1/1e3 corresponds to 30 mm: the information along the corridor's axis must not claim more.
   EXPECT_LT(std::abs(along), 1e3);
   EXPECT_GT(across, 100 * std::abs(along));
   EXPECT_GT(along_room, 20 * std::abs(along));
 }
 
-TEST(SurfaceTracking, AnotherSurfaceIsNoMatch) {
+TEST(SurfaceTracking, RejectsAnotherSurface) {
   Gaussian gaussian(3);
   const Se3 none;
   Pair pair(closed(corridor()), none, 3);
-  // The end of the room has come half a metre nearer: none of its samples may be found again.
+  // The end of the corridor moves half a metre closer; none of its samples may find a match.
   std::vector<Plane> nearer = corridor();
   nearer.push_back({{0, 0, 1}, 3.0});
   std::vector<SurfaceMatch> storage(200);
@@ -157,7 +157,7 @@ Walked walk_with(int surfaces, bool used = true) {
   return walked;
 }
 
-TEST(SurfacesInTheOdometry, TakePartWhereLimitsHaveRoomForThem) {
+TEST(SurfacesInTheOdometry, AreUsedIfLimitsAllowThem) {
   const Walked with = walk_with(200);
   const Walked again = walk_with(200);
   const Walked without = walk_with(0);
@@ -174,11 +174,11 @@ TEST(SurfacesInTheOdometry, TakePartWhereLimitsHaveRoomForThem) {
   EXPECT_LT(with.results.back().motion_covariance.trace(), without.results.back().motion_covariance.trace());
 }
 
-TEST(SurfacesInTheOdometry, LimitsSayWhatTheyTake) {
+TEST(SurfacesInTheOdometry, TakeMemoryAsLimitsState) {
   Limits limits = Limits::vga();
   EXPECT_TRUE(limits.validate().ok());
   const std::size_t with = required_bytes(limits);
-  limits.surfaces = 0;  // as in the limits of less memory
+  limits.surfaces = 0;  // as in the smaller Limits
   EXPECT_EQ(limits.surfaces, Limits::qvga().surfaces);
   EXPECT_EQ(limits.surfaces, Limits::tiny().surfaces);
   EXPECT_TRUE(limits.validate().ok());

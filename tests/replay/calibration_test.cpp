@@ -89,8 +89,8 @@ TEST(Calibration, ByteOrderMarks) {
                    "UTF-16"));
 }
 
-// What nobody said is assumed aloud, with what to do about it.
-TEST(Calibration, TellsWhatItAssumes) {
+// Each assumed value is reported, with a remedy.
+TEST(Calibration, ReportsItsAssumptions) {
   Calibration c;
   ASSERT_TRUE(read_text("525 526 319.5 239.5\n", c).ok());
   const std::vector<std::string> assumed = c.assumptions();
@@ -106,7 +106,7 @@ TEST(Calibration, TellsWhatItAssumes) {
   }
 }
 
-TEST(Calibration, WhatIsWrittenIsReadToTheLastBit) {
+TEST(Calibration, RoundTripsToTheLastBit) {
   Calibration written;
   written.camera.pinhole = {517.3064081, 1 / 3.0 + 500, 318.6, 255.1};
   written.camera.distortion = {0.1 + 0.2, -1e-17, 1e-300, 2.0 / 3, -0.0};
@@ -123,7 +123,7 @@ TEST(Calibration, WhatIsWrittenIsReadToTheLastBit) {
   EXPECT_EQ(calibration_text(read), calibration_text(written));
 }
 
-TEST(Calibration, CarriesTheTimingOfDepth) {
+TEST(Calibration, RoundTripsDepthTiming) {
   Calibration c;
   ASSERT_TRUE(read_text("525 525 319.5 239.5 5000 0 0 0 0 0 0.03\ndepth_delay_s -0.015\n", c).ok());
   EXPECT_TRUE(c.camera.depth_timing.known);
@@ -143,7 +143,7 @@ TEST(Calibration, CarriesTheTimingOfDepth) {
   EXPECT_TRUE(c.camera.depth_timing.known);
 }
 
-TEST(Calibration, CarriesWhatStampsErr) {
+TEST(Calibration, RoundTripsStampSigma) {
   Calibration c;
   ASSERT_TRUE(read_text("525 525 319.5 239.5 5000\nstamp_sigma_s 0.002\n", c).ok());
   EXPECT_EQ(c.camera.stamp_sigma_s, 0.002);
@@ -161,7 +161,7 @@ TEST(Calibration, CarriesWhatStampsErr) {
   EXPECT_TRUE(says(c.validate(640, 480), "deviation of the stamps"));
 }
 
-TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
+TEST(Calibration, RejectsInvalidText) {
   Calibration c;
   EXPECT_EQ(read_text("", c).code(), StatusCode::kDamaged);
   EXPECT_TRUE(says(read_text("525 525 319.5", c), "3 numbers; expected 'fx fy cx cy [depth_scale"));
@@ -172,7 +172,7 @@ TEST(Calibration, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(read_calibration("/nowhere/calibration.txt", c).code(), StatusCode::kNotFound);
 }
 
-// As ScanNet's exports have it.
+// In the form of ScanNet's exports.
 TEST(Calibration, ReadsAMatrix) {
   const std::string matrix = "577.87 0 319.5 0\n0 578.5 239.5 0\n0 0 1 0\n0 0 0 1\n";
   Calibration c;
@@ -185,7 +185,7 @@ TEST(Calibration, ReadsAMatrix) {
   EXPECT_FALSE(c.depth_scale_given);
   ASSERT_TRUE(read_text(matrix + "depth_scale 1000\n", c).ok());
   EXPECT_EQ(c.depth_units_per_metre, 1000);
-  // Of three rows, as OpenCV and numpy have it, also as they print it.
+  // With three rows, as OpenCV and numpy write it and as they print it.
   for (const char* text :
        {"577.87 0 319.5\n0 578.5 239.5\n0 0 1\n",
         "[[577.87, 0., 319.5],\n [0., 578.5, 239.5],\n [0., 0., 1.]]\n",
@@ -197,14 +197,15 @@ TEST(Calibration, ReadsAMatrix) {
     EXPECT_TRUE(k.fx == 577.87 && k.fy == 578.5 && k.cx == 319.5 && k.cy == 239.5) << text;
   }
   EXPECT_TRUE(says(read_text("577 2 319.5\n0 578.5 239.5\n0 0 1\n", c), "has 9 numbers; expected"));
-  // A pose is no camera.
+  // A pose is not a camera matrix.
   EXPECT_TRUE(says(read_text("0.8 0 0.6 1.5\n0 1 0 -0.2\n-0.6 0 0.8 2\n0 0 0 1\n", c),
                    "has 16 numbers; expected 'fx fy cx cy [depth_scale"));
 }
 
-TEST(Calibration, RefusesNaN) {
+TEST(Calibration, RejectsNaN) {
   Calibration c;
-  ASSERT_TRUE(read_text("nan 525 319.5 239.5 5000", c).ok());  // a number to the reader, not to the camera
+  ASSERT_TRUE(read_text("nan 525 319.5 239.5 5000", c)
+                  .ok());  // the reader accepts nan as a number, the camera does not
   EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000"));
   ASSERT_TRUE(read_text("525 525 319.5 239.5 nan", c).ok());
   EXPECT_TRUE(says(c.validate(640, 480), "depth_scale must lie between 1 and 100000"));
@@ -214,7 +215,7 @@ TEST(Calibration, RefusesNaN) {
   }
 }
 
-TEST(Calibration, RefusesNumbersOutOfTheirRange) {
+TEST(Calibration, RejectsNumbersOutOfRange) {
   Calibration c;
   for (const char* pinhole : {"1e308 525 319.5 239.5", "525 1e-300 319.5 239.5", "525 100001 319.5 239.5"}) {
     ASSERT_TRUE(read_text(pinhole, c).ok());
@@ -239,8 +240,8 @@ TEST(Calibration, RefusesNumbersOutOfTheirRange) {
   EXPECT_TRUE(says(c.validate(640, 480, 320, 240), "cx and cy must lie inside the image"));
 }
 
-// Before it is parsed: a YAML of 1 MB took seconds to refuse.
-TEST(Calibration, RefusesWhatIsTooLongForOne) {
+// The size is checked before parsing: a YAML of 1 MB took seconds to reject.
+TEST(Calibration, RejectsTooLargeFiles) {
   Calibration c;
   for (const char* name : {"calibration.txt", "calibration.yaml"}) {
     std::string text = "fx: 525\nfy: 526\ncx: 319.5\ncy: 239.5\n";
@@ -250,7 +251,7 @@ TEST(Calibration, RefusesWhatIsTooLongForOne) {
   }
 }
 
-TEST(Calibration, RefusesSizesThatAreNone) {
+TEST(Calibration, RejectsInvalidSizes) {
   Calibration c;
   const std::string lens = "fx 525\nfy 525\ncx 319.5\ncy 239.5\n";
   for (const char* width : {"nan", "1e300", "-640", "0", "640.5", "inf"})
@@ -284,8 +285,8 @@ TEST(Calibration, ReadsRosCameraInfo) {
   EXPECT_EQ(echoed.camera.distortion.k1, 0.1);
 }
 
-// It knows neither the unit of depth nor the shutter; both may stand beside what it knows.
-TEST(Calibration, CameraInfoWithTheSensorsKeys) {
+// A camera_info has neither the depth unit nor the readout time; keys for both may stand beside it.
+TEST(Calibration, ReadsSensorKeysBesideCameraInfo) {
   Calibration c;
   ASSERT_TRUE(read_text(kCameraInfo, c, "rgb.yaml").ok());
   EXPECT_FALSE(c.depth_scale_given);
@@ -317,7 +318,7 @@ TEST(Calibration, ReadsKeysInYaml) {
   EXPECT_FALSE(read_text("a: &a [*a, *a]\nK: *a\n", c, "a.yaml").ok());
 }
 
-TEST(Calibration, TheFolderSaysWhichFile) {
+TEST(Calibration, FindsTheFileInAFolder) {
   const TemporaryFolder folder;
   EXPECT_FALSE(calibration_file_in(folder.path()).has_value());
   for (const char* name : {"camera.yaml", "calibration.yaml", "calibration.txt"}) {
@@ -331,7 +332,7 @@ std::string camera_info(const std::string& model, const std::string& coefficient
          "\nD: [" + coefficients + "]\n";
 }
 
-// As the drivers of Azure Kinect and Orbbec cameras publish it, and of RealSense's fisheyes.
+// In the form that the drivers of Azure Kinect and Orbbec cameras and of RealSense's fisheyes publish.
 TEST(Calibration, ReadsRationalAndEquidistantCameraInfo) {
   Calibration c;
   ASSERT_TRUE(read_text(camera_info("rational_polynomial", "1, 2, 3, 4, 5, 6, 7, 8"), c, "a.yaml").ok());
@@ -370,7 +371,7 @@ TEST(Calibration, ReadsLensesByKeys) {
                    "'distortion_model' is said twice"));
 }
 
-TEST(Calibration, LensesAreWrittenAsTheyAreRead) {
+TEST(Calibration, RoundTripsLenses) {
   Calibration written;
   written.camera.pinhole = {500, 501, 320, 240};
   for (const Distortion& lens :
@@ -395,7 +396,7 @@ TEST(Calibration, LensesAreWrittenAsTheyAreRead) {
   }
 }
 
-TEST(Calibration, ADepthCameraOfItsOwn) {
+TEST(Calibration, ReadsASeparateDepthCamera) {
   const std::string colour = "525 525 319.5 239.5 1000\n";
   const std::string pinhole = "depth_fx 360\ndepth_fy 361\ndepth_cx 159.5\ndepth_cy 119.5\n";
   Calibration c;
@@ -427,8 +428,8 @@ TEST(Calibration, ADepthCameraOfItsOwn) {
   EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000"));
 }
 
-// Two cameras of one kind beside each other.
-TEST(Calibration, AnOffsetOfDepthAlone) {
+// Two cameras of the same kind, side by side.
+TEST(Calibration, ReadsADepthOffsetWithoutPinhole) {
   Calibration c;
   ASSERT_TRUE(read_text("525 525 319.5 239.5 1000\ndepth_tx -0.025\n", c).ok());
   EXPECT_TRUE(c.depth_camera.known && c.depth_camera.as_colour && c.depth_camera.tx == -0.025);
@@ -444,7 +445,7 @@ TEST(Calibration, AnOffsetOfDepthAlone) {
   EXPECT_TRUE(says(c.validate(640, 480), "are metres, at most 1 m"));
 }
 
-TEST(Calibration, RefusesOtherDistortionModels) {
+TEST(Calibration, RejectsOtherDistortionModels) {
   Calibration c;
   const Status status = read_text(camera_info("omnidirectional", "0.1"), c, "rgb.yaml");
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
@@ -455,7 +456,7 @@ TEST(Calibration, RefusesOtherDistortionModels) {
                    "8 are rational_polynomial's"));
 }
 
-TEST(Calibration, RefusesBrokenYaml) {
+TEST(Calibration, RejectsBrokenYaml) {
   Calibration c;
   EXPECT_EQ(read_text("camera_matrix: [1, 2", c, "rgb.yaml").code(), StatusCode::kDamaged);
   EXPECT_EQ(read_text("just words\n", c, "rgb.yaml").code(), StatusCode::kDamaged);
@@ -463,7 +464,7 @@ TEST(Calibration, RefusesBrokenYaml) {
             StatusCode::kDamaged);
 }
 
-TEST(Calibration, BuiltinNames) {
+TEST(Calibration, KnowsBuiltinNames) {
   for (std::string_view name : builtin_calibration_names()) {
     Calibration c;
     EXPECT_TRUE(builtin_calibration(name, c).ok());
@@ -474,7 +475,7 @@ TEST(Calibration, BuiltinNames) {
   EXPECT_EQ(fr1.camera.pinhole.cy, 255.313989);
   EXPECT_EQ(fr1.camera.distortion.k2, -0.953104);
   EXPECT_TRUE(says(builtin_calibration("tum-fr9", fr1), "the names are tum-fr1 tum-fr2"));
-  // The page of 7-Scenes has depth's camera alone; colour's is a guess, which is said.
+  // The page of 7-Scenes states only the depth camera; the colour camera is reported as a guess.
   Calibration seven;
   ASSERT_TRUE(builtin_calibration("7scenes", seven).ok());
   EXPECT_EQ(seven.camera.pinhole.fx, 525);
@@ -487,7 +488,7 @@ TEST(Calibration, BuiltinNames) {
   EXPECT_NE(seven.assumptions()[0].find("25 mm beside"), std::string::npos) << seven.assumptions()[0];
 }
 
-TEST(Calibration, OneWordIsANameOrAFile) {
+TEST(Calibration, AcceptsANameOrAFile) {
   Calibration c;
   ASSERT_TRUE(named_calibration("tum-fr3", c).ok());
   EXPECT_EQ(c.camera.pinhole.fx, 535.4);

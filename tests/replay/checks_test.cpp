@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data that can be read but is wrong: each fault is found, and recordings without one are silent.
+// Data that are readable but wrong: each fault is found, and recordings without a fault give no message.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -33,7 +33,7 @@ bool contains(const std::string& text, std::string_view words) {
   return text.find(words) != std::string::npos;
 }
 
-TEST(CalibrationCheck, PlausibleCamerasAreSilent) {
+TEST(CalibrationCheck, AcceptsPlausibleCameras) {
   EXPECT_EQ(doubts(525, 525, 319.5, 239.5), "");
   EXPECT_EQ(doubts(615.2, 615.2, 298.4, 247.5), "") << "a RealSense's";
   EXPECT_EQ(doubts(505, 505, 320, 288, 640, 576), "") << "an Azure Kinect's";
@@ -45,7 +45,7 @@ TEST(CalibrationCheck, PlausibleCamerasAreSilent) {
   }
 }
 
-TEST(CalibrationCheck, GeometryThatCannotBeIsNamed) {
+TEST(CalibrationCheck, ReportsImplausibleGeometry) {
   EXPECT_TRUE(contains(doubts(525, 525, 0, 0), "a coordinate of 0 is mostly one that nobody filled in"));
   EXPECT_TRUE(contains(doubts(525, 525, 319.5, 0), "(319.5, 0.0) is far from the middle of 640x480 images"));
   EXPECT_TRUE(contains(doubts(525, 525, 239.5, 319.5), "cx and cy look exchanged"));
@@ -57,7 +57,7 @@ TEST(CalibrationCheck, GeometryThatCannotBeIsNamed) {
   EXPECT_TRUE(contains(doubts(5250, 5250, 319.5, 239.5), "shows 7.0 degrees"));
 }
 
-// Boxes before a wall: each is nearer than what it hides and has a brightness of its own.
+// Boxes before a wall: each is nearer than the wall and has its own brightness.
 struct BoxScene {
   std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(kImageWidth * kImageHeight, 120);
   std::vector<std::uint16_t> depth = std::vector<std::uint16_t>(kImageWidth * kImageHeight, 10000);  // 2 m
@@ -81,7 +81,7 @@ struct BoxScene {
 
 using Edit = std::function<void(std::vector<std::uint8_t>& grey, std::vector<std::uint16_t>& depth)>;
 
-// What is found in so many frames with what the edit makes of them.
+// Applies the edit to this many frames and returns the findings.
 std::string findings(const Edit& edit, double units_per_metre = 5000, int frames = 40) {
   FrameCheck check;
   std::string text;
@@ -102,13 +102,13 @@ std::string findings(const Edit& edit, double units_per_metre = 5000, int frames
 
 void as_it_is(std::vector<std::uint8_t>&, std::vector<std::uint16_t>&) {}
 
-TEST(FrameCheck, GoodFramesAreSilent) {
+TEST(FrameCheck, AcceptsGoodFrames) {
   EXPECT_EQ(findings(as_it_is), "");
   EXPECT_EQ(findings(as_it_is, 5000, 3), "");
   EXPECT_EQ(findings(as_it_is, 5000, 0), "");
 }
 
-TEST(FrameCheck, BlackColourAndEmptyDepthAreToldApart) {
+TEST(FrameCheck, DistinguishesBlackColourFromEmptyDepth) {
   const std::string black =
       findings([](auto& grey, auto&) { std::fill(grey.begin(), grey.end(), std::uint8_t{7}); });
   EXPECT_TRUE(
@@ -121,7 +121,7 @@ TEST(FrameCheck, BlackColourAndEmptyDepthAreToldApart) {
       findings([](auto&, auto& depth) { std::fill(depth.begin(), depth.end(), std::uint16_t{0}); }, 5000, 6);
   EXPECT_TRUE(contains(empty, "the depth images are empty: of the first 6 frames 0.00 % of the pixels"));
   EXPECT_FALSE(contains(empty, "colour images")) << empty;
-  // Black for a moment is nothing to speak of.
+  // A few black frames are not reported.
   int frame = 0;
   EXPECT_EQ(findings([&frame](auto& grey, auto& depth) {
               if (frame++ > 20) return;
@@ -131,13 +131,13 @@ TEST(FrameCheck, BlackColourAndEmptyDepthAreToldApart) {
             "");
 }
 
-TEST(FrameCheck, DepthInAnotherUnit) {
+TEST(FrameCheck, ReportsDepthInAnotherUnit) {
   EXPECT_TRUE(contains(findings(as_it_is, 1000), "1000 units per metre are in force"));
   EXPECT_TRUE(contains(findings(as_it_is, 25000), "no depth lies beyond 0.42 m"));
 }
 
-// Every second row and column is empty, whichever comes first.
-TEST(FrameCheck, ACombOfDepthIsNotEmpty) {
+// Every second row and column is empty, starting with the first or the second.
+TEST(FrameCheck, AcceptsDepthWithEmptyRowsAndColumns) {
   for (const int first : {0, 1})
     EXPECT_EQ(findings([first](auto&, auto& depth) {
                 for (int y = 0; y < kImageHeight; ++y)
@@ -149,8 +149,8 @@ TEST(FrameCheck, ACombOfDepthIsNotEmpty) {
         << first;
 }
 
-// Whatever is done to depth, and the words for it.
-TEST(FrameCheck, DepthThatLiesMirroredOverColour) {
+// Each edit of depth, with the expected words.
+TEST(FrameCheck, ReportsMirroredDepth) {
   const auto flip = [](bool left_right, bool up_down) {
     return findings([=](auto&, auto& depth) {
       const std::vector<std::uint16_t> copy = depth;
@@ -165,12 +165,12 @@ TEST(FrameCheck, DepthThatLiesMirroredOverColour) {
   EXPECT_TRUE(contains(flip(false, true), "depth looks upside down against colour"));
   EXPECT_TRUE(contains(flip(true, true), "depth looks turned by 180 degrees against colour"));
   EXPECT_EQ(flip(false, false), "");
-  // Depth of another scene agrees with colour in no way, and that is not said to be a mirror.
+  // Depth of an unrelated scene fits in no orientation and is not reported as mirrored.
   for (std::uint64_t seed = 100; seed < 130; ++seed)
     EXPECT_EQ(findings([seed](auto&, auto& depth) { depth = BoxScene(seed).depth; }, 5000, 10), "") << seed;
 }
 
-// The recorded sequences: silent as they are; mirrored, those that show enough are told.
+// The recorded sequences give no message; when mirrored, those with enough evidence are reported.
 TEST(FrameCheck, RecordedSequences) {
   const char* shared = std::getenv("PLVO_SHARED");
   const fs::path data = fs::path(shared == nullptr ? "" : shared) / "data";
@@ -206,7 +206,7 @@ TEST(FrameCheck, RecordedSequences) {
     keep(of_as_is, as_is.finish());
     keep(of_mirrored, mirrored.finish());
     EXPECT_TRUE(of_as_is.empty()) << of_as_is.front();
-    // Five frames show too little, and the shelf's depth is a comb of holes.
+    // Five frames give too little evidence, and the depth of the shelf has holes in a comb pattern.
     const std::string_view n = name;
     if (n == "fr1_360_5f" || n == "realsense_shelf_50") continue;
     ASSERT_EQ(of_mirrored.size(), 1u);

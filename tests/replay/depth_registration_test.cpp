@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth of another camera against the depth that colour's own rays meet: a floor that slants away, a box
+// Compares registered depth with the depth along the rays of the colour camera: a slanted floor, and a box
 // before a wall.
 #include "plvo/replay/images/depth_registration.hpp"
 
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kUnit_m = 0.001;
 
-// Where the ray from `origin` along `direction` (z = 1 in its own camera) meets n · X = distance: its
-// parameter.
+// The ray parameter where the ray from `origin` along `direction` (z = 1 in its own camera) meets n · X =
+// distance.
 double meet(const Vector3& n, double distance, const Vector3& origin, const Vector3& direction) {
   return (distance - n.dot(origin)) / n.dot(direction);
 }
@@ -26,7 +26,7 @@ struct Pair {
   Se3 T_camera_depth() const {
     return {to_rotation({depth.qx, depth.qy, depth.qz, depth.qw}), {depth.tx, depth.ty, depth.tz}};
   }
-  // What depth's camera sees of a plane given in colour's frame.
+  // The depth image of a plane that is given in the frame of colour.
   std::vector<std::uint16_t> see(const Vector3& n, double distance) const {
     std::vector<std::uint16_t> image;
     for (int v = 0; v < height; ++v)
@@ -55,7 +55,7 @@ Pair pair_with(const Distortion& lens) {
   return pair;
 }
 
-TEST(DepthRegistration, OfASlantedFloorIsWhatColoursRaysMeet) {
+TEST(DepthRegistration, MatchesColourRaysOnASlantedFloor) {
   const Vector3 n = Vector3(0.1, 0.6, 1).normalized();
   for (const Distortion& lens : {Distortion{}, Distortion{-0.2, 0.05, 0.001, -0.001, 0},
                                  Distortion{.k1 = 0.02, .k2 = -0.01, .model = LensModel::kEquidistant}}) {
@@ -78,13 +78,13 @@ TEST(DepthRegistration, OfASlantedFloorIsWhatColoursRaysMeet) {
       }
     EXPECT_GT(all, 320 * 240 * 9 / 10);
     EXPECT_GT(covered, all * 99 / 100);
-    // A depth pixel is 2.2 colour pixels wide: on this slope its rim is up to 0.8 % nearer or farther than
+    // A depth pixel is 2.2 colour pixels wide: on this slope its edge is up to 0.8 % nearer or farther than
     // its middle.
     EXPECT_LT(worst, 0.012);
   }
 }
 
-TEST(DepthRegistration, TheNearestOfTwoStays) {
+TEST(DepthRegistration, KeepsTheNearestDepth) {
   const Pair pair = pair_with({});
   const Vector3 ahead(0, 0, 1);
   std::vector<std::uint16_t> image = pair.see(ahead, 3);
@@ -99,7 +99,7 @@ TEST(DepthRegistration, TheNearestOfTwoStays) {
   for (int v = 0; v < 240; ++v)
     for (int u = 0; u < 320; ++u) {
       const std::uint16_t z = out[static_cast<std::size_t>(v * 320 + u)];
-      // Where the box's plane projects back into its part of the depth image, the box is seen.
+      // The box is visible where its plane projects back into its part of the depth image.
       const Vector3 p = back_project(pair.colour.pinhole, u, v, 0.8);
       const Vector2 from = project(pair.depth.pinhole, pair.T_camera_depth().inverse() * p);
       const bool inside = from.x() > 60 && from.x() < 89 && from.y() > 40 && from.y() < 99;
@@ -115,16 +115,16 @@ TEST(DepthRegistration, TheNearestOfTwoStays) {
   EXPECT_GT(on_box, 5000);
 }
 
-TEST(DepthRegistration, NothingStaysNothing) {
+TEST(DepthRegistration, KeepsEmptyDepthEmpty) {
   const Pair pair = pair_with({});
   const std::vector<std::uint16_t> none(static_cast<std::size_t>(pair.width * pair.height), 0);
   const std::vector<std::uint16_t> out = pair.registered(none);
   EXPECT_EQ(std::count(out.begin(), out.end(), 0), 320 * 240);
 }
 
-// A plane that slants right and down, in images that were scaled down by even and odd factors, with a
-// few columns and rows left over: depth of colour's size, and of half of it.
-TEST(DepthRegistration, ScaledDownItIsOneOfThePixelsInTheMiddleAndDoesNotMove) {
+// A plane that slants right and down. The images are scaled down by even and odd factors, with a few columns
+// and rows left over. Depth has the size of colour, or half of it.
+TEST(DepthRegistration, ScaledDownTakesAMiddlePixelWithoutShift) {
   const auto plane = [](double u, double v) { return 2000 + 6 * u - 4 * v; };
   for (const int factor : {2, 3, 4})
     for (const int size : {1, 2}) {
@@ -141,7 +141,7 @@ TEST(DepthRegistration, ScaledDownItIsOneOfThePixelsInTheMiddleAndDoesNotMove) {
       double sum = 0, worst = 0;
       for (int y = 0; y < colour.height; ++y)
         for (int x = 0; x < colour.width; ++x) {
-          // The middle of the colour pixel, in depth's pixels.
+          // The middle of the colour pixel, in pixels of depth.
           const double u = (x + 0.5) * factor * width / whole.width - 0.5;
           const double v = (y + 0.5) * factor * height / whole.height - 0.5;
           const double error = out[static_cast<std::size_t>(y * colour.width + x)] - plane(u, v);
@@ -153,7 +153,7 @@ TEST(DepthRegistration, ScaledDownItIsOneOfThePixelsInTheMiddleAndDoesNotMove) {
     }
 }
 
-TEST(DepthRegistration, OneViewHasOneShape) {
+TEST(DepthRegistration, SameViewRequiresSameAspectRatio) {
   EXPECT_TRUE(DepthRegistration::same_view(1280, 720, 640, 360));
   EXPECT_TRUE(DepthRegistration::same_view(640, 480, 1280, 960));
   EXPECT_TRUE(DepthRegistration::same_view(1920, 1080, 848, 477));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are made to hurt: headers that claim more than they have, and what is no file at all in the
-// place of one. Every reader refuses them in words, in bounded memory and without waiting.
+// Malicious files: headers that claim more than the file holds, and paths that are not regular files. Every
+// reader rejects them with a message, in bounded memory and without waiting.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 using test::TemporaryFolder;
 using test::write_file;
 
-// The most that this process ever had, in KiB.
+// Peak memory of this process, in KiB.
 long peak_kib() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -58,7 +58,7 @@ std::string chunk(const std::string& type, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(crc32(type + data));
 }
 
-// A valid PNG of a few bytes, but for its pixels: deflated data of nothing.
+// A small PNG that is valid except for its pixels: the deflated data are empty.
 std::string png(std::uint32_t width, std::uint32_t height, int bits, int colour_type) {
   const std::string header = big_endian(width) + big_endian(height) + static_cast<char>(bits) +
                              static_cast<char>(colour_type) + std::string(3, '\0');
@@ -114,7 +114,7 @@ TEST(HostileFiles, SizesAreJudgedByTheHeaderAlone) {
   }
   write_file(path, jpeg(4096, 64));
   EXPECT_TRUE(decoder.read_header(path, info).ok());
-  // A later image than the first is held to the first one's size, by its header as well.
+  // Later images must have the size of the first one; their headers are checked, too.
   std::vector<std::uint8_t> rgb(std::size_t{3} * 64 * 64);
   write_file(path, png(16384, 16384, 8, 2));
   const long before = peak_kib();
@@ -122,8 +122,8 @@ TEST(HostileFiles, SizesAreJudgedByTheHeaderAlone) {
   EXPECT_LT(peak_kib() - before, 64 * 1024);
 }
 
-// A row of one character, kept as words, takes fifty times its size.
-TEST(HostileFiles, ATableOfTheShortestRowsIsNotKeptWhole) {
+// If each word of such a row were stored, it would take fifty times its size.
+TEST(HostileFiles, DoesNotStoreATableOfShortestRows) {
   const TemporaryFolder folder;
   std::string rows(16u << 20, '\n');
   for (std::size_t i = 0; i < rows.size(); i += 2) rows[i] = '1';
@@ -135,7 +135,7 @@ TEST(HostileFiles, ATableOfTheShortestRowsIsNotKeptWhole) {
   EXPECT_LT(peak_kib() - before, 64 * 1024);
 }
 
-// A zlib stream of `matches` times 258 zeros after a first one: deflate's fixed codes, 13 bits for 258 bytes.
+// A zlib stream of one zero and `matches` runs of 258 zeros: deflate's fixed codes, 13 bits for 258 bytes.
 std::string zeros_in_zlib(std::uint32_t matches) {
   std::string bits = "110";  // last block, fixed codes (the lower bit of a number first)
   bits += "00110000";        // a zero
@@ -151,7 +151,7 @@ std::string zeros_in_zlib(std::uint32_t matches) {
   return stream + big_endian((((258 * matches + 1) % 65521) << 16) | 1);  // Adler-32 of zeros
 }
 
-// Texts of a PNG of 100 kB that unpack to 256 MB.
+// The texts of a PNG of 100 kB that unpack to 256 MB.
 TEST(HostileFiles, UnpackedTextsOfAPngAreBounded) {
   std::string file = png(64, 64, 8, 2);
   const std::string text = chunk("zTXt", std::string("x\0\0", 3) + zeros_in_zlib(62'500));
@@ -167,11 +167,11 @@ TEST(HostileFiles, UnpackedTextsOfAPngAreBounded) {
   EXPECT_LT(peak_kib() - before, 32 * 1024);
 }
 
-// The bound on what unpacks is none on the pixels, in however few pieces they come.
-TEST(HostileFiles, TheLargestImageIsReadWhole) {
+// The bound on unpacked texts does not limit the pixels, even if they come in a single chunk.
+TEST(HostileFiles, ReadsTheLargestImage) {
   constexpr int kSide = kMaxImageSide;
   const std::size_t row = 1 + 3 * std::size_t{kSide};
-  // Stored blocks of zlib, in one piece of 50 MB.
+  // Stored blocks of zlib, in one chunk of 50 MB.
   std::string pixels("\x78\x01", 2);
   for (std::size_t left = row * kSide; left > 0;) {
     const std::size_t size = std::min<std::size_t>(left, 65535);

@@ -13,7 +13,7 @@ namespace {
 
 using test::says;
 
-TEST(ImageReduction, TheLeastFactorIsTheOneThatFits) {
+TEST(ImageReduction, ChoosesTheSmallestSufficientFactor) {
   EXPECT_EQ(least_reduction(640, 480), 1);
   EXPECT_EQ(least_reduction(2047, 2047), 1);
   EXPECT_EQ(least_reduction(2048, 1536), 2);
@@ -21,7 +21,7 @@ TEST(ImageReduction, TheLeastFactorIsTheOneThatFits) {
   EXPECT_EQ(least_reduction(3072, 4096), 3);
 }
 
-TEST(ImageReduction, FactorsThatDoNotFitAreRefusedInWords) {
+TEST(ImageReduction, RejectsUnsuitableFactors) {
   EXPECT_TRUE(check_reduction(1, 640, 480).ok());
   EXPECT_TRUE(check_reduction(7, 640, 480).ok());
   EXPECT_TRUE(says(check_reduction(8, 640, 480),
@@ -31,7 +31,7 @@ TEST(ImageReduction, FactorsThatDoNotFitAreRefusedInWords) {
   EXPECT_TRUE(check_reduction(1, 48, 32).ok()) << "what was not made smaller is not this one's to judge";
 }
 
-TEST(ImageReduction, TheCameraSeesTheSameRays) {
+TEST(ImageReduction, ReducedCameraKeepsTheRays) {
   const CameraModel whole = {.width = 645,
                              .height = 483,
                              .pinhole = {525.5, 524, 319.25, 240.75},
@@ -44,10 +44,10 @@ TEST(ImageReduction, TheCameraSeesTheSameRays) {
     EXPECT_EQ(small.distortion.k1, whole.distortion.k1) << "a lens is of rays, not of pixels";
     const Vector3 p(0.3, -0.2, 1.7);
     const Vector2 in_whole = project(whole.pinhole, p), in_small = project(small.pinhole, p);
-    // The middle of a small pixel is the middle of the block that it covers.
+    // The middle of a small pixel is the middle of its block.
     const Vector2 expected = factor * in_small + Vector2::Constant(0.5 * (factor - 1));
     EXPECT_LT((expected - in_whole).norm(), 1e-12);
-    // From one small row to the next lie `factor` rows.
+    // Consecutive small rows are `factor` rows apart.
     EXPECT_NEAR(small.readout_s / (small.height - 1), factor * whole.readout_s / (whole.height - 1), 1e-15);
   }
   const CameraModel same = reduced(whole, 1);
@@ -55,8 +55,8 @@ TEST(ImageReduction, TheCameraSeesTheSameRays) {
   EXPECT_EQ(same.readout_s, whole.readout_s);
 }
 
-TEST(ImageReduction, APixelIsTheMeanOfItsBlock) {
-  // 7×5, of which the last column and row are left over for a factor of 2.
+TEST(ImageReduction, AveragesEachBlock) {
+  // 7×5 pixels; with a factor of 2 the last column and row are left over.
   constexpr int kWidth = 7, kHeight = 5;
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < kHeight; ++y)

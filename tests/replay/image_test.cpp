@@ -50,7 +50,7 @@ TEST(Image, WritesBgrAndGreyAndStrides) {
 TEST(Image, ReadsJpegCloseToTheOriginal) {
   const TemporaryFolder folder;
   TinyFrame tiny(0);
-  for (std::size_t i = 0; i < tiny.rgb.size(); ++i)  // smooth: JPEG may keep it
+  for (std::size_t i = 0; i < tiny.rgb.size(); ++i)  // smooth, so that JPEG preserves it
     tiny.rgb[i] = static_cast<std::uint8_t>(40 + (i / 3) % kTinyWidth + i % 3);
   const std::vector<std::uint8_t> jpeg = encode_jpeg(tiny.frame.colour, 95);
   test::write_file(folder / "c.jpg", std::string(jpeg.begin(), jpeg.end()));
@@ -59,7 +59,7 @@ TEST(Image, ReadsJpegCloseToTheOriginal) {
   const Status status = decoder.decode_rgb(folder / "c.jpg", kTinyWidth, kTinyHeight, rgb);
   ASSERT_TRUE(status.ok()) << status.message();
   for (std::size_t i = 0; i < rgb.size(); ++i) ASSERT_NEAR(rgb[i], tiny.rgb[i], 6) << i;
-  // Cut off: damaged, not a picture with grey bars.
+  // A truncated JPEG is damaged, not an image with grey bars.
   test::write_file(folder / "cut.jpg",
                    std::string(jpeg.begin(), jpeg.begin() + static_cast<long>(jpeg.size() / 2)));
   EXPECT_EQ(decoder.decode_rgb(folder / "cut.jpg", kTinyWidth, kTinyHeight, rgb).code(),
@@ -119,7 +119,7 @@ TEST(Image, ReadsPgmAndPpm) {
   }
 }
 
-TEST(Image, RefusesDamagedFiles) {
+TEST(Image, RejectsDamagedFiles) {
   const TemporaryFolder folder;
   const TinyFrame tiny(0);
   ASSERT_TRUE(write_png(folder / "whole.png", tiny.frame.colour).ok());
@@ -141,7 +141,7 @@ TEST(Image, RefusesDamagedFiles) {
             StatusCode::kNotFound);
 }
 
-TEST(Image, RefusesOtherSizesAndDepths) {
+TEST(Image, RejectsOtherSizesAndBitDepths) {
   const TemporaryFolder folder;
   const TinyFrame tiny(0);
   ASSERT_TRUE(write_png(folder / "c.png", tiny.frame.colour).ok());
@@ -153,7 +153,7 @@ TEST(Image, RefusesOtherSizesAndDepths) {
       says(decoder.decode_depth(folder / "c.png", kTinyWidth, kTinyHeight, depth), "8 bits per channel"));
 }
 
-TEST(Image, WriteFailureIsAStatus) {
+TEST(Image, ReportsWriteFailure) {
   const TinyFrame tiny(0);
   EXPECT_EQ(write_png("/proc/no_such_file.png", tiny.frame.colour).code(), StatusCode::kIo);
   EXPECT_EQ(write_png("/dev/full", tiny.frame.colour).code(), StatusCode::kIo);

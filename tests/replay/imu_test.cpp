@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// gyroscope.txt and accelerometer.txt: written and read back, bad lines named, and handed to the frames in
-// time.
+// gyroscope.txt and accelerometer.txt: written and read back, invalid lines reported, and the samples
+// delivered with their frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ ImuRecording recording(int count) {
   return result;
 }
 
-TEST(ImuFiles, AreReadAsTheyWereWritten) {
+TEST(ImuFiles, RoundTrip) {
   const TemporaryFolder folder;
   const ImuRecording written = recording(50);
   ASSERT_TRUE(write_imu_files(folder.path(), written).ok());
@@ -43,7 +43,7 @@ TEST(ImuFiles, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read.ignored, 0U);
 }
 
-TEST(ImuFiles, RecordedOnesKeepEveryDigit) {
+TEST(ImuFiles, KeepAllDigitsOfRecordedSamples) {
   const TemporaryFolder folder;
   ImuRecording written = recording(20);
   ASSERT_TRUE(refuse_imu_files(folder.path()).ok());
@@ -56,20 +56,20 @@ TEST(ImuFiles, RecordedOnesKeepEveryDigit) {
   const Status refused = refuse_imu_files(folder.path());
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(std::string(refused.message()).find("has gyroscope.txt already"), std::string::npos);
-  // Of a sensor that is not there no file is made.
+  // A missing sensor gets no file.
   const TemporaryFolder other;
   written.gyro.clear();
   ASSERT_TRUE(write_imu_files(other.path(), written, ImuAxes::kSensor).ok());
   EXPECT_FALSE(std::filesystem::exists(other / "gyroscope.txt"));
 }
 
-TEST(ImuFiles, OneOfThemIsEnoughAndNoneIsTold) {
+TEST(ImuFiles, RequireAtLeastOneFile) {
   const TemporaryFolder folder;
   ImuRecording read;
   Status status = read_imu_files(folder.path(), read);
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
   EXPECT_NE(std::string(status.message()).find("accelerometer.txt"), std::string::npos);
-  // As TUM publishes it.
+  // In the form that TUM publishes.
   write_file(folder / "accelerometer.txt",
              "# accelerometer data\n# timestamp ax ay az\n1305031098.679604 -0.1 9.7 1.5\n"
              "1305031098.681604 -0.2 9.8 1.4\n");
@@ -80,7 +80,7 @@ TEST(ImuFiles, OneOfThemIsEnoughAndNoneIsTold) {
   EXPECT_EQ(read.accelerometer[1].stamp_ns, 1'305'031'098'681'604'000);
 }
 
-TEST(ImuFiles, BadLinesAreNamedAndBadStampsLeftOut) {
+TEST(ImuFiles, ReportInvalidLinesAndSkipInvalidStamps) {
   const TemporaryFolder folder;
   ImuRecording read;
   write_file(folder / "gyroscope.txt", "1.0 0 0 0\n1.1 0 zero 0\n");
@@ -97,8 +97,8 @@ TEST(ImuFiles, BadLinesAreNamedAndBadStampsLeftOut) {
   EXPECT_EQ(read.ignored, 3U);
 }
 
-// What the integrator gets of the whole recording is what it would have got of a live sensor.
-TEST(RecordedImu, GivesWhatALiveSensorWould) {
+// The integrator gets the same samples from the recording as from a live sensor.
+TEST(RecordedImu, EqualsALiveSensor) {
   const ImuRecording all = recording(100);
   RecordedImu recorded;
   ASSERT_TRUE(recorded.init(all, {}).ok());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders of numbered frames: the same trajectory as from a TUM folder with the same images and stamps, and
-// every folder that is not as it should be refused in words.
+// Folders of numbered frames give the same trajectory as a TUM folder with the same images and stamps. Every
+// malformed folder is rejected with a message.
 #include "plvo/replay/index/numbered_index.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ std::vector<Pose> track(const fs::path& folder) {
   return poses;
 }
 
-TEST(NumberedFolder, TracksAsTheTumFolderWithTheSameStamps) {
+TEST(NumberedFolder, EqualsTheTumFolderWithTheSameStamps) {
   const NumberedSequence sequence;
   ASSERT_TRUE(sequence.good());
   const std::vector<Pose> expected = track(sequence.tum());
@@ -74,12 +74,12 @@ TEST(NumberedFolder, TracksAsTheTumFolderWithTheSameStamps) {
   }
 }
 
-TEST(NumberedFolder, DepthIsInMillimetresAndTheCalibrationSaysMore) {
+TEST(NumberedFolder, ReadsDepthInMillimetres) {
   const NumberedSequence sequence;
   RecordedCamera camera;
   ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
   EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
-  EXPECT_EQ(camera.calibration().assumptions().size(), 1u);  // the shutter
+  EXPECT_EQ(camera.calibration().assumptions().size(), 1u);  // the readout time
   fs::rename(sequence.scannet() / "color", sequence.scannet() / "rgb");
   ASSERT_TRUE(open_alone(camera, sequence.scannet()).ok());
   EXPECT_EQ(camera.calibration().assumptions().size(), 2u) << "of nobody's layout the unit is a guess";
@@ -94,7 +94,7 @@ TEST(NumberedFolder, DepthIsInMillimetresAndTheCalibrationSaysMore) {
   EXPECT_EQ(calibration.depth_camera.pinhole.fx, 585);
   EXPECT_EQ(calibration.depth_camera.pinhole.cy, 240);
   EXPECT_EQ(calibration.depth_units_per_metre, 1000);
-  // What a calibration says itself holds.
+  // A value in the calibration takes precedence.
   calibration.has_size = false;
   calibration.depth_camera = {};
   calibration.camera.pinhole = {290, 290, 160, 120};
@@ -103,7 +103,7 @@ TEST(NumberedFolder, DepthIsInMillimetresAndTheCalibrationSaysMore) {
   EXPECT_EQ(camera.calibration().depth_units_per_metre, 5000);
 }
 
-TEST(NumberedFolder, PosesAreTheTruth) {
+TEST(NumberedFolder, ReadsPosesAsGroundTruth) {
   const NumberedSequence sequence;
   write_file(sequence.scannet() / scannet_file("pose", 2),
              "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
@@ -119,7 +119,7 @@ TEST(NumberedFolder, PosesAreTheTruth) {
   const Se3 expected = ProceduralRenderer::T_world_camera(4);
   EXPECT_EQ(truth.poses[2].T_world_camera.R, expected.R);
   EXPECT_EQ(truth.poses[2].T_world_camera.t, expected.t);
-  // A trajectory beside the frames comes first.
+  // A trajectory beside the frames takes precedence.
   fs::copy(sequence.tum() / "groundtruth.txt", sequence.scannet() / "groundtruth.txt");
   ASSERT_TRUE(read_ground_truth(sequence.scannet(), options, truth).ok());
   EXPECT_EQ(truth.poses.size(), 6u);
@@ -128,7 +128,7 @@ TEST(NumberedFolder, PosesAreTheTruth) {
   EXPECT_EQ(read_ground_truth(sequence.scannet(), options, truth).code(), StatusCode::kNotFound);
 }
 
-TEST(NumberedFolder, DamagedPosesAreNamed) {
+TEST(NumberedFolder, ReportsDamagedPoses) {
   const NumberedSequence sequence;
   const fs::path file = sequence.seven_scenes() / seven_scenes_file("pose", 4);
   Trajectory truth;
@@ -155,7 +155,7 @@ TEST(NumberedFolder, DamagedPosesAreNamed) {
   EXPECT_TRUE(says(read_ground_truth(sequence.seven_scenes(), {}, truth), "1099511627776 bytes"));
 }
 
-// Names alone, for what is judged before an image is read.
+// File names only, for decisions that precede the reading of images.
 class NumberedNames : public ::testing::Test {
  protected:
   void touch(const std::string& name) {
@@ -184,7 +184,7 @@ TEST_F(NumberedNames, AreOrderedByNumberAndPaired) {
   EXPECT_EQ(index_.poses.size(), 1u);
 }
 
-TEST_F(NumberedNames, GapsAreToldUnlessFramesWereTakenOutEvenly) {
+TEST_F(NumberedNames, ReportUnevenGaps) {
   for (int number : {0, 20, 40, 60}) {
     touch(seven_scenes_file("color", number));
     touch(seven_scenes_file("depth", number));
@@ -201,7 +201,7 @@ TEST_F(NumberedNames, GapsAreToldUnlessFramesWereTakenOutEvenly) {
       << index_.remark;
 }
 
-TEST_F(NumberedNames, WithoutANumberAreRefused) {
+TEST_F(NumberedNames, RejectImagesWithoutANumber) {
   for (const char* name : {"frame-000000.color.png", "frame-000000.depth.png"}) touch(name);
   for (const char* name :
        {"frame-00000x.color.png", "frame--1.depth.png", "frame-.pose.txt", "frame-123456789.color.jpg"}) {
@@ -214,22 +214,22 @@ TEST_F(NumberedNames, WithoutANumberAreRefused) {
   EXPECT_TRUE(read().ok());
 }
 
-TEST_F(NumberedNames, OfOneNumberAreRefused) {
+TEST_F(NumberedNames, RejectRepeatedNumbers) {
   for (const char* name : {"color/7.jpg", "color/007.png", "depth/7.png"}) touch(name);
   const Status status = read();
   EXPECT_EQ(status.code(), StatusCode::kDamaged);
   EXPECT_TRUE(says(status, "color/007.png and color/7.jpg have the same number")) << status.message();
 }
 
-TEST_F(NumberedNames, WithoutPairsAreRefused) {
+TEST_F(NumberedNames, RejectFoldersWithoutPairs) {
   for (const char* name : {"color/1.jpg", "depth/2.png"}) touch(name);
   EXPECT_TRUE(says(read(), "no colour image has a depth image of the same number"));
   fs::remove_all(folder_ / "depth");
   EXPECT_TRUE(says(read(), "rgb.txt; a sequence needs rgb.txt")) << "half a layout is none";
 }
 
-// The names under which people keep colour and depth.
-TEST_F(NumberedNames, AreThoseThatPeopleUse) {
+// Common names for colour and depth.
+TEST_F(NumberedNames, AcceptCommonNames) {
   const std::pair<const char*, const char*> kinds[] = {{"rgb/%.png", "depth/%.png"},
                                                        {"rgb_png/%.png", "depth_png/%.png"},
                                                        {"image/%.jpg", "depth/%.png"},
@@ -263,13 +263,13 @@ TEST_F(NumberedNames, AreThoseThatPeopleUse) {
   EXPECT_TRUE(index_.in_millimetres) << "ScanNet says so";
 }
 
-TEST_F(NumberedNames, ThatCouldMeanTwoThingsAreRefused) {
+TEST_F(NumberedNames, RejectAmbiguousNames) {
   for (const char* name : {"rgb_left/1.png", "rgb_right/1.png", "depth/1.png"}) touch(name);
   EXPECT_TRUE(says(read(), "rgb_left and rgb_right may both be meant; name the right one color"));
   touch("rgb/1.png");
   EXPECT_TRUE(read().ok()) << "one has the word alone";
   EXPECT_EQ(index_.pairs[0].colour.file, "rgb/1.png");
-  // Folders without numbered images do not count; stamps are no numbers.
+  // Folders without numbered images do not count; stamps are not frame numbers.
   fs::remove_all(folder_ / "rgb");
   fs::remove_all(folder_ / "rgb_right");
   touch("rgb_notes/a.png");
@@ -279,8 +279,8 @@ TEST_F(NumberedNames, ThatCouldMeanTwoThingsAreRefused) {
   EXPECT_TRUE(says(read(), "or numbered images, as rgb/0.png and depth/0.png, or rgb_0.png and depth_0.png"));
 }
 
-// Lists, and what the user names, come before names.
-TEST_F(NumberedNames, GiveWayToLists) {
+// Lists, and files that the user names, take precedence over file names.
+TEST_F(NumberedNames, YieldToLists) {
   for (const char* name : {"color/1.png", "depth/1.png"}) touch(name);
   EXPECT_TRUE(is_numbered_folder(folder_.path()));
   SequenceOptions options;
@@ -292,7 +292,7 @@ TEST_F(NumberedNames, GiveWayToLists) {
   EXPECT_FALSE(is_numbered_folder(folder_.path()));
 }
 
-TEST(NumberedFolder, ADamagedImageCostsItsFrame) {
+TEST(NumberedFolder, LosesOnlyTheFrameOfADamagedImage) {
   const NumberedSequence sequence;
   const fs::path victim = sequence.scannet() / scannet_file("depth", 2);
   fs::resize_file(victim, fs::file_size(victim) / 2);
@@ -309,7 +309,7 @@ TEST(NumberedFolder, ADamagedImageCostsItsFrame) {
   EXPECT_EQ(frame.stamp_ns, 133'333'333);
 }
 
-TEST(NumberedFolder, ColourOfAnotherSizeThanDepthIsRefused) {
+TEST(NumberedFolder, RejectsColourAndDepthOfDifferentSizes) {
   const NumberedSequence sequence;
   const std::vector<std::uint8_t> large(3 * 640 * 480, 80);
   for (int i = 0; i < test::kNumberedFrames; ++i)

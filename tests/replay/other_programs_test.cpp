@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrations as Kalibr, EuRoC, ORB-SLAM and Open3D write them.
+// Calibrations in the formats of Kalibr, EuRoC, ORB-SLAM and Open3D.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,7 +21,7 @@ Status read_as(const std::string& text, Calibration& calibration, const char* na
   return read_calibration(folder / name, calibration);
 }
 
-// As kalibr_calibrate_cameras writes it, of a sensor whose depth's camera comes first.
+// Written as by kalibr_calibrate_cameras, for a sensor whose depth camera comes first.
 const std::string kCamchain =
     "cam0:\n  cam_overlaps: [1]\n  camera_model: pinhole\n"
     "  distortion_coeffs: [0.01, -0.02, 0.0003, -0.0004]\n  distortion_model: radtan\n"
@@ -33,7 +33,7 @@ const std::string kCamchain =
     "  intrinsics: [615.1, 615.2, 318.3, 243.4]\n  resolution: [640, 480]\n"
     "  rostopic: /camera/color/image_raw\n";
 
-TEST(OtherPrograms, KalibrsChainWithColourByItsTopic) {
+TEST(OtherPrograms, ReadsKalibrAndFindsColourByTopic) {
   Calibration c;
   const Status status = read_as(kCamchain, c, "camchain.yaml");
   ASSERT_TRUE(status.ok()) << status.message();
@@ -46,13 +46,13 @@ TEST(OtherPrograms, KalibrsChainWithColourByItsTopic) {
   EXPECT_TRUE(c.has_size && c.camera.width == 640 && c.camera.height == 480);
   EXPECT_EQ(c.guess, "");
   EXPECT_FALSE(c.depth_scale_given || c.readout_given || c.depth_camera.known);
-  // What it does not know may stand beside it.
+  // Keys of the sensor may stand beside Kalibr's.
   ASSERT_TRUE(read_as(kCamchain + "depth_scale: 1000\nreadout_s: 0.02\ndepth_tx: -0.015\n", c).ok());
   EXPECT_TRUE(c.depth_units_per_metre == 1000 && c.camera.readout_s == 0.02);
   EXPECT_TRUE(c.depth_camera.known && c.depth_camera.as_colour && c.depth_camera.tx == -0.015);
 }
 
-TEST(OtherPrograms, KalibrsChainThatDoesNotSayWhichIsColours) {
+TEST(OtherPrograms, WarnsIfKalibrDoesNotIdentifyColour) {
   std::string text = kCamchain;
   text.replace(text.find("color/image_raw"), 5, "other");
   Calibration c;
@@ -64,13 +64,13 @@ TEST(OtherPrograms, KalibrsChainThatDoesNotSayWhichIsColours) {
       assumed[0].find("has 2 cameras, and no rostopic says which took the colour images: cam0 is taken"),
       std::string::npos)
       << assumed[0];
-  // One alone needs no topic.
+  // A single camera needs no topic.
   ASSERT_TRUE(read_as(kCamchain.substr(0, kCamchain.find("cam1:")), c).ok());
   EXPECT_EQ(c.camera.pinhole.fx, 385.1);
   EXPECT_EQ(c.guess, "");
 }
 
-// The file of the benchmark's cam0, with its comments.
+// The benchmark's file for cam0, with its comments.
 const std::string kEuroc =
     "# General sensor definitions.\nsensor_type: camera\ncomment: VI-Sensor cam0 (MT9M034)\n\n"
     "T_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,\n"
@@ -79,7 +79,7 @@ const std::string kEuroc =
     "distortion_model: radial-tangential\n"
     "distortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05]\n";
 
-TEST(OtherPrograms, Eurocs) {
+TEST(OtherPrograms, ReadsEuroc) {
   Calibration c;
   for (const std::string& text : {kEuroc, "%YAML:1.0\n" + kEuroc}) {
     const Status status = read_as(text, c, "sensor.yaml");
@@ -91,7 +91,7 @@ TEST(OtherPrograms, Eurocs) {
   }
 }
 
-TEST(OtherPrograms, LensesAndModelsByTheirNames) {
+TEST(OtherPrograms, MapsNamesOfLensesAndModels) {
   const std::string camera = "intrinsics: [400, 401, 320, 240]\n";
   Calibration c;
   for (const char* name : {"equidistant", "equi"}) {
@@ -137,7 +137,7 @@ const std::string kOrbSlam2 =
     "# Camera frames per second \nCamera.fps: 30.0\n\nCamera.bf: 40.0\nCamera.RGB: 1\nThDepth: 40.0\n"
     "DepthMapFactor: 5000.0\nORBextractor.nFeatures: 1000\nViewer.KeyFrameSize: 0.05\n";
 
-TEST(OtherPrograms, OrbSlams) {
+TEST(OtherPrograms, ReadsOrbSlam) {
   Calibration c, tum;
   const Status status = read_as(kOrbSlam2, c, "TUM1.yaml");
   ASSERT_TRUE(status.ok()) << status.message();
@@ -148,7 +148,7 @@ TEST(OtherPrograms, OrbSlams) {
   EXPECT_EQ(c.camera.distortion.k3, tum.camera.distortion.k3);
   EXPECT_TRUE(c.depth_scale_given && c.depth_units_per_metre == 5000);
   EXPECT_TRUE(c.has_size && c.camera.width == 640);
-  // ORB-SLAM3's, with a matrix of OpenCV's.
+  // ORB-SLAM3's format, with a matrix of OpenCV.
   const std::string third =
       "%YAML:1.0\n---\nFile.version: \"1.0\"\nCamera.type: \"PinHole\"\nCamera1.fx: 600.5\nCamera1.fy: 601\n"
       "Camera1.cx: 320\nCamera1.cy: 240\nCamera1.k1: 0.1\nCamera1.k2: 0\nCamera1.p1: 0\nCamera1.p2: 0\n"
@@ -171,15 +171,15 @@ TEST(OtherPrograms, OrbSlams) {
   EXPECT_TRUE(says(read_as("Camera.fx: many\n", c), "'fx' needs a number"));
 }
 
-// As Open3D's PinholeCameraIntrinsic writes it, with tabs.
+// Written as by Open3D's PinholeCameraIntrinsic, with tabs.
 const std::string kOpen3d =
     "{\n\t\"height\" : 480,\n\t\"intrinsic_matrix\" : "
     "\n\t[\n\t\t615.19518999999997,\n\t\t0.0,\n\t\t0.0,\n\t\t"
     "0.0,\n\t\t615.25,\n\t\t0.0,\n\t\t298.442688,\n\t\t247.519196,\n\t\t1.0\n\t],\n\t\"width\" : 640\n}";
 
-TEST(OtherPrograms, Open3ds) {
+TEST(OtherPrograms, ReadsOpen3d) {
   Calibration c;
-  for (const char* name : {"camera_intrinsic.json", "calibration.txt"}) {  // the content says what it is
+  for (const char* name : {"camera_intrinsic.json", "calibration.txt"}) {  // the content tells the format
     const Status status = read_as(kOpen3d, c, name);
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(c.camera.pinhole.fx, 615.19519);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as long and as dense as a reader takes, and one row or image more: read or refused in words, always
-// below the ceiling that reader_limits.hpp states. Bags: tests/rosbag/bag_memory_test.cpp.
+// Files of the largest size and density that a reader accepts, and with one row or image more. They are read,
+// or rejected with a message, always below the ceiling that reader_limits.hpp states. Bags:
+// tests/rosbag/bag_memory_test.cpp.
 #include <gtest/gtest.h>
 #include <turbojpeg.h>
 
@@ -28,7 +29,7 @@ using test::says;
 using test::TemporaryFolder;
 using test::write_file;
 
-// Rows that differ in their stamp alone.
+// Rows that differ only in their stamp.
 std::string rows(std::size_t count, const std::string& rest) {
   std::string text;
   for (std::size_t i = 1; i <= count; ++i) text += std::to_string(i) + rest + '\n';
@@ -52,7 +53,7 @@ TEST_F(ReaderMemory, ListsOfImages) {
     };
     return Recording().open(folder_.path(), choose);
   };
-  // Names too long to lie within a string's own bytes.
+  // Names that are too long for a string's internal buffer.
   write_lists(kMostImages, " the_longest_name_that_fits_in_the_file.png");
   expect_within_the_ceiling("lists", [&] { return says(open(), "no image of the sequence can be read"); });
   write_lists(kMostImages + 1, " a");
@@ -132,8 +133,8 @@ TEST_F(ReaderMemory, CalibrationsOfTheShortestEntries) {
   }
 }
 
-// Its coefficients are kept for the whole image until the last pass over it.
-TEST_F(ReaderMemory, TheLargestProgressiveJpeg) {
+// The decoder keeps the coefficients of the whole image until the last scan.
+TEST_F(ReaderMemory, LargestProgressiveJpeg) {
   constexpr int kSide = kMaxImageSide;
   {
     const std::vector<unsigned char> pixels(std::size_t{3} * kSide * kSide, 99);

@@ -28,7 +28,7 @@ Status open(RecordedCamera& camera, const fs::path& folder, const SequenceOption
   return camera.open(folder, calibration, options);
 }
 
-TEST(RecordedCamera, GivesBackWhatWasWritten) {
+TEST(RecordedCamera, RoundTripsFrames) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
   RecordedCamera camera;
@@ -85,7 +85,7 @@ TEST(RecordedCamera, DamagedFrameIsSkippedNotFatal) {
   EXPECT_EQ(frame.stamp_ns, tiny_stamp(2));
 }
 
-TEST(RecordedCamera, NothingReadableIsRefusedAtOpen) {
+TEST(RecordedCamera, RejectsUnreadableSequenceAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   fs::remove_all(folder / "rgb");
@@ -93,7 +93,7 @@ TEST(RecordedCamera, NothingReadableIsRefusedAtOpen) {
   EXPECT_TRUE(says(open(camera, folder.path()), "no image of the sequence can be read; rgb/100.000000.png"));
 }
 
-TEST(RecordedCamera, EightBitDepthIsRefusedAtOpen) {
+TEST(RecordedCamera, RejectsEightBitDepthAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   const std::vector<std::uint8_t> grey(96 * 64, 80);
@@ -104,7 +104,7 @@ TEST(RecordedCamera, EightBitDepthIsRefusedAtOpen) {
   EXPECT_TRUE(says(open(camera, folder.path()), "has 8 bits per channel; depth must be a 16-bit grey PNG"));
 }
 
-TEST(RecordedCamera, DifferentSizesAreRefusedAtOpen) {
+TEST(RecordedCamera, RejectsDifferentSizesAtOpen) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", TinyFrame(0, 48, 32).frame.depth).ok());
@@ -112,14 +112,14 @@ TEST(RecordedCamera, DifferentSizesAreRefusedAtOpen) {
   EXPECT_TRUE(says(open(camera, folder.path()), "colour is 96x64 but depth is 48x32"));
 }
 
-TEST(RecordedCamera, SmallerDepthOfOneViewIsEnlarged) {
+TEST(RecordedCamera, EnlargesSmallerDepthOfTheSameView) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   const TinyFrame small(0, 48, 32);
   ASSERT_TRUE(write_png(folder.path() / "depth" / "100.005000.png", small.frame.depth).ok());
   Calibration calibration;
   calibration.camera = {96, 64, {80, 80, 47.5, 31.5}, {}};
-  calibration.has_size = true;  // of colour: the two halves of depth's width and height cannot be meant
+  calibration.has_size = true;  // the size is colour's; depth has half its width and height
   RecordedCamera camera;
   const Status status = camera.open(folder.path(), calibration);
   ASSERT_TRUE(status.ok()) << status.message();
@@ -133,8 +133,8 @@ TEST(RecordedCamera, SmallerDepthOfOneViewIsEnlarged) {
           << x << ' ' << y;
 }
 
-// Each pixel of a tiny sequence as a block: scaled down by the same factor it is what it was, and so is its
-// camera.
+// Each pixel of a tiny sequence becomes a block. Scaling down by the same factor restores the sequence and
+// its camera.
 void write_magnified(const fs::path& folder, int factor) {
   const TinyFrame small(0);
   TinyFrame large(0, factor * test::kTinyWidth, factor * test::kTinyHeight);
@@ -199,7 +199,7 @@ TEST(RecordedCamera, ScalesDownWhatIsTooLarge) {
                 expected.depth[static_cast<std::size_t>(y / 11 * 96 + x / 11)]);
 }
 
-// Depth keeps its own size and camera; colour's is the smaller one.
+// Depth keeps its size and camera; the colour camera is scaled down.
 TEST(RecordedCamera, ScaledDownWithADepthCameraOfItsOwn) {
   const TemporaryFolder folder;
   write_magnified(folder.path(), 3);
@@ -218,8 +218,8 @@ TEST(RecordedCamera, ScaledDownWithADepthCameraOfItsOwn) {
   EXPECT_TRUE(std::equal(expected.depth.begin(), expected.depth.end(), frame.depth.data));
 }
 
-// Of 7-Scenes, and of what other programs write into folders of any layout.
-TEST(RecordedCamera, TheLargestValueIsNoDepth) {
+// In 7-Scenes, and in folders of any layout from other programs.
+TEST(RecordedCamera, TreatsTheLargestValueAsNoDepth) {
   for (const bool own_camera : {false, true}) {
     const TemporaryFolder folder;
     TinyFrame tiny(0);
@@ -241,8 +241,8 @@ TEST(RecordedCamera, TheLargestValueIsNoDepth) {
   }
 }
 
-// An offset of depth's camera alone: its pinhole is colour's.
-TEST(RecordedCamera, DepthBesideColour) {
+// Only the offset of the depth camera is given; its pinhole is colour's.
+TEST(RecordedCamera, AppliesADepthOffsetWithoutPinhole) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   const std::string numbers = test::read_file(folder / "calibration.txt");
@@ -268,8 +268,8 @@ TEST(RecordedCamera, DepthBesideColour) {
                    "colour is 96x64 but depth is 48x32; where they differ, say depth's own "));
 }
 
-// The names do not say it, the images do.
-TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
+// The images reveal the order, not the names.
+TEST(RecordedCamera, ReportsDepthFirstAssociations) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   fs::rename(folder / "rgb", folder / "a");
@@ -282,8 +282,8 @@ TEST(RecordedCamera, DepthFirstAssociationsAreNamed) {
   EXPECT_TRUE(says(status, "the associations name depth first")) << status.message();
 }
 
-// Everything else agrees: the lists alone tell which is which.
-TEST(RecordedCamera, ExchangedListsAreNamed) {
+// Only the two lists are exchanged; everything else is consistent.
+TEST(RecordedCamera, ReportsExchangedLists) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 2).ok());
   fs::rename(folder / "rgb.txt", folder / "list");
@@ -297,7 +297,7 @@ TEST(RecordedCamera, ExchangedListsAreNamed) {
   EXPECT_TRUE(says(status, "is listed as colour and as depth")) << status.message();
 }
 
-TEST(RecordedCamera, CarriesEveryPropertyOfTheSensor) {
+TEST(RecordedCamera, KeepsEveryPropertyOfTheSensor) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   fs::remove(folder / "calibration.txt");
@@ -314,7 +314,7 @@ TEST(RecordedCamera, CarriesEveryPropertyOfTheSensor) {
   EXPECT_EQ(camera.calibration().depth_units_per_metre, 1000);
 }
 
-TEST(RecordedCamera, CalibrationMustFit) {
+TEST(RecordedCamera, RejectsUnsuitableCalibration) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 1).ok());
   Calibration calibration;
@@ -333,8 +333,8 @@ TEST(RecordedCamera, ReadsARealSequence) {
   if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
   RecordedCamera camera;
   ASSERT_TRUE(open(camera, folder).ok());
-  // Its two lists run half a period apart, so that the best-first rule leaves one image of each without a
-  // partner.
+  // The two lists are offset by half a period, so that the closest-first rule leaves one image of each
+  // unpaired.
   EXPECT_EQ(camera.frame_count(), 9u);
   EXPECT_EQ(camera.index().unpaired_colour, 1u);
   RgbdFrame frame;
@@ -355,7 +355,7 @@ class FakeClock final : public Clock {
   std::int64_t now_ns = 5'000;
 };
 
-TEST(PacedCamera, RealtimeKeepsTheStampsDistances) {
+TEST(PacedCamera, RealtimeKeepsStampIntervals) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_tiny_sequence(folder.path(), 3).ok());
   RecordedCamera camera;

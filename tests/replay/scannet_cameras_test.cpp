@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ScanNet's two cameras: what a calibration.txt with the same numbers gives, bit for bit, and of a walk whose
-// depth has half the size about the poses of the whole.
+// ScanNet's two cameras give bit for bit the same as a calibration.txt with the same numbers. A walk with
+// depth of half the size gives about the poses of the full size.
 #include "plvo/replay/calibration/scannet_cameras.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::string matrix(const Pinhole& k) {
   return fmt::format("{} 0 {} 0\n0 {} {} 0\n0 0 1 0\n0 0 0 1\n", k.fx, k.cx, k.fy, k.cy);
 }
 
-// Colour of 320×240; of depth every second pixel, as a camera in the same place has it.
+// Colour has 320×240 pixels; depth has every second pixel, as a camera in the same place sees it.
 class ScanNetCameras : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +54,7 @@ class ScanNetCameras : public ::testing::Test {
     if (Status status = sequence_calibration(folder_, calibration, guess); !status.ok()) return status;
     return camera.open(folder_, calibration);
   }
-  // All images that the camera gives, colour and depth.
+  // Concatenates all images of the camera, colour and depth.
   std::string bytes() const {
     RecordedCamera camera;
     const Status status = open(camera);
@@ -74,8 +74,8 @@ class ScanNetCameras : public ::testing::Test {
   Pinhole depth_;
 };
 
-TEST_F(ScanNetCameras, AreACalibrationWithADepthCamera) {
-  // Depth 4 cm to the right of the shared frame and turned by some degrees, colour 1 cm below it.
+TEST_F(ScanNetCameras, EqualACalibrationWithADepthCamera) {
+  // Depth is 4 cm right of the shared frame and rotated by some degrees; colour is 1 cm below it.
   const Se3 T_shared_depth = {rotation_exp({0.02, -0.05, 0.01}), {0.04, 0, 0}};
   const Se3 T_shared_colour = {Matrix3::Identity(), {0, 0.01, 0}};
   write_file(folder_ / "intrinsic/extrinsic_depth.txt", test::matrix_text(T_shared_depth));
@@ -90,7 +90,7 @@ TEST_F(ScanNetCameras, AreACalibrationWithADepthCamera) {
   ASSERT_TRUE(d.known);
   EXPECT_EQ(d.pinhole.fx, depth_.fx);
   EXPECT_EQ(d.pinhole.cy, depth_.cy);
-  // Where depth sits, seen from colour: to the right of it and above.
+  // Position of depth in the frame of colour: to the right and above.
   EXPECT_NEAR(d.tx, 0.04, 1e-12);
   EXPECT_NEAR(d.ty, -0.01, 1e-12);
   EXPECT_LT((to_rotation({d.qx, d.qy, d.qz, d.qw}) - T_shared_depth.R).norm(), 1e-9);
@@ -108,7 +108,7 @@ TEST_F(ScanNetCameras, AreACalibrationWithADepthCamera) {
   EXPECT_TRUE(bytes() != expected) << "the extrinsics matter";
 }
 
-TEST_F(ScanNetCameras, TrackAboutAsDepthOfColoursSizeDoes) {
+TEST_F(ScanNetCameras, TrackWithDepthOfHalfTheSize) {
   RecordedCamera camera;
   ASSERT_TRUE(open(camera).ok());
   std::vector<std::byte> memory(required_bytes(Limits::qvga()));
@@ -125,7 +125,7 @@ TEST_F(ScanNetCameras, TrackAboutAsDepthOfColoursSizeDoes) {
   EXPECT_LT((result.T_world_camera.t - truth.t).norm(), 0.005);
 }
 
-TEST_F(ScanNetCameras, OneSizeHasOneCamera) {
+TEST_F(ScanNetCameras, UseOneCameraForImagesOfOneSize) {
   for (int i = 0; i < test::kNumberedFrames; ++i) {
     const std::vector<std::uint8_t> small(3 * kWidth * kHeight, 80);
     ASSERT_TRUE(write_png(folder_ / scannet_file("color", i),
@@ -138,7 +138,7 @@ TEST_F(ScanNetCameras, OneSizeHasOneCamera) {
   EXPECT_FALSE(camera.calibration().depth_camera.known);
 }
 
-TEST_F(ScanNetCameras, WhatIsNoExtrinsicIsRefused) {
+TEST_F(ScanNetCameras, RejectInvalidExtrinsics) {
   RecordedCamera camera;
   write_file(folder_ / "intrinsic/extrinsic_depth.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n");
   EXPECT_TRUE(says(open(camera), "extrinsic_depth.txt: expected four rows of four numbers"));
@@ -146,7 +146,7 @@ TEST_F(ScanNetCameras, WhatIsNoExtrinsicIsRefused) {
   EXPECT_TRUE(says(open(camera), "extrinsic_depth.txt: the numbers must be finite"));
   write_file(folder_ / "intrinsic/extrinsic_depth.txt", "1 0 0 40\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   EXPECT_TRUE(says(open(camera), "are metres, at most 1 m from the colour camera"));
-  // Each of them is an input, which no output may take the place of.
+  // Each of these files is an input that no output may overwrite.
   EXPECT_EQ(calibration_files_in(folder_).size(), 3u);
   write_file(folder_ / "calibration.txt", "277 277 160 120");
   EXPECT_EQ(calibration_files_in(folder_), std::vector<fs::path>{folder_ / "calibration.txt"});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which calibration a recording gets about which nobody says anything, and what is said of it.
+// The calibration of a recording for which the user names none, and the messages about it.
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class SequenceCalibration : public ::testing::Test {
   std::string guess_;
 };
 
-TEST_F(SequenceCalibration, FilesOfOtherProgramsAreFoundByTheirNames) {
+TEST_F(SequenceCalibration, FindsFilesOfOtherPrograms) {
   const std::string matrix = "585 0 320\n0 586 240\n0 0 1\n";
   for (const char* name : {"camera-intrinsics.txt", "cam_K.txt", "intrinsics.txt"}) {
     const TemporaryFolder folder;
@@ -57,24 +57,24 @@ TEST_F(SequenceCalibration, FilesOfOtherProgramsAreFoundByTheirNames) {
     ASSERT_TRUE(find(folder.path()).ok()) << name;
     EXPECT_EQ(calibration_.camera.pinhole.fy, 588) << name;
   }
-  // 3DMatch has one for all sequences of a scene.
+  // 3DMatch has one file for all sequences of a scene.
   write_file(folder_ / "camera-intrinsics.txt", matrix);
   ASSERT_TRUE(find(make("seq-01")).ok());
   EXPECT_EQ(calibration_.camera.pinhole.fx, 585);
 }
 
-TEST_F(SequenceCalibration, TheOnlySettingsOfAnyNameAreTakenWithAWarning) {
+TEST_F(SequenceCalibration, UsesTheOnlySettingsFileWithAWarning) {
   const std::string settings = "Camera.fx: 517.3\nCamera.fy: 516.5\nCamera.cx: 318.6\nCamera.cy: 255.3\n";
   write_file(folder_ / "TUM1.yaml", settings);
   ASSERT_TRUE(find(folder_.path()).ok());
   EXPECT_EQ(calibration_.camera.pinhole.fx, 517.3);
   EXPECT_TRUE(has_text(guess_, "TUM1.yaml, the folder's only settings, is taken for it")) << guess_;
   EXPECT_EQ(calibration_files_in(folder_.path()), std::vector<fs::path>{folder_ / "TUM1.yaml"});
-  // Of two, nobody knows which.
+  // With two files the choice is ambiguous.
   write_file(folder_ / "other.yaml", settings);
   EXPECT_EQ(find(folder_.path()).code(), StatusCode::kNotFound);
   EXPECT_TRUE(calibration_files_in(folder_.path()).empty());
-  // What is no calibration is none, and is named.
+  // A file that is not a calibration is not used, and the message names it.
   fs::remove(folder_ / "other.yaml");
   write_file(folder_ / "TUM1.yaml", "speed: fast\n");
   const Status status = find(folder_.path());
@@ -83,7 +83,7 @@ TEST_F(SequenceCalibration, TheOnlySettingsOfAnyNameAreTakenWithAWarning) {
   EXPECT_TRUE(says(status, "TUM1.yaml: 'speed' is not known")) << status.message();
 }
 
-TEST_F(SequenceCalibration, TumsOwnNameIsACameraAndOneLikeItAHint) {
+TEST_F(SequenceCalibration, RecognisesTumNamesAndHintsAtSimilarOnes) {
   for (const char number : {'1', '2', '3'}) {
     const std::string model = std::string("tum-fr") + number;
     ASSERT_TRUE(find(make((std::string("rgbd_dataset_freiburg") + number + "_xyz").c_str()) / "").ok());
@@ -104,7 +104,7 @@ TEST_F(SequenceCalibration, TumsOwnNameIsACameraAndOneLikeItAHint) {
   EXPECT_FALSE(says(status, "TUM")) << status.message();
 }
 
-TEST_F(SequenceCalibration, PlainNumbersOfTumsCamerasAreSaidToLackTheRest) {
+TEST_F(SequenceCalibration, ReportsWhatPlainTumNumbersOmit) {
   const auto missing = [&](const char* name, const char* numbers) {
     write_file(folder_ / "calibration.txt", numbers);
     EXPECT_TRUE(read_calibration(folder_ / "calibration.txt", calibration_).ok()) << numbers;
@@ -121,7 +121,7 @@ TEST_F(SequenceCalibration, PlainNumbersOfTumsCamerasAreSaidToLackTheRest) {
   EXPECT_TRUE(has_text(lens, "does not say: the rolling shutter, when depth is exposed, what the")) << lens;
   EXPECT_TRUE(has_text(missing("walk", "520.9 521.0 325.1 249.7"), "tum-fr2"));
   EXPECT_TRUE(has_text(missing("walk", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
-  // The driver's numbers say nothing, the recording's name does; that of a bag, too.
+  // The driver's numbers identify no camera, but the name of the recording does; so does that of a bag.
   for (const char* name : {"rgbd_dataset_freiburg1_desk", "rgbd_dataset_freiburg1_desk.bag"})
     EXPECT_TRUE(
         has_text(missing(name, "525 525 319.5 239.5 5000"), "by its name this is TUM's camera tum-fr1"));

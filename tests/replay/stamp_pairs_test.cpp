@@ -12,16 +12,16 @@ namespace plvo {
 namespace {
 
 TEST(Associate, TakesTheBestPairsFirstAndEachImageOnce) {
-  // 10 and 12 both lie near 11: the nearer one (12 → 11.9) wins, 10 takes what is left.
+  // 10 and 12 are both near 11: the nearer one (12 → 11.9) wins, and 10 takes the remaining one.
   const auto pairs = associate({10, 12, 30}, {9, 11, 50}, 3);
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0], (std::pair<std::size_t, std::size_t>(0, 0)));
   EXPECT_EQ(pairs[1], (std::pair<std::size_t, std::size_t>(1, 1)));
   EXPECT_TRUE(associate({10}, {14}, 3).empty());
-  EXPECT_EQ(associate({10}, {13}, 3).size(), 1u);  // the tolerance itself still pairs
+  EXPECT_EQ(associate({10}, {13}, 3).size(), 1u);  // a difference equal to the tolerance still pairs
 }
 
-// Each stamp of either list within everything: the old way made a candidate of every pair.
+// All stamps are within the tolerance of each other: an algorithm over all pairs has 4e10 candidates.
 TEST(Associate, AWideToleranceCostsNoMore) {
   constexpr std::int64_t kImages = 200'000;  // 4e10 candidates
   std::vector<std::int64_t> first, second;
@@ -34,7 +34,7 @@ TEST(Associate, AWideToleranceCostsNoMore) {
   for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(pairs[i], (std::pair(i, i)));
 }
 
-TEST(Associate, TheWholeRangeOfStamps) {
+TEST(Associate, HandlesTheWholeRangeOfStamps) {
   constexpr std::int64_t kLow = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kHigh = std::numeric_limits<std::int64_t>::max();
   EXPECT_TRUE(associate({kLow}, {kHigh}, kHigh).empty());
@@ -43,11 +43,11 @@ TEST(Associate, TheWholeRangeOfStamps) {
   EXPECT_TRUE(associate({}, {1}, 5).empty());
 }
 
-// The slow obvious version: repeatedly take the closest pair of all that are left.
+// Exhaustive search: repeatedly takes the closest of all remaining pairs.
 TEST(Associate, EqualsExhaustiveSearch) {
   Random random(7);
   for (int round = 0; round < 200; ++round) {
-    // From few candidates to all of them.
+    // The tolerance ranges from few candidates to all.
     const std::int64_t tolerance = round % 4 == 0 ? 100 : round % 7;
     std::vector<std::int64_t> a, b;
     for (std::int64_t t = 0; t < 60;) a.push_back(t += 1 + static_cast<std::int64_t>(random.below(6)));

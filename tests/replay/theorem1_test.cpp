@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Theorem 1 of the paper, (25) and (26), on every pair of frames of every sequence there is: with both kinds
-// of features the motion's covariance is below that with either kind alone, eigenvalue by eigenvalue.
+// Theorem 1 of the paper, (25) and (26), on every pair of frames of all sequences: with both kinds of
+// features, the covariance of the motion is below that with either kind alone, eigenvalue by eigenvalue.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,11 +30,11 @@ struct Modules {
   }
 };
 
-// The stages of the odometry, so that the estimate can be seen that its result no longer holds.
+// Runs the stages of the odometry itself, because its result does not contain the estimate.
 class Pairs {
  public:
   explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
-    // The theorem is of the kinds alone: what both share belongs to neither.
+    // The theorem covers independent kinds: errors that both share are switched off.
     config_.noise.angular_rate_error_rad_per_s = config_.noise.shared_depth_m = 0;
     config_.surfaces = false;
     arena_ = Arena(memory_);
@@ -43,7 +43,7 @@ class Pairs {
     modules_.extraction.init(camera, config_);
   }
 
-  // The motion from the frame before.
+  // The motion since the previous frame.
   MotionEstimate next(const RgbdFrame& frame) {
     TrackResult result;
     const DepthSampler depth = modules_.extraction.depth_sampler(frame);
@@ -66,7 +66,7 @@ class Pairs {
     }
     if (!has_reference_) modules_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
     modules_.extraction.lift(depth, noise, arena_, current);
-    prior_.T_current_reference = motion.T_current_reference;  // of the next pair: as this one
+    prior_.T_current_reference = motion.T_current_reference;  // predicts the motion of the next pair
     has_reference_ = true;
     slot_ = 1 - slot_;
     return motion;
@@ -99,7 +99,8 @@ void expect_theorem1(const MotionEstimate& motion, const std::string& where) {
   // (26)
   const Matrix6 product = motion.C_H * Matrix6(I_P + I_L);
   EXPECT_LT((product - Matrix6::Identity()).norm(), 1e-5) << where;
-  // (25); of a kind that leaves a direction open, C has an infinite eigenvalue, and there is nothing to show.
+  // (25). If a kind leaves a direction unconstrained, its C has an infinite eigenvalue and the bound is
+  // trivial.
   const Vector6 both = eigenvalues(motion.C_H);
   for (const Matrix6& information : {I_P, I_L}) {
     const Vector6 alone = eigenvalues(information);

@@ -68,7 +68,7 @@ SequenceIndex read_associations(const std::string& lines, Status& status) {
   return index;
 }
 
-// The benchmark's own script lists whatever it was given first.
+// The benchmark's script lists first the file that it got first.
 TEST(TumIndex, AssociationsMayNameDepthFirst) {
   Status status;
   const SequenceIndex index =
@@ -78,7 +78,7 @@ TEST(TumIndex, AssociationsMayNameDepthFirst) {
   EXPECT_EQ(index.pairs[0].colour.file, "rgb/a.png");
   EXPECT_EQ(index.pairs[0].colour.stamp_ns, 1'100'000'000);
   EXPECT_EQ(index.pairs[1].depth.file, "./depth/b.png");
-  // One line that says otherwise, and the names say nothing any more.
+  // A single line with another order makes the names inconclusive.
   const SequenceIndex mixed =
       read_associations("1.0 depth/a.png 1.1 rgb/a.png\n2.0 rgb/b 2.1 depth/b\n", status);
   ASSERT_TRUE(status.ok()) << status.message();
@@ -120,7 +120,7 @@ TEST(TumIndex, ByteOrderMarks) {
   EXPECT_TRUE(says(status, "UTF-16; save it again as UTF-8")) << status.message();
 }
 
-TEST(TumIndex, AnOniFileSaysHowItIsPlayed) {
+TEST(TumIndex, ExplainsHowToPlayAnOniFile) {
   const TemporaryFolder folder;
   write_file(folder / "walk.oni", "NI10");
   SequenceIndex index;
@@ -129,7 +129,7 @@ TEST(TumIndex, AnOniFileSaysHowItIsPlayed) {
   EXPECT_TRUE(says(status, "plvo live --device ")) << status.message();
 }
 
-TEST(TumIndex, BadFolders) {
+TEST(TumIndex, RejectsInvalidFolders) {
   const TemporaryFolder folder;
   SequenceIndex index;
   EXPECT_TRUE(says(read_sequence_index(folder / "none", {}, index), "is not a folder"));
@@ -146,7 +146,7 @@ TEST(TumIndex, BadFolders) {
   EXPECT_TRUE(says(read_tum_index(folder.path(), {}, kTolerance, index), "lists no image"));
 }
 
-TEST(TumIndex, BadStamps) {
+TEST(TumIndex, RejectsInvalidStamps) {
   const TemporaryFolder folder;
   SequenceIndex index;
   write_file(folder / "depth.txt", "1.0 depth/a.png\n");

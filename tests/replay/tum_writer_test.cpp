@@ -11,7 +11,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-TEST(TumWriter, SaysWhyItCannotWrite) {
+TEST(TumWriter, ReportsWriteFailure) {
   const TemporaryFolder folder;
   test::write_file(folder / "file", "x");
   TumWriter writer;
@@ -19,7 +19,7 @@ TEST(TumWriter, SaysWhyItCannotWrite) {
   EXPECT_EQ(writer.open(folder.path() / "file" / "below", test::tiny_camera(), 5000).code(), StatusCode::kIo);
 }
 
-TEST(TumWriter, LeavesAnotherRecordingAlone) {
+TEST(TumWriter, DoesNotOverwriteARecording) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder.path(), 1).ok());
   const std::string list = test::read_file(folder / "rgb.txt");
@@ -28,8 +28,8 @@ TEST(TumWriter, LeavesAnotherRecordingAlone) {
   EXPECT_EQ(test::read_file(folder / "rgb.txt"), list);
 }
 
-// What is known about the shutter goes into the folder, and what is not known does not.
-TEST(TumWriter, TheCalibrationSaysWhatIsKnown) {
+// The calibration file contains the readout time only if it is known.
+TEST(TumWriter, WritesOnlyKnownReadoutTime) {
   const TemporaryFolder folder;
   Calibration written;
   written.camera = test::tiny_camera();

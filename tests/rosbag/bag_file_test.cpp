@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The container: whole, compressed, cut off at any byte, damaged, and of another kind.
+// The container: complete, compressed, truncated at any byte, damaged, and of another format.
 #include "plvo/rosbag/bag_file.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::string image_of(int number) {
                              std::string(12, static_cast<char>('a' + number)));
 }
 
-// Six images and six of another type, two of each in a chunk.
+// Six images and six messages of another type, two of each per chunk.
 BagWriter small_bag(const std::string& compression) {
   BagWriter writer;
   writer.connection(3, "/camera/rgb/image_color", "sensor_msgs/Image");
@@ -34,7 +34,7 @@ BagWriter small_bag(const std::string& compression) {
   return writer;
 }
 
-// Of the one topic of images; none where its connection is gone.
+// The messages of the only image topic; empty if its connection is missing.
 std::vector<BagMessage> images_of(const BagFile& bag) {
   std::vector<BagMessage> messages;
   for (std::size_t i = 0; i < bag.topics().size(); ++i)
@@ -42,7 +42,7 @@ std::vector<BagMessage> images_of(const BagFile& bag) {
   return messages;
 }
 
-TEST(BagFile, GivesTheMessagesWhateverTheyArePackedIn) {
+TEST(BagFile, ReadsMessagesWithEveryCompression) {
   const TemporaryFolder folder;
   for (const char* compression : {"none", "bz2", "lz4"}) {
     write_file(folder / "a.bag", small_bag(compression).file());
@@ -68,7 +68,7 @@ TEST(BagFile, GivesTheMessagesWhateverTheyArePackedIn) {
   }
 }
 
-TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
+TEST(BagFile, KeepsMessagesBeforeAnyTruncation) {
   const TemporaryFolder folder;
   const std::string whole = small_bag("none").file();
   std::size_t last = 0;
@@ -79,7 +79,7 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
     EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short; what lies before byte ") ||
                 (bag.remark().empty() && images_of(bag).size() == 6))
         << size << bag.remark();
-    // All whose last byte is still there, and no others.
+    // All messages whose last byte is still in the file, and no others.
     std::size_t expected = 0;
     for (int i = 0; i < 6; ++i) {
       const std::size_t start = whole.find(image_of(i));
@@ -91,7 +91,7 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
     last = expected;
   }
   EXPECT_EQ(last, 6u);
-  // A compressed piece that is cut is lost; those before are not.
+  // A truncated compressed chunk is lost; the chunks before it are kept.
   for (const char* compression : {"bz2", "lz4"}) {
     const std::string packed = small_bag(compression).file();
     write_file(folder / "a.bag", packed.substr(0, packed.rfind("compression=") + 100));
@@ -102,7 +102,7 @@ TEST(BagFile, CutOffAnywhereItKeepsWhatCameBefore) {
   }
 }
 
-TEST(BagFile, ARecorderThatDiedLeavesWhatItWrote) {
+TEST(BagFile, ReadsTheBagOfACrashedRecorder) {
   const TemporaryFolder folder;
   BagWriter writer = small_bag("none");
   writer.message(3, 99, image_of(6));
@@ -114,9 +114,9 @@ TEST(BagFile, ARecorderThatDiedLeavesWhatItWrote) {
   EXPECT_TRUE(bag.remark().starts_with("a.bag is cut short")) << bag.remark();
 }
 
-// Any byte may be any other: nothing is read beyond what there is (the sanitizers watch), and what is given
-// is whole.
-TEST(BagFile, DamageCostsWhatIsDamaged) {
+// Any byte may change: the reader does not read beyond the data (the sanitizers check this), and every
+// message that it returns is complete.
+TEST(BagFile, LosesOnlyDamagedMessages) {
   const TemporaryFolder folder;
   for (const char* compression : {"none", "bz2", "lz4"}) {
     const std::string whole = small_bag(compression).file();
@@ -137,7 +137,7 @@ TEST(BagFile, DamageCostsWhatIsDamaged) {
   }
 }
 
-TEST(BagFile, APieceThatDoesNotUnpackIsLeftOut) {
+TEST(BagFile, SkipsAChunkThatDoesNotUnpack) {
   const TemporaryFolder folder;
   for (const char* compression : {"bz2", "lz4"}) {
     std::string file = small_bag(compression).file();
@@ -151,8 +151,8 @@ TEST(BagFile, APieceThatDoesNotUnpackIsLeftOut) {
   }
 }
 
-// A chunk of a few bytes that says it becomes 4 GB.
-TEST(BagFile, AClaimIsNotBelieved) {
+// A small chunk that claims to unpack to 4 GB.
+TEST(BagFile, BoundsTheClaimedSizeOfAChunk) {
   const TemporaryFolder folder;
   std::string file = small_bag("bz2").file();
   file.replace(file.find("size=") + 5, 4, "\xff\xff\xff\xff");
@@ -163,8 +163,8 @@ TEST(BagFile, AClaimIsNotBelieved) {
   EXPECT_NE(bag.remark(), "");
 }
 
-// A reader that followed them would run out of stack.
-TEST(BagFile, ChunksWithinChunksAreRefused) {
+// A recursive reader would overflow the stack.
+TEST(BagFile, RejectsNestedChunks) {
   const TemporaryFolder folder;
   const auto expect_refused = [&](const std::string& file) {
     write_file(folder / "a.bag", file);
@@ -188,7 +188,7 @@ TEST(BagFile, ChunksWithinChunksAreRefused) {
     wild += BagWriter::claim("none", UINT32_MAX, UINT32_MAX);
   }
   expect_refused(deep);
-  // Whose lengths overrun the next are damaged, and cost themselves alone.
+  // Chunks with lengths that overrun the next one are damaged; only they are lost.
   write_file(folder / "a.bag", wild);
   BagFile bag;
   ASSERT_TRUE(bag.open(folder / "a.bag").ok());
@@ -196,8 +196,8 @@ TEST(BagFile, ChunksWithinChunksAreRefused) {
   EXPECT_NE(bag.remark(), "");
 }
 
-// A length that is damaged takes nothing from the chunks after it.
-TEST(BagFile, AChunkThatOverrunsTheNextCostsItselfAtTheMost) {
+// A chunk with a damaged length does not affect the chunks after it.
+TEST(BagFile, LosesOnlyAChunkThatOverrunsTheNext) {
   const TemporaryFolder folder;
   std::string file = small_bag("none").file();
   const std::size_t second = file.find("compression=none", file.find("compression=none") + 1);
@@ -210,7 +210,7 @@ TEST(BagFile, AChunkThatOverrunsTheNextCostsItselfAtTheMost) {
   EXPECT_EQ(bag.remark(), "1 damaged pieces of a.bag are left out");
 }
 
-TEST(BagFile, WhatIsNoBagIsRefusedInWords) {
+TEST(BagFile, RejectsFilesThatAreNotBags) {
   const TemporaryFolder folder;
   BagFile bag;
   EXPECT_EQ(bag.open(folder / "none.bag").code(), StatusCode::kNotFound);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bags that are small on disk and large in memory: as many messages as a bag may have, one more, and records
-// that claim gigabytes, with and without holes in the file. All stay below the ceiling of a reader.
+// Bags that are small on disk but large in memory: the largest number of messages, one more, and records that
+// claim gigabytes, with and without holes in the file. All stay below the memory ceiling of a reader.
 #include <gtest/gtest.h>
 
 #include "bag_writer.hpp"
@@ -24,14 +24,14 @@ using test::write_file;
 constexpr const char* kColour = "/camera/rgb/image_color";
 constexpr const char* kDepth = "/camera/depth/image";
 
-// The shortest message whose stamp can be read, in the shortest record.
+// The shortest message with a readable stamp, in the shortest record.
 std::string shortest_record(std::uint32_t connection, std::int64_t stamp_ns) {
   return BagWriter::record({{"op", "\2"}, {"conn", wire_u32(connection)}}, wire_u32(0) + wire_time(stamp_ns));
 }
 
 class BagMemory : public ::testing::Test {
  protected:
-  // Of colour and depth by turns, with stamps that pair.
+  // Writes colour and depth alternately, with stamps that pair.
   void write_images(std::size_t count) const {
     BagWriter writer;
     writer.connection(0, kColour, kImageType);
@@ -42,7 +42,7 @@ class BagMemory : public ::testing::Test {
     write_file(path_, writer.file());
     EXPECT_LT(fs::file_size(path_), 32u << 20);
   }
-  // What `text` claims lies in holes up to `bytes`.
+  // Extends the file with a hole to the size `bytes` that `text` claims.
   void write_with_holes(const std::string& text, std::uintmax_t bytes) const {
     write_file(path_, text);
     fs::resize_file(path_, bytes);
@@ -52,7 +52,7 @@ class BagMemory : public ::testing::Test {
   const fs::path path_ = folder_ / "a.bag";
 };
 
-TEST_F(BagMemory, AsManyImagesAsABagMayHave) {
+TEST_F(BagMemory, ReadsTheLargestNumberOfImages) {
   write_images(kMostImages);
   expect_within_the_ceiling("images", [&] {
     BagCamera camera;
@@ -62,7 +62,7 @@ TEST_F(BagMemory, AsManyImagesAsABagMayHave) {
   });
 }
 
-TEST_F(BagMemory, OneMoreIsRefusedInWords) {
+TEST_F(BagMemory, RejectsOneImageMore) {
   write_images(kMostImages + 1);
   expect_within_the_ceiling("too many images", [&] {
     const Status status = BagFile().open(path_);
@@ -70,8 +70,8 @@ TEST_F(BagMemory, OneMoreIsRefusedInWords) {
   });
 }
 
-// The same chunk of readings, again and again.
-TEST_F(BagMemory, AsManyReadingsAsABagMayHave) {
+// Repeats the same chunk of readings.
+TEST_F(BagMemory, ReadsTheLargestNumberOfReadings) {
   constexpr std::size_t kChunks = 64, kMessages = kMostReadings / 2 / kChunks;
   BagWriter writer;
   writer.connection(0, "/imu", kImuType);
@@ -102,7 +102,7 @@ TEST_F(BagMemory, AsManyReadingsAsABagMayHave) {
   });
 }
 
-TEST_F(BagMemory, ClaimsOfGigabytesTakeNothing) {
+TEST_F(BagMemory, BoundsClaimsOfGigabytes) {
   constexpr std::uint32_t kMost = UINT32_MAX;
   constexpr std::uintmax_t kHoles = std::uintmax_t{1} << 33;
   BagWriter writer;
@@ -118,7 +118,7 @@ TEST_F(BagMemory, ClaimsOfGigabytesTakeNothing) {
                bag.remark().find("are larger than the 72 MiB that are read") != std::string::npos;
       });
     }
-  // A message within a chunk that is not compressed, which is read where it lies.
+  // A message in an uncompressed chunk, which is read in place.
   std::string message = shortest_record(0, 7);
   message.replace(message.size() - 16, 4, wire_u32(kMost - 1000));
   write_with_holes(start + BagWriter::claim("none", kMost, kMost) + message, kHoles);
@@ -130,8 +130,8 @@ TEST_F(BagMemory, ClaimsOfGigabytesTakeNothing) {
   });
 }
 
-// Ten thousand topics may be named.
-TEST_F(BagMemory, NamesOfKilobytesAreNoTopics) {
+// Names have a length limit, because a bag may have ten thousand topics.
+TEST_F(BagMemory, RejectsTopicNamesOfKilobytes) {
   BagWriter writer;
   writer.connection(0, '/' + std::string(1000, 'x'), kImageType);
   writer.connection(1, kColour, std::string(1000, 'x'));

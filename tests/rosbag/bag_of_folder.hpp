@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded folder as the messages that a driver would have published meanwhile, and as the bag of them.
+// Turns a recorded folder into the messages that a driver would have published, and into a bag of them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ inline constexpr const char* kTumDepth = "/camera/depth/image";
 inline constexpr const char* kTumInfo = "/camera/rgb/camera_info";
 inline constexpr const char* kNotRead = "/tf";
 
-// Four for each frame: camera_info, depth (metres: of 32FC1, else of 16UC1 in the folder's units), colour,
-// and one of a type that is not read.
+// Four messages per frame: camera_info, depth (32FC1 if `metres`, else 16UC1 in the folder's units), colour,
+// and one of a type that plvo does not read.
 inline std::vector<RecordedMessage> published(const std::filesystem::path& folder, bool metres) {
   Calibration calibration;
   EXPECT_TRUE(read_calibration(folder / "calibration.txt", calibration).ok());
@@ -45,9 +45,9 @@ inline std::vector<RecordedMessage> published(const std::filesystem::path& folde
   return messages;
 }
 
-// Of the folder's gyro and accelerometer. kBoth: in one message, which needs samples at the same times.
-// kAcceleration: as a Kinect's, the gyro said to be missing. kGyroAlone and kAccelerationAlone: as a
-// RealSense's, what is missing left at zero.
+// Messages of the folder's gyro and accelerometer. kBoth: both in one message, which requires samples at the
+// same times. kAcceleration: as from a Kinect, with the gyro declared missing. kGyroAlone and
+// kAccelerationAlone: as from a RealSense, with zeros for the missing sensor.
 enum class ImuContent { kBoth, kAcceleration, kGyroAlone, kAccelerationAlone };
 inline std::vector<RecordedMessage> published_imu(const std::filesystem::path& folder,
                                                   const std::string& topic, ImuContent content) {
@@ -68,7 +68,7 @@ inline std::vector<RecordedMessage> published_imu(const std::filesystem::path& f
   return messages;
 }
 
-// A chunk ends where a message comes that is not read.
+// Each message of the type that plvo does not read ends a chunk.
 inline std::string bag_of(const std::vector<RecordedMessage>& messages, const std::string& compression) {
   BagWriter writer;
   std::vector<std::string> topics;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes ROS 1 bags and the messages in them, as http://wiki.ros.org/Bags/Format/2.0 has it, without an
-// index.
+// Writes ROS 1 bags without an index, and the messages in them, according to
+// http://wiki.ros.org/Bags/Format/2.0.
 #pragma once
 
 #include <bzlib.h>
@@ -34,7 +34,7 @@ inline std::string header_message(std::int64_t stamp_ns) {
   return wire_u32(7) + wire_time(stamp_ns) + wire_text("/openni_rgb_optical_frame");
 }
 
-// rows: as they stand in memory, `step` bytes each.
+// rows: the bytes in memory, `step` bytes per row.
 inline std::string image_message(std::int64_t stamp_ns, int width, int height, const std::string& encoding,
                                  std::size_t step, const std::string& rows, bool big_endian = false) {
   return header_message(stamp_ns) + wire_u32(static_cast<std::uint64_t>(height)) +
@@ -47,7 +47,7 @@ inline std::string colour_message(const RgbdFrame& frame) {
   return image_message(frame.stamp_ns, c.width, c.height, "rgb8", static_cast<std::size_t>(c.stride_bytes),
                        {reinterpret_cast<const char*>(c.data), bytes});
 }
-// 16UC1 as it is; 32FC1 in metres, and NaN where there is no depth.
+// 16UC1 is copied; 32FC1 is in metres, with NaN for missing depth.
 inline std::string depth_message(const RgbdFrame& frame, bool metres) {
   const DepthView& d = frame.depth;
   std::string rows;
@@ -75,7 +75,7 @@ inline std::string camera_info_message(std::int64_t stamp_ns, const CameraModel&
   return text + std::string(4 + 4 + 4 * 4 + 1, '\0');  // binning and region of interest
 }
 
-// What is not there has a covariance that begins with -1, as ROS has it.
+// As in ROS, a missing value has a covariance that begins with -1.
 inline std::string imu_message(std::int64_t stamp_ns, const Vector3& rate, bool has_rate,
                                const Vector3& force, bool has_force) {
   const auto covariance = [](bool there) {
@@ -108,15 +108,15 @@ class BagWriter {
   void message(std::uint32_t connection, std::int64_t received_ns, const std::string& data) {
     chunk_ += record({{"op", "\2"}, {"conn", wire_u32(connection)}, {"time", wire_time(received_ns)}}, data);
   }
-  // The beginning of a chunk that says how many bytes follow, and what they unpack to.
+  // The beginning of a chunk that states its packed and its unpacked size.
   static std::string claim(const std::string& compression, std::uint32_t unpacked, std::uint32_t packed) {
     const std::string chunk =
         record({{"op", "\5"}, {"compression", compression}, {"size", wire_u32(unpacked)}}, "");
     return chunk.substr(0, chunk.size() - 4) + wire_u32(packed);
   }
-  // A record as it is.
+  // Adds a record unchanged.
   void put(const std::string& record) { chunk_ += record; }
-  // What came since the last one, by the name of its compression.
+  // Packs everything since the last chunk; `compression` is the name in the bag.
   void end_chunk(const std::string& compression = "none") { put_chunks(packed_chunk(compression)); }
   void put_chunks(const std::string& chunks) { body_ += chunks; }
   std::string packed_chunk(const std::string& compression) {
@@ -135,8 +135,8 @@ class BagWriter {
     chunk_.clear();
     return record({{"op", "\5"}, {"compression", compression}, {"size", size}}, packed);
   }
-  // With what was written so far; left open, as a recorder that died leaves it: the last chunk has no length
-  // yet.
+  // Returns the bag with everything so far. If not closed, the last chunk has no length yet, as after a crash
+  // of the recorder.
   std::string file(bool closed = true) const {
     const std::string magic = "#ROSBAG V2.0\n";
     std::string header;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS 1 bags from C: the frames of the folder that the bag was made of, its camera_info, topics by name, and
-// errors in the library's words.
+// ROS 1 bags through the C interface: the frames of the folder that the bag was made from, its camera_info,
+// topics by name, and the library's error messages.
 #include <cstring>
 
 #include "bag_of_folder.hpp"
@@ -17,7 +17,7 @@ namespace {
 using test::TemporaryFolder;
 using test::write_file;
 
-// Closes what it opened.
+// Closes the recording that it opened.
 struct Opened {
   explicit Opened(const std::string& file, const char* calibration = nullptr)
       : status(plvo_sequence_open(file.c_str(), calibration, &sequence)) {}
@@ -35,7 +35,7 @@ struct Opened {
 class CBag : public ::testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(test::write_tiny_sequence(folder_ / "tiny", kFrames).ok()); }
-  // prefix: before each topic.
+  // prefix: precedes each topic.
   std::string bag(const std::string& prefix = "", const std::string& leave_out = "none") {
     std::vector<test::RecordedMessage> messages = test::published(folder_ / "tiny", true);
     std::erase_if(messages, [&](const auto& message) { return message.topic == leave_out; });
@@ -74,13 +74,13 @@ class CBag : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CBag, GivesTheFramesOfTheFolder) {
+TEST_F(CBag, EqualsTheFramesOfTheFolder) {
   const Opened opened(bag());
   ASSERT_EQ(opened.status.code, PLVO_OK) << opened.status.message;
   expect_the_folders_frames(opened.sequence);
 }
 
-TEST_F(CBag, TheProgramOfThePageGivesThePosesOfTheFolder) {
+TEST_F(CBag, ProgramOfThePageEqualsThePosesOfTheFolder) {
   ProceduralSequence rendered(320, 240);
   TumWriter writer;
   ASSERT_TRUE(writer.open(folder_ / "walk", rendered.camera(), 1000).ok());
@@ -95,7 +95,7 @@ TEST_F(CBag, TheProgramOfThePageGivesThePosesOfTheFolder) {
   EXPECT_EQ(std::count(of_bag.out.begin(), of_bag.out.end(), '\n'), 4) << of_bag.out;
 }
 
-TEST_F(CBag, TopicsByName) {
+TEST_F(CBag, ChoosesTopicsByName) {
   const std::string file = bag("/front");
   const std::string colour = "/front" + std::string(test::kTumColour);
   const std::string depth = "/front" + std::string(test::kTumDepth);
@@ -113,8 +113,8 @@ TEST_F(CBag, TopicsByName) {
   EXPECT_TRUE(Opened(file, topics).says("bag_topics.struct_size is 8; set it to sizeof(plvo_bag_topics)"));
 }
 
-// The readings of the folder, and with them the poses of the program that uses them.
-TEST_F(CBag, ReadingsOfAGyroAndAnAccelerometer) {
+// The readings of the folder, and the poses of a program that uses them.
+TEST_F(CBag, ReadsGyroAndAccelerometer) {
   ProceduralSequence rendered(320, 240);
   TumWriter writer;
   ASSERT_TRUE(writer.open(folder_ / "walk", rendered.camera(), 1000).ok());
@@ -141,7 +141,7 @@ TEST_F(CBag, ReadingsOfAGyroAndAnAccelerometer) {
   EXPECT_EQ(std::count(of_bag.out.begin(), of_bag.out.end(), '\n'), 4) << of_bag.out;
 
   plvo_bag_topics topics = {};
-  topics.struct_size = offsetof(plvo_bag_topics, gyro);  // of a program that knows none of the two
+  topics.struct_size = offsetof(plvo_bag_topics, gyro);  // a program that knows neither of the two fields
   topics.gyro = "/side/imu";
   const Opened older((folder_ / "walk.bag").string(), topics);
   plvo_imu_readings readings = {};
@@ -158,7 +158,7 @@ TEST_F(CBag, ReadingsOfAGyroAndAnAccelerometer) {
   EXPECT_EQ(readings.accelerometer_count, 0U);
 }
 
-TEST_F(CBag, WhatIsWrongIsSaid) {
+TEST_F(CBag, ReportsErrors) {
   const Opened nowhere((folder_ / "nowhere.bag").string());
   EXPECT_EQ(nowhere.status.code, PLVO_NOT_FOUND);
   EXPECT_EQ(nowhere.sequence, nullptr);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ROS 1 bag in the other commands: the truth beside it in `plvo run` and `plvo eval`, a folder made of it
-// by `plvo record`, played by `plvo live`, and taken by `plvo calibrate`: each gives what the folder gives
-// that the bag was made of.
+// A ROS 1 bag in the other commands gives the same as the folder that it was made from: the true poses beside
+// it in `plvo run` and `plvo eval`, a folder written by `plvo record`, and the results of `plvo live` and
+// `plvo calibrate`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,8 +56,8 @@ class CliBagCommands : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
-  // Two of each kind, of which none has a name that is known: the message lists them.
+TEST_F(CliBagCommands, EscapesControlCharactersInTopicNames) {
+  // Two topics of each kind, none with a known name: the message lists them.
   std::vector<RecordedMessage> messages;
   for (const char* camera : {"/1", "/2"})
     for (RecordedMessage message : test::published(walk(), true)) {
@@ -78,7 +78,7 @@ TEST_F(CliBagCommands, ATopicDoesNotCommandTheTerminal) {
   }
 }
 
-TEST_F(CliBagCommands, TheTruthLiesBesideTheBag) {
+TEST_F(CliBagCommands, FindsGroundTruthBesideTheBag) {
   const std::string bag = path("walk.bag"), run = " --readout 0 --quiet --out " + path("t") + " --json ";
   ASSERT_EQ(plvo("run " + bag + run + path("without")).exit_code, 0);
   EXPECT_FALSE(nlohmann::json::parse(read_file(folder_ / "without")).contains("evaluation"));
@@ -107,7 +107,7 @@ TEST_F(CliBagCommands, TheTruthLiesBesideTheBag) {
                  "is an input");
 }
 
-TEST_F(CliBagCommands, AFolderIsMadeOfIt) {
+TEST_F(CliBagCommands, RecordWritesAFolder) {
   const CommandResult r = plvo("record " + path("made") + " --imu --readout 0 --device " + path("walk.bag"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("6 frames in "), std::string::npos) << r.out;
@@ -121,7 +121,7 @@ TEST_F(CliBagCommands, AFolderIsMadeOfIt) {
   EXPECT_FALSE(fs::exists(folder_ / "short/accelerometer.txt")) << "nobody asked";
 }
 
-TEST_F(CliBagCommands, AnAccelerometerAloneMakesOneFile) {
+TEST_F(CliBagCommands, RecordWritesOneFileForAnAccelerometerAlone) {
   std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", ImuContent::kAcceleration);
   const std::vector<RecordedMessage> images = test::published(walk(), true);
   messages.insert(messages.end(), images.begin(), images.end());
@@ -131,7 +131,7 @@ TEST_F(CliBagCommands, AnAccelerometerAloneMakesOneFile) {
   EXPECT_EQ(bytes_of(path("made"), "--imu"), bytes_of(path("walk.bag"), "--imu"));
 }
 
-TEST_F(CliBagCommands, LivePlaysEveryFrameOfIt) {
+TEST_F(CliBagCommands, LivePlaysEveryFrame) {
   const CommandResult r = plvo("live --readout 0 --quiet --device " + path("walk.bag") + " --record " +
                                path("kept") + " --out " + path("t") + " --covariance " + path("c"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
@@ -140,7 +140,7 @@ TEST_F(CliBagCommands, LivePlaysEveryFrameOfIt) {
   EXPECT_EQ(bytes, bytes_of(path("kept")));
 }
 
-TEST_F(CliBagCommands, WhatDoesNotApplyIsRefused) {
+TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   const std::string device = " --device " + path("walk.bag");
   expect_refused("record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder, not as an .oni file");
   expect_refused("live --record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder");
@@ -168,8 +168,8 @@ TEST_F(CliBagCommands, WhatDoesNotApplyIsRefused) {
   EXPECT_EQ(read_file(folder_ / "mine/accelerometer.txt"), "mine");
 }
 
-// The same numbers; the first line names the recording.
-TEST_F(CliBagCommands, CalibrateFindsWhatItFindsInTheFolder) {
+// The numbers are the same; only the first line names the recording.
+TEST_F(CliBagCommands, CalibrateEqualsTheFolder) {
   write_file(folder_ / "hand.txt", test::turning_hand(2.2));
   const CommandResult made =
       plvo("simulate --quiet --frames 60 --size 320x240 --scene desk --depth-delay 0.012 --out " +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo run --imu` of a ROS 1 bag: the bytes of the folder with the same readings, on whichever topics they
-// are; and what cannot be meant in words.
+// `plvo run --imu` of a ROS 1 bag gives the bytes of the folder with the same readings, whichever topics hold
+// them. Ambiguous topics give a message.
 #include <gtest/gtest.h>
 
 #include "bag_of_folder.hpp"
@@ -55,14 +55,14 @@ class CliBagImu : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CliBagImu, GivesTheBytesOfTheFolder) {
+TEST_F(CliBagImu, EqualsTheBytesOfTheFolder) {
   const std::string expected = bytes_of(walk().string(), "--imu");
   EXPECT_NE(expected, bytes_of(walk().string(), "")) << "the readings matter";
   write({readings("/imu", ImuContent::kBoth)});
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu --imu-axes x,-y,-z"),
             bytes_of(walk().string(), "--imu --imu-axes x,-y,-z"));
-  // In the order of their stamps, whatever the order of the file.
+  // Sorted by stamp, whatever the order in the file.
   Messages backwards = readings("/imu", ImuContent::kBoth);
   std::reverse(backwards.begin(), backwards.end());
   write({backwards});
@@ -72,7 +72,7 @@ TEST_F(CliBagImu, GivesTheBytesOfTheFolder) {
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
 }
 
-TEST_F(CliBagImu, OfAnAccelerometerAlone) {
+TEST_F(CliBagImu, UsesAnAccelerometerAlone) {
   fs::copy(walk(), folder_ / "still", fs::copy_options::recursive);
   fs::remove(folder_ / "still/gyroscope.txt");
   const std::string expected = bytes_of(path("still"), "--imu");
@@ -83,7 +83,7 @@ TEST_F(CliBagImu, OfAnAccelerometerAlone) {
   }
 }
 
-TEST_F(CliBagImu, OfSeveralTopicsOneIsChosenByName) {
+TEST_F(CliBagImu, ChoosesOneOfSeveralTopicsByName) {
   const std::string expected = bytes_of(walk().string(), "--imu");
   Messages other = readings("/base/imu", ImuContent::kBoth);
   for (std::size_t i = 0; i < other.size(); i += 2) other[i].data.resize(100);
@@ -95,7 +95,7 @@ TEST_F(CliBagImu, OfSeveralTopicsOneIsChosenByName) {
   expect_refused("--imu --gyro-topic /camera/imu", 1, "choose with --accelerometer-topic");
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu --gyro-topic /camera/imu --accelerometer-topic /camera/imu"),
             expected);
-  // What is damaged is left out and counted.
+  // Damaged messages are left out and counted.
   expect_refused("--imu --gyro-topic /base/imu --accelerometer-topic /base/imu", 0,
                  std::to_string((other.size() + 1) / 2) + " readings of gyro and accelerometer left out");
   expect_refused(
@@ -103,7 +103,7 @@ TEST_F(CliBagImu, OfSeveralTopicsOneIsChosenByName) {
       "there are no readings of a gyro (sensor_msgs/Imu) on /imu; they are on /base/imu, /camera/imu");
 }
 
-TEST_F(CliBagImu, WhereThereIsNoneItIsSaid) {
+TEST_F(CliBagImu, ReportsMissingReadings) {
   write({});
   expect_refused("--imu", 1, "the bag has no readings of a gyro or an accelerometer");
   expect_refused("--imu --accelerometer-topic /tf", 1,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A signal while a bag is opened ends the program at once, as in every command: nothing exists yet that must
-// be whole. How it ended tells: who let the signal wait would go on to the end of the bag and end by itself.
+// A signal while a bag is opened ends the program at once, in every command, because no output exists yet.
+// The exit status shows it: a program that deferred the signal would read the whole bag and exit normally.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -54,7 +54,7 @@ TEST(CliBagSignals, TerminationWhileABagIsOpened) {
       words.insert(words.begin(), test::kPlvo);
       const pid_t child = ::fork();
       if (child == 0) {
-        ::signal(signal, SIG_DFL);  // whoever runs the tests may ignore it
+        ::signal(signal, SIG_DFL);  // the caller of the tests may ignore it
         std::vector<char*> arguments;
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo run` of a ROS 1 bag: the bytes of the folder that it was made of, whoever wrote the bag; and what is
-// wrong with it in words.
+// `plvo run` of a ROS 1 bag gives the bytes of the folder that it was made from, whichever library wrote the
+// bag. Faults of the bag give a message.
 #include <gtest/gtest.h>
 
 #include <fmt/core.h>
@@ -58,18 +58,18 @@ class CliBag : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CliBag, GivesTheBytesOfTheFolder) {
+TEST_F(CliBag, EqualsTheBytesOfTheFolder) {
   run_folder();
   for (const char* compression : {"none", "bz2", "lz4"}) {
     write(published(true), compression);
     expect_the_folders_bytes("");
   }
   write(published(false));
-  expect_the_folders_bytes("--depth-scale 5000");  // whole units, of which ROS would have a thousand a metre
+  expect_the_folders_bytes("--depth-scale 5000");  // whole units; ROS defines a thousand per metre
 }
 
-// Sorted by their stamps, images from before and after would alternate.
-TEST_F(CliBag, AClockThatStepsBackIsRefused) {
+// Sorting by stamp would interleave the images before and after the step.
+TEST_F(CliBag, RejectsAClockStep) {
   const std::vector<RecordedMessage> recorded = published(true);
   std::vector<RecordedMessage> messages;
   for (const std::ptrdiff_t frame : {0, 2, 4, 1, 3, 5})
@@ -78,7 +78,7 @@ TEST_F(CliBag, AClockThatStepsBackIsRefused) {
   expect_refused("", 1, ": the clock steps back by ");
 }
 
-TEST_F(CliBag, OfRossOwnLibraryToo) {
+TEST_F(CliBag, ReadsBagsOfRosLibrary) {
 #ifdef PLVO_HAVE_LIBROSBAG
   run_folder();
   std::string error;
@@ -91,7 +91,7 @@ TEST_F(CliBag, OfRossOwnLibraryToo) {
 #endif
 }
 
-TEST_F(CliBag, CutShortItRunsToTheCut) {
+TEST_F(CliBag, RunsToTheEndOfATruncatedBag) {
   run_folder();
   const std::string whole = test::bag_of(published(true), "none");
   write_file(folder_ / "walk.bag", whole.substr(0, whole.size() * 7 / 10));
@@ -103,7 +103,7 @@ TEST_F(CliBag, CutShortItRunsToTheCut) {
       << "the same poses until there";
 }
 
-TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
+TEST_F(CliBag, ChoosesTopicsByNameAndKind) {
   run_folder();
   std::vector<RecordedMessage> messages = published(true);
   for (RecordedMessage& message : messages)
@@ -112,8 +112,8 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
                           ? "/front/image"
                           : (message.topic == test::kTumDepth ? "/front/z" : "/front/camera_info");
   write(messages);
-  expect_the_folders_bytes("");  // the only ones of their kind
-  // A second camera: now one has to say which.
+  expect_the_folders_bytes("");  // the only topics of their kind
+  // With a second camera, the user must choose.
   const std::size_t count = messages.size();
   for (std::size_t i = 0; i < count; ++i)
     if (messages[i].topic == "/front/image") {
@@ -132,14 +132,14 @@ TEST_F(CliBag, TopicsAreChosenByNameAndKind) {
                  "there are no images on /side/image; images are on: /back/image (rgb8), /front/z (32FC1)");
   expect_refused("--colour-topic /front/image --info-topic /x", 1,
                  "there is no camera_info on /x; topics of that type: /front/camera_info");
-  // Colour that has none beside it, and no word on the calibration.
+  // A colour topic without a camera_info beside it, and no calibration from the user.
   expect_refused(
       "--colour-topic /back/image", 1,
       "the bag has no /back/camera_info beside colour: give a calibration, or choose with --info-topic "
       "or topics.camera_info: /front/camera_info");
 }
 
-TEST_F(CliBag, SeveralTopicsAreAllNamed) {
+TEST_F(CliBag, ListsAllMatchingTopics) {
   std::vector<RecordedMessage> messages = published(true);
   std::string all;
   for (int i = 10; i < 30; ++i) {
@@ -155,8 +155,8 @@ TEST_F(CliBag, SeveralTopicsAreAllNamed) {
   expect_refused("", 1, "the topics are /front/image (rgb8), " + all);
 }
 
-// As librealsense writes it; infrared images are grey, too, and depth where nothing else is.
-TEST_F(CliBag, DepthMayBeCalledMono16) {
+// As librealsense writes it. Infrared images are grey, too; they count as depth only if nothing else does.
+TEST_F(CliBag, AcceptsMono16AsDepth) {
   run_folder();
   std::vector<RecordedMessage> messages = published(false);
   for (RecordedMessage& message : messages)
@@ -182,8 +182,8 @@ TEST_F(CliBag, DepthMayBeCalledMono16) {
   expect_the_folders_bytes("--depth-scale 5000");
 }
 
-// What 16 bits hold at the most is no depth, as in the folder.
-TEST_F(CliBag, SaturatedDepthIsNone) {
+// The largest 16-bit value is no depth, as in a folder.
+TEST_F(CliBag, TreatsSaturatedDepthAsMissing) {
   run_folder();
   std::vector<RecordedMessage> messages = published(false);
   std::size_t holes = 0;
@@ -199,7 +199,7 @@ TEST_F(CliBag, SaturatedDepthIsNone) {
   expect_the_folders_bytes("--depth-scale 5000");
 }
 
-TEST_F(CliBag, ADriverThatDoesNotStampIsSaid) {
+TEST_F(CliBag, ReportsUnstampedMessages) {
   for (const char* topic : {test::kTumColour, test::kTumDepth}) {
     std::vector<RecordedMessage> messages = published(true);
     for (RecordedMessage& message : messages)
@@ -218,7 +218,7 @@ TEST_F(CliBag, ADriverThatDoesNotStampIsSaid) {
   expect_refused("--imu", 1, "readings on /imu have the stamp 0 in their headers");
 }
 
-TEST_F(CliBag, WhatCannotBeReadIsSaid) {
+TEST_F(CliBag, ReportsUnreadableBags) {
   std::vector<RecordedMessage> messages = published(true);
   for (RecordedMessage& message : messages)
     if (message.topic == test::kTumColour) message.type = "sensor_msgs/CompressedImage";
@@ -250,7 +250,7 @@ TEST_F(CliBag, WhatCannotBeReadIsSaid) {
   const CommandResult folder = run_command(kPlvo + " run " + walk().string() + " --depth-topic /x");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--depth-topic: is for a ROS bag"), std::string::npos) << folder.err;
-  // One image that is damaged costs its frame.
+  // A damaged image costs only its frame.
   messages = published(true);
   messages[4 + 2].data.resize(1000);
   write(messages);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings that are not read are told by their names and by how they begin, wherever one may be named.
+// Unsupported recordings are recognised by their names and first bytes, in every command that takes one.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -38,7 +38,7 @@ class CliForeignFormats : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CliForeignFormats, ByNameOrByBeginning) {
+TEST_F(CliForeignFormats, RecognisesNameOrFirstBytes) {
   write_file(path("t.txt"), "1 0 0 0 0 0 0 1\n");
   const std::string mcap("\x89MCAP0\r\n and so on");
   const std::string sqlite("SQLite format 3\0 and so on", 26);
@@ -60,7 +60,7 @@ TEST_F(CliForeignFormats, ByNameOrByBeginning) {
   expect_told("ros2", "a folder of rosbag2 (ROS 2)");
 }
 
-TEST_F(CliForeignFormats, OthersAreNot) {
+TEST_F(CliForeignFormats, AcceptsOtherFiles) {
   fs::create_directory(path("mine"));
   write_file(path("mine/metadata.yaml"), "author: me\n");
   const CommandResult r = test::run_command(kPlvo + " run " + path("mine"));

@@ -8,7 +8,7 @@
 
 namespace {
 
-// A message that is bytes already; the connection's header says of which type.
+// A message that is already serialised; the connection header states its type.
 struct Bytes {
   const plvo::test::RecordedMessage* message = nullptr;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bags by ROS's own library, which the reader does not use: that both mean the same format is then not a
-// matter of opinion.
+// Writes bags with ROS's own library, which the reader does not use. This verifies that both implement the
+// same format.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct RecordedMessage {
   std::int64_t received_ns = 0;
 };
 
-// compression: none, bz2 or lz4. False, and why in `error`, where the library refuses.
+// compression: none, bz2 or lz4. On failure returns false, with the reason in `error`.
 bool write_bag_with_library(const std::string& path, const std::string& compression,
                             const std::vector<RecordedMessage>& messages, std::string& error);
 

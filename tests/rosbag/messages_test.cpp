@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages as ROS puts them on the wire; and of each, every beginning that is cut off.
+// Serialised ROS messages, complete and truncated at every byte.
 #include "plvo/rosbag/messages.hpp"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ using test::says;
 
 std::vector<unsigned char> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-TEST(Messages, ImagesOfColour) {
-  // Two rows of two pixels and a byte that belongs to none.
+TEST(Messages, ReadsColourImages) {
+  // Two rows of two pixels, each row with a padding byte.
   const std::string rows = "abcdef_ABCDEF_";
   for (const auto& [encoding, expected] :
        {std::pair<const char*, std::string>{"rgb8", "abcdefABCDEF"}, {"bgr8", "cbafedCBAFED"}}) {
@@ -40,7 +40,7 @@ TEST(Messages, ImagesOfColour) {
   EXPECT_EQ(std::string(rgb.begin(), rgb.end()), "xxxyyyzzz");
 }
 
-TEST(Messages, ImagesOfColourWithAFourthChannelOrWithoutNames) {
+TEST(Messages, ReadsColourWithFourOrUnnamedChannels) {
   for (const auto& [encoding, rows, expected] :
        {std::tuple<const char*, const char*, const char*>{"rgba8", "abc.def.", "abcdef"},
         {"bgra8", "abc.def.", "cbafed"},
@@ -60,7 +60,7 @@ TEST(Messages, ImagesOfColourWithAFourthChannelOrWithoutNames) {
   }
 }
 
-TEST(Messages, ImagesOfDepth) {
+TEST(Messages, ReadsDepthImages) {
   ImageMessage image;
   std::vector<std::uint16_t> depth(2);
   for (const bool big_endian : {false, true})
@@ -80,11 +80,11 @@ TEST(Messages, ImagesOfDepth) {
   ASSERT_TRUE(parse_image(metres, image).ok());
   depth.resize(8);
   ASSERT_TRUE(depth_pixels(image, depth).ok());
-  // Rounded to a fifth of a millimetre; no depth is none, and so is what 16 bits do not hold.
+  // Rounded to a fifth of a millimetre. Missing depth, and depth beyond 16 bits, become 0.
   EXPECT_EQ(depth, (std::vector<std::uint16_t>{6173, 1, 0, 0, 0, 0, 65535, 0}));
 }
 
-TEST(Messages, OtherEncodingsAreNamed) {
+TEST(Messages, ReportsOtherEncodings) {
   ImageMessage image;
   std::uint16_t depth = 0;
   std::uint8_t rgb[3] = {};
@@ -96,7 +96,7 @@ TEST(Messages, OtherEncodingsAreNamed) {
       says(depth_pixels(image, {&depth, 1}), "'bayer_rggb8' is not read there; 16UC1, mono16 or 32FC1 is"));
 }
 
-TEST(Messages, SizesAreComparedWithWhatIsThere) {
+TEST(Messages, ChecksSizesAgainstTheData) {
   ImageMessage image;
   const std::string row = "abcdef";
   EXPECT_TRUE(says(parse_image(bytes_of(image_message(0, 2, 2, "rgb8", 6, row)), image),
@@ -109,7 +109,7 @@ TEST(Messages, SizesAreComparedWithWhatIsThere) {
       says(parse_image(bytes_of(image_message(0, 4096, 4096, "rgb8", 0xffffffff, row)), image), "too few"));
 }
 
-TEST(Messages, CameraInfoIsACalibration) {
+TEST(Messages, ReadsCameraInfoAsCalibration) {
   const CameraModel camera = {640, 480, {525, 526, 319, 239}, {}};
   Calibration calibration;
   Status status = parse_camera_info(
@@ -136,7 +136,7 @@ TEST(Messages, CameraInfoIsACalibration) {
            "not calibrated"));
 }
 
-TEST(Messages, ReadingsOfAnImu) {
+TEST(Messages, ReadsImu) {
   const Vector3 rate(0.1, -0.2, 0.3), force(1, -9, 2);
   ImuMessage imu;
   ASSERT_TRUE(parse_imu(bytes_of(test::imu_message(7, rate, true, force, true)), imu).ok());
@@ -165,7 +165,7 @@ TEST(Messages, CutOffAnywhereTheyAreRefused) {
     Calibration calibration;
     EXPECT_EQ(parse_camera_info(bytes_of(info.substr(0, size)), calibration).ok(), size >= end_of_K) << size;
   }
-  // A count of coefficients that no message has room for.
+  // A count of coefficients that exceeds any message.
   std::string wild = info;
   wild.replace(end_of_K - 8 * 14 - 4, 4, "\xff\xff\xff\xff");
   Calibration calibration;

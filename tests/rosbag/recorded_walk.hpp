@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder that the bags are made of.
+// The folder that the bags are made from.
 #pragma once
 
 #include "simulated_sequence.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage: plvo_write_bag FOLDER FILE.bag PREFIX [imu]: the folder as a bag, for tests in other languages.
-// PREFIX stands before each topic; imu: with the folder's gyro and accelerometer on PREFIX/imu.
+// usage: plvo_write_bag FOLDER FILE.bag PREFIX [imu]. Writes the folder as a bag, for tests in other
+// languages. PREFIX precedes each topic; imu adds the folder's gyro and accelerometer on PREFIX/imu.
 #include <cstdio>
 #include <fstream>
 

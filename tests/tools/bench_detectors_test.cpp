@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench detectors as the user runs it, over a few rendered frames.
+// Tests plvo_bench detectors through the command line, with a few rendered frames.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -18,7 +18,7 @@ using test::TemporaryFolder;
 
 const std::string kDetectors = std::string(PLVO_BENCH_BINARY) + " detectors";
 
-// The numbers of the row of that sequence and detector.
+// Returns the numbers of the row that begins with this sequence and detector.
 std::vector<double> row_of(const std::string& text, const std::string& begin) {
   std::vector<double> numbers;
   const std::size_t at = text.find("\n| " + begin + " | ");
@@ -29,7 +29,7 @@ std::vector<double> row_of(const std::string& text, const std::string& begin) {
   return numbers;
 }
 
-TEST(BenchDetectors, FindWhatIsThereAndFindItAgain) {
+TEST(BenchDetectors, FindFeaturesRepeatably) {
   const TemporaryFolder folder;
   const CommandResult run =
       run_command(kDetectors + " --scenes corridor --frames 3 --gap 1 --out " + (folder / "out").string());
@@ -62,7 +62,7 @@ TEST(BenchDetectors, FindWhatIsThereAndFindItAgain) {
   }
 }
 
-TEST(BenchDetectors, SayWhatIsWrong) {
+TEST(BenchDetectors, RejectBadInputWithAMessage) {
   const TemporaryFolder folder;
   const std::string out = " --out " + (folder / "out").string();
   const CommandResult gap = run_command(kDetectors + " --scenes bare --frames 2 --gap 2" + out);

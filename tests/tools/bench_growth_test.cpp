@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench growth as the user runs it, over walks of a few frames.
+// Tests plvo_bench growth through the command line, with walks of a few frames.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -22,7 +22,7 @@ const std::string kGrowth =
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// The rows of numbers of the table below that title, its header first.
+// Returns the rows of the table below this title, the header first.
 Rows rows_below(const std::string& text, const std::string& title) {
   Rows rows;
   const std::size_t begin = text.find('\n' + title + "\n\n|");
@@ -30,7 +30,7 @@ Rows rows_below(const std::string& text, const std::string& title) {
   std::stringstream lines(text.substr(begin + title.size() + 3));
   for (std::string line; std::getline(lines, line) && line.starts_with("| ");) {
     rows.push_back(cells_of(line));
-    if (rows.size() == 1) std::getline(lines, line);  // the rule below the header
+    if (rows.size() == 1) std::getline(lines, line);  // the separator below the header
   }
   return rows;
 }
@@ -42,7 +42,7 @@ double number(const Rows& rows, std::size_t row, const std::string& column) {
   return 0;
 }
 
-TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
+TEST(BenchGrowth, CostOfAFrameGrowsWithItsImage) {
   const TemporaryFolder folder;
   const CommandResult run = run_command(kGrowth + " --tables sizes,walks --out " + (folder / "out").string());
   if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
@@ -61,7 +61,7 @@ TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
       EXPECT_LE(number(sizes, row, column), number(sizes, row + 1, column)) << run.out;
     EXPECT_GT(number(sizes, row, "CPU ×"), 0);
   }
-  // Four times the pixels, four times the reading of them.
+  // The time to read an image is proportional to its number of pixels.
   EXPECT_NEAR(number(sizes, kLargest, "image") / number(sizes, kVga, "image"), 4, 0.3);
   for (std::size_t row = kTiny; row <= kLargest; ++row) {
     double sum = 0;
@@ -79,7 +79,7 @@ TEST(BenchGrowth, AFrameCostsMoreTheLargerItsImage) {
   EXPECT_NE(run.out.find("\n- rendered walk, p99 / median: "), std::string::npos) << run.out;
 }
 
-TEST(BenchGrowth, SaysWhatIsWrong) {
+TEST(BenchGrowth, RejectsBadInputWithAMessage) {
   const TemporaryFolder folder;
   const std::string out = " --out " + (folder / "out").string();
   const CommandResult table = run_command(kGrowth + " --tables sizes,moons" + out);

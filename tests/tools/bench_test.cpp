@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench as the user runs it, over walks of a few frames and our own systems: the shape of its tables,
-// what is left to do after an interruption, and the list of jobs.
+// Tests plvo_bench through the command line, with walks of a few frames and plvo's own systems: the layout of
+// its tables, the remaining work after an interruption, and the list of jobs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,14 +47,14 @@ std::string lighting(const fs::path& out) {
          " --sites bare --seeds 1 --systems plvo-points,plvo-both --frames " + std::to_string(kFrames);
 }
 
-// Two walks, rendered once for all tests.
+// Renders two walks once for all tests.
 class Bench : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TemporaryFolder>();
     const auto listed = lines_of(run_command(lighting(out()) + " --list-jobs").out);
     ASSERT_EQ(listed.size(), 2U);
-    // One of the two as another machine would do it, the rest by the command itself.
+    // Run one of the two jobs separately, as another machine would, and the rest by the command itself.
     EXPECT_EQ(run_command(listed[1]).exit_code, 0);
     left_after_one_ = lines_of(run_command(lighting(out()) + " --list-jobs").out);
     EXPECT_EQ(left_after_one_, std::vector<std::string>{listed[0]});
@@ -77,7 +77,7 @@ CommandResult Bench::lighting_;
 
 TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
   ASSERT_EQ(lighting_.exit_code, 0) << lighting_.err;
-  // The walk that was there is not walked again.
+  // The finished walk is not processed again.
   EXPECT_EQ(rows_with(lighting_.err, "[1/1] bare_constant").size(), 1U) << lighting_.err;
   const auto lines = lines_of(lighting_.out);
   ASSERT_GE(lines.size(), 7U);
@@ -92,8 +92,8 @@ TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
   EXPECT_TRUE(run_command(lighting(out()) + " --list-jobs").out.empty());
 }
 
-// Rendering and measuring may be done apart, and the images lie anywhere.
-TEST_F(Bench, RendersAloneWhatIsMeasuredLater) {
+// Rendering and measuring may be separate, and the images may be in any folder.
+TEST_F(Bench, RendersWithoutMeasuring) {
   const fs::path results = *folder_ / "apart";
   const fs::path walks = *folder_ / "elsewhere";
   const std::string command = kBench +
@@ -115,7 +115,7 @@ TEST_F(Bench, RendersAloneWhatIsMeasuredLater) {
   EXPECT_FALSE(fs::exists(results / "walks"));
 }
 
-TEST_F(Bench, ComparisonHasARowForEachSystemAndOneForStandingStill) {
+TEST_F(Bench, ComparisonHasARowForEachSystemAndForIdentity) {
   const fs::path results = *folder_ / "run";
   const CommandResult run = run_command(kBench + " run " + walk("constant") + ' ' + walk("varying") +
                                         " --systems ours --repeats 2 --jobs 2 --out " + results.string());
@@ -146,7 +146,7 @@ TEST_F(Bench, ComparisonHasARowForEachSystemAndOneForStandingStill) {
   EXPECT_NE(read_file(results / "comparison.html").find("<td class=\"t\">plvo-both</td>"), std::string::npos);
 }
 
-TEST_F(Bench, GoesOnWhereItStopped) {
+TEST_F(Bench, ResumesAfterAnInterruption) {
   const fs::path results = *folder_ / "resumed";
   const std::string command =
       kBench + " run " + walk("constant") + " --systems ours --out " + results.string();
@@ -155,7 +155,7 @@ TEST_F(Bench, GoesOnWhereItStopped) {
   ASSERT_EQ(run_command(command).exit_code, 0);
   EXPECT_TRUE(run_command(list).out.empty());
 
-  // One result is gone, one was cut off by a full disk.
+  // One result is missing, and one was truncated by a full disk.
   const auto job = [&](const std::string& system) {
     return results / "jobs" / (fs::path(walk("constant")).filename().string() + '.' + system + ".0.json");
   };
@@ -172,18 +172,18 @@ TEST_F(Bench, GoesOnWhereItStopped) {
   EXPECT_EQ(rows_with(again.err, "[1/1]").size(), 1U) << again.err;
   EXPECT_EQ(read_file(job("plvo-points")), kept);
 
-  // Another question is another measurement.
+  // Other options require another measurement.
   EXPECT_EQ(lines_of(run_command(list + " --frames 2").out).size(), 3U);
 }
 
-TEST_F(Bench, Table2WeighsItsMeanByFrames) {
+TEST_F(Bench, Table2WeightsItsMeanByFrames) {
   const fs::path results = *folder_ / "tum";
   const CommandResult run = run_command(kBench + " tum " + walk("constant") + ' ' + walk("varying") +
                                         " --systems plvo-points --out " + results.string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(rows_with(run.out, "| mean, weighted by frames |").size(), 2U) << run.out;
   EXPECT_EQ(rows_with(run.out, "| never moves |").size(), 3U) << run.out;
-  double sum = 0;  // the walks are equally long
+  double sum = 0;  // the walks have the same length
   const json all = json::parse(read_file(results / "table2.json"));
   for (const json& result : all["results"]) sum += result["estimate"]["rpe_frame_mm"].get<double>();
   const auto mean = rows_with(read_file(results / "table2.csv"), "\"mean, weighted by frames\",plvo-points,");
@@ -193,7 +193,7 @@ TEST_F(Bench, Table2WeighsItsMeanByFrames) {
   EXPECT_NEAR(std::stod(rest.substr(rest.find(',') + 1)), sum / 2, 1e-5);
 }
 
-TEST_F(Bench, TheCameraMayBeNamedForEachFolder) {
+TEST_F(Bench, CameraModelCanBeGivenForEachFolder) {
   const auto trajectory = [&](const std::string& model) {
     const fs::path results = *folder_ / ("camera" + model);
     const CommandResult run = run_command(kBench + " run " + walk("constant") + model +
@@ -224,7 +224,7 @@ TEST_F(Bench, FoldersOfNumberedFramesHaveTheirOwnTruth) {
                 all["results"][0]["estimate"]["rpe_frame_mm"].get<double>(), 1e-4);
 }
 
-TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
+TEST_F(Bench, SequenceStatisticsUseTheTruePose) {
   const CommandResult table = run_command(std::string(PLVO_STATISTICS_BINARY) + ' ' + walk("constant"));
   ASSERT_EQ(table.exit_code, 0) << table.err;
   const auto value = [](const std::string& row) { return std::stod(row.substr(row.find(" | ") + 3)); };
@@ -234,14 +234,14 @@ TEST_F(Bench, StatisticsOfASequenceKnowTheTruePose) {
   });
   ASSERT_LT(warped, lines.end() - 1) << table.out;
   EXPECT_LT(value(warped[0]), 0.7 * value(warped[1])) << table.out;
-  const auto planes = rows_with(table.out, "at 2.5–3 m");  // of the paper's 22.1 mm, 0.55
+  const auto planes = rows_with(table.out, "at 2.5–3 m");  // the paper gives 22.1 mm, a ratio of 0.55
   ASSERT_EQ(planes.size(), 1U);
   EXPECT_NEAR(value(planes[0]), 12.2, 2) << table.out;
   EXPECT_EQ(run_command(std::string(PLVO_STATISTICS_BINARY) + " /no/such/folder").exit_code, 1);
   EXPECT_EQ(run_command(PLVO_STATISTICS_BINARY).exit_code, 2);
 }
 
-// The rows of instructions name functions of the core: one that is renamed would count nothing.
+// The rows of instructions name functions of the core; a renamed function would be counted as 0.
 TEST_F(Bench, StagesCountTimeAndInstructions) {
   const fs::path results = *folder_ / "stages";
   const CommandResult run =
@@ -252,21 +252,21 @@ TEST_F(Bench, StagesCountTimeAndInstructions) {
   EXPECT_EQ(lines_of(run.out)[0], fs::path(walk("constant")).filename().string() + ": 2 frames, 0 lost");
   for (const char* stage : {"image", "points", "lines", "matching", "motion"})
     EXPECT_GE(rows_with(run.out, std::string("| ") + stage + " | ").size(), 3U) << run.out;
-  // On a calm walk the images lead the way, and the keyframe stays: descriptors are made and matched of other
-  // images, below.
-  const auto nothing = rows_with(run.out, "| 0.00 | 0.0 |");
-  EXPECT_EQ(nothing.size(), rows_with(run.out, "| by descriptor | 0.00 |").size() +
-                                rows_with(run.out, "| smooth | 0.00 |").size())
+  // On a slow walk the images are aligned directly and the keyframe stays, so no descriptors are made or
+  // matched; the test below uses other images.
+  const auto zero_rows = rows_with(run.out, "| 0.00 | 0.0 |");
+  EXPECT_EQ(zero_rows.size(), rows_with(run.out, "| by descriptor | 0.00 |").size() +
+                                  rows_with(run.out, "| smooth | 0.00 |").size())
       << run.out;
   EXPECT_EQ(rows_with(run.out, "| 100.0 |").size(), 1U) << run.out;
-  // No function of a row calls that of another, or the rest would be less than nothing.
+  // No function of a row calls that of another: otherwise the rest would be negative.
   const auto rest = rows_with(run.out, "| rest |");
   ASSERT_EQ(rest.size(), 1U);
   EXPECT_LT(std::stod(cells_of(rest[0])[3]), 10) << run.out;
   EXPECT_EQ(run_command(kBench + " stages --image moon --out " + results.string()).exit_code, 2);
 }
 
-// The page's bounds, on the images that are hardest on a detector.
+// The bounds of the page on the images that cost a detector most.
 TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
   std::map<std::string, double> bounds;
   const std::string page = read_file(PLVO_PERFORMANCE_PAGE);
@@ -296,13 +296,13 @@ TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
   EXPECT_GT(by_descriptor, 0);
 }
 
-TEST_F(Bench, WhatCannotBeWrittenIsAnError) {
+TEST_F(Bench, UnwritableOutputIsAnError) {
   for (const std::string& words : {lighting(*folder_ / "listed") + " --list-jobs", kBench + " --help"}) {
     const CommandResult r = run_command("sh -c '" + words + " >/dev/full'");
     EXPECT_EQ(r.exit_code, 1) << r.err;
     EXPECT_NE(r.err.find("plvo_bench: error: cannot write standard output"), std::string::npos) << r.err;
   }
-  // Results, which are written in one go, are whole or not there.
+  // Results are written at once: they are complete or absent.
   const fs::path limited = *folder_ / "limited";
   const CommandResult r = run_command("prlimit --fsize=600 " + kBench + " run " + walk("constant") +
                                       " --systems plvo-points --out " + limited.string());
@@ -312,7 +312,7 @@ TEST_F(Bench, WhatCannotBeWrittenIsAnError) {
     EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
 
-TEST_F(Bench, NamesDoNotCommandTheTerminal) {
+TEST_F(Bench, NamesAreEscapedForTheTerminal) {
   const fs::path hostile = *folder_ / "walk\x1b[31m\nx";
   fs::copy(walk("constant"), hostile, fs::copy_options::recursive);
   const std::string run = kBench + " run '" + hostile.string() + "' --systems plvo-points --out ";
@@ -326,7 +326,7 @@ TEST_F(Bench, NamesDoNotCommandTheTerminal) {
     EXPECT_EQ(said.find('\x1b'), std::string::npos) << said;
 }
 
-TEST_F(Bench, SaysWhatIsWrong) {
+TEST_F(Bench, RejectsBadInputWithAMessage) {
   const std::string out_option = " --out " + (*folder_ / "bad").string();
   const CommandResult system =
       run_command(kBench + " run " + walk("constant") + " --systems slam" + out_option);
@@ -336,7 +336,7 @@ TEST_F(Bench, SaysWhatIsWrong) {
   EXPECT_EQ(run_command(kBench + " run " + walk("constant")).exit_code, 2);
   EXPECT_EQ(run_command(kBench + " lighting --sites moon" + out_option).exit_code, 1);
 
-  // A sequence that cannot be read fails its jobs, and the others are in the table.
+  // The jobs of an unreadable sequence fail, and the table has the others.
   const fs::path broken = *folder_ / "broken";
   fs::create_directory(broken);
   const CommandResult run = run_command(kBench + " run " + broken.string() + ' ' + walk("constant") +

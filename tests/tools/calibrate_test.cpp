@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a calibration: the quadratic minimum and its scatter, what is refused, and that neither
-// threads nor repetition change a bit.
+// Tests the parts of a calibration: the quadratic minimum and its covariance, the refused inputs, and the
+// bitwise independence of threads and repetition.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ using namespace calibrate;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Pieces whose minimum scatters around `place`, with the curvature of `weights`.
+// Returns the costs of blocks whose minimum scatters around `place`, with the curvature of `weights`.
 MatrixXd costs_of(const MatrixXd& design, const VectorXd& place, const VectorXd& weights, double scatter,
                   int pieces) {
   Random random(3);
@@ -40,7 +40,7 @@ MatrixXd costs_of(const MatrixXd& design, const VectorXd& place, const VectorXd&
   return costs;
 }
 
-// Frames 33.4 ms apart, whose stamps err by up to ± `most_s`, and which lack one in seven.
+// Returns frames 33.4 ms apart with a stamp error of up to ± `most_s`; one frame in seven is missing.
 TrackedRecording stamped(int frames, double most_s, std::int64_t start_ns) {
   Random random(11);
   TrackedRecording recording;
@@ -54,17 +54,18 @@ TrackedRecording stamped(int frames, double most_s, std::int64_t start_ns) {
   return recording;
 }
 
-TEST(StampJitter, IsWhatIsNotEven) {
-  // Uniform over ± 3 ms: an SD of 1.732 ms. The second recording has a clock of its own.
+TEST(StampJitter, IsTheDeviationFromAConstantRate) {
+  // The errors are uniform over ± 3 ms: a standard deviation of 1.732 ms. The second recording has its own
+  // clock.
   const std::vector<TrackedRecording> two = {stamped(300, 0.003, 0), stamped(200, 0.003, 77'123'456'789)};
   EXPECT_NEAR(stamp_jitter_s(two), 0.003 / std::sqrt(3), 0.0001);
   EXPECT_LT(stamp_jitter_s(std::vector{stamped(300, 0, 5)}), 1e-9);
 }
 
-TEST(StampJitter, IsNotToldByTooFewFramesOrByNoPace) {
+TEST(StampJitter, IsUnknownForTooFewFramesOrAVaryingRate) {
   EXPECT_LT(stamp_jitter_s({}), 0);
   EXPECT_LT(stamp_jitter_s(std::vector{stamped(15, 0.003, 0)}), 0);
-  // An exposure that follows the light: frames 33 to 100 ms apart.
+  // An exposure time that follows the light: frames 33 to 100 ms apart.
   TrackedRecording slow;
   Random random(5);
   for (std::int64_t stamp_ns = 0; slow.frames.size() < 200;
@@ -75,7 +76,7 @@ TEST(StampJitter, IsNotToldByTooFewFramesOrByNoPace) {
   EXPECT_LT(stamp_jitter_s(std::vector{slow}), 0);
 }
 
-TEST(QuadraticFit, FindsTheMinimumAndHowFarItScatters) {
+TEST(QuadraticFit, FindsTheMinimumAndItsCovariance) {
   for (const int unknowns : {1, 2, 3}) {
     SCOPED_TRACE(unknowns);
     const MatrixXd design = quadratic_design(unknowns);
@@ -88,7 +89,8 @@ TEST(QuadraticFit, FindsTheMinimumAndHowFarItScatters) {
     ASSERT_TRUE(exact.convex);
     EXPECT_LT((exact.place - place).norm(), 1e-9);
     EXPECT_LT(exact.covariance.norm(), 1e-12);
-    // Uniform over ±0.4 in each of 100 pieces: an SD of 0.231 each, 0.0231 of their mean.
+    // The minima are uniform over ±0.4 in each of 100 blocks: a standard deviation of 0.231 each, 0.0231 of
+    // their mean.
     const QuadraticMinimum scattered = fit_quadratic(design, costs_of(design, place, weights, 0.4, 100));
     ASSERT_TRUE(scattered.convex);
     for (int i = 0; i < unknowns; ++i) {
@@ -98,16 +100,16 @@ TEST(QuadraticFit, FindsTheMinimumAndHowFarItScatters) {
   }
 }
 
-TEST(QuadraticFit, ACriterionThatDoesNotTellHasNoMinimum) {
+TEST(QuadraticFit, ConcaveCriterionHasNoMinimum) {
   const MatrixXd design = quadratic_design(1);
   const MatrixXd ridge = -costs_of(design, VectorXd::Constant(1, 0.1), VectorXd::Constant(1, 1.0), 0.1, 10);
   const QuadraticMinimum minimum = fit_quadratic(design, ridge);
   EXPECT_FALSE(minimum.convex);
-  EXPECT_EQ(std::abs(minimum.place(0)), 1);  // the best of the places that were measured
+  EXPECT_EQ(std::abs(minimum.place(0)), 1);  // the best of the measured places
   EXPECT_FALSE(minimum.covariance.allFinite());
 }
 
-// The first `frames` images of a simulated recording, again and again.
+// Repeats the first `frames` images of a simulated recording.
 class Film final : public RgbdCamera {
  public:
   explicit Film(RgbdCamera& camera, int frames, int copies = 1) : model_(camera.model()) {
@@ -169,7 +171,7 @@ TimingSearch search_of(Film& film) {
   return search;
 }
 
-TEST(FindTiming, SaysWhatToRecordWhereNothingShows) {
+TEST(FindTiming, RefusesUninformativeRecordingsWithAdvice) {
   std::unique_ptr<SimulatedCamera> camera;
   ASSERT_TRUE(SimulatedCamera::create(small_desk(), camera).ok());
   Film still(*camera, 1, 60);
@@ -184,7 +186,7 @@ TEST(FindTiming, SaysWhatToRecordWhereNothingShows) {
       << too_short.message();
 }
 
-TEST(FindTiming, ThreadsAndRepetitionChangeNothing) {
+TEST(FindTiming, ResultIsIndependentOfThreadsAndRepetition) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "hand.txt", test::turning_hand(1));
   SimulatorOptions options = small_desk();
@@ -204,7 +206,7 @@ TEST(FindTiming, ThreadsAndRepetitionChangeNothing) {
   const std::vector<double> every_third = disagreement(recordings, timing, 3, 2);
   ASSERT_EQ(every_third.size(), (alone.size() + 2) / 3);
   for (std::size_t i = 0; i < every_third.size(); ++i) EXPECT_EQ(every_third[i], alone[3 * i]);
-  // The wrong timing agrees less.
+  // A wrong timing has a higher cost.
   const auto sum = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
   EXPECT_LT(sum(disagreement(recordings, {}, 1, 1)), sum(disagreement(recordings, {0.03, 0, 0}, 1, 1)));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A profile by hand, in the compressed form that callgrind writes: names once, then by number; calls with the
-// cost of what they called; lines relative to the one before.
+// Tests with a hand-written profile in callgrind's compressed form: a name appears once and then as a number;
+// calls state the inclusive cost of the callee; line numbers are relative to the previous line.
 #include "plvo/bench/stages/callgrind_costs.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace plvo::bench {
 namespace {
 
-TEST(CallgrindCosts, OfAFunctionAreItsOwnAndThoseOfWhatItCalls) {
+TEST(CallgrindCosts, FunctionIncludesItsCallees) {
   std::istringstream file(
       "version: 1\n"
       "positions: line\n"
@@ -46,7 +46,7 @@ TEST(CallgrindCosts, OfAFunctionAreItsOwnAndThoseOfWhatItCalls) {
   EXPECT_EQ(costs.of("absent("), 0U);
 }
 
-TEST(CallgrindCosts, OfALambdaAreThoseOfItsFunction) {
+TEST(CallgrindCosts, LambdaBelongsToItsFunction) {
   std::istringstream file(
       "events: Ir\n"
       "fn=(1) track(int)\n"
@@ -62,7 +62,7 @@ TEST(CallgrindCosts, OfALambdaAreThoseOfItsFunction) {
   EXPECT_EQ(costs.of("track("), 105U);
 }
 
-TEST(CallgrindCosts, OfAFileThatIsNoProfileAreNone) {
+TEST(CallgrindCosts, FileWithoutProfileHasNoCosts) {
   std::istringstream file("not a profile\n");
   EXPECT_EQ(read_callgrind(file).total, 0U);
 }

@@ -6,7 +6,7 @@
 namespace plvo::eval {
 namespace {
 
-// From the tables.
+// Values from published tables.
 TEST(ChiSquare, QuantilesAreThoseOfTheTables) {
   struct Row {
     double probability;

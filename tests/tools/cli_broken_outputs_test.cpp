@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outputs that end before the program: a limit on the size of files, a full disk, a reader that leaves. Every
-// command ends with exit code 1 and a sentence, its rows are whole, and its other outputs are written.
+// Tests outputs that fail before the program ends: a limit on the file size, a full disk, a closed pipe.
+// Every command ends with exit code 1 and a message, its rows are complete, and its other outputs are
+// written.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -30,7 +31,7 @@ const std::string& walk() {
   return folder;
 }
 
-// A pipe whose reader has left.
+// A pipe whose reading end is closed.
 class BrokenPipe {
  public:
   BrokenPipe() {
@@ -81,7 +82,7 @@ TEST_F(CliBrokenOutputs, FilesUnderALimitHoldWholeRows) {
     expect_failure(limited(kLimit_bytes, run + option + path("rows")),
                    "rows: File too large; raise the limit on the size of files (ulimit -f)");
     expect_whole_rows(read_file(folder_ / "rows"), read_file(folder_ / "whole"));
-    // The shell opens the file: at its beginning, or at the end of what it holds.
+    // The shell opens the file at its beginning or at the end of its content.
     test::write_file(folder_ / "appended", "before\n");
     for (const std::string& redirection : {">" + path("into"), ">>" + path("appended")})
       expect_failure(limited(kLimit_bytes, run + option + "-", redirection),
@@ -103,7 +104,7 @@ TEST_F(CliBrokenOutputs, FilesWrittenAtTheEndAreWholeOrEmpty) {
   const std::string truth = walk() + "/groundtruth.txt";
   for (const std::string& words :
        {"eval --gt " + truth + " --est " + truth, "run " + walk() + " --quiet --readout 0"}) {
-    // A report has more bytes than its program of 20 kB, the summary fewer.
+    // A report is larger than its script of 20 kB; the summary is smaller.
     expect_failure(limited(15'000, words + " --report " + path("page") + " --json " + path("json")),
                    "page: File too large");
     EXPECT_EQ(fs::file_size(folder_ / "page"), 0u);
@@ -113,7 +114,7 @@ TEST_F(CliBrokenOutputs, FilesWrittenAtTheEndAreWholeOrEmpty) {
   }
 }
 
-TEST_F(CliBrokenOutputs, ThePageMakesPlaceForAReportOnStandardOutput) {
+TEST_F(CliBrokenOutputs, SummaryGoesToStandardErrorBesideAReportOnStandardOutput) {
   const std::string truth = walk() + "/groundtruth.txt";
   const CommandResult r = plvo("eval --report - --gt " + truth + " --est " + truth);
   EXPECT_EQ(r.exit_code, 0);
@@ -121,7 +122,7 @@ TEST_F(CliBrokenOutputs, ThePageMakesPlaceForAReportOnStandardOutput) {
   EXPECT_NE(r.err.find("ATE"), std::string::npos) << r.err;
 }
 
-TEST_F(CliBrokenOutputs, ASimulatedFolderListsWholeImagesAlone) {
+TEST_F(CliBrokenOutputs, SimulatedFolderListsOnlyCompleteImages) {
   const std::string simulate = "simulate --scene bare --size 160x120 --frames 40 --quiet --out ";
   expect_failure(limited(1024, simulate + path("lists")), "File too large");
   expect_failure(limited(10'000, simulate + path("images")), "File too large");
@@ -138,7 +139,7 @@ TEST_F(CliBrokenOutputs, ASimulatedFolderListsWholeImagesAlone) {
     }
 }
 
-TEST_F(CliBrokenOutputs, AReaderThatLeavesEndsNoCommandBySignal) {
+TEST_F(CliBrokenOutputs, ClosedPipeEndsNoCommandBySignal) {
   const BrokenPipe pipe;
   const std::string truth = walk() + "/groundtruth.txt";
   for (const std::string& words :
@@ -149,12 +150,12 @@ TEST_F(CliBrokenOutputs, AReaderThatLeavesEndsNoCommandBySignal) {
         std::string("calibrate --help"), std::string("completion bash"), std::string("man run")})
     expect_failure(plvo(words, pipe.as_output()),
                    "standard output: Broken pipe; the program that reads it has ended");
-  // What is only told does not decide how it ends.
+  // A failure to write progress messages does not change the exit code.
   EXPECT_EQ(plvo("run " + walk() + " --out - >/dev/null 2" + pipe.as_output().substr(1)).exit_code, 0);
 }
 
 TEST_F(CliBrokenOutputs, TheOtherOutputsOfARunAreWritten) {
-  // The limit is for the program: what goes through cat has none.
+  // The limit applies only to the program; the output that passes through cat has none.
   const CommandResult r =
       run_command("sh -c '{ prlimit --fsize=12000 " + kPlvo + " run " + walk() + " --motions " +
                   path("rows") + " --json " + path("json") + " --report -; echo $? >" + path("code") +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo calibrate` as the user runs it.
+// Tests `plvo calibrate` through the command line.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const TemporaryFolder folder;
   const std::string walk = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
   record_turns(folder, "walk", 1, 60);
-  // The lens is known, and nothing of depth's time.
+  // The lens is given, but no timing of depth.
   const CommandResult r =
       run_command(kPlvo + " calibrate " + walk + " --find delay --quiet --json - --report " +
                   (folder / "page.html").string() + " --out " + yaml + kLens);
@@ -68,7 +68,7 @@ TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
   record_turns(folder, "short", 2, 20);
   const std::string first = (folder / "long").string(), second = (folder / "short").string();
   const std::string rest = " --find delay --out " + (folder / "camera.yaml").string() + kLens;
-  // Alone each is too short.
+  // Each recording alone is too short.
   const CommandResult alone = run_command(kPlvo + " calibrate --quiet " + first + rest);
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_NE(alone.err.find("of 40 frames could be tracked"), std::string::npos) << alone.err;
@@ -80,7 +80,7 @@ TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
   EXPECT_NEAR(json["depth_delay_s"]["value"].get<double>(), 0.012, 0.001);
   EXPECT_EQ(test::read_file(folder / "camera.yaml").rfind("# Made by plvo calibrate from long short\n", 0),
             0u);
-  // What goes on is told without a terminal, too: what was tracked and what was found, pass by pass.
+  // The progress is also reported without a terminal: tracked frames and results, pass by pass.
   EXPECT_EQ(r.err.rfind("plvo: tracking at most 60 frames of long short, a few times over\n", 0), 0u)
       << r.err;
   std::size_t passes = 0;
@@ -94,7 +94,7 @@ TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
   EXPECT_GE(passes, 2u);
 }
 
-TEST(CliCalibrate, ShowsHowFarItIsOnATerminal) {
+TEST(CliCalibrate, ShowsProgressOnATerminal) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const CommandResult r = run_command("script -qefc '" + kPlvo + " calibrate " + (folder / "walk").string() +

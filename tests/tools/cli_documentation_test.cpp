@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Help, man pages and the shells' completion say the same, for they are made from the same definitions.
+// Help, man pages and shell completion are made from the same definitions and must agree.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -26,7 +26,7 @@ std::string printed(const std::string& arguments) {
   return r.out;
 }
 
-// The words of a help page that begin its lines: "  --out FILE   …".
+// Returns the words at the start of the lines of a help page: "  --out FILE   …".
 std::set<std::string> options_in_help(const std::string& command) {
   std::set<std::string> options;
   std::istringstream lines(printed(command + " --help"));
@@ -67,7 +67,7 @@ TEST(CliDocumentation, HelpFitsATerminal) {
   }
 }
 
-// Bash itself, asked as the Tab key asks it.
+// Asks bash itself for completions, as the Tab key does.
 class BashCompletion : public ::testing::Test {
  protected:
   BashCompletion() {
@@ -75,7 +75,7 @@ class BashCompletion : public ::testing::Test {
     write_file(folder_ / "walk file.txt", "");
     std::filesystem::create_directory(folder_ / "walks");
   }
-  // What is offered for the last of these words.
+  // Returns the completions offered for the last of these words.
   std::set<std::string> offered(const std::string& words) const {
     write_file(folder_ / "ask.sh", "cd " + folder_.path().string() + "\n. ./plvo.bash\nCOMP_WORDS=(plvo " +
                                        words +
@@ -107,7 +107,7 @@ TEST_F(BashCompletion, OffersCommandsOptionsValuesAndFiles) {
   EXPECT_EQ(offered("run wa"), (Words{"walk file.txt", "walks"}));
 }
 
-// The other shells check what they would load.
+// The other shells only check the syntax of their scripts.
 TEST(CliDocumentation, ZshAndFishUnderstandTheirScripts) {
   const TemporaryFolder folder;
   bool any = false;

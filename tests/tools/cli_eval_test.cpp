@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo eval` as the user runs it, and against the independent script that defines its figures.
+// Tests `plvo eval` through the command line, and against the independent script that defines its metrics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,8 +28,8 @@ fs::path shared() {
   return folder == nullptr ? fs::path() : fs::path(folder);
 }
 
-// A drifting estimate at the colour stamps of a sequence: the truth with a random walk on top, a few frames
-// lost.
+// Writes a drifting estimate at the colour stamps of a sequence: the truth plus a random walk, with a few
+// lost frames.
 void write_estimate(const fs::path& sequence, const fs::path& estimate) {
   eval::Trajectory truth;
   ASSERT_TRUE(eval::read_trajectory({sequence / "groundtruth.txt", {}, {}}, truth).ok());
@@ -137,14 +137,14 @@ TEST_F(CliEvalFiles, UsageErrors) {
   EXPECT_NE(run_command(kPlvo + " --help").out.find("3 no frame could be tracked"), std::string::npos);
 }
 
-TEST_F(CliEvalFiles, KittiTimesThatNobodyNeedsAreRefused) {
+TEST_F(CliEvalFiles, UnneededKittiTimesAreRefused) {
   write_file(folder_ / "times.txt", "0.0\n");
   const CommandResult r = eval("--kitti-times " + (folder_ / "times.txt").string());
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.err.find("--kitti-times is for KITTI's rows"), std::string::npos) << r.err;
 }
 
-TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
+TEST_F(CliEvalFiles, MotionsAreTestedSinglyAndOverASecond) {
   std::string motions;
   for (int i = 1; i < 50; ++i) {
     TrackResult result;
@@ -153,7 +153,7 @@ TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
     const auto truth = [](int k) {
       return Se3{rotation_exp(Vector3(0, 0.01 * k, 0)), Vector3(0.01 * k, 0, 0)};
     };
-    // A millimetre off along x, each time: one standard deviation.
+    // Each motion has an error of a millimetre along x: one standard deviation.
     result.T_camera_reference = truth(i).inverse() * truth(i - 1);
     result.T_camera_reference.t.x() += 1e-3;
     result.motion_covariance = 1e-6 * Matrix6::Identity();
@@ -170,7 +170,7 @@ TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
   EXPECT_NEAR(json["nees_motion"]["mean"].get<double>(), 1, 1e-3);
   EXPECT_NEAR(json["nees_motion"]["translation"]["median"].get<double>(), 1, 1e-3);
   EXPECT_NEAR(json["nees_motion"]["rotation"]["mean"].get<double>(), 0, 1e-3);
-  // With twice as much noise of the truth the covariance is three times as large.
+  // The noise of the truth triples the covariance.
   const auto noisy = nlohmann::json::parse(eval(more + " --gt-sigma 0.001 0 --json -").out);
   EXPECT_NEAR(noisy["nees_motion"]["mean"].get<double>(), 1.0 / 3, 1e-3);
   EXPECT_EQ(noisy["ground_truth_sigma"]["position_m"], 0.001);
@@ -180,15 +180,15 @@ TEST_F(CliEvalFiles, MotionsAreJudgedOneByOneAndOverASecond) {
   EXPECT_EQ(eval("--gt-sigma 0.001 0").exit_code, 2);
   EXPECT_EQ(eval(more + " --gt-sigma 0.001").exit_code, 2);
   EXPECT_EQ(eval(more + " --gt-sigma -1 0").exit_code, 2);
-  // The same error thirty times over is no noise.
+  // The same error thirty times in a row is not noise.
   EXPECT_EQ(json["nees_second"]["samples"], 21);
   EXPECT_EQ(json["nees_second"]["translation"]["expected"], 3);
   EXPECT_GT(json["nees_second"]["mean"].get<double>(), json["nees_second"]["mean_band_95"][1].get<double>());
 }
 
-// The truth's camera is turned by half a degree and its clock 20 ms late: a perfect estimate is charged with
-// it, and no more once it is fitted.
-TEST_F(CliEvalFiles, ATruthThatIsTurnedAndLateIsFitted) {
+// The camera of the truth is rotated by half a degree and its clock is 20 ms late: this counts as an error of
+// a perfect estimate until the truth is fitted.
+TEST_F(CliEvalFiles, RotatedAndLateTruthIsFitted) {
   const Matrix3 turn = rotation_exp(Vector3(0.003, -0.006, 0.005));
   const auto exact = [](int i) {
     const double t = 0.01 * i;
@@ -236,7 +236,7 @@ TEST_F(CliEvalFiles, ATruthThatIsTurnedAndLateIsFitted) {
   EXPECT_NE(nearest.err.find("leave --gt-sampling nearest away"), std::string::npos) << nearest.err;
 }
 
-// What to type, while there is something left to type.
+// The message names the option to use, as long as there is one.
 TEST_F(CliEvalFiles, ANeesFarFromSixIsExplained) {
   Random random(5);
   std::string truth, estimate, small, large;
@@ -279,9 +279,9 @@ TEST_F(CliEvalFiles, ANeesFarFromSixIsExplained) {
   EXPECT_TRUE(says(r, "the covariance is larger than the errors")) << r.err;
 }
 
-// Lengths five times too long are a unit of depth; a bad estimate is not, though a scale fits it a little
-// better.
-TEST_F(CliEvalFiles, AScaleThatIsOffIsSaid) {
+// Lengths that are five times too long suggest a wrong unit of depth. A bad estimate does not, although some
+// scale fits it slightly better.
+TEST_F(CliEvalFiles, WrongScaleIsReported) {
   Random random(6);
   std::string truth, fivefold, slightly, bad;
   for (int i = 0; i < 200; ++i) {
@@ -313,7 +313,7 @@ TEST_F(CliEvalFiles, AScaleThatIsOffIsSaid) {
   EXPECT_LT(nlohmann::json::parse(noisy.out)["scale"]["best_fit"].get<double>(), 0.95);
 }
 
-TEST_F(CliEvalFiles, TooShortARecordingIsNotFitted) {
+TEST_F(CliEvalFiles, TooShortRecordingIsNotFitted) {
   const CommandResult r = eval("--fit-truth");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("the truth cannot be fitted"), std::string::npos) << r.err;

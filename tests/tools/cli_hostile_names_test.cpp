@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names and texts from outside that would command a terminal, fake a row or end a page: they are shown
-// escaped, and read back as they were.
+// Tests names and texts from outside that would control a terminal, fake a row or end a page: they are shown
+// escaped, and files are read back with the original names.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST_F(CliHostileNames, AFolder) {
       plvo("run " + quoted(walk_) + " --json " + path("json") + " --report " + path("page"));
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.out.rfind(kShown + '\n', 0), 0u) << r.out;
-  // The byte that is no UTF-8 has no place in JSON.
+  // JSON cannot hold the byte that is not UTF-8.
   std::string name = kHostile;
   name.replace(name.find('\x9b', name.find("32m")), 1, "\uFFFD");
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "json"))["camera"], name);
@@ -97,7 +97,7 @@ TEST_F(CliHostileNames, AWordOfTheCommandLine) {
     expect_one_line(r.err);
     EXPECT_NE(r.err.find("\\x1b[31m"), std::string::npos) << r.err;
   }
-  // A quote that is cut ends with a whole character.
+  // A shortened quotation ends with a complete character.
   const CommandResult cut = plvo("run x --frames " + std::string(39, 'x') + "äöüäöüäöüäöüäöüäöüäöüäöüäöü");
   EXPECT_NE(cut.err.find("...'"), std::string::npos) << cut.err;
   EXPECT_EQ(cut.err.find("\\x"), std::string::npos) << cut.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the machine has less memory than an input needs, the program says so in words.
+// If the machine has less memory than an input needs, the program reports it.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace plvo {
 namespace {
 
-TEST(CliMemory, WhatCannotBeHadIsSaid) {
+TEST(CliMemory, ReportsAFailedAllocation) {
   if (!test::kMemoryIsTold) GTEST_SKIP() << "SKIPPED: a sanitizer maps more than any limit allows";
   const test::TemporaryFolder folder;
   std::string rows;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders of numbered frames as the user of `plvo run` and `plvo eval` meets them.
+// Tests folders of numbered frames with `plvo run` and `plvo eval`.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -52,7 +52,7 @@ TEST_F(CliNumbered, RunsAsTheTumFolderWithTheSameStamps) {
     EXPECT_EQ(json["frames"], test::kNumberedFrames);
     EXPECT_LT(json["evaluation"]["ate_m"]["rmse"], 0.02) << name;
   }
-  // And eval, from the pose files.
+  // plvo eval also reads the pose files.
   for (const std::string& truth : {tum_ + "/groundtruth.txt", tum_, seven_, scannet_}) {
     const CommandResult r = plvo("eval --gt " + truth + " --est " + file("seven.txt") + " --json -");
     ASSERT_EQ(r.exit_code, 0) << r.err;
@@ -64,7 +64,7 @@ TEST_F(CliNumbered, RunsAsTheTumFolderWithTheSameStamps) {
   }
 }
 
-TEST_F(CliNumbered, TheRateMakesTheStamps) {
+TEST_F(CliNumbered, StampsFollowFromTheRate) {
   ASSERT_EQ(plvo("run " + seven_ + " --rate 10 --quiet --out " + file("t.txt")).exit_code, 0);
   EXPECT_NE(read_file(file("t.txt")).find("\n0.500000 "), std::string::npos);
   EXPECT_EQ(plvo("eval --gt " + seven_ + " --rate 10 --est " + file("t.txt")).exit_code, 0);
@@ -78,7 +78,7 @@ TEST_F(CliNumbered, TheRateMakesTheStamps) {
                  "--gt-format: is for a trajectory");
 }
 
-TEST_F(CliNumbered, PosesThatAreNoneAreCounted) {
+TEST_F(CliNumbered, InvalidPosesAreCounted) {
   ASSERT_EQ(plvo("run " + scannet_ + " --quiet --out " + file("t.txt")).exit_code, 0);
   const std::string row = "-inf -inf -inf -inf\n";
   write_file(sequence_.scannet() / "pose/2.txt", row + row + row + row);
@@ -100,7 +100,7 @@ TEST_F(CliNumbered, AsksForACalibrationAndWarnsOfGaps) {
   EXPECT_NE(r.out.find("colour without depth"), std::string::npos) << r.out;
 }
 
-TEST_F(CliNumbered, OutputsDoNotTakeThePlaceOfInputs) {
+TEST_F(CliNumbered, OutputsDoNotOverwriteInputs) {
   for (const char* name : {"pose/1.txt", "color/0.png", "intrinsic/intrinsic_depth.txt"})
     expect_refused("run " + scannet_ + " --out " + scannet_ + '/' + name, 2, "is an input");
   write_file(file("t.txt"), "0 0 0 0 0 0 0 1\n");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where results go: never over an input or another output, into pipes, and not silently into nothing.
+// Tests the destinations of results: no output overwrites an input or another output, pipes work, and a
+// failed write is reported.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ class CliOutputs : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CliOutputs, NoOutputTakesThePlaceOfAnInput) {
+TEST_F(CliOutputs, NoOutputOverwritesAnInput) {
   const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
   fs::create_symlink(folder_ / "walk/groundtruth.txt", folder_ / "link");
   fs::create_hard_link(folder_ / "walk/groundtruth.txt", folder_ / "hard");
@@ -60,7 +61,7 @@ TEST_F(CliOutputs, NoOutputTakesThePlaceOfAnInput) {
       expect_refused(run(option + name), "is an input, which would be overwritten; choose another name");
     EXPECT_EQ(read_file(folder_ / "walk/groundtruth.txt"), truth);
   }
-  // Relative to where the user stands.
+  // Paths relative to the working directory.
   expect_refused(run_command("cd " + path("walk") + " && " + kPlvo + " run . --out rgb.txt"),
                  "--out: rgb.txt is");
   expect_refused(run("--overlay " + path("walk/rgb")), "holds inputs, which could be overwritten");
@@ -71,7 +72,7 @@ TEST_F(CliOutputs, NoOutputTakesThePlaceOfAnInput) {
   EXPECT_EQ(run("--quiet --out " + path("walk/estimate.txt")).exit_code, 0);
 }
 
-TEST_F(CliOutputs, TheOtherCommandsSpareTheirInputsToo) {
+TEST_F(CliOutputs, OtherCommandsKeepTheirInputs) {
   const std::string truth = path("walk/groundtruth.txt");
   const std::string before = read_file(truth);
   const std::string eval = kPlvo + " eval --gt " + truth + " --est " + truth;
@@ -101,14 +102,14 @@ TEST_F(CliOutputs, TheOtherCommandsSpareTheirInputsToo) {
   EXPECT_EQ(read_file(folder_ / "walk.oni"), "mine");
 }
 
-TEST_F(CliOutputs, TwoOutputsHaveTwoNames) {
+TEST_F(CliOutputs, TwoOutputsNeedTwoFiles) {
   expect_refused(run("--out " + path("a") + " --stats " + path("a")), "is already written by --out");
   expect_refused(run("--out " + path("a") + " --json " + path("walk/../a")), "is already written by --out");
-  fs::create_symlink("a", folder_ / "link");  // to what is not there yet
+  fs::create_symlink("a", folder_ / "link");  // the target does not exist yet
   expect_refused(run("--out " + path("a") + " --report " + path("link")), "is already written by --out");
   expect_refused(run("--out - --stats /dev/stdout"), "standard output is already written by --out");
   EXPECT_FALSE(fs::exists(folder_ / "a"));
-  EXPECT_EQ(run("--quiet --out /dev/null --stats /dev/null").exit_code, 0);  // nothing is lost there
+  EXPECT_EQ(run("--quiet --out /dev/null --stats /dev/null").exit_code, 0);  // a device stores nothing
 }
 
 TEST_F(CliOutputs, ColumnsOfStatsAreThoseOfThePage) {
@@ -124,7 +125,7 @@ TEST_F(CliOutputs, ColumnsOfStatsAreThoseOfThePage) {
   EXPECT_EQ(written.substr(0, written.find('\n')), columns);
 }
 
-TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
+TEST_F(CliOutputs, StandardOutputCarriesOneOutput) {
   ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
   const std::string expected = read_file(folder_ / "t.txt");
   for (const char* name : {"-", "/dev/stdout", "/dev/fd/1"}) {
@@ -136,7 +137,7 @@ TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
   EXPECT_EQ(lines(run("--quiet --stats -").out), 1 + kShortWalk);
   EXPECT_EQ(nlohmann::json::parse(run("--json -").out)["frames"], kShortWalk);
   EXPECT_EQ(run("--quiet --report -").out.rfind("<!", 0), 0u);
-  // Appending to a file that was there must not cut it.
+  // Appending to an existing file must not truncate it.
   write_file(folder_ / "log", "before\n");
   EXPECT_EQ(
       run_command("sh -c '" + kPlvo + " run " + path("walk") + " --quiet --out - >>" + path("log") + "'")
@@ -145,7 +146,7 @@ TEST_F(CliOutputs, StandardOutputCarriesOneThingAlone) {
   EXPECT_EQ(read_file(folder_ / "log"), "before\n" + expected);
 }
 
-TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
+TEST_F(CliOutputs, FilesStateTheirReferenceFrames) {
   const auto header = [this](const char* name) {
     const std::string text = read_file(folder_ / name);
     return text.substr(0, text.find('\n'));
@@ -163,7 +164,7 @@ TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
       header("m").ends_with("; frame_id: camera_optical, child_frame_id: camera_optical at the "
                             "reference_timestamp (x right, y down, z forward)"))
       << header("m");
-  // Who reads them back takes it for a comment.
+  // Readers treat this line as a comment.
   const CommandResult read_back =
       run_command(kPlvo + " eval --gt " + path("walk/groundtruth.txt") + " --est " + path("t") +
                   " --est-covariance " + path("c") + " --est-motions " + path("m") + " --json -");
@@ -171,12 +172,10 @@ TEST_F(CliOutputs, TheFilesSayInWhichFrames) {
   EXPECT_TRUE(nlohmann::json::parse(read_back.out).contains("nees_motion"));
 }
 
-// The base's poses are the camera's, moved by where the camera sits, and so are their covariances: what a
-// motion's error is in units of its covariance stays what it was.
-// TUM's format as its benchmark and evo document it, taken at their word: comments begin with '#', every
-// other row has eight numbers with one space between them, seconds first, and the quaternion, w last, has
-// unit norm. plvo's own reader takes the very same rows for such.
-TEST_F(CliOutputs, TrajectoriesAreTumsToTheLetter) {
+// Checks TUM's format as documented by its benchmark and evo: comments begin with '#'; every other row has
+// eight numbers separated by one space, with the seconds first; the quaternion has w last and unit norm.
+// plvo's own reader must read the same rows.
+TEST_F(CliOutputs, TrajectoriesFollowTumsFormatExactly) {
   for (const char* base : {"", " --base-camera 0.2 0 0.5 -0.5 0.5 -0.5 0.5"}) {
     ASSERT_EQ(run("--quiet --out " + path("t") + base).exit_code, 0);
     const std::string text = read_file(folder_ / "t");
@@ -209,6 +208,8 @@ TEST_F(CliOutputs, TrajectoriesAreTumsToTheLetter) {
   }
 }
 
+// The poses of the base are those of the camera, transformed by the mounting of the camera, and so are their
+// covariances: a motion's error in units of its covariance does not change.
 TEST_F(CliOutputs, PosesOfTheRobotsBase) {
   const std::string place = "0.2 -0.1 0.5 -0.54 0.46 -0.5 0.497";
   const Se3 T_base_camera{to_rotation({-0.54, 0.46, -0.5, 0.497}), Vector3(0.2, -0.1, 0.5)};
@@ -255,10 +256,9 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
       << "the summary stays the camera's";
 }
 
-// Each second pixel of the depth images, as a sensor with a smaller depth camera in the same place has them.
-// The simulator's z points up: what the truth knows of up is up in the level world, to the two degrees of an
-// accelerometer of 0.25 m/s² offset.
-TEST_F(CliOutputs, ALevelWorldByTheAccelerometer) {
+// The simulator's z axis points up. The levelled world must agree with the truth about this direction, up to
+// the two degrees due to an accelerometer bias of 0.25 m/s².
+TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
   const auto read = [&](const std::string& file) {
     Trajectory trajectory;
     EXPECT_TRUE(read_trajectory({path(file), TrajectoryFormat::kTum, {}}, trajectory).ok());
@@ -273,7 +273,7 @@ TEST_F(CliOutputs, ALevelWorldByTheAccelerometer) {
     const Vector3 down = level[i].T_world_camera.R * truth[i].T_world_camera.R.transpose() * -up;
     EXPECT_LT((down - Vector3(0, 1, 0)).norm(), 0.1) << down.transpose();
   }
-  // A camera that is mounted 20° askew: the base is level none the less.
+  // The camera is mounted at an angle of 20°; the base is level nevertheless.
   const std::string mounted = " --base-camera 0.2 0 0.5 -0.576 0.576 -0.41 0.41";
   ASSERT_EQ(run("--quiet --imu --level --out " + path("b") + mounted).exit_code, 0);
   EXPECT_NE(read_file(folder_ / "b").find("turned level: gravity along -z"), std::string::npos);
@@ -294,6 +294,7 @@ TEST_F(CliOutputs, ALevelWorldByTheAccelerometer) {
       << none.err;
 }
 
+// Keeps every second pixel of the depth images, like a sensor with a smaller depth camera in the same place.
 TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   ASSERT_EQ(run("--quiet --out " + path("whole")).exit_code, 0);
   ImageDecoder decoder;
@@ -323,14 +324,14 @@ TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
   }
 }
 
-TEST_F(CliOutputs, ACameraWithoutATurnIsWarnedOf) {
+TEST_F(CliOutputs, WarnsOfAMissingRotationToOpticalAxes) {
   const CommandResult r = run("--quiet --out " + path("t") + " --base-camera 0.2 0 0.5 0 0 0 1");
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_NE(r.err.find("this camera looks up"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("-0.5 0.5 -0.5 0.5"), std::string::npos) << r.err;
 }
 
-TEST_F(CliOutputs, WhatCannotBeWrittenToStandardOutputIsAnError) {
+TEST_F(CliOutputs, FailedWriteToStandardOutputIsAnError) {
   const std::string truth = path("walk/groundtruth.txt");
   for (const std::string& words :
        {"run " + path("walk"), "run " + path("walk") + " --quiet --out -",
@@ -347,7 +348,7 @@ TEST_F(CliOutputs, WhatCannotBeWrittenToStandardOutputIsAnError) {
   }
 }
 
-TEST_F(CliOutputs, AClosedStandardOutputGetsIntoNoFile) {
+TEST_F(CliOutputs, ClosedStandardOutputDoesNotEndUpInAFile) {
   ASSERT_EQ(run("--quiet --out " + path("t.txt")).exit_code, 0);
   EXPECT_EQ(run_command("sh -c '" + kPlvo + " run " + path("walk") + " --out " + path("u.txt") + " >&- 2>&-'")
                 .exit_code,
@@ -355,7 +356,7 @@ TEST_F(CliOutputs, AClosedStandardOutputGetsIntoNoFile) {
   EXPECT_EQ(read_file(folder_ / "u.txt"), read_file(folder_ / "t.txt"));
 }
 
-TEST_F(CliOutputs, WhatCannotBeWrittenIsFoundBeforeTheFirstFrame) {
+TEST_F(CliOutputs, UnwritableOutputsAreFoundBeforeTheFirstFrame) {
   write_file(folder_ / "plain", "");
   for (const char* option : {"--report ", "--json "}) {
     const CommandResult r = run("--overlay " + path("frames") + " " + option + path("plain") + "/x");
@@ -364,7 +365,7 @@ TEST_F(CliOutputs, WhatCannotBeWrittenIsFoundBeforeTheFirstFrame) {
     EXPECT_FALSE(fs::exists(folder_ / "frames/000000.png")) << "no frame was tracked before";
   }
   EXPECT_EQ(run_command(kPlvo + " simulate --scene bare --size 96x64 --out " + path("plain/x")).exit_code, 1);
-  // A check that finds nothing wrong leaves nothing behind, and an old report whole.
+  // A successful check leaves no file behind and keeps an old report.
   write_file(folder_ / "old.html", "old");
   EXPECT_EQ(
       run("--report " + path("old.html") + " --json " + path("new.json") + " --out " + path("plain") + "/x")
@@ -382,7 +383,7 @@ TEST_F(CliOutputs, ASequenceThatCannotBeTrackedIsRefusedBeforeTheFirstFrame) {
   EXPECT_FALSE(fs::exists(folder_ / "t.txt"));
 }
 
-TEST_F(CliOutputs, AssumptionsAreSaidAtTheStart) {
+TEST_F(CliOutputs, AssumptionsAreReportedAtTheStart) {
   write_file(folder_ / "walk/calibration.txt", "131 131 79.5 59.5 5000\n");
   CommandResult r = run("--quiet");
   EXPECT_EQ(r.exit_code, 0) << r.err;
@@ -392,7 +393,8 @@ TEST_F(CliOutputs, AssumptionsAreSaidAtTheStart) {
   r = run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5");
   EXPECT_NE(r.err.find("5000 units per metre are assumed"), std::string::npos) << r.err;
   EXPECT_EQ(run("--quiet --fx 131 --fy 131 --cx 79.5 --cy 59.5 --readout 0 --depth-scale 5000").err, "");
-  // Without a calibration, TUM's name of a recording tells the camera; one like it is a hint.
+  // Without a calibration, a recording's name in TUM's scheme determines the camera; a similar name is a
+  // hint.
   fs::remove(folder_ / "walk/calibration.txt");
   fs::rename(folder_ / "walk", folder_ / "fr1_walk");
   r = run_command(kPlvo + " run " + path("fr1_walk") + " --quiet");
@@ -403,7 +405,7 @@ TEST_F(CliOutputs, AssumptionsAreSaidAtTheStart) {
   EXPECT_NE(r.err.find("640x480"), std::string::npos) << "the guess does not fit these images: " << r.err;
 }
 
-TEST_F(CliOutputs, AWalkOfOneFrameIsNoFailure) {
+TEST_F(CliOutputs, SequenceOfOneFrameIsNoFailure) {
   const CommandResult r = run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --frames 1");
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("started                1"), std::string::npos) << r.out;
@@ -422,8 +424,8 @@ TEST_F(CliOutputs, LossesAreCountedByKind) {
   EXPECT_EQ(json["lost_reasons"], (nlohmann::json{{"too_few_features", 4}})) << json;
 }
 
-// Each in words on standard error, and among the warnings of the summary.
-TEST_F(CliOutputs, WhatIsWrongWithTheDataIsSaidOnce) {
+// Each fault is a message on standard error and a warning in the summary.
+TEST_F(CliOutputs, FaultsOfTheDataAreReportedOnce) {
   const auto said = [&](const std::string& options, const std::string& words) {
     SCOPED_TRACE(words);
     const CommandResult r = run("--quiet --json " + path("j") + ' ' + options);
@@ -443,7 +445,7 @@ TEST_F(CliOutputs, WhatIsWrongWithTheDataIsSaidOnce) {
   said("--fx 131 --fy 90", "pixels are nearly always square");
   said("--depth-scale 1000", "times the true ones");
   said("--depth-scale 40000", "no depth lies beyond");
-  // A ground truth of another clock, or of another recording.
+  // The ground truth has another clock or belongs to another recording.
   const std::string truth = read_file(folder_ / "walk/groundtruth.txt");
   write_file(folder_ / "walk/groundtruth.txt", "9000 0 0 0 0 0 0 1\n9001 0 0 0 0 0 0 1\n");
   said("", "no comparison: only 0 of ");
@@ -455,14 +457,14 @@ TEST_F(CliOutputs, WhatIsWrongWithTheDataIsSaidOnce) {
   said("", "the depth images are empty");
 }
 
-TEST_F(CliOutputs, KittiRowsWithoutStampsMustBeAsMany) {
+TEST_F(CliOutputs, KittiRowsWithoutStampsMustMatchInNumber) {
   std::string truth, estimate, times, fewer_times;
   for (int i = 0; i < 20; ++i) {
     const std::string row = "1 0 0 " + std::to_string(0.1 * i * i) + " 0 1 0 0 0 0 1 0\n";
     const std::string time = std::to_string(0.1 * i) + '\n';
     truth += row;
     times += time;
-    if (i == 3) continue;  // a frame that was lost
+    if (i == 3) continue;  // a lost frame
     estimate += row;
     fewer_times += time;
   }
@@ -480,7 +482,7 @@ TEST_F(CliOutputs, KittiRowsWithoutStampsMustBeAsMany) {
   ASSERT_EQ(timed.exit_code, 0) << timed.err;
   EXPECT_LT(nlohmann::json::parse(timed.out)["ate_m"]["max"].get<double>(), 1e-6);
   EXPECT_EQ(run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("truth")).exit_code, 0);
-  // Rows against stamps.
+  // One file with row numbers and one with stamps.
   write_file(folder_ / "stamped", "50 0 0 0 0 0 0 1\n51 0 0 0 0 0 0 1\n");
   const CommandResult mixed =
       run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("stamped"));
@@ -488,7 +490,7 @@ TEST_F(CliOutputs, KittiRowsWithoutStampsMustBeAsMany) {
   EXPECT_NE(mixed.err.find("the truth has no stamps"), std::string::npos) << mixed.err;
 }
 
-TEST_F(CliOutputs, KittiTimesFitTheirRows) {
+TEST_F(CliOutputs, KittiTimesMustMatchTheirRows) {
   std::string rows, times;
   for (int i = 0; i < 10; ++i) {
     rows += "1 0 0 " + std::to_string(0.1 * i) + " 0 1 0 0 0 0 1 0\n";

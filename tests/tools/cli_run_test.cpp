@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo run` and `plvo simulate` as the user runs them: the main job, and every bad input with one line that
-// says what to do. Folders that cannot be written are made without permissions: the tests may run as root.
+// Tests `plvo run` and `plvo simulate` through the command line: a complete run, and every bad input with one
+// line that says what to do. Unwritable folders are not made by permissions: the tests may run as root.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ bool contains(const std::string& text, std::string_view words) {
   return text.find(words) != std::string::npos;
 }
 
-// A walk through a simulated room, made once; each test works on its own copy.
+// A walk through a simulated room, rendered once; each test works on its own copy.
 const fs::path& master_sequence() { return test::simulated_sequence<kFrames>(); }
 
 class CliRun : public ::testing::Test {
@@ -48,7 +48,7 @@ class CliRun : public ::testing::Test {
     return run_command(kPlvo + " run " + sequence_.string() + ' ' + more);
   }
   std::string file(const char* name) const { return (folder_ / name).string(); }
-  // The file of the k-th line of a list.
+  // Returns the file in the k-th line of a list.
   fs::path image(const char* kind, int k) const {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(sequence_ / kind)) files.push_back(entry.path());
@@ -66,7 +66,7 @@ class CliRun : public ::testing::Test {
   fs::path sequence_;
 };
 
-TEST_F(CliRun, TheMainJob) {
+TEST_F(CliRun, WritesAllOutputsOfATrackedSequence) {
   const CommandResult r = run("--out " + file("t.txt") + " --covariance " + file("c.txt") + " --motions " +
                               file("m.txt") + " --stats " + file("s.csv") + " --json " + file("j.json"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
@@ -106,7 +106,7 @@ TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
   EXPECT_TRUE(contains(two.out, "elapsed per frame")) << two.out;
   EXPECT_EQ(read_file(file("1.txt")), read_file(file("2.txt")));
   EXPECT_EQ(read_file(file("c1.txt")), read_file(file("c2.txt")));
-  // The second thread's time counts too.
+  // The time of the second thread is included.
   const auto json = nlohmann::json::parse(read_file(file("j.json")));
   double stages = 0;
   for (const char* stage : {"image", "points", "lines", "matching", "motion"})
@@ -115,7 +115,7 @@ TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
   EXPECT_EQ(run("--cores 3").exit_code, 2);
 }
 
-TEST_F(CliRun, SurfacesTakePartUnlessTheyAreLeftOut) {
+TEST_F(CliRun, SurfacesAreUsedUnlessDisabled) {
   const auto trajectory = [&](const std::string& options) {
     EXPECT_EQ(run("--quiet --out " + file("t.txt") + ' ' + options).exit_code, 0);
     return read_file(file("t.txt"));
@@ -155,12 +155,12 @@ TEST_F(CliRun, GyroAndAccelerometerBridgeACoveredLens) {
   EXPECT_TRUE(contains(helped.out, "predicted")) << helped.out;
   EXPECT_TRUE(contains(read_file(file("s.csv")), "predicted,\"predicted: hardly anything")) << helped.out;
   EXPECT_EQ(lines_of(file("t.txt")), 1 + 12);
-  // The simulator's own readings are those of its files, but for their last digit.
+  // The simulator's readings equal those of its files up to the last digit.
   ASSERT_EQ(run_command(kPlvo + " run --camera sim --frames 12 --imu --out " + file("live.txt") + simulated)
                 .exit_code,
             0);
   EXPECT_EQ(lines_of(file("live.txt")), 1 + 12);
-  // One of the two files is enough, none is not.
+  // One of the two files is enough; at least one is required.
   fs::remove(file("covered") + "/gyroscope.txt");
   const CommandResult level = run_command(command + " --imu");
   EXPECT_EQ(level.exit_code, 0) << level.err;
@@ -181,7 +181,7 @@ TEST_F(CliRun, ImuAxesAreThreeDifferentOnes) {
   EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --covered 3:2").exit_code, 2);
 }
 
-TEST_F(CliRun, ABudgetThatNoFrameMeetsTakesFeaturesAway) {
+TEST_F(CliRun, UnreachableBudgetReducesFeatures) {
   const CommandResult free = run("--json " + file("free.json"));
   EXPECT_FALSE(contains(free.out, "frame budget"));
   EXPECT_EQ(nlohmann::json::parse(read_file(file("free.json")))["fewer_features"]["frames"], 0);
@@ -206,7 +206,7 @@ TEST_F(CliRun, TheTinyPresetTakesLessMemory) {
     EXPECT_EQ(run(std::string("--preset tiny --reference ") + one).exit_code, 0) << one;
 }
 
-TEST_F(CliRun, QuietSaysNothing) {
+TEST_F(CliRun, QuietWritesNothing) {
   const CommandResult r = run("--quiet");
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_TRUE(r.out.empty() && r.err.empty()) << r.out << r.err;
@@ -220,7 +220,7 @@ TEST_F(CliRun, FrameRange) {
 
 TEST_F(CliRun, StepEndsWithItsInput) {
   const CommandResult r =
-      run("--pace step --out " + file("t.txt"));  // standard input is empty: no frame at all
+      run("--pace step --out " + file("t.txt"));  // standard input is empty: no frame is released
   EXPECT_EQ(r.exit_code, 3);
   EXPECT_TRUE(contains(r.err, "no frame could be tracked")) << r.err;
 }
@@ -232,7 +232,7 @@ TEST_F(CliRun, OverlayAndReportAreWritten) {
   EXPECT_TRUE(fs::exists(folder_ / "overlay/000005.png"));
   const std::string page = read_file(file("r.html"));
   EXPECT_TRUE(contains(page, "data:image/jpeg;base64,"));
-  EXPECT_FALSE(contains(page, "http:") || contains(page, "https:"));  // nothing is loaded from anywhere
+  EXPECT_FALSE(contains(page, "http:") || contains(page, "https:"));  // the page loads nothing
   EXPECT_FALSE(contains(page, "@DATA@") || contains(page, "@SCRIPT@") || contains(page, "@STYLE@"));
 }
 
@@ -263,7 +263,7 @@ TEST_F(CliRun, EightBitDepth) {
   const std::vector<std::uint8_t> grey(160 * 120, 80);
   ASSERT_TRUE(write_png(image("depth", 0), ColourView{grey.data(), 160, 120, 160, PixelFormat::kGray8}).ok());
   expect_refused(run("--out " + file("t.txt")), "has 8 bits per channel; depth must be a 16-bit grey PNG");
-  EXPECT_FALSE(fs::exists(file("t.txt")));  // refused before anything was written
+  EXPECT_FALSE(fs::exists(file("t.txt")));  // refused before any output is written
 }
 
 TEST_F(CliRun, ColourAndDepthOfDifferentSizes) {
@@ -326,7 +326,7 @@ TEST_F(CliRun, OutputsThatCannotBeWritten) {
 }
 
 TEST_F(CliRun, FullDiskKeepsWhatWasWritten) {
-  // A file may grow to 400 bytes: the header, and as many whole lines as fit.
+  // A file may grow to 400 bytes: the header and the complete lines that fit.
   const CommandResult r = run_command("bash -c 'trap \"\" XFSZ; ulimit -f 1; exec " + kPlvo + " run " +
                                       sequence_.string() + " --quiet --covariance " + file("c.txt") + "'");
   EXPECT_EQ(r.exit_code, 1);
@@ -337,7 +337,7 @@ TEST_F(CliRun, FullDiskKeepsWhatWasWritten) {
   EXPECT_EQ(text[0], '#');
 }
 
-TEST(CliSimulate, SaysWhatIsWrong) {
+TEST(CliSimulate, RejectsBadInputWithAMessage) {
   const TemporaryFolder folder;
   write_file(folder / "file", "");
   const CommandResult r = run_command(kPlvo + " simulate --scene bare --size 96x64 --frames 1 --out " +
@@ -358,7 +358,7 @@ TEST(CliRunReal, TracksAKinect) {
   EXPECT_EQ(json["lost"], 0);
   EXPECT_EQ(json["unpaired_images"], 1);
   EXPECT_LT(json["evaluation"]["rpe"][0]["translation_m"]["rmse"], 0.012);
-  // Nothing is taken after init: what little the summary's own bookkeeping may add stays below a page or two.
+  // There is no allocation after init; the bookkeeping of the summary stays below a few pages.
   EXPECT_LE(json["memory_bytes"]["anonymous_at_end"].get<long>() -
                 json["memory_bytes"]["anonymous_after_start"].get<long>(),
             16384);

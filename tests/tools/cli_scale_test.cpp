@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `plvo run` with images scaled down: because one asks for it, and because they are larger than plvo takes.
+// Tests `plvo run` with images scaled down: on request, and because they exceed plvo's limit.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -38,7 +38,7 @@ class CliScale : public ::testing::Test {
     EXPECT_EQ(r.exit_code, 0) << r.err;
     return nlohmann::json::parse(r.out);
   }
-  // Each pixel of 80×64 as a block.
+  // Replaces each pixel of 80×64 by a block.
   void magnify(const std::string& name, int factor) const {
     ImageDecoder decoder;
     const int width = 80 * factor, height = 64 * factor;
@@ -66,8 +66,8 @@ class CliScale : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-// The same walk, rendered at 640×480 and at half of it.
-TEST_F(CliScale, ARecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
+// The same walk is rendered at 640×480 and at half that size.
+TEST_F(CliScale, RecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
   simulate("small", "--scene desk --frames 12 --size 320x240");
   simulate("large", "--scene desk --frames 12 --size 640x480");
   ASSERT_EQ(run("small", "--quiet --out " + path("s")).exit_code, 0);
@@ -89,7 +89,7 @@ TEST_F(CliScale, ARecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
   EXPECT_NE(run("large", "").out.find("images                 640x480\n"), std::string::npos);
 }
 
-TEST_F(CliScale, BlocksOfPixelsAreWhatTheyWereMadeOf) {
+TEST_F(CliScale, ReductionRestoresMagnifiedImages) {
   simulate("walk", "--scene bare --frames 4 --size 80x64");
   ASSERT_EQ(run("walk", "--quiet --out " + path("a") + " --covariance " + path("ca")).exit_code, 0);
   const std::string calibration = read_file(folder_ / "walk/calibration.txt");
@@ -101,7 +101,7 @@ TEST_F(CliScale, BlocksOfPixelsAreWhatTheyWereMadeOf) {
   EXPECT_EQ(read_file(folder_ / "ca"), read_file(folder_ / "cb"));
 }
 
-TEST_F(CliScale, ImagesAboveTheLimitRunAndItIsSaid) {
+TEST_F(CliScale, ImagesAboveTheLimitAreReducedWithAMessage) {
   simulate("walk", "--scene bare --frames 3 --size 80x64");
   ASSERT_EQ(run("walk", "--quiet --out " + path("a")).exit_code, 0);
   magnify("walk", 26);  // 2080×1664
@@ -113,7 +113,7 @@ TEST_F(CliScale, ImagesAboveTheLimitRunAndItIsSaid) {
             std::string::npos)
       << r.err;
   EXPECT_NE(r.out.find("images                 1040x832, scaled down by 2\n"), std::string::npos) << r.out;
-  // Down to where it came from, the limit plays no part.
+  // With a scale down to the original size the limit has no effect.
   ASSERT_EQ(run("walk", "--scale 13 --quiet --out " + path("c")).exit_code, 0);
   const CommandResult as_large = run("walk", "--scale 1");
   EXPECT_EQ(as_large.exit_code, 2);
@@ -128,7 +128,7 @@ TEST_F(CliScale, ImagesAboveTheLimitRunAndItIsSaid) {
   EXPECT_NE(calibrate.err.find("record a smaller mode"), std::string::npos) << calibrate.err;
 }
 
-TEST_F(CliScale, AFactorThatLeavesTooLittleIsRefused) {
+TEST_F(CliScale, TooLargeFactorIsRefused) {
   simulate("walk", "--scene bare --frames 2 --size 160x120");
   const CommandResult r = run("walk", "--scale 2 --out " + path("t"));
   EXPECT_EQ(r.exit_code, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrong command lines: each ends with exit code 2, before anything is opened or written, and with one line
-// that names what is allowed.
+// Tests wrong command lines: each ends with exit code 2, before anything is opened or written, and with one
+// line that names the allowed values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST(CliUsage, AllowedValuesAreNamedInWords) {
   expect_usage("tilt --led pink", "--led: expected off, green, red, yellow, blink-green or blink-red-yellow");
 }
 
-TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
+TEST(CliUsage, NumbersHaveReadableLimits) {
   for (const char* number : {"nan", "inf", "-1", "0", "1e300", "", "1x", "0x1"})
     expect_usage("run x --tolerance '" + std::string(number) + "'",
                  "expected a number above 0 and up to 3600, not");
@@ -102,7 +102,7 @@ TEST(CliUsage, NumbersHaveLimitsThatOneCanRead) {
   expect_usage("tilt nan", "angle: expected a number from -31 to 31, not 'nan'");
 }
 
-TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
+TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsCorrected) {
   expect_usage(
       "",
       "a command is needed: run, live, record, calibrate, eval, simulate, doctor or tilt (see plvo --help)");
@@ -115,7 +115,7 @@ TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
   expect_usage("run x --zoom=3 y", "run: there is no option --zoom");
   expect_usage("run x y", "run: 'y' is one word too many");
   expect_usage("run x -- y", "run: 'y' is one word too many");
-  // Also where something required is missing: it may be what was misspelt.
+  // Also if a required argument is missing: it may be the misspelt one.
   for (const char* command : {"run", "record", "eval", "calibrate", "simulate"})
     expect_usage(std::string(command) + " --bogus", std::string(command) + ": there is no option --bogus");
   expect_usage("eval --gt a --esst b", "eval: there is no option --esst; did you mean --est?");
@@ -125,7 +125,7 @@ TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsPutRight) {
   expect_usage("run x --out ''", "--out: expected a path, not an empty word");
 }
 
-TEST(CliUsage, HowManyValuesAnOptionTakesIsSaidPlainly) {
+TEST(CliUsage, NumberOfValuesOfAnOptionIsStated) {
   expect_usage("run x --frames 5 --frames 6", "run: --frames: may be given once, not 2 times (see");
   expect_usage("run x --out a --out b --out c", "--out: may be given once, not 3 times");
   expect_usage("run x --preset", "run: --preset: a value is missing: default, paper or tiny (see");
@@ -170,7 +170,7 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("eval --gt a --est b --max-dt 0.1", "--max-dt: is for --gt-sampling nearest");
 }
 
-// There is no sensor here: whoever opened one first would say so, with exit code 4.
+// This machine has no sensor: opening one first would fail with exit code 4.
 TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
   expect_usage("live --view abc", "--view: expected [ADDRESS:]PORT");
   expect_usage("live --view 70000", "--view: expected [ADDRESS:]PORT");
@@ -180,9 +180,8 @@ TEST(CliUsage, WrongUsageIsFoundBeforeASensorIsOpened) {
   expect_usage("live --out a --json a", "--json: a is already written by --out");
 }
 
-// A sensor that was opened first would be missed here, with exit code 4; one that is there would have
-// started.
-TEST(CliUsage, OutputsAreTriedBeforeASensorIsOpened) {
+// Opening the sensor first would fail here with exit code 4, or would start a sensor if there is one.
+TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
   const TemporaryFolder folder;
   const auto at = [&folder](const std::string& name) { return (folder / name).string(); };
   std::filesystem::create_directory(folder / "walk");
@@ -208,7 +207,7 @@ TEST(CliUsage, OutputsAreTriedBeforeASensorIsOpened) {
     expect_refused("live " + (output + at("no/such.txt")), "cannot create " + at("no/such.txt"));
   expect_refused("live --stream unix:" + at("no/socket"), at("no/socket"));
   expect_refused("live --view 192.0.2.1:0", "192.0.2.1");
-  // What is well is only tried: without a sensor nothing comes of it, and nothing is lost.
+  // Valid outputs are only tested: without a sensor no file is created and none is lost.
   plvo("record " + at("new") + " --seconds 0.01 --device freenect://9-9");
   plvo("live --device freenect://9-9 --record " + at("new.oni") + " --out " + at("poses.txt"));
   EXPECT_FALSE(std::filesystem::exists(folder / "new"));
@@ -216,7 +215,7 @@ TEST(CliUsage, OutputsAreTriedBeforeASensorIsOpened) {
   EXPECT_EQ(test::read_file(folder / "poses.txt"), "mine");
 }
 
-// What each flag of a command is for: its type and its words in the help, on one line.
+// Returns for each flag of a command its type and its description in the help, on one line.
 std::map<std::string, std::string> flags_of(const std::string& command) {
   std::map<std::string, std::string> flags;
   std::istringstream help(plvo(command + " --help").out);
@@ -234,23 +233,23 @@ std::map<std::string, std::string> flags_of(const std::string& command) {
   return flags;
 }
 
-// How many meanings a flag has where it has more than one, and why it may.
+// Number of meanings of each flag that has more than one, and the reason.
 const std::map<std::string, std::size_t>& flags_of_several_meanings() {
   static const std::map<std::string, std::size_t> flags = {
-      {"--frames", 4},  // always so many frames; run takes a range too, calibrate of all recordings together
-      {"--imu", 3},     // always a gyro and an accelerometer; what is done with them is the command's own
-      {"--calibration", 2},  // the same files; what holds without one depends on where the frames come from
-      {"--threads", 2},      // always a number of threads; what they do is the command's own
-      {"--out", 3},          // always the command's first result
-      {"--json", 2},         // always JSON; - prints it instead of the text where the text is the result
-      {"--report", 3},       // always a page; what it shows is the command's own
-      {"--device", 2},       // doctor captures from no ROS bag
+      {"--frames", 4},  // a number of frames; run also takes a range, calibrate the total over all recordings
+      {"--imu", 3},     // a gyro and an accelerometer; each command uses them differently
+      {"--calibration", 2},  // the same files; the default depends on the source of the frames
+      {"--threads", 2},      // a number of threads; their task depends on the command
+      {"--out", 3},          // the command's first result
+      {"--json", 2},         // JSON; - prints it instead of the text if the text is the result
+      {"--report", 3},       // a page; its content depends on the command
+      {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
   };
   return flags;
 }
 
-TEST(CliUsage, TheSameFlagMeansTheSame) {
+TEST(CliUsage, SameFlagHasTheSameMeaning) {
   std::map<std::string, std::set<std::string>> meanings;
   std::map<std::string, std::string> where;
   for (const char* command : {"run", "live", "record", "calibrate", "eval", "simulate", "doctor", "tilt"}) {
@@ -270,7 +269,7 @@ TEST(CliUsage, TheSameFlagMeansTheSame) {
     EXPECT_EQ(meanings.count(flag), 1u) << flag << " is no flag any more";
 }
 
-TEST(CliUsage, TheSameFlagDoesTheSame) {
+TEST(CliUsage, SameFlagHasTheSameEffect) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const std::string walk = (folder / "walk").string();

@@ -13,7 +13,7 @@ namespace {
 
 using test::normal;
 
-// Motions whose errors are drawn from `sigma` while `claimed` is reported.
+// Draws the errors of motions from `sigma`, while `claimed` is the reported standard deviation.
 Consistency monte_carlo(double sigma, double claimed) {
   Random random(3);
   Trajectory truth;
@@ -46,7 +46,7 @@ TEST(Consistency, TrueCovarianceLiesInTheBand) {
   }
 }
 
-TEST(Consistency, OverconfidenceShows) {
+TEST(Consistency, OverconfidenceIsDetected) {
   const Consistency c = monte_carlo(2e-3, 1e-3);
   EXPECT_NEAR(c.all.mean, 24, 2);
   EXPECT_GT(c.all.mean, c.all.mean_band.high);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What plvo_bench growth is going to measure: one thing at a time is changed.
+// Tests the cases of plvo_bench growth: each table varies one parameter.
 #include "plvo/bench/growth/growth_cases.hpp"
 
 #include <gtest/gtest.h>
@@ -9,12 +9,12 @@
 namespace plvo::bench {
 namespace {
 
-TEST(GrowthCases, ChangeOneThingAtATime) {
+TEST(GrowthCases, VaryOneParameterAtATime) {
   GrowthPlan plan;
   ASSERT_TRUE(plan_growth({}, {}, plan).ok());
   ASSERT_EQ(plan.tables.size(), 4U);
   const std::size_t rows[] = {5, 5, 6, 4};
-  std::size_t measured = 1 + plan.walks.rows.size();  // the first is in each of these tables
+  std::size_t measured = 1 + plan.walks.rows.size();  // the first case is in each of these tables
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(plan.tables[i].rows.size(), rows[i]) << plan.tables[i].title;
     measured += rows[i] - 1;
@@ -41,7 +41,7 @@ TEST(GrowthCases, ChangeOneThingAtATime) {
   EXPECT_EQ(plan.bounds.size(), 3U + 3 + 1);
 }
 
-TEST(GrowthCases, AreThoseOfTheTablesAskedFor) {
+TEST(GrowthCases, CoverTheRequestedTables) {
   GrowthOptions options;
   options.tables = "walks";
   GrowthPlan plan;
@@ -53,12 +53,12 @@ TEST(GrowthCases, AreThoseOfTheTablesAskedFor) {
   EXPECT_EQ(plan_growth(options, {}, plan).code(), StatusCode::kInvalidArgument);
 }
 
-TEST(GrowthCases, AScaledCameraSeesTheSameThings) {
+TEST(GrowthCases, ScaledCameraSeesTheSameScene) {
   const CameraModel camera;
   const CameraModel twice = scaled(camera, 2);
   EXPECT_EQ(twice.width, 2 * camera.width);
   const Vector3 p(0.4, -0.3, 2);
-  // The corner of the picture is at −½, −½.
+  // The corner of the image is at (−½, −½).
   const Vector2 half = project(camera.pinhole, p) + Vector2(0.5, 0.5);
   EXPECT_NEAR((project(twice.pinhole, p) + Vector2(0.5, 0.5) - 2 * half).norm(), 0, 1e-9);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bench's peers get: a lens without distortion changes nothing; with one, a picture that is linear
-// in the raw pixel coordinates comes back as those of distort_pixel.
+// Tests the input of the bench's peers: without distortion the images do not change; with distortion, an
+// image that is linear in the raw pixel coordinates is sampled at the coordinates of distort_pixel.
 #include "plvo/bench/systems/ideal_images.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Pictures {
   RgbdFrame frame;
 };
 
-// Red grows with x, green with y, blue is 7; depth says where it was read.
+// Red grows with x, green with y, blue is 7; the depth encodes its pixel.
 Pictures ramps(PixelFormat format) {
   Pictures p;
   for (int y = 0; y < kHeight; ++y) {
@@ -65,7 +65,7 @@ TEST(IdealImages, WithoutDistortionNothingChanges) {
   }
 }
 
-TEST(IdealImages, ReadWhereTheLensPutsEachPixel) {
+TEST(IdealImages, SampleAtTheDistortedPixel) {
   CameraModel camera = small_camera();
   camera.distortion = {0.26, -0.95, -0.005, 0.003, 1.16};
   const Pictures p = ramps(PixelFormat::kRgb8);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When plvo_bench detectors counts a segment or a keypoint as found, on cases made by hand.
+// Tests the criteria by which plvo_bench detectors counts a segment or a keypoint as found, on hand-made
+// cases.
 #include "plvo/bench/detectors/line_measures.hpp"
 
 #include <gtest/gtest.h>
@@ -13,17 +14,17 @@ namespace {
 
 Line line(double ax, double ay, double bx, double by) { return {Vector2(ax, ay), Vector2(bx, by)}; }
 
-TEST(OffsetIfSame, IsThatOfTheFartherEndWhicheverWayRound) {
+TEST(OffsetIfSame, IsThatOfTheFartherEndInEitherDirection) {
   const Line expected = line(10, 20, 50, 20);
   EXPECT_NEAR(offset_if_same(expected, line(10, 21, 50, 20.5), 2).value_or(9), 1, 0.01);
   EXPECT_NEAR(offset_if_same(expected, line(50, 20.5, 10, 21), 2).value_or(9), 1, 0.01);
   EXPECT_FALSE(offset_if_same(expected, line(10, 22.1, 50, 22.1), 2));
   EXPECT_TRUE(offset_if_same(expected, line(10, 22.1, 50, 22.1), 3));
-  // Its middle is on the line, but it is turned: one end is 3 px off.
+  // Its midpoint is on the line, but it is rotated: one end is 3 px off.
   EXPECT_FALSE(offset_if_same(expected, line(10, 17, 50, 23), 2));
 }
 
-TEST(OffsetIfSame, WantsHalfOfTheLength) {
+TEST(OffsetIfSame, RequiresHalfOfTheLength) {
   const Line expected = line(10, 20, 50, 20);
   EXPECT_TRUE(offset_if_same(expected, line(29, 20, 80, 20), 2));
   EXPECT_FALSE(offset_if_same(expected, line(31, 20, 80, 20), 2)) << "19 of 40 px";
@@ -38,18 +39,18 @@ TEST(Cover, CountsPixelsUnderParallelSegmentsAndTheirNearestOffset) {
   const Line edge = line(0, 0, 99, 0);
   EXPECT_EQ(cover(edge, {}, 2).samples, 100);
   EXPECT_TRUE(cover(edge, {}, 2).offsets_px.empty());
-  // Two pieces that overlap for 10 px; where they do, the nearer one counts.
+  // Two segments overlap for 10 px; there the nearer one counts.
   const Coverage pieces = cover(edge, {line(0, 1, 29, 1), line(49, 0.5, 20, 0.5)}, 2);
   ASSERT_EQ(pieces.offsets_px.size(), 50U);
   EXPECT_NEAR(pieces.offsets_px[10], 1, 1e-9);
   EXPECT_NEAR(pieces.offsets_px[25], 0.5, 1e-9);
   EXPECT_TRUE(cover(edge, {line(0, 2.5, 99, 2.5)}, 2).offsets_px.empty());
-  // At 10° a segment crosses the edge and is not the edge.
+  // At 10° a segment crosses the edge and does not count.
   EXPECT_TRUE(cover(edge, {line(40, -1.76, 60, 1.76)}, 2).offsets_px.empty());
   EXPECT_FALSE(cover(edge, {line(40, -0.7, 60, 0.7)}, 2).offsets_px.empty());
 }
 
-TEST(Longest, DropsTheShortAndKeepsTheRoom) {
+TEST(Longest, DropsTheShortAndKeepsTheGivenNumber) {
   const std::vector<Line> kept =
       longest({line(0, 0, 19, 0), line(0, 0, 30, 0), line(0, 0, 0, 50), line(0, 0, 25, 0)}, 20, 2);
   ASSERT_EQ(kept.size(), 2U);
@@ -57,7 +58,7 @@ TEST(Longest, DropsTheShortAndKeepsTheRoom) {
   EXPECT_EQ(kept[1].length(), 30);
 }
 
-TEST(Strongest, KeepsTheRoom) {
+TEST(Strongest, KeepsTheGivenNumber) {
   const std::vector<Vector2> kept =
       strongest({{Vector2(1, 0), 5}, {Vector2(2, 0), 9}, {Vector2(3, 0), 7}}, 2);
   ASSERT_EQ(kept.size(), 2U);
@@ -65,8 +66,8 @@ TEST(Strongest, KeepsTheRoom) {
   EXPECT_EQ(kept[1].x(), 3);
 }
 
-// Two views of a wall 2 m away: the camera moves 0.04 m to the right, the picture 10 px to the left. Left of
-// column 50 the second view has something at 1 m in front of the wall.
+// Two views of a wall 2 m away: the camera moves 0.04 m to the right, the image 10 px to the left. Left of
+// column 50 an object 1 m away hides the wall in the second view.
 class TwoViews : public ::testing::Test {
  protected:
   TwoViews() {
@@ -76,7 +77,7 @@ class TwoViews : public ::testing::Test {
       view->width = 200;
       view->height = 100;
       view->depth_m.assign(200 * 100, 2.0F);
-      // A step of 100 grey levels at y = 49.5 between the rows 49 and 50.
+      // A step of 100 grey levels at y = 49.5, between the rows 49 and 50.
       view->clean.assign(200 * 100, 50);
       std::fill(view->clean.begin() + 200 * 50, view->clean.end(), std::uint8_t{150});
       view->edges = {line(20, 49.5, 179, 49.5)};
@@ -97,7 +98,7 @@ class TwoViews : public ::testing::Test {
   Score score_;
 };
 
-TEST_F(TwoViews, CarryFollowsTheMotionAndKnowsWhatIsHidden) {
+TEST_F(TwoViews, CarryFollowsTheMotionAndDetectsOcclusion) {
   Vector2 carried = Vector2::Zero();
   ASSERT_TRUE(carry(sequence_.pinhole, first_, second_, Vector2(120, 30), carried));
   EXPECT_NEAR((carried - Vector2(110, 30)).norm(), 0, 1e-4);
@@ -107,7 +108,7 @@ TEST_F(TwoViews, CarryFollowsTheMotionAndKnowsWhatIsHidden) {
   EXPECT_FALSE(carry(sequence_.pinhole, first_, second_, Vector2(120, 30), carried)) << "no depth";
 }
 
-TEST_F(TwoViews, SegmentsAreFoundAgainWhereTheMotionTakesThem) {
+TEST_F(TwoViews, SegmentsAreFoundAgainAtTheirMovedPosition) {
   score({line(100, 49.5, 160, 49.5), line(100, 80, 160, 80), line(20, 20, 60, 20)},
         {line(90, 49.5, 150, 49.5), line(100, 83, 160, 83)});
   EXPECT_EQ(score_.features, 5U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `plvo live` counts with, and how it reads a video mode and judges a test capture.
+// Tests the counters of `plvo live`, the parser of video modes and the judgement of a test capture.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,14 +28,14 @@ TEST(DurationHistogram, QuantilesAreThoseOfTheSortedValues) {
   EXPECT_EQ(histogram.count(), 1000u);
 }
 
-TEST(DurationHistogram, TakesAnything) {
+TEST(DurationHistogram, AcceptsAnyDuration) {
   DurationHistogram histogram;
   for (double ms : {-1.0, 0.0, 1e9}) histogram.add(ms);
   EXPECT_EQ(histogram.max_ms(), 1e9);
   EXPECT_LE(histogram.quantile_ms(0.5), 0.0101);
 }
 
-TEST(RateMeter, SaysTheRateOfTheLastSecondAndZeroInSilence) {
+TEST(RateMeter, GivesTheRateOfTheLastSecond) {
   RateMeter meter;
   EXPECT_EQ(meter.hz(0), 0);
   std::int64_t now = 0;
@@ -73,7 +73,7 @@ std::string code_of(const CaptureFacts& facts) {
   return findings.size() == 1 ? findings[0].code : "several";
 }
 
-TEST(DoctorCapture, EachTroubleHasItsName) {
+TEST(DoctorCapture, EachFaultHasItsCode) {
   CaptureFacts facts = good_capture();
   EXPECT_EQ(code_of(facts), "capture_good");
   EXPECT_NEAR(facts.megabytes_per_s(), 46.08, 1e-9);
@@ -92,7 +92,7 @@ TEST(DoctorCapture, EachTroubleHasItsName) {
   EXPECT_TRUE(judge(CaptureFacts()).empty()) << "nothing was tried";
 }
 
-TEST(DoctorCapture, SuggestsToCalibrateWhereTheTimeOfDepthIsNotKnown) {
+TEST(DoctorCapture, SuggestsCalibrationIfDepthTimingIsUnknown) {
   CaptureFacts facts = good_capture();
   facts.depth_time_known = false;
   const auto findings = judge(facts);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many updates a second viewers get, alone and among slow, silent and stuck clients. It takes an idle
-// machine and is no part of the suite: ctest -C bench -L bench.
+// Measures the updates per second that viewers get, alone and among slow, silent and stuck clients. It needs
+// an idle machine and is not part of the suite: ctest -C bench -L bench.
 #include <gtest/gtest.h>
 
 #include <chrono>

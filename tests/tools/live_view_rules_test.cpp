@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whom the live view answers and whom it hangs up on: the names in the Host header, what a request looks
-// like, the rule by which connections yield their places, and how much anybody may ask for. As rules alone,
-// and names and requests over real sockets too.
+// Tests whom the live view answers and which connections it closes: the names in the Host header, the form of
+// a request, the rule for closing connections, and the rate limits. The rules are tested alone; names and
+// requests also over real sockets.
 #include <gtest/gtest.h>
 #include <ifaddrs.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace plvo::test;
 
-TEST(HostNames, OnTheLoopbackItsOwnNamesToTheLetter) {
+TEST(HostNames, LoopbackAcceptsItsExactNames) {
   const HostNames names("127.0.0.1", "127.0.0.1", 8080, {});
   for (const char* good : {"127.0.0.1:8080", "localhost:8080", "LocalHost:8080", "[::1]:8080"})
     EXPECT_TRUE(names.allows(good)) << good;
@@ -45,7 +45,7 @@ TEST(HostNames, OnTheLoopbackItsOwnNamesToTheLetter) {
     EXPECT_FALSE(names.allows(bad)) << bad;
 }
 
-TEST(HostNames, OnOneAddressThatAddressAndTheNameOfTheMachine) {
+TEST(HostNames, SingleAddressAcceptsItselfAndTheHostName) {
   const HostNames names("robot.lan", "192.0.2.7", 8080, {});
   std::array<char, 256> own{};
   ASSERT_EQ(::gethostname(own.data(), own.size() - 1), 0);
@@ -57,7 +57,7 @@ TEST(HostNames, OnOneAddressThatAddressAndTheNameOfTheMachine) {
     EXPECT_FALSE(names.allows(bad)) << bad;
 }
 
-TEST(HostNames, OnEveryAddressThoseOfTheMachineAndNoOthers) {
+TEST(HostNames, AnyAddressAcceptsOnlyNamesOfTheMachine) {
   const HostNames names("0.0.0.0", "0.0.0.0", 8080, {});
   ifaddrs* first = nullptr;
   ASSERT_EQ(::getifaddrs(&first), 0);
@@ -77,7 +77,7 @@ TEST(HostNames, OnEveryAddressThoseOfTheMachineAndNoOthers) {
     EXPECT_FALSE(names.allows(bad)) << bad;
 }
 
-TEST(HostNames, FurtherNamesWithAndWithoutAPort) {
+TEST(HostNames, ExtraNamesWithAndWithoutAPort) {
   const HostNames names("127.0.0.1", "127.0.0.1", 8080, {"Robot.local", "tunnel:9000", "proxy.example:443"});
   for (const char* good : {"robot.local:8080", "tunnel:9000", "proxy.example", "proxy.example:443"})
     EXPECT_TRUE(names.allows(good)) << good;
@@ -86,7 +86,7 @@ TEST(HostNames, FurtherNamesWithAndWithoutAPort) {
   EXPECT_TRUE(HostNames("127.0.0.1", "127.0.0.1", 80, {}).allows("localhost"));
 }
 
-TEST(HostNames, WhatCannotStandInAHeaderIsRefused) {
+TEST(HostNames, InvalidNamesAreRefused) {
   for (const char* good : {"robot", "robot.local", "my_robot-2:80", "[::1]", "[fe80::1]:8080", "10.0.0.1:1"})
     EXPECT_TRUE(HostNames::is_valid(good)) << good;
   for (const char* bad : {"", ":80", "*", "*.local", "a b", "robot:", "robot:0", "robot:65536", "robot:8x",
@@ -99,7 +99,7 @@ struct Table {
   ConnectionTable table{[this](int descriptor) { hung_up.push_back(descriptor); }};
 };
 
-TEST(ConnectionTable, ThoseWhoNeverAskedYieldFirstThenTheSilentThenTheSlowest) {
+TEST(ConnectionTable, ClosesThoseWithoutRequestThenTheSilentThenTheSlowest) {
   Table t;
   const int share = static_cast<int>(ConnectionTable::kMaxPerAddress);
   for (int i = 0; i < share; ++i) t.table.opened(i, "a", i);
@@ -124,7 +124,7 @@ TEST(ConnectionTable, ThoseWhoNeverAskedYieldFirstThenTheSilentThenTheSlowest) {
   EXPECT_EQ(t.table.count(), ConnectionTable::kMaxPerAddress);
 }
 
-TEST(ConnectionTable, WhenAllPlacesAreTakenTheGreediestAddressYields) {
+TEST(ConnectionTable, FullTableClosesAConnectionOfTheLargestAddress) {
   Table t;
   const int share = static_cast<int>(ConnectionTable::kMaxPerAddress);
   const int all = static_cast<int>(ConnectionTable::kMaxConnections);
@@ -136,7 +136,7 @@ TEST(ConnectionTable, WhenAllPlacesAreTakenTheGreediestAddressYields) {
   EXPECT_EQ(t.table.count(), ConnectionTable::kMaxConnections);
 }
 
-TEST(ConnectionTable, WhoTakesTooLongIsHungUpOnOnce) {
+TEST(ConnectionTable, OverdueConnectionIsClosedOnce) {
   Table t;
   t.table.opened(1, "a", 0);
   t.table.opened(2, "a", 0);
@@ -151,14 +151,14 @@ TEST(ConnectionTable, WhoTakesTooLongIsHungUpOnOnce) {
   t.table.hang_up_overdue(ConnectionTable::kReply_ns + 1);
   EXPECT_EQ(t.hung_up, (std::vector<int>{1, 2}));
   t.table.closed(1);
-  t.table.opened(1, "b", ConnectionTable::kReply_ns);  // the number is used again
+  t.table.opened(1, "b", ConnectionTable::kReply_ns);  // the descriptor is used again
   EXPECT_EQ(t.table.count(), 1u);
   EXPECT_FALSE(t.table.is_over(1));
 }
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-TEST(RateLimit, SomeAtOnceThenSoManyASecond) {
+TEST(RateLimit, AllowsABurstThenTheRate) {
   RateLimit limit({kSecond / 10, 2 * kSecond}, {1, 1000 * kSecond});
   int allowed = 0;
   const auto ask = [&](std::int64_t now_ns) {
@@ -192,7 +192,7 @@ TEST(RateLimit, ManyAddressesShareOneBucketAndAreForgotten) {
   EXPECT_EQ(limit.known_addresses(), 1u);
 }
 
-TEST(RateLimit, WhatWasTakenTooMuchIsPaidBack) {
+TEST(RateLimit, OverdraftIsRepaid) {
   RateLimit limit({1000, kSecond}, {1, 1000 * kSecond});
   ASSERT_TRUE(limit.allows("a", 0));
   limit.spend("a", 5'000'000, 0);  // five seconds' worth
@@ -211,7 +211,7 @@ class ViewNames : public ::testing::Test {
   ViewServer server_;
 };
 
-TEST_F(ViewNames, APageFromElsewhereCannotLookThroughTheBrowser) {
+TEST_F(ViewNames, ForeignPageCannotReadThroughTheBrowser) {
   ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
   const int port = server_.port();
   EXPECT_EQ(asking_as(host_header(port)), 200);
@@ -226,8 +226,8 @@ TEST_F(ViewNames, APageFromElsewhereCannotLookThroughTheBrowser) {
   EXPECT_NE(get(port, "/").find("frame-ancestors 'none'"), std::string::npos);
 }
 
-// What libmicrohttpd takes for another request than a proxy before it might.
-TEST_F(ViewNames, ARequestIsReadInOneWayOnly) {
+// Requests that libmicrohttpd and a proxy in front of it might read differently.
+TEST_F(ViewNames, AmbiguousRequestsAreRejected) {
   ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
   const int port = server_.port();
   const std::string host = host_header(port), name = "localhost:" + std::to_string(port);
@@ -253,13 +253,13 @@ TEST_F(ViewNames, ARequestIsReadInOneWayOnly) {
     EXPECT_EQ(status_of(reply_to(port, bad)), 400) << testing::PrintToString(bad);
 }
 
-TEST_F(ViewNames, AnEscapedPathIsNoPathOfOurs) {
+TEST_F(ViewNames, EscapedPathsAreNotFound) {
   ASSERT_TRUE(server_.start("127.0.0.1", 0).ok());
   for (const char* path : {"/update%00.html", "/%75pdate", "/%00", "/update/", "//", "/update%3Fafter=9"})
     EXPECT_EQ(status_of(get(server_.port(), path)), 404) << path;
 }
 
-TEST_F(ViewNames, OnEveryAddressNamesAreCheckedAsWell) {
+TEST_F(ViewNames, NamesAreCheckedOnEveryAddress) {
   ASSERT_TRUE(server_.start("0.0.0.0", 0, {"robot.local"}).ok());
   const int port = server_.port();
   EXPECT_EQ(asking_as(host_header(port)), 200);

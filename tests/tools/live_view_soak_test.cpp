@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two viewers among slow, silent, huge, many, greedy and vanishing clients: each viewer still gets every
-// image, memory stays under a ceiling, and no more connections and replies are given than stated. The
-// publisher waits for the viewers, so that a busy machine makes this slower and changes nothing else.
+// image, the memory stays below a limit, and the numbers of connections and replies stay within the
+// documented limits. The publisher waits for the viewers, so that a busy machine only makes the test slower.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -25,7 +25,7 @@ namespace {
 
 using namespace plvo::test;
 
-// The server's buffers, the replies that nobody fetches, and this test's own.
+// The server's buffers, the replies that are not fetched, and the buffers of this test.
 constexpr long kCeiling_kB = 24 * 1024;
 constexpr std::size_t kLine = 300'000'000, kHeaders = 65'000'000;  // bytes
 constexpr int kRounds = 24;
@@ -41,7 +41,7 @@ long resident_kB() {
 }
 bool memory_can_be_judged() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return false;  // their own bookkeeping is many times as large
+  return false;  // their own bookkeeping is many times larger
 #else
   return resident_kB() > 0;
 #endif
@@ -52,7 +52,7 @@ bool is_open(int fd) {
   return ::poll(&one, 1, 0) == 0;
 }
 void vanish(int fd) {
-  const linger at_once{1, 0};  // with a reset
+  const linger at_once{1, 0};  // close with a reset
   ::setsockopt(fd, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   ::close(fd);
 }
@@ -65,7 +65,8 @@ int open_stuck(int port) {
   }
   return fd;
 }
-// Sends `unit` until `total` bytes have gone or the server hangs up; how many went.
+// Sends `unit` until `total` bytes are sent or the server closes the connection; returns the number of bytes
+// sent.
 std::size_t send_endlessly(int fd, const std::string& unit, std::size_t total) {
   std::size_t sent = 0;
   while (sent < total) {
@@ -86,7 +87,7 @@ class LiveViewSoak : public ::testing::Test {
     for (int i = 0; i < 3; ++i) serve_one();
     before_kB_ = highest_kB_ = resident_kB();
   }
-  // One image, which every viewer gets.
+  // Publishes one image and waits until every viewer has it.
   void serve_one() {
     const std::uint64_t image = publish_one(scene_, server_);
     for (const auto& viewer : viewers_) viewer->wait_for(image);
@@ -102,7 +103,7 @@ class LiveViewSoak : public ::testing::Test {
       std::iota(all.begin(), all.end(), viewer->images().front());
       EXPECT_EQ(viewer->images(), all) << "a viewer missed some";
     }
-    // Those hung up on are still the library's until it has looked at them again.
+    // The library counts a closed connection until it handles it again.
     EXPECT_LE(most_connections_, static_cast<int>(2 * ConnectionTable::kMaxPerAddress));
     if (memory_can_be_judged()) {
       EXPECT_LE(highest_kB_ - before_kB_, kCeiling_kB);
@@ -125,7 +126,7 @@ TEST_F(LiveViewSoak, SilentSlowStuckAndVanishingClientsKeepNoViewerOut) {
   const std::string letters = "GET /" + std::string(200, 'a');
   for (int round = 0; round < kRounds; ++round) {
     for (int i = 0; i < kSilent / kRounds; ++i) silent.push_back(connect_to(port));
-    // Each slow one adds a byte, and comes back when it was hung up on.
+    // Each slow client adds a byte, and reconnects if it was closed.
     slow.resize(kSlow, -1);
     for (int& fd : slow) {
       if (fd >= 0 && send_text(fd, letters.substr(static_cast<std::size_t>(round), 1), MSG_DONTWAIT))
@@ -141,7 +142,7 @@ TEST_F(LiveViewSoak, SilentSlowStuckAndVanishingClientsKeepNoViewerOut) {
     }
     for (int i = 0; i < kVanishing; ++i) vanish(open_stuck(port));
     serve_one();
-    // A viewer that comes now, from the same address, gets in as soon as the rate of connections allows.
+    // A new viewer from the same address is accepted as soon as the rate of connections allows.
     while (status_of(get(port, "/")) != 200) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   const auto open = std::count_if(silent.begin(), silent.end(), is_open);
@@ -150,19 +151,19 @@ TEST_F(LiveViewSoak, SilentSlowStuckAndVanishingClientsKeepNoViewerOut) {
     for (int fd : list) ::close(fd);
 }
 
-TEST_F(LiveViewSoak, ASlowRequestAndASilentConnectionEnd) {
+TEST_F(LiveViewSoak, SlowRequestsAndSilentConnectionsAreClosed) {
   const int silent = connect_to(server_.port());
   const int slow = connect_to(server_.port());
   for (bool both = true; both; both = is_open(silent) || is_open(slow)) {
-    send_text(slow, "G", MSG_DONTWAIT);  // a byte now and then is no way to stay
+    send_text(slow, "G", MSG_DONTWAIT);  // an occasional byte does not keep the connection open
     serve_one();
   }
   ::close(silent);
   ::close(slow);
 }
 
-// How many may be given is counted by the time that passed, which a busy machine makes longer.
-TEST_F(LiveViewSoak, WhoeverConnectsAnewAgainAndAgainIsAnsweredTenTimesASecond) {
+// The allowed number depends on the elapsed time, which is longer on a busy machine.
+TEST_F(LiveViewSoak, ReconnectingClientIsAnsweredTenTimesASecond) {
   constexpr int kAttempts = 1320, kAtOnce = 32, kPerSecond = 10;
   int answered = 0;
   const std::int64_t began = posix_monotonic_ns();
@@ -176,7 +177,7 @@ TEST_F(LiveViewSoak, WhoeverConnectsAnewAgainAndAgainIsAnsweredTenTimesASecond) 
   EXPECT_LE(answered, kAtOnce + 1 + kPerSecond * seconds);
 }
 
-TEST_F(LiveViewSoak, WhoeverAsksWithoutAPauseGetsEightMegabytesASecond) {
+TEST_F(LiveViewSoak, GreedyClientGetsEightMegabytesASecond) {
   constexpr int kRequests = 600;
   constexpr double kAtOnce = 8e6, kPerSecond = 8e6;
   const int fd = connect_to(server_.port());
@@ -198,11 +199,11 @@ TEST_F(LiveViewSoak, WhoeverAsksWithoutAPauseGetsEightMegabytesASecond) {
   EXPECT_LE(cost, (kAtOnce + kPerSecond * seconds) * 1.05);
 }
 
-TEST_F(LiveViewSoak, ItsThreadsComeAfterAllOthers) {
+TEST_F(LiveViewSoak, ServerThreadsHaveTheLowestPriority) {
   const auto nice = [](const std::filesystem::path& task) {
     std::ifstream file(task / "stat");
     std::string text(std::istreambuf_iterator<char>(file), {});
-    std::istringstream fields(text.substr(text.rfind(')') + 2));  // from the third on
+    std::istringstream fields(text.substr(text.rfind(')') + 2));  // from the third field on
     std::string field;
     for (int i = 3; i <= 19; ++i) fields >> field;
     return field;

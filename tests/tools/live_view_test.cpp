@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live view's server, with real sockets: what a viewer gets, several of them at once, and what each image
-// costs. Hostile clients: live_view_soak_test.cpp; how many updates a second: live_view_rate_test.cpp.
+// Tests the server of the live view with real sockets: what one or several viewers get, and the cost of each
+// image. Hostile clients: live_view_soak_test.cpp; updates per second: live_view_rate_test.cpp.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -47,12 +47,13 @@ TEST_F(LiveView, AnUpdateHoldsStateFeaturesAndPictures) {
   EXPECT_EQ(update.state["size"], nlohmann::json({scene_.width, scene_.height}));
   EXPECT_EQ(update.state["covariance"].size(), 36u);
   ASSERT_EQ(update.state["points"].size(), 5u * 5);
-  EXPECT_EQ(update.state["points"][15], 12.0);  // the first track: here, there, inlier
+  EXPECT_EQ(update.state["points"][15],
+            12.0);  // the first track: current position, reference position, inlier
   EXPECT_EQ(update.state["points"][17], 10.0);
   EXPECT_EQ(update.state["points"][19], 3);
   EXPECT_EQ(update.state["points"][24], 2);
   ASSERT_EQ(update.state["segments"].size(), 3u * 5);
-  EXPECT_EQ(update.state["segments"][4], 0);   // seen
+  EXPECT_EQ(update.state["segments"][4], 0);   // detected
   EXPECT_EQ(update.state["segments"][9], 1);   // with depth
   EXPECT_EQ(update.state["segments"][14], 3);  // inlier
   EXPECT_GE(update.state["path"].size(), 3u);
@@ -77,14 +78,14 @@ TEST_F(LiveView, EachOfThreeViewersGetsEveryImageFromOneEncoding) {
   EXPECT_GE(server_.replies(), 3 * kImages);
 }
 
-TEST_F(LiveView, NobodyLooksNothingIsTakenOrEncoded) {
+TEST_F(LiveView, WithoutViewersNothingIsCopiedOrEncoded) {
   for (int i = 0; i < 100; ++i) scene_.publish_to(server_);
   EXPECT_EQ(server_.images(), 0u);
   EXPECT_EQ(server_.encodings(), 0u);
   EXPECT_EQ(server_.viewers(), 0);
 }
 
-TEST_F(LiveView, NonsenseIsAnsweredAndForgotten) {
+TEST_F(LiveView, InvalidRequestsDoNoHarm) {
   scene_.publish_to(server_);
   const int port = server_.port();
   EXPECT_EQ(status_of(get(port, "/nothing")), 404);
@@ -121,7 +122,7 @@ TEST_F(LiveView, StatusAloneReachesAViewerWhileTheCameraIsSilent) {
   EXPECT_TRUE(update.colour.empty());
 }
 
-TEST_F(LiveView, StoppingLetsGoOfThoseWhoWait) {
+TEST_F(LiveView, StopEndsWaitingRequests) {
   std::string reply;
   std::thread viewer([&] { reply = get(server_.port(), ask({}, "a")); });
   while (server_.viewers() == 0) std::this_thread::yield();
@@ -130,7 +131,7 @@ TEST_F(LiveView, StoppingLetsGoOfThoseWhoWait) {
   EXPECT_EQ(server_.connections(), 0);
 }
 
-TEST(LiveViewPath, IsThinnedNotCut) {
+TEST(LiveViewPath, IsThinnedNotTruncated) {
   ViewPath path;
   for (int i = 0; i < 50'000; ++i) path.add(Vector3(0.01 * i, 0, 0));
   EXPECT_LE(path.points().size(), ViewPath::kCapacity);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motions chained over a second: their NEES is 6 when the covariances are true and independent, and shows
-// both what is too optimistic and what neighbouring errors have in common.
+// Tests motions chained over a second: their NEES is 6 if the covariances are correct and independent; it
+// reveals both overconfidence and correlated errors.
 #include "plvo/eval/motion_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -20,16 +20,16 @@ using test::normal;
 constexpr std::int64_t kFrame_ns = 33'333'333;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr int kFrames = 6000;  // 200 s
-// From each frame on but the last ones; one that is a frame short of a second is near enough.
+// One sample from each frame except the last ones; a motion one frame short of a second is accepted.
 constexpr std::size_t kSeconds = kFrames - 28;
 
-// A constant twist, which linear and spherical interpolation follow exactly.
+// A constant twist; linear and spherical interpolation reproduce it exactly.
 Se3 truth_at(std::int64_t stamp_ns) {
   const double t = static_cast<double>(stamp_ns) * 1e-9;
   return {rotation_exp(t * Vector3(0.1, 0.5, -0.2)), t * Vector3(0.3, -0.1, 0.2)};
 }
 
-// Motion capture at 100 Hz, at stamps that are nobody else's.
+// Motion capture at 100 Hz, at stamps different from those of the frames.
 const Trajectory& ground_truth() {
   static const Trajectory truth = [] {
     Trajectory poses;
@@ -40,7 +40,7 @@ const Trajectory& ground_truth() {
   return truth;
 }
 
-// Full, with translation and rotation coupled; a millimetre and a milliradian in size.
+// A full covariance that couples translation and rotation; a millimetre and a milliradian in size.
 Matrix6 covariance() {
   Random random(5);
   Matrix6 A;
@@ -51,8 +51,8 @@ Matrix6 covariance() {
 
 struct Drawing {
   int keyframe_every = 1;      // references: the last frame, or the last keyframe
-  double claimed_sigma = 1;    // reported standard deviation over the true one
-  double shared_variance = 0;  // share of the variance that the motions of one second have in common
+  double claimed_sigma = 1;    // ratio of the reported to the true standard deviation
+  double shared_variance = 0;  // fraction of the variance that the motions of one second have in common
 };
 
 std::vector<UncertainMotion> draw(const Drawing& how) {
@@ -91,7 +91,7 @@ bool in_its_band(const Nees& nees) {
          nees.median > nees.median_band.low && nees.median < nees.median_band.high;
 }
 
-TEST(MotionChain, TrueCovariancesAreSixOverASecondToo) {
+TEST(MotionChain, CorrectCovariancesGiveANeesOfSixOverASecond) {
   const Consistency c = per_second(draw({}));
   EXPECT_EQ(c.count, kSeconds);
   EXPECT_EQ(c.independent, 200u);
@@ -105,14 +105,14 @@ TEST(MotionChain, TrueCovariancesAreSixOverASecondToo) {
 }
 
 TEST(MotionChain, FramesAreConnectedThroughTheirKeyframes) {
-  // From a frame to its keyframe, from there to the keyframe of a second before, and on to that frame.
+  // The chain leads from a frame to its keyframe, to the keyframe a second before, and on to that frame.
   const Consistency c = per_second(draw({.keyframe_every = 7}));
   EXPECT_EQ(c.count, kSeconds);
   EXPECT_NEAR(c.all.mean, 6, 0.5);
   EXPECT_TRUE(in_its_band(c.all));
 }
 
-TEST(MotionChain, TooOptimisticShowsInBoth) {
+TEST(MotionChain, OverconfidenceShowsInBothTests) {
   const std::vector<UncertainMotion> motions = draw({.claimed_sigma = 0.5});
   EXPECT_NEAR(per_motion(motions).all.mean, 24, 1);
   const Consistency c = per_second(motions);
@@ -121,18 +121,18 @@ TEST(MotionChain, TooOptimisticShowsInBoth) {
   EXPECT_GT(c.rotation.median, c.rotation.median_band.high);
 }
 
-TEST(MotionChain, WhatNeighboursHaveInCommonShowsOverASecondOnly) {
+TEST(MotionChain, CorrelationShowsOnlyOverASecond) {
   const std::vector<UncertainMotion> motions = draw({.shared_variance = 0.1});
   EXPECT_NEAR(per_motion(motions).all.mean, 6, 0.6);
-  // Of 30 motions with variance 1 the sum has 30·0.9 + 30²·0.1 where 30 are claimed: 3.9 times as much while
-  // all of them share; a span that lies in two minutes of sharing has less.
+  // The sum of 30 motions with variance 1 has the variance 30·0.9 + 30²·0.1, where 30 is reported: 3.9 times
+  // as much if all share one error. It is less for a span over two shared errors.
   const Consistency c = per_second(motions);
   EXPECT_GT(c.all.mean, 2.5 * 6);
   EXPECT_LT(c.all.mean, 3.9 * 6 * 1.2);
   EXPECT_GT(c.all.mean, c.all.mean_band.high);
 }
 
-TEST(MotionChain, ComposesWhatTheCoreComposes) {
+TEST(MotionChain, ComposesAsTheCoreDoes) {
   const Matrix6 C = covariance();
   const std::vector<UncertainMotion> motions = {{1, 0, truth_at(kSecond_ns), C},
                                                 {2, 1, truth_at(2 * kSecond_ns), 2 * C},
@@ -147,7 +147,7 @@ TEST(MotionChain, ComposesWhatTheCoreComposes) {
   const Matrix6 expected =
       compose_covariance(motions[1].T_camera_reference, 2 * C, motions[0].T_camera_reference, C);
   EXPECT_LT((sum - expected).norm(), 1e-12 * expected.norm());
-  // Sideways, and the way back.
+  // A motion between two branches, and its inverse.
   ASSERT_TRUE(chain.between(2, 3, T, sum));
   EXPECT_LT(boxminus(T, motions[2].T_camera_reference * motions[1].T_camera_reference.inverse()).norm(),
             1e-12);
@@ -158,14 +158,14 @@ TEST(MotionChain, ComposesWhatTheCoreComposes) {
   EXPECT_LT((back - inverse_covariance(T, sum)).norm(), 1e-9 * back.norm());
 }
 
-TEST(MotionChain, ALostFrameBreaksIt) {
+TEST(MotionChain, LostFrameBreaksTheChain) {
   std::vector<UncertainMotion> motions = draw({});
   motions.erase(motions.begin() + 3000);
   const Consistency c = per_second(motions);
   EXPECT_EQ(c.broken, 30u);
   EXPECT_EQ(c.count, kSeconds - 30u);
   EXPECT_NEAR(c.all.mean, 6, 0.5);
-  // A motion that claims to come from its own future is no link.
+  // A motion whose reference is newer than itself is ignored.
   motions = {{1, 2, {}, covariance()}, {2, 1, {}, covariance()}};
   Se3 T;
   Matrix6 C;

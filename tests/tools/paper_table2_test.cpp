@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's figures, checked by its own sum: the means weighted by frames follow from the rows.
+// Checks the paper's values against each other: the means weighted by frames follow from the rows.
 #include "plvo/bench/sequences/paper_table2.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(PaperTable2, MeansFollowFromTheRows) {
   }
 }
 
-TEST(PaperTable2, KnowsSequencesByTheirFolders) {
+TEST(PaperTable2, RecognisesSequencesByTheirFolders) {
   for (const char* folder : {"rgbd_dataset_freiburg1_rpy", "freiburg1_rpy", "fr1_rpy"}) {
     EXPECT_EQ(paper_sequence(folder).name, "rpy");
     EXPECT_TRUE(paper_sequence(folder).whole);

@@ -10,7 +10,7 @@
 namespace plvo::eval {
 namespace {
 
-// 30 Hz along x at 0.3 m/s; the estimate walks `scale` as far and turns by `turn_deg` per frame.
+// A walk at 30 Hz along x at 0.3 m/s; the estimate moves `scale` as far and rotates by `turn_deg` per frame.
 PairedPoses straight_walk(int frames, double scale, double turn_deg) {
   PairedPoses poses;
   const Se3 true_step{Matrix3::Identity(), Vector3(0.01, 0, 0)};
@@ -48,7 +48,7 @@ TEST(RelativeError, ScaleErrorGrowsWithTheDelta) {
   EXPECT_NEAR(frame.estimate.translation_m.rmse, 0.001, 1e-12);
   EXPECT_NEAR(frame.identity.translation_m.rmse, 0.01, 1e-12);
   const RpeResult second = relative_pose_error(poses, delta("1s"));
-  EXPECT_EQ(second.estimate.translation_m.count, 32u);  // 31 whole seconds; and one that is 33 ms short of it
+  EXPECT_EQ(second.estimate.translation_m.count, 32u);  // 31 whole seconds, and one that is 33 ms short
   EXPECT_NEAR(second.estimate.translation_m.median, 0.03, 1e-12);
   const RpeResult metre = relative_pose_error(poses, delta("0.2m"));
   EXPECT_NEAR(metre.estimate.translation_m.mean, 0.02, 1e-3);
@@ -60,7 +60,7 @@ TEST(RelativeError, RotationIsInDegrees) {
   EXPECT_NEAR(r.identity.rotation_deg.rmse, 0, 1e-9);
 }
 
-TEST(RelativeError, PerfectEstimateInAnotherWorldHasNone) {
+TEST(RelativeError, PerfectEstimateInAnotherWorldHasNoError) {
   PairedPoses poses = straight_walk(40, 1, 0);
   for (Se3& T : poses.estimate) T = Se3{rotation_exp(Vector3(1, 2, 0.5)), Vector3(3, 4, 5)} * T;
   EXPECT_LT(relative_pose_error(poses, delta("1s")).estimate.translation_m.max, 1e-12);
@@ -98,7 +98,7 @@ TEST(Evaluate, FindsLostIntervalsAndGaps) {
   EXPECT_LT(e.ate.position_m.max, 1e-12);
 }
 
-TEST(Evaluate, RefusesFilesThatDoNotMeet) {
+TEST(Evaluate, RefusesFilesWithoutCommonStamps) {
   Trajectory truth, estimate;
   truth.poses.push_back({0, {}});
   estimate.poses.push_back({1'000'000'000, {}});

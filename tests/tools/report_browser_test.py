@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a report in headless Chromium, uses it, and looks at what it drew. Python's own library only.
+"""Opens a report in headless Chromium, operates it and checks what it draws. Uses only Python's standard library.
 
-A copy of the page gets a probe: a script before the others that catches errors, and one after them that scrubs, taps a
-chart, turns the 3D view, reads the canvases back and writes its findings into the document, which --dump-dom prints.
-usage: report_browser_test.py PLVO    (exit code 77: no browser here, skipped)
+A copy of the page contains two more scripts. The first one catches errors. The last one moves the slider, taps a chart,
+rotates the 3D view, reads the canvases and writes its findings into the document, which --dump-dom prints.
+usage: report_browser_test.py PLVO    (exit code 77: no browser, skipped)
 """
 import json
 import os
@@ -22,7 +22,7 @@ for (const kind of ["error", "warn"]) console[kind] = (...a) => problems.push(ki
 </script>
 """
 
-# The name of the folder: a browser that takes it for HTML shows a blank page.
+# Name of the folder: a browser that interprets it as HTML shows a blank page.
 HOSTILE = "x<!--<script>y & z"
 
 PROBE = """<script>

@@ -48,8 +48,8 @@ TEST(Report, HoldsItsDataWhateverTheNames) {
   EXPECT_NE(page.find("function chart("), std::string::npos);
 }
 
-// How a browser reads a script element: `<!--<script` makes it go on past `</script>`.
-TEST(Report, NoTextOfItsDataMeansAnythingToHtmlOrJavaScript) {
+// In a browser's script element, `<!--<script` makes the script continue past `</script>`.
+TEST(Report, TextIsEscapedForHtmlAndJavaScript) {
   ReportInput input;
   input.title = "x<!--<script>y & ]]> \u2028\u2029 \x1b[31m\u009b";
   input.summary = {{"<!--<script>", "</script><script>alert(1)</script>"}};
@@ -67,7 +67,7 @@ TEST(Report, NoTextOfItsDataMeansAnythingToHtmlOrJavaScript) {
 
 TEST(Report, WriteFailureIsAStatus) { EXPECT_EQ(write_report("/dev/full", {}).code(), StatusCode::kIo); }
 
-TEST(Drawing, DepthIsBlackWhereThereIsNone) {
+TEST(Drawing, MissingDepthIsBlack) {
   std::vector<std::uint16_t> depth(16, 0);
   depth[0] = 2000;   // 0.4 m: red
   depth[2] = 25000;  // 5 m: blue
@@ -91,12 +91,12 @@ TEST(Drawing, TheLiveViewPaintsDepthInTheSameColours) {
   EXPECT_EQ(live, draw_depth({snapshot.depth.data(), 256, 2, 256, snapshot.metres_per_unit}).rgb);
 }
 
-TEST(Drawing, SegmentsKnowTheirFate) {
+TEST(Drawing, SegmentsHaveTheirKind) {
   const std::vector<SegmentView> now = {
       {0, 0, 9, 0, false}, {0, 1, 9, 1, true}, {0, 2, 9, 2, true}, {0, 3, 9, 3, true}};
   const std::vector<SegmentView> before(2);
   const std::vector<LineTrackView> tracks = {
-      {1, 2, true}, {0, 3, false}, {7, 0, true}};  // the last one: nonsense
+      {1, 2, true}, {0, 3, false}, {7, 0, true}};  // the last one is invalid
   FeatureView view;
   view.segments = now;
   view.reference_segments = before;
@@ -117,7 +117,7 @@ TEST(Drawing, OverlayDrawsInsideTheImageOnly) {
   view.point_tracks = tracks;
   const Picture picture = draw_overlay(view);
   ASSERT_EQ(picture.rgb.size(), 192u);
-  EXPECT_EQ(picture.rgb[0], 61);  // the stroke towards the upper left leaves through the corner, in green
+  EXPECT_EQ(picture.rgb[0], 61);  // the green stroke to the upper left passes through the corner
   EXPECT_EQ(picture.rgb[1], 220);
   EXPECT_EQ(picture.rgb[3 * 7], 70) << "the image is dimmed where nothing is drawn";
 }

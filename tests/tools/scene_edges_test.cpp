@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The true edges of a rendered picture, against what its pixels see.
+// Compares the true edges of a rendered image with the surfaces at its pixels.
 #include "plvo/bench/detectors/scene_edges.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Se3 middle_of_the_room() {
   return T_world_camera;
 }
 
-// Each surface as a grey level of its own, so that contrast hides hardly an edge.
+// Renders each surface with its own grey level, so that low contrast hides hardly any edge.
 std::vector<std::uint8_t> surfaces_as_grey(const sim::RayCaster& caster) {
   std::vector<std::uint8_t> grey;
   const ImageView<const sim::PixelHit> hits = caster.hits();
@@ -48,7 +48,7 @@ class BareRoom : public ::testing::Test {
   std::vector<Line> edges_;
 };
 
-TEST_F(BareRoom, AnEdgeHasAnotherSurfaceOnEitherSide) {
+TEST_F(BareRoom, EdgesSeparateTwoSurfaces) {
   ASSERT_GE(edges_.size(), 10U);
   const auto surface = [&](const Vector2& p) {
     return caster_.hits()
@@ -70,9 +70,9 @@ TEST_F(BareRoom, AnEdgeHasAnotherSurfaceOnEitherSide) {
   EXPECT_GT(between_two, 0.97 * samples) << samples;
 }
 
-// The room is 6 m long, 5 m wide and 2.7 m high, its far wall 4.5 m away: where that meets the wall at
-// the right hand is known without any code of the truth.
-TEST_F(BareRoom, TheFarCornerOfTheRoomIsAmongThem) {
+// The room is 6 m long, 5 m wide and 2.7 m high, and its far wall is 4.5 m away. This gives the corner with
+// the right-hand wall independently of the code under test.
+TEST_F(BareRoom, FarCornerOfTheRoomIsFound) {
   const double x = 159.5 + 262.5 * 2.5 / 4.5;  // at y = 0, 2.5 m to the right
   double covered = 0;
   for (const Line& edge : edges_)
@@ -81,7 +81,7 @@ TEST_F(BareRoom, TheFarCornerOfTheRoomIsAmongThem) {
   EXPECT_GT(covered, 100) << "of the 157 px from the floor to the ceiling";
 }
 
-TEST_F(BareRoom, WhatDoesNotShowIsNoEdge) {
+TEST_F(BareRoom, InvisibleEdgesAreExcluded) {
   const std::vector<std::uint8_t> plain(320 * 240, 128);
   EXPECT_TRUE(SceneEdges(SceneName::kBare, 1, edge_camera()).visible(middle_of_the_room(), plain).empty());
 }

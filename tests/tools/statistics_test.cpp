@@ -34,8 +34,8 @@ TEST(Alignment, RecoversARigidMotion) {
   EXPECT_LT((found.t - T.t).norm(), 1e-12);
 }
 
-TEST(Alignment, NeverMirrors) {
-  // A plane's points and their mirror image: the best rotation is asked for, not the better reflection.
+TEST(Alignment, NeverReflects) {
+  // A planar point set and its reflection: the result must be the best rotation, not the better reflection.
   const std::vector<Vector3> from = {{1, 0, 0.1}, {0, 1, -0.1}, {-1, 0, 0.1}, {0, -1, -0.1}};
   std::vector<Vector3> to;
   for (const Vector3& p : from) to.emplace_back(p.x(), p.y(), -p.z());

@@ -52,7 +52,7 @@ TEST(Trajectory, EurocIsNanosecondsWithWFirst) {
   EXPECT_TRUE(t.poses[0].T_world_camera.R.isIdentity());
 }
 
-TEST(Trajectory, KittiTakesItsStampsFromElsewhere) {
+TEST(Trajectory, KittiStampsComeFromASeparateFile) {
   const TemporaryFolder folder;
   write_file(folder / "k.txt", "1 0 0 4 0 1 0 5 0 0 1 6\n0 -1 0 1 1 0 0 2 0 0 1 3\n");
   write_file(folder / "times.txt", "0.000000e+00\n1.036224e-01\n");
@@ -73,8 +73,8 @@ TEST(Trajectory, KittiTakesItsStampsFromElsewhere) {
   EXPECT_TRUE(says(surplus, "has 3 stamps for 2 poses")) << surplus.message();
 }
 
-// As Windows' programs save text.
-TEST(Trajectory, AByteOrderMarkAndCarriageReturnsAreNoPartOfIt) {
+// The format in which programs on Windows save text.
+TEST(Trajectory, ByteOrderMarkAndCarriageReturnsAreIgnored) {
   Trajectory t;
   Status status = read_text(
       "\xEF\xBB\xBF"
@@ -98,7 +98,7 @@ TEST(Trajectory, AByteOrderMarkAndCarriageReturnsAreNoPartOfIt) {
             StatusCode::kDamaged);  // UTF-16
 }
 
-TEST(Trajectory, SaysWhatIsWrong) {
+TEST(Trajectory, RejectsBadFilesWithAMessage) {
   Trajectory t;
   EXPECT_EQ(read_trajectory({"/nowhere.txt", TrajectoryFormat::kAuto, {}}, t).code(), StatusCode::kNotFound);
   EXPECT_TRUE(says(read_trajectory({"/tmp", TrajectoryFormat::kAuto, {}}, t), "it is a folder; name a file"));
@@ -109,7 +109,7 @@ TEST(Trajectory, SaysWhatIsWrong) {
   EXPECT_TRUE(says(read_text("abc 0 0 0 0 0 0 1\n", t), "'abc' is not a stamp"));
 }
 
-TEST(Trajectory, ARowWithoutARotationIsRefusedByItsLine) {
+TEST(Trajectory, InvalidRotationIsRefusedWithItsLine) {
   Trajectory t;
   const Status zero = read_text("# c\n1.0 0 0 0 0 0 0 1\n1.1 1 2 3 0 0 0 0\n", t);
   EXPECT_EQ(zero.code(), StatusCode::kDamaged);
@@ -117,8 +117,8 @@ TEST(Trajectory, ARowWithoutARotationIsRefusedByItsLine) {
   EXPECT_TRUE(says(read_text("1403636579763555584,1,2,3,0,0,0,0\n", t), "line 1: the quaternion"));
   EXPECT_TRUE(
       says(read_text("0 0 0 0 0 0 0 0 0 0 0 0\n", t), "line 1: the 3x3 part of the matrix is no rotation"));
-  EXPECT_TRUE(says(read_text("1 0 0 0 0 1 0 0 0 0 -1 0\n", t), "is no rotation"));  // a mirror
-  // Four decimals, as motion capture writes them, are near enough.
+  EXPECT_TRUE(says(read_text("1 0 0 0 0 1 0 0 0 0 -1 0\n", t), "is no rotation"));  // a reflection
+  // Four decimals, as in motion capture files, are accurate enough.
   EXPECT_TRUE(read_text("1.0 0 0 0 0.5774 0.5774 0.5774 0.0\n", t).ok());
 }
 
@@ -126,7 +126,7 @@ Trajectory turning() {
   Trajectory t;
   for (int i = 0; i < 4; ++i)
     t.poses.push_back({i * 50'000'000LL, {rotation_exp(Vector3(0, 0, 0.2 * i)), Vector3(i, 0, 0)}});
-  t.poses[3].stamp_ns = 400'000'000;  // a gap too wide to interpolate over
+  t.poses[3].stamp_ns = 400'000'000;  // a gap too wide to interpolate
   return t;
 }
 
@@ -149,7 +149,7 @@ TEST(Sampling, NearestTakesTheEarlierOfTwo) {
   EXPECT_FALSE(sample(turning(), {430'000'001}, {GroundTruthSampling::kNearest, 25'000'000}).valid[0]);
 }
 
-TEST(UncertaintyFile, ReadsBackWhatTheWriterWrote) {
+TEST(UncertaintyFile, ReadsTheWritersFormat) {
   const TemporaryFolder folder;
   TrackResult result;
   result.stamp_ns = 2'000'000'000;
@@ -176,7 +176,7 @@ TEST(UncertaintyFile, ReadsBackWhatTheWriterWrote) {
   EXPECT_LT(boxminus(motions[0].T_camera_reference, result.T_camera_reference).norm(), 1e-8);
 }
 
-TEST(UncertaintyFile, AMotionWithoutARotationIsRefused) {
+TEST(UncertaintyFile, InvalidRotationIsRefused) {
   const TemporaryFolder folder;
   std::string row = "1.1 1.0 0 0 0 0 0 0 0";
   for (int i = 0; i < 36; ++i) row += i % 7 == 0 ? " 1e-6" : " 0";

@@ -18,7 +18,7 @@ constexpr double kDegree = 0.017453292519943295;
 const Vector3 kTurn = kDegree * Vector3(0.8, -0.6, 0.3);
 constexpr double kClock_s = 0.012;
 
-// A hand that turns the camera about all axes, at changing speed.
+// A hand that rotates the camera about all axes at varying speed.
 Se3 hand_pose(std::int64_t stamp_ns) {
   const double t = static_cast<double>(stamp_ns) * 1e-9;
   return {
@@ -26,8 +26,8 @@ Se3 hand_pose(std::int64_t stamp_ns) {
       Vector3(0.3 * std::sin(1.3 * t), 0.2 * std::sin(2.3 * t), 0.3 * std::cos(0.9 * t))};
 }
 
-// A motion capture at 100 Hz whose camera is the exact one once it is turned by `turn` and read `clock_s`
-// later.
+// A motion capture at 100 Hz. Rotating its camera by `turn` and sampling it `clock_s` later gives the exact
+// poses.
 Trajectory turned_truth(const Vector3& turn, double clock_s, double seconds) {
   Trajectory truth;
   const std::int64_t clock_ns = std::llround(clock_s * 1e9);
@@ -38,7 +38,7 @@ Trajectory turned_truth(const Vector3& turn, double clock_s, double seconds) {
   return truth;
 }
 
-// Poses at 30 Hz that err from one to the next.
+// Poses at 30 Hz whose errors accumulate from one to the next.
 Trajectory hand_estimate(Random& random, double sigma_m, double sigma_rad, double seconds) {
   Trajectory result;
   Se3 pose;
@@ -58,7 +58,7 @@ Trajectory hand_estimate(Random& random, double sigma_m, double sigma_rad, doubl
   return result;
 }
 
-// How far off a fit is, in standard deviations.
+// Returns the error of a fit in standard deviations.
 Vector4 normalised(const TruthFit& fit, const Vector3& turn, double clock_s) {
   Vector4 e;
   e << (fit.rotation_rad - turn).cwiseQuotient(fit.rotation_sigma_rad),
@@ -66,7 +66,7 @@ Vector4 normalised(const TruthFit& fit, const Vector3& turn, double clock_s) {
   return e;
 }
 
-TEST(TruthFit, FindsTurnAndClockAsWellAsItSays) {
+TEST(TruthFit, ErrorsMatchTheReportedStandardDeviations) {
   Random random(3);
   const Trajectory turned = turned_truth(kTurn, kClock_s, 20), straight = turned_truth({0, 0, 0}, 0, 20);
   double squares = 0;
@@ -88,7 +88,7 @@ TEST(TruthFit, FindsTurnAndClockAsWellAsItSays) {
   EXPECT_LT(squares, 1.5);
 }
 
-TEST(TruthFit, TheOffsetOfTheEstimateCounts) {
+TEST(TruthFit, UsesTheOffsetOfTheEstimate) {
   Random random(4);
   const Trajectory est = hand_estimate(random, 0.0005, 0.0005, 20);
   TruthFit fit;
@@ -96,12 +96,13 @@ TEST(TruthFit, TheOffsetOfTheEstimateCounts) {
   EXPECT_LT(std::abs(normalised(fit, kTurn, kClock_s - 0.02)[3]), 4);
 }
 
-TEST(TruthFit, TheCorrectedTruthIsTheExactOne) {
+TEST(TruthFit, CorrectedTruthIsExact) {
   Random random(5);
   EvaluationOptions options;
   options.fit_truth = true;
   Evaluation e;
-  // The clock is a whole period off, so that interpolation errs alike before and after.
+  // The clock offset is a multiple of the truth's period, so that the interpolation errors are equal before
+  // and after the fit.
   ASSERT_TRUE(
       evaluate(turned_truth(kTurn, 0.02, 20), hand_estimate(random, 0, 0, 20), {}, {}, options, e).ok());
   ASSERT_TRUE(e.truth_fit);
@@ -122,7 +123,7 @@ void expect_refused(const Trajectory& truth, const Trajectory& est, const char* 
   EXPECT_NE(std::string(status.message()).find(why), std::string::npos) << status.message();
 }
 
-TEST(TruthFit, SaysWhatItCannotDo) {
+TEST(TruthFit, RefusesUndeterminedFits) {
   Random random(6);
   const Trajectory truth = turned_truth(kTurn, kClock_s, 20);
   expect_refused(truth, hand_estimate(random, 0.001, 0.001, 1.5),

@@ -16,8 +16,7 @@ using test::normal;
 constexpr int kPoses = 4000;
 constexpr TruthSigma kTruth = {0.002, 0.003};
 
-// A true pose a metre and more from the last one, so that an orientation that is off moves the translation,
-// too.
+// True poses at least a metre apart, so that an orientation error also changes the translation.
 Se3 exact_pose(int i) {
   return {rotation_exp(Vector3(0.3 * std::sin(0.1 * i), 0.01 * i, 0.2)),
           Vector3(1.5 * i, std::sin(0.3 * i), 0)};
@@ -29,7 +28,7 @@ Vector3 draw(Random& random, double sigma) {
   return v;
 }
 
-// What a motion capture would have said.
+// The true poses with the noise of a motion capture.
 Trajectory measured_truth(Random& random) {
   Trajectory truth;
   for (int i = 0; i < kPoses; ++i) {
@@ -41,7 +40,7 @@ Trajectory measured_truth(Random& random) {
   return truth;
 }
 
-// Poses that err like those of an odometry: from one to the next.
+// Poses with errors that accumulate, as those of an odometry.
 Trajectory estimate(Random& random, double sigma_m, double sigma_rad) {
   Trajectory result;
   Se3 pose;
@@ -57,7 +56,7 @@ Trajectory estimate(Random& random, double sigma_m, double sigma_rad) {
   return result;
 }
 
-TEST(TruthNoise, IsWhatIndependentEstimatesHaveInCommon) {
+TEST(TruthNoise, IsTheCommonErrorOfIndependentEstimates) {
   Random random(5);
   Trajectory truth = measured_truth(random);
   const Trajectory first = estimate(random, 0.001, 0.001), second = estimate(random, 0.004, 0.002);
@@ -68,7 +67,7 @@ TEST(TruthNoise, IsWhatIndependentEstimatesHaveInCommon) {
   EXPECT_NEAR(noise.first_rad, std::sqrt(3 * (2 * 9e-6 + 1e-6)), 0.05 * noise.first_rad);
 }
 
-TEST(TruthNoise, IsNothingWhereTheTruthIsExact) {
+TEST(TruthNoise, IsZeroForAnExactTruth) {
   Random random(6);
   Trajectory truth;
   for (int i = 0; i < kPoses; ++i) truth.poses.push_back({i * 33'000'000LL, exact_pose(i)});
@@ -79,7 +78,7 @@ TEST(TruthNoise, IsNothingWhereTheTruthIsExact) {
   EXPECT_GT(noise.first_m, 0.002 * std::sqrt(3.0));
 }
 
-TEST(TruthNoise, NoCommonStampIsNoMotion) {
+TEST(TruthNoise, WithoutCommonStampsThereIsNoMotion) {
   Random random(7);
   Trajectory late = estimate(random, 0.001, 0.001);
   const Trajectory first = late;
@@ -87,8 +86,8 @@ TEST(TruthNoise, NoCommonStampIsNoMotion) {
   EXPECT_EQ(truth_noise(measured_truth(random), first, late, {}).motions, 0u);
 }
 
-// Motions that are right, judged by a truth that is off: six, once its noise is in the covariance.
-TEST(TruthSigma, MakesTheNormalisedErrorWhatItIs) {
+// Correct motions, compared with a noisy truth: the NEES is six once the noise is in the covariance.
+TEST(TruthSigma, GivesTheExpectedNees) {
   Random random(8);
   const Trajectory truth = measured_truth(random);
   std::vector<UncertainMotion> motions;

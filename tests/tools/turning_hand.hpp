@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand that turns a camera to and fro about all three axes, for the simulator: what plvo calibrate asks
-// for.
+// A hand that rotates a camera to and fro about all three axes, for the simulator: the motion that plvo
+// calibrate requires.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace plvo::test {
 
-// A TUM trajectory of so many seconds at 100 Hz, z up, looking along x at first.
+// Returns a TUM trajectory of this many seconds at 100 Hz, z up, initially looking along x.
 inline std::string turning_hand(double seconds) {
   Matrix3 look;
   look.col(0) = Vector3(0, -1, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live view from both sides: make-believe frames for the server, a browser's requests over real sockets,
-// and a viewer that goes on asking until it has seen enough. Nothing here judges how long anything takes.
+// Both sides of the live view: synthetic frames for the server, a browser's requests over real sockets, and a
+// viewer that keeps requesting until it has the desired image. No check depends on time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@
 
 namespace plvo::test {
 
-// A camera image, depth, and features of a make-believe frame.
+// The camera image, depth and features of a synthetic frame.
 struct Scene {
   int width = 64, height = 48;
   std::vector<std::uint8_t> colour, gray;
@@ -39,7 +39,7 @@ struct Scene {
     gray.assign(pixels, 120);
     depth.assign(pixels, 1500);
     colour.resize(pixels * 3);
-    // Noise: a JPEG of it is as large as one can be.
+    // Noise has the largest possible JPEG.
     std::uint32_t state = 1;
     for (std::uint8_t& value : colour)
       value = static_cast<std::uint8_t>((state = state * 1664525 + 1013904223) >> 24);
@@ -78,11 +78,11 @@ inline int connect_to(int port) {
   to.sin_port = htons(static_cast<std::uint16_t>(port));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   EXPECT_EQ(::connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-  const timeval limit{120, 0};  // so that what hangs for ever fails by name
+  const timeval limit{120, 0};  // a hanging test fails with a message
   ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   return fd;
 }
-// False once the server has hung up.
+// Returns false once the server has closed the connection.
 inline bool send_text(int fd, const std::string& text, int flags = 0) {
   return ::send(fd, text.data(), text.size(), MSG_NOSIGNAL | flags) == static_cast<ssize_t>(text.size());
 }
@@ -97,7 +97,7 @@ inline std::string read_to_end(int fd) {
 inline std::string host_header(int port, const std::string& name = "localhost") {
   return "Host: " + name + ':' + std::to_string(port) + "\r\n";
 }
-// The whole reply to these bytes, as text.
+// Returns the complete reply to these bytes, as text.
 inline std::string reply_to(int port, const std::string& bytes) {
   const int fd = connect_to(port);
   send_text(fd, bytes);
@@ -146,18 +146,18 @@ inline std::string ask(const Update& last, const std::string& viewer) {
          "&viewer=" + viewer;
 }
 
-// Asks again and again over one connection, as a browser does, and keeps the numbers of the images that came
-// with pictures. A connection that ends is made anew.
+// Sends requests repeatedly over one connection, as a browser does, and keeps the numbers of the images that
+// came with pixels. It reconnects if a connection ends.
 class Viewer {
  public:
   Viewer(int port, std::string name) : port_(port), name_(std::move(name)), thread_([this] { run(); }) {}
   ~Viewer() { stop(); }
-  // What is asked already ends by itself: the server answers within a second.
+  // A pending request ends by itself: the server answers within a second.
   void stop() {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
   }
-  // Until this image, or a later one, is here.
+  // Waits until this image, or a later one, has arrived.
   void wait_for(std::uint64_t image) {
     std::unique_lock lock(mutex_);
     came_.wait(lock, [&] { return !images_.empty() && images_.back() >= image; });
@@ -166,10 +166,10 @@ class Viewer {
     const std::lock_guard lock(mutex_);
     return images_;
   }
-  int connections() const { return connections_; }  // that it took
+  int connections() const { return connections_; }  // number of connections it used
 
  private:
-  // The body of the reply; empty when the connection ended.
+  // Returns the body of the reply; empty if the connection ended.
   std::string fetch(const std::string& path) {
     if (fd_ < 0) {
       fd_ = connect_to(port_);
@@ -214,8 +214,8 @@ class Viewer {
   std::thread thread_;
 };
 
-// Publishes until the server has taken one more image for those who look; its number. For ever, if nobody
-// does.
+// Publishes until the server has copied one more image for the viewers; returns its number. Never returns
+// without a viewer.
 inline std::uint64_t publish_one(Scene& scene, ViewServer& server) {
   const std::uint64_t before = server.images();
   while (server.images() == before) {

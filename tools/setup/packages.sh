@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-# shellcheck shell=bash disable=SC2034  # the lists are read by those who source this
-# Every Debian package that plvo is built, tested and cross-built with: the one list. To be sourced.
+# shellcheck shell=bash disable=SC2034  # the scripts that source this file read the lists
+# The single list of the Debian packages for building, testing and cross-building plvo. Other scripts source this file.
 
 # The library, the cameras and the command line.
 PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev
   liblz4-dev"
 
-# The Python package, which is built where these are.
+# The Python package is built if these are installed.
 PLVO_PACKAGES_PYTHON="pybind11-dev python3-dev python3-numpy"
 
-# The tests: GoogleTest, a second compiler, the readers of the text, simulated USB devices, a browser for the pages, a counter of
+# The tests: GoogleTest, a second compiler, tools that check the sources, simulated USB devices, a browser for the pages, a counter of
 # instructions, ROS's own writer of bags, Slurm.
 PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON python3-pytest python3-matplotlib googletest libgtest-dev clang
   libclang-rt-dev clang-format clang-tidy umockdev libumockdev-dev chromium fonts-liberation valgrind
   librosbag-storage-dev slurm-wlm"
 
-# The boards: cross compilers, and processors that are emulated.
+# The boards: cross compilers and emulators.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi
   libstdc++-arm-none-eabi-newlib qemu-system-arm"
 
 say() { printf '\033[1mplvo:\033[0m %s\n' "$*" >&2; }
 
-# install_packages NAME…: what is missing, and nothing (not even the network) when nothing is.
+# install_packages NAME…: installs the missing packages; uses the network only if a package is missing.
 install_packages() {
   local package missing=() root=()
   for package in "$@"; do
@@ -34,7 +34,7 @@ install_packages() {
   fi
   if [ "$(id -u)" -ne 0 ]; then root=(sudo); fi
   say "installing ${#missing[@]} packages: ${missing[*]}"
-  # A mirror that is just being renewed may lack one list of several; what cannot do without it fails at the installing.
+  # A mirror under update may lack one of its lists; if a package needs that list, the installation below fails.
   "${root[@]}" apt-get update -qq >&2 || say "not every list of packages could be fetched; going on with those that could"
   "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
 }

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# From a fresh Debian 12 to every test passed: installs what is missing; shows that Clang, sanitizers and emulated ARM
-# boards compute the same bits as GCC, and what code and stack the boards take; runs each fuzzer briefly, the readers' suites
-# and those of the core's rooms that read images under the address and undefined behaviour sanitizers, and what has threads
-# under the thread sanitizer; builds the release preset and passes its suite, which holds every test. `test.sh PRESET…`
-# passes the suites of those presets instead, the last one last; `test.sh all` those of each of them. Stops at the first
-# failure.
+# Installs plvo's packages on Debian 12 and runs all tests, in these steps:
+# - installs the missing packages;
+# - checks that Clang, the sanitizers and emulated ARM boards give the same results as GCC bit for bit, and measures the code and the
+#   stack on the boards;
+# - runs each fuzzer briefly, the tests of the readers and of the core's modules that read images under the address and undefined
+#   behaviour sanitizers, and the tests with threads under the thread sanitizer;
+# - builds the release preset and runs its suite, which contains every test.
+# `test.sh PRESET…` instead runs the suites of these presets in this order; `test.sh all` runs those of all presets. The script stops
+# at the first failure.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . tools/setup/packages.sh
@@ -17,28 +20,28 @@ if [ "${presets[*]}" = all ]; then presets=(clang debug asan tsan aarch64 armhf 
 install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_TEST $PLVO_PACKAGES_CROSS
 
 started=$SECONDS
-# Whatever still runs ends with the script.
+# Background jobs end with the script.
 trap 'jobs -p | xargs -r kill 2>/dev/null || true' EXIT
 build() {
   say "[$((SECONDS - started)) s] $1: building"
   cmake --preset "$1" >&2
   cmake --build --preset "$1" --parallel "$(nproc)" "${@:2}" >&2
 }
-# suite PRESET TESTS OPTION…: passes what the options select, which must run each of TESTS, a list of words, and may skip only
-# what tests/allowed_skips.txt allows.
+# suite PRESET TESTS OPTION…: runs the tests that the options select. All must pass. Each of TESTS, a list of words, must run, and only
+# the tests in tests/allowed_skips.txt may be skipped.
 suite() {
   say "[$((SECONDS - started)) s] $1: testing"
   ctest --preset "$1" --parallel "$(nproc)" --no-tests=error --output-junit ran.xml "${@:3}"
   # shellcheck disable=SC2086  # a list of words
   python3 tests/architecture/ran.py "build/$1/ran.xml" "$1" $2
 }
-# Of each fuzzer's and each Python test's file the entry of ctest that must have come of it.
+# Names of the ctest entries that the fuzzers' and the Python tests' files must produce.
 fuzzers() { basename --multiple --suffix=.cpp tests/fuzz/fuzz_*.cpp; }
 python_tests() { basename --multiple --suffix=.py tests/python/*_test.py | sed 's/^/python_/'; }
 
-# What the other presets have to show, and no more: their whole suites take `test.sh all`.
+# Runs only the tests that need the other presets; `test.sh all` runs their complete suites.
 briefly() {
-  # An emulated board's run takes minutes in a single thread: it goes on beside what is built next.
+  # The run of an emulated board takes minutes in a single thread: it continues during the next builds.
   local preset programs tests emulated=()
   for preset in cortex-m7 aarch64 armhf; do
     programs=(golden_test) tests="golden_test budget_text"
@@ -76,11 +79,11 @@ for preset in "${presets[@]}"; do
 done
 must_run=golden_test
 if [ "$last" = release ]; then
-  # With all libraries at hand none may be left out.
+  # All libraries are installed, so every test must be built.
   cmake --preset release -DPLVO_ALL_TESTS=ON >&2
   must_run+=" $(python_tests) live_browser_test report_browser_test"
 fi
 build "$last"
 if [ ${#presets[@]} -gt 0 ]; then tests/golden/compare_presets.sh "${presets[@]}" "$last"; fi
-# Many of this suite's tests wait, for a camera that stalls or a client that is slow: more of them than processors.
+# Many tests of this suite wait for a stalled camera or a slow client: run more tests than there are processors.
 suite "$last" "$must_run" --parallel "$((2 * $(nproc)))"

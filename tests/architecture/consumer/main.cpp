@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public API, as its header shows it, with a block that is sized when it is compiled.
+// Uses the public API with a memory block whose size is computed at compile time.
 #include <cstdio>
 
 #include "plvo/hal/rgbd_camera.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot's program computes with poses: the same templates of Eigen over the same types as the core
-// uses, compiled with the robot's switches. Without optimisation each becomes a function that a linker could
-// take for the core's own.
+// Calculations of a robot's program with poses. They instantiate the same Eigen templates with the same types
+// as the core, compiled with the robot's options. Without optimisation each instance becomes a function that
+// a linker could use in the core.
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 

@@ -14,11 +14,10 @@
 namespace plvo::calibrate {
 namespace {
 
-// As residuals of real and simulated sensors show them (docs/sensors.md); they only weigh image against
-// depth.
+// Typical residuals of real and simulated sensors (docs/sensors.md); they only weigh image against depth.
 constexpr double kReference_px = 0.05, kCurrent_px = 0.15;
 constexpr double kShareOfSigma = 0.5;
-// Where a match counts as one that does not fit: about 1e-6 of χ²(3) and χ²(4) lie beyond.
+// Mahalanobis distances above which a match is an outlier: the tail of χ²(3) and χ²(4) beyond is about 1e-6.
 constexpr double kFarthestPoint = 30, kFarthestLine = 36;
 
 struct Features {
@@ -26,7 +25,7 @@ struct Features {
   std::vector<Line3d> lines;
 };
 
-// One frame as a candidate timing has it.
+// Lifts the features of one frame to 3D with a candidate timing.
 class Observer {
  public:
   Observer(const TrackedRecording& recording, const TrackedFrame& frame, const CameraModel& camera,
@@ -67,14 +66,14 @@ class Observer {
   DepthSampler depth_;
 };
 
-std::vector<Match> executor(std::size_t count) {
+std::vector<Match> identity_matches(std::size_t count) {
   std::vector<Match> matches;
   for (std::size_t i = 0; i < count; ++i)
     matches.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(i)});
   return matches;
 }
 
-// Over all `asked` matches: those that could not be lifted, or are not usable, do not fit.
+// Sums over all `asked` matches: a match that could not be lifted or is not usable counts as an outlier.
 double truncated_sum(const ConstraintSet& set, std::size_t asked, const Se3& T, double farthest) {
   double sum = 0;
   std::size_t used = 0;
@@ -86,7 +85,7 @@ double truncated_sum(const ConstraintSet& set, std::size_t asked, const Se3& T, 
   return sum + farthest * static_cast<double>(asked - used);
 }
 
-// One thread's tools.
+// Computes the cost of a pair of frames; each thread has its own.
 class PairJudge {
  public:
   explicit PairJudge(std::size_t most_matches) {
@@ -106,8 +105,8 @@ class PairJudge {
     lift(pair, reference_frame, current_frame, reference, current, from, to);
 
     const ScratchScope scope(scratch_);
-    const std::vector<Match> point_matches = executor(from.points.size());
-    const std::vector<Match> line_matches = executor(from.lines.size());
+    const std::vector<Match> point_matches = identity_matches(from.points.size());
+    const std::vector<Match> line_matches = identity_matches(from.lines.size());
     PointConstraints points(from.points, to.points, point_matches,
                             PointConstraints::Workspace::take(scratch_, point_matches.size()));
     LineConstraints lines(from.lines, to.lines, line_matches,

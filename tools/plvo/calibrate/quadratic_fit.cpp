@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 constexpr int kDraws = 300;
 
-// 1, x_i, x_i x_j (i ≤ j).
+// Returns a row for each place, with the columns 1, x_i, x_i x_j (i ≤ j).
 MatrixXd monomials(const MatrixXd& design) {
   const Eigen::Index n = design.cols();
   MatrixXd A(design.rows(), 1 + n + n * (n + 1) / 2);
@@ -29,7 +29,7 @@ MatrixXd monomials(const MatrixXd& design) {
   return A;
 }
 
-// False where the surface has no minimum.
+// Returns false if the surface has no minimum.
 bool minimum_of(const VectorXd& coefficients, Eigen::Index n, VectorXd& place) {
   MatrixXd H(n, n);
   Eigen::Index k = 1 + n;
@@ -66,8 +66,8 @@ MatrixXd quadratic_design(int unknowns) {
 QuadraticMinimum fit_quadratic(const MatrixXd& design, const MatrixXd& costs) {
   const Eigen::Index n = design.cols();
   const MatrixXd A = monomials(design);
-  // A row for each piece: the coefficients are linear in the costs.
-  const Eigen::LLT<MatrixXd> normal(A.transpose() * A);  // the designs are orthogonal enough for it
+  // One row for each block: the coefficients are linear in the costs.
+  const Eigen::LLT<MatrixXd> normal(A.transpose() * A);  // the designs are well conditioned
   const MatrixXd coefficients = normal.solve(A.transpose() * costs.transpose()).transpose();
   QuadraticMinimum result;
   result.covariance = MatrixXd::Constant(n, n, std::numeric_limits<double>::infinity());
@@ -84,16 +84,16 @@ QuadraticMinimum fit_quadratic(const MatrixXd& design, const MatrixXd& costs) {
   for (int draw = 0; draw < kDraws; ++draw) {
     VectorXd sum = VectorXd::Zero(coefficients.cols());
     for (Eigen::Index i = 0; i < coefficients.rows(); ++i) {
-      const auto piece =
+      const auto block =
           static_cast<Eigen::Index>(random.uniform() * static_cast<double>(coefficients.rows()));
-      sum += coefficients.row(std::min(piece, coefficients.rows() - 1)).transpose();
+      sum += coefficients.row(std::min(block, coefficients.rows() - 1)).transpose();
     }
     VectorXd place;
     if (!minimum_of(sum, n, place)) continue;
     scatter += (place - result.place) * (place - result.place).transpose();
     ++drawn;
   }
-  // Where many of the draws have no minimum at all, nothing is known.
+  // If more than a tenth of the draws have no minimum, the covariance stays infinite.
   if (drawn > 9 * kDraws / 10) result.covariance = scatter / drawn;
   return result;
 }

@@ -7,18 +7,19 @@
 namespace plvo::calibrate {
 namespace {
 
-// A line through fewer stamps takes too much of their error with it.
+// A line fitted to fewer stamps absorbs too much of their error.
 constexpr std::size_t kLeastFrames = 20;
-// Of the time between two frames: farther off, a stamp could be the next frame's.
+// Upper limit of the jitter, as a fraction of the frame period: with more, a stamp could belong to the next
+// frame.
 constexpr double kMostOfPeriod = 0.25;
 
 struct Residuals {
   double squares = 0;
-  double freedom = 0;  // stamps less the two numbers of their line
+  double freedom = 0;  // number of stamps minus the two parameters of their line
   double period_s = 0;
 };
 
-// Of one recording, about the line through (number of the frame, stamp).
+// Fits a line to the pairs (frame number, stamp) of one recording and returns the residuals.
 Residuals about_line(std::span<const TrackedFrame> frames) {
   const auto seconds_since = [&](std::size_t i, std::size_t from) {
     return static_cast<double>(frames[i].stamp_ns - frames[from].stamp_ns) * 1e-9;

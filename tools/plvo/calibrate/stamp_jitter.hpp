@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the stamps of colour err, from the stamps alone: a camera exposes at an even pace, and what of a
-// stamp is not even came in on the way to the program that stamped it.
+// Estimates the random error of the colour stamps from the stamps alone. It assumes that the camera exposes
+// at a constant rate, so that every deviation arises on the way to the program that stamps the frame.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace plvo::calibrate {
 
-// Standard deviation of the stamps about the straight line through them, a line for each recording, in
-// seconds; frames that the recording lacks leave a gap in it. Negative where the recordings do not tell: too
-// few frames, or no even pace, as with a shutter time that follows the light.
+// Returns the standard deviation of the stamps about a straight line, fitted to each recording, in seconds.
+// Missing frames leave a gap in the line. Returns a negative value if the recordings do not determine it: too
+// few frames, or no constant rate, as with a shutter time that follows the light.
 double stamp_jitter_s(std::span<const TrackedRecording> recordings);
 
 }  // namespace plvo::calibrate

@@ -12,7 +12,7 @@ namespace plvo::calibrate {
 namespace {
 
 constexpr double kMs = 1e3;
-// The picture of a curve, and its margins, px.
+// Size of a plot and its margins, px.
 constexpr double kWidth = 420, kHeight = 240, kLeft = 48, kRight = 12, kTop = 12, kBottom = 34;
 
 std::string found_text(const TimingResult& result, std::size_t i) {
@@ -43,7 +43,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-// One curve as SVG: what was measured, and where the minimum was found.
+// Draws one curve as SVG: the measured costs and the minimum found.
 std::string drawing(const TimingResult& result, std::size_t i) {
   const std::vector<CurvePoint>& curve = result.curves[i];
   if (curve.size() < 2) return {};

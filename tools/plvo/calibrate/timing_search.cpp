@@ -18,12 +18,12 @@ using Eigen::MatrixXd;
 
 constexpr std::size_t kLeastPairs = 40;
 constexpr double kLeastTurn_rad_per_s = 0.1;
-constexpr std::size_t kRoughPairs = 120;  // are enough for a rough look and for the curves
+constexpr std::size_t kRoughPairs = 120;  // enough for the rough search and for the curves
 constexpr int kMostPasses = 8;
-constexpr double kMost_s = 0.095;  // of any of the three, within what CameraModel::validate allows
-constexpr std::int64_t kPiece_ns = 1'000'000'000;
+constexpr double kMost_s = 0.095;  // limit of each unknown, within the limits of CameraModel::validate
+constexpr std::int64_t kBlock_ns = 1'000'000'000;
 
-// The unknowns as one vector: delay, depth readout, readout.
+// The unknowns as a vector: delay, depth readout, readout.
 Vector3 vector_of(const SensorTiming& t) { return {t.depth_delay_s, t.depth_readout_s, t.readout_s}; }
 SensorTiming timing_at(const Vector3& x) { return {x.x(), x.y(), x.z()}; }
 Vector3 bounded(const Vector3& x) {
@@ -31,9 +31,9 @@ Vector3 bounded(const Vector3& x) {
           std::clamp(x.z(), 0.0, kMost_s)};
 }
 
-// Ways to change them that hardly disturb each other, one a column, each a half-width: the delay; depth's
-// rows against colour's; both readouts together, unless colour has none.
-MatrixXd ways(bool readouts, bool global_shutter) {
+// Returns nearly independent search directions, one per column, scaled to a half-width: the delay; the depth
+// readout alone; both readouts together, unless colour has a global shutter.
+MatrixXd search_directions(bool readouts, bool global_shutter) {
   MatrixXd steps(3, 3);
   steps << 0.004, 0, 0, 0, 0.008, 0.006, 0, 0, 0.006;
   return steps.leftCols(!readouts ? 1 : global_shutter ? 2 : 3);
@@ -68,7 +68,7 @@ class Search {
   }
 
  private:
-  // Less than matters, or than the recordings can tell.
+  // True if the change is below what matters or below what the recordings determine.
   bool is_small(const Vector3& change) const {
     constexpr std::array<double, 3> kMatters_s = {0.0003, 0.001, 0.001};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -110,13 +110,13 @@ class Search {
     return {};
   }
 
-  // The next `places` costs are for `what`; for the line of progress.
+  // Sets what the next `places` costs are for, for the progress line.
   void begin(const char* what, Eigen::Index places) {
     what_ = what;
     places_ = places;
     place_ = 0;
   }
-  // The costs of each pair.
+  // Returns the cost of each pair.
   std::vector<double> costs_at(const Vector3& x, std::size_t step) {
     task_.on_progress(fmt::format("pass {}: {} {}/{}, {}", pass_ + 1, what_, ++place_, places_, words_of(x)));
     return disagreement(recordings_, timing_at(x), step, task_.threads);
@@ -127,7 +127,7 @@ class Search {
   }
   std::size_t rough_step() const { return std::max<std::size_t>(1, result_.pairs / kRoughPairs); }
 
-  // The best of x_ + k step, k = −reach … reach.
+  // Sets x_ to the best of x_ + k step, k = −reach … reach.
   void rough_line(const Vector3& step, int reach) {
     const Vector3 centre = x_;
     double least = std::numeric_limits<double>::infinity();
@@ -155,24 +155,25 @@ class Search {
     for (const Line& line : lines) rough_line(line.step, line.reach);
   }
 
-  // Which second of which recording each pair belongs to, as a running number.
-  std::vector<Eigen::Index> pieces() const {
-    std::vector<Eigen::Index> piece;
+  // Returns for each pair the running number of its block: one second of one recording.
+  std::vector<Eigen::Index> blocks() const {
+    std::vector<Eigen::Index> block;
     Eigen::Index number = -1;
     for (const TrackedRecording& recording : recordings_) {
       std::int64_t second = -1;
       for (const FramePair& pair : recording.pairs) {
         const std::int64_t now =
-            (recording.frames[pair.current].stamp_ns - recording.frames.front().stamp_ns) / kPiece_ns;
+            (recording.frames[pair.current].stamp_ns - recording.frames.front().stamp_ns) / kBlock_ns;
         if (now != second) ++number;
         second = now;
-        piece.push_back(number);
+        block.push_back(number);
       }
     }
-    return piece;
+    return block;
   }
 
-  // Below a readout of 0 there is nothing to fit a surface to.
+  // Compares a readout of 0 with a small one: no surface can be fitted across 0, because the readout is not
+  // negative.
   void look_for_global_shutter() {
     constexpr double kLittle_s = 0.005;
     result_.global_shutter = false;
@@ -186,18 +187,18 @@ class Search {
 
   void fine_search() {
     look_for_global_shutter();
-    const MatrixXd steps = ways(task_.find_readouts, result_.global_shutter);
+    const MatrixXd steps = search_directions(task_.find_readouts, result_.global_shutter);
     const Eigen::Index n = steps.cols();
     const MatrixXd design = quadratic_design(static_cast<int>(n));
-    const std::vector<Eigen::Index> piece = pieces();
-    // A readout below zero would be a global shutter again: the places keep clear of it.
+    const std::vector<Eigen::Index> block = blocks();
+    // Centre the design so that no place has a readout below 0.
     Vector3 centre = x_;
     centre.z() = std::max(centre.z(), steps.row(2).sum());
-    MatrixXd costs = MatrixXd::Zero(piece.back() + 1, design.rows());
+    MatrixXd costs = MatrixXd::Zero(block.back() + 1, design.rows());
     begin("fine search", design.rows());
     for (Eigen::Index place = 0; place < design.rows(); ++place) {
       const std::vector<double> sums = costs_at(centre + steps * design.row(place).transpose(), 1);
-      for (std::size_t i = 0; i < sums.size(); ++i) costs(piece[i], place) += sums[i];
+      for (std::size_t i = 0; i < sums.size(); ++i) costs(block[i], place) += sums[i];
     }
     const QuadraticMinimum minimum = fit_quadratic(design, costs);
     x_ = bounded(centre + steps * minimum.place);

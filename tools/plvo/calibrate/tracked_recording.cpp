@@ -57,9 +57,9 @@ TrackedFrame keep(const RgbdFrame& frame, const TrackResult& result, const Featu
   return kept;
 }
 
-// The derivative, at frame k, of the polynomial through it and some neighbours, on both sides where they are:
-// a mean over the time before alone would lag behind a hand that turns to and fro. False where one is
-// missing.
+// Computes the derivative at frame k of the polynomial through it and the given neighbours, on both sides if
+// possible: the mean over the past alone would lag behind an oscillating hand. Returns false if a neighbour
+// is missing.
 bool find_velocity(const std::vector<TrackedFrame>& frames, std::size_t k,
                    std::initializer_list<int> neighbours, Vector6& velocity) {
   const TrackedFrame& here = frames[k];
@@ -67,7 +67,7 @@ bool find_velocity(const std::vector<TrackedFrame>& frames, std::size_t k,
   std::vector<Vector6> moved;
   for (const int offset : neighbours) {
     const std::size_t i =
-        k + static_cast<std::size_t>(offset);  // below 0 it wraps around, and is past the end
+        k + static_cast<std::size_t>(offset);  // a negative index wraps around and is out of range
     if (here.stretch < 0 || i >= frames.size() || frames[i].stretch != here.stretch) return false;
     seconds.push_back(static_cast<double>(frames[i].stamp_ns - here.stamp_ns) * 1e-9);
     moved.push_back(boxminus(frames[i].T_world_camera.inverse() * here.T_world_camera, Se3{}));
@@ -109,7 +109,7 @@ Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_
   Limits limits;
   limits.width = camera.width;
   limits.height = camera.height;
-  limits.kept_keyframes = 0;  // a pose that is put right later would look like a velocity
+  limits.kept_keyframes = 0;  // the correction of a pose would look like a velocity
   std::vector<std::byte> memory(required_bytes(limits) + kArenaAlignment);
   Odometry odometry;
   if (Status status = odometry.init(memory, camera, config, limits); !status.ok()) return status;
@@ -123,7 +123,7 @@ Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_
     if (!status.ok()) return status;
     recording.metres_per_unit = frame.depth.metres_per_unit;
     const TrackResult result = odometry.track(frame);
-    // After a loss the world goes on at the last good pose: what lies between was not seen.
+    // After a loss tracking restarts at the last good pose: the motion in between is unobserved.
     if (result.state == TrackState::kInitialising) ++stretch;
     const FeatureView view = odometry.features();
     if (result.state == TrackState::kTracking) add_pair(result, view, recording);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a calibration keeps of a recording: the depth images, which points and segments of two frames are the
-// same, and how the camera moved. Found by the odometry, frame against keyframe: over the longer way what is
-// wrong with the timing shows more.
+// What a calibration keeps of a recording: the depth images, the matched points and segments of pairs of
+// frames, and the camera's motion. The odometry matches each frame with a keyframe: errors of the timing show
+// more over the longer motion.
 #pragma once
 
 #include <cstddef>
@@ -21,20 +21,20 @@ namespace plvo::calibrate {
 struct TrackedFrame {
   std::int64_t stamp_ns = 0, depth_stamp_ns = 0;
   std::vector<std::uint16_t> depth;
-  std::vector<Segment> segments;  // of the undistorted image
+  std::vector<Segment> segments;  // in the undistorted image
   Se3 T_world_camera;
-  int stretch = -1;                    // frames tracked without a gap have the same; −1: lost
-  Vector6 velocity = Vector6::Zero();  // per second, as of camera/exposure.hpp, from frames before and after
+  int stretch = -1;                    // the same for frames tracked without a gap; −1: lost
+  Vector6 velocity = Vector6::Zero();  // per second, as in camera/exposure.hpp, from frames before and after
   bool velocity_known = false;
 };
 
-// A point seen at (u, v)[0] in the reference and (u, v)[1] in the current frame, px.
+// A point observed at (u, v)[0] in the reference and at (u, v)[1] in the current frame, px.
 struct PointPair {
   Vector2 reference, current;
 };
 
 struct FramePair {
-  std::size_t reference = 0, current = 0;  // of the recording's frames
+  std::size_t reference = 0, current = 0;  // indices of the recording's frames
   std::vector<PointPair> points;
   std::vector<Match> lines;  // indices of the frames' segments
 };
@@ -43,11 +43,11 @@ struct TrackedRecording {
   CameraModel camera;
   double metres_per_unit = 0;
   std::vector<TrackedFrame> frames;
-  std::vector<FramePair> pairs;  // by rising current frame; both velocities are known
+  std::vector<FramePair> pairs;  // in increasing order of the current frame; both velocities are known
 };
 
-// Reads at most most_frames frames. on_frame is called before each. Not ok when the odometry refuses the
-// camera; damaged frames are passed over.
+// Reads at most most_frames frames and calls on_frame before each. Returns an error if the odometry refuses
+// the camera; damaged frames are skipped.
 Status track_recording(RgbdCamera& source, const CameraModel& camera, std::size_t most_frames,
                        const std::function<void()>& on_frame, TrackedRecording& recording);
 

@@ -21,7 +21,7 @@ std::vector<Vector3> positions(const std::vector<Se3>& poses) {
   return result;
 }
 
-// The rotation that is best without a scale is best with one, too.
+// The optimal rotation is the same with and without a scale.
 void fit_scale(const std::vector<Se3>& estimate, const std::vector<Se3>& truth, AbsoluteError& result) {
   const Vector3 from = mean(positions(estimate)), to = mean(positions(truth));
   double product = 0, from_squared = 0, to_squared = 0;
@@ -45,8 +45,7 @@ Se3 align(const std::vector<Vector3>& from, const std::vector<Vector3>& to) {
   for (std::size_t i = 0; i < from.size(); ++i) H += (from[i] - from_mean) * (to[i] - to_mean).transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d D = Eigen::Matrix3d::Identity();
-  if ((svd.matrixV() * svd.matrixU().transpose()).determinant() < 0)
-    D(2, 2) = -1;  // a rotation, not a mirror
+  if ((svd.matrixV() * svd.matrixU().transpose()).determinant() < 0) D(2, 2) = -1;  // excludes a reflection
   const Matrix3 R = svd.matrixV() * D * svd.matrixU().transpose();
   return {R, to_mean - R * from_mean};
 }

@@ -9,21 +9,21 @@
 
 namespace plvo::eval {
 
-// The rigid motion that brings `from` onto `to` with the least sum of squares. One length, at least one
-// point.
+// Returns the rigid motion that maps `from` onto `to` with the least sum of squares. Both lists have the same
+// length, at least one point.
 Se3 align(const std::vector<Vector3>& from, const std::vector<Vector3>& to);
 
 struct AbsoluteError {
   Statistics position_m;
-  Se3 T_truth_estimate;  // brings the estimate onto the truth
-  // What the estimate's lengths would have to be multiplied by to fit the truth best, and the RMSE then. 1
-  // where there is no length.
+  Se3 T_truth_estimate;  // maps the estimate onto the truth
+  // Factor that fits the estimate's lengths to the truth best, and the RMSE with it. 1 if all lengths are 0.
   double scale = 1;
   double scaled_rmse_m = 0;
 };
 AbsoluteError absolute_trajectory_error(const std::vector<Se3>& estimate, const std::vector<Se3>& truth);
 
-// What a camera that never moves scores: its one position is best put at the truth's centre.
+// Returns the error of a camera that never moves: the alignment puts its single position at the centroid of
+// the truth.
 Statistics identity_absolute_error(const std::vector<Se3>& truth);
 
 }  // namespace plvo::eval

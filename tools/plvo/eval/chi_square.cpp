@@ -5,7 +5,8 @@
 
 namespace plvo::eval {
 
-// Abramowitz & Stegun 26.4.4 and 26.4.5: two degrees more add one term, (x/2)^(k/2) e^(−x/2) / Γ(k/2 + 1).
+// Abramowitz & Stegun 26.4.4 and 26.4.5: two more degrees of freedom add the term (x/2)^(k/2) e^(−x/2) /
+// Γ(k/2 + 1).
 double chi_square_tail(double x, int dof) {
   if (!(x > 0)) return 1;
   const bool odd = dof % 2 != 0;

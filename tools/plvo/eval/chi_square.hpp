@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chi-square distribution of whole degrees of freedom: what a normalised squared error should be like.
+// Chi-square distribution with an integer number of degrees of freedom: the distribution of a normalised
+// squared error.
 #pragma once
 
 namespace plvo::eval {
 
-// The probability that a chi-square variable of `dof` ≥ 1 degrees of freedom exceeds x.
+// Returns the probability that a chi-square variable of `dof` ≥ 1 degrees of freedom exceeds x.
 double chi_square_tail(double x, int dof);
 
-// x with chi_square_tail(x, dof) = 1 − probability, for probabilities strictly between 0 and 1.
+// Returns x with chi_square_tail(x, dof) = 1 − probability; 0 < probability < 1.
 double chi_square_quantile(double probability, int dof);
 
 }  // namespace plvo::eval

@@ -11,7 +11,7 @@
 namespace plvo::eval {
 namespace {
 
-// Samples of one kind of error.
+// The NEES samples of one kind of error.
 class Samples {
  public:
   explicit Samples(int dof) : dof_(dof) {}
@@ -23,11 +23,11 @@ class Samples {
     const double bound = chi_square_quantile(0.95, dof_);
     for (const double value : values_) nees.inside_95 += value <= bound ? 1 : 0;
     nees.inside_95 /= static_cast<double>(values_.size());
-    // The sum of n independent ones is chi-square with n times the degrees of freedom.
+    // The sum of n independent samples is chi-square with n times the degrees of freedom.
     const auto n = static_cast<double>(independent);
     const int dof = dof_ * static_cast<int>(independent);
     nees.mean_band = {chi_square_quantile(0.025, dof) / n, chi_square_quantile(0.975, dof) / n};
-    // How many of n lie below the true median is binomial: its share is ½ ± ½/√n.
+    // The number of samples below the true median is binomial: its fraction is ½ ± 1.96 · ½/√n.
     const double share = std::min(0.49, 1.959963984540054 * 0.5 / std::sqrt(n));
     nees.median_band = {chi_square_quantile(0.5 - share, dof_), chi_square_quantile(0.5 + share, dof_)};
     return nees;
@@ -79,8 +79,8 @@ const StampedCovariance* find(const std::vector<StampedCovariance>& covariances,
 
 }  // namespace
 
-// With R_i Exp(η_i) and p_i + w_i for the true poses, R = R_bᵀ R_a turns by R η_a − η_b and t = R_bᵀ (p_a −
-// p_b) moves by R_bᵀ (w_a − w_b) + t × η_b; all of η and w are alike in every direction.
+// With R_i Exp(η_i) and p_i + w_i for the true poses, R = R_bᵀ R_a changes by R η_a − η_b and t = R_bᵀ (p_a −
+// p_b) by R_bᵀ (w_a − w_b) + t × η_b to first order; η and w are isotropic.
 Matrix6 TruthSigma::of_motion(const Vector3& t) const {
   const double p = position_m * position_m, r = orientation_rad * orientation_rad;
   const Matrix3 T = skew(t);

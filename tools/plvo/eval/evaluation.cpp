@@ -11,7 +11,7 @@
 namespace plvo::eval {
 namespace {
 
-constexpr double kLostSteps = 2.5;  // a step this many times the median has frames missing in it
+constexpr double kLostSteps = 2.5;  // frames are missing in a step of more than this many medians
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 std::vector<Interval> find_lost(const std::vector<StampedPose>& poses) {
@@ -38,7 +38,7 @@ std::vector<Interval> find_gaps(const std::vector<std::int64_t>& stamps, const s
   return gaps;
 }
 
-// The poses of the estimate that have a true one.
+// Returns the poses of the estimate that have a true pose.
 PairedPoses pair_poses(const Trajectory& estimate, const SampledPoses& truth) {
   PairedPoses poses;
   for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
@@ -50,7 +50,7 @@ PairedPoses pair_poses(const Trajectory& estimate, const SampledPoses& truth) {
   return poses;
 }
 
-// Rows without stamps are compared one by one.
+// Rows without stamps are compared by their number.
 Status check_rows(const Trajectory& truth, const Trajectory& estimate) {
   const std::size_t rows = estimate.poses.size() + estimate.ignored_rows,
                     true_rows = truth.poses.size() + truth.ignored_rows;
@@ -63,7 +63,7 @@ Status check_rows(const Trajectory& truth, const Trajectory& estimate) {
               true_rows, rows)};
 }
 
-// Why hardly a pose has a true one, as far as the stamps tell it.
+// Explains from the stamps why hardly any pose has a true pose.
 std::string why_apart(const Trajectory& truth, const Trajectory& estimate,
                       const std::vector<std::int64_t>& stamps) {
   if (stamps.empty() || truth.poses.empty()) return "one of the files has no pose";

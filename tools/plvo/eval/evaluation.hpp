@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything `plvo eval` says about one estimate, and how it says it.
+// Everything that `plvo eval` reports about one estimate, and its output formats.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace plvo::eval {
 
 struct EvaluationOptions {
   TruthSampling sampling;
-  TruthSigma truth_sigma;        // joins the covariance in the NEES
-  bool fit_truth = false;        // compares with the truth as the fit has it; it must be interpolated
+  TruthSigma truth_sigma;        // added to the covariance in the NEES
+  bool fit_truth = false;        // correct the truth by fit_truth(); requires interpolation
   std::int64_t offset_ns = 0;    // added to the stamps of the estimate
   std::vector<RpeDelta> deltas;  // empty: one frame and one second
 };
@@ -33,8 +33,8 @@ struct Interval {
 struct Evaluation {
   GroundTruthSampling sampling = GroundTruthSampling::kInterpolated;
   TruthSigma truth_sigma;
-  std::optional<TruthFit> truth_fit;  // all else is after it, but
-  RpeErrors second_before_fit;
+  std::optional<TruthFit> truth_fit;  // if set, the results below use the corrected truth
+  RpeErrors second_before_fit;        // uses the truth as measured
   std::size_t estimate_poses = 0;
   PairedPoses poses;  // those with ground truth
   double duration_s = 0;
@@ -46,10 +46,10 @@ struct Evaluation {
   EndDrift drift, drift_identity;
   std::vector<DistanceError> by_distance;
 
-  // Where consecutive poses of the estimate are more than 2.5 of its median steps apart: frames that were
-  // lost.
+  // Intervals of lost frames: consecutive poses of the estimate that are more than 2.5 of its median steps
+  // apart.
   std::vector<Interval> lost;
-  // Runs of poses that have no ground truth.
+  // Intervals of poses without ground truth.
   std::vector<Interval> without_truth;
 
   std::vector<PoseError> errors;
@@ -58,18 +58,19 @@ struct Evaluation {
   std::optional<Consistency> second_nees;  // of the motions over a second
 };
 
-// kInvalidArgument when fewer than two poses of the estimate have a true pose, when both are KITTI's without
-// stamps and have not the same number of rows, and as fit_truth().
+// Returns kInvalidArgument if fewer than two poses of the estimate have a true pose, if both files are
+// KITTI's without stamps and differ in their number of rows, and the errors of fit_truth().
 Status evaluate(const Trajectory& measured_truth, const Trajectory& estimate,
                 const std::vector<StampedCovariance>& covariances,
                 const std::vector<UncertainMotion>& motions, const EvaluationOptions& options,
                 Evaluation& result);
 
-// A warning if the best-fit scale differs from 1 by more than 5 %, removes at least half of the absolute
-// error, and differs by more than three times the ratio of the error that is left to that of a camera that
-// never moves. Otherwise empty: any scale fits a bad estimate a little better.
+// Returns a warning if the best-fit scale differs from 1 by more than 5 %, removes at least half of the
+// absolute error, and differs by more than three times the ratio of the error that is left to that of the
+// zero-motion baseline. Otherwise empty: some scale fits any bad estimate slightly better.
 std::string doubt_about_scale(const Evaluation& evaluation);
-// That, and what a NEES far from what a true covariance gives most often is, with what to try.
+// Returns that sentence and one for a NEES far from its expectation, with the most frequent reason and what
+// to try.
 std::vector<std::string> doubts_about(const Evaluation& evaluation);
 
 std::string to_text(const Evaluation& evaluation);

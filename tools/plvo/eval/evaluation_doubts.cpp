@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an evaluation shows that is mostly not the odometry's own error.
+// Signs in an evaluation of errors that are mostly not those of the odometry.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ std::string doubt_about_scale(const Evaluation& e) {
 std::vector<std::string> doubts_about(const Evaluation& e) {
   std::vector<std::string> sentences;
   if (std::string scale = doubt_about_scale(e); !scale.empty()) sentences.push_back(std::move(scale));
-  // One sentence for all of them: the farthest off.
+  // One sentence covers all of them: the one farthest off.
   const char* of = nullptr;
   double mean = 0, farthest = std::log(kFarNees);
   for (const auto& [name, nees] :

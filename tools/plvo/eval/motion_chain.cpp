@@ -5,7 +5,7 @@
 
 namespace plvo::eval {
 
-// On the way from a frame towards its ancestors.
+// State of the traversal from a frame towards its ancestors.
 struct MotionChain::Climb {
   std::size_t at = 0;
   Se3 T_start_at;
@@ -47,7 +47,7 @@ bool MotionChain::step(Climb& climb) const {
 bool MotionChain::between(std::size_t from, std::size_t to, Se3& T_to_from, Matrix6& covariance) const {
   Climb a{from, {}, Matrix6::Zero()};
   Climb b{to, {}, Matrix6::Zero()};
-  // Ancestors are older: the newer of the two climbs until they meet.
+  // Ancestors are older: step from the newer of the two until they meet.
   while (a.at != b.at) {
     if (!step(a.at > b.at ? a : b)) return false;
   }

@@ -52,7 +52,7 @@ std::vector<Pair> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns, s
     const std::int64_t target = stamps_ns[i] + delta_ns;
     const auto after = static_cast<std::size_t>(std::lower_bound(stamps_ns.begin(), stamps_ns.end(), target) -
                                                 stamps_ns.begin());
-    // As in the benchmark's script, j may never be 0.
+    // As in the benchmark's script, j is at least 1.
     std::size_t j = std::clamp<std::size_t>(after, 1, stamps_ns.size() - 1);
     if (std::abs(stamps_ns[j - 1] - target) <= std::abs(stamps_ns[j] - target)) --j;
     if (std::abs(stamps_ns[j] - target) <= kSecondsToleranceNs) pairs.emplace_back(i, j);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Relative pose error, equation (27) of Lu & Song after Sturm et al. (IROS 2012): with estimates P and truth
-// Q, E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) over all pairs (i, j) that lie one delta apart. Beside it always the
-// row of a camera that never moves (P = identity): an error says little until one knows what standing still
-// would score.
+// Q, E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) over all pairs (i, j) that lie one delta apart. Each result also has
+// the error of a camera that never moves (P = identity), as a baseline.
 #pragma once
 
 #include <cstdint>
@@ -25,22 +24,23 @@ struct RpeDelta {
 };
 bool parse_rpe_delta(std::string_view text, RpeDelta& delta);
 
-// Poses that have a true pose beside them; all three of one length.
+// Poses with their true poses; the three lists have the same length.
 struct PairedPoses {
   std::vector<std::int64_t> stamps_ns;
   std::vector<Se3> estimate;
   std::vector<Se3> truth;
 };
 
-// Indices of stamps one delta apart: for each stamp the one nearest to a delta later, at most 50 ms off.
+// Returns pairs of indices of stamps one delta apart: each stamp with the one nearest to a delta later, at
+// most 50 ms off.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_by_seconds(const std::vector<std::int64_t>& stamps_ns,
                                                                   std::int64_t delta_ns);
 
-// How many of these pairs, in the order of their beginnings, share no stretch of the recording: each that
-// begins where the last one counted has ended.
+// Returns how many of these pairs, in the order of their starts, do not overlap: a pair counts if it starts
+// at or after the end of the last counted one.
 std::size_t count_apart(const std::vector<std::pair<std::size_t, std::size_t>>& pairs);
 
-// E of the pair (i, j), see above.
+// Returns E of the pair (i, j), as defined above.
 Se3 motion_error(const PairedPoses& poses, std::size_t i, std::size_t j);
 
 struct RpeErrors {
@@ -55,7 +55,7 @@ struct RpeResult {
 };
 RpeResult relative_pose_error(const PairedPoses& poses, const RpeDelta& delta);
 
-// Drift from one end to the other (the paper's TED when the walk is closed).
+// Drift between the first and the last pose (the paper's TED if the path is closed).
 struct EndDrift {
   double translation_m = 0;
   double rotation_deg = 0;
@@ -63,17 +63,17 @@ struct EndDrift {
 EndDrift end_drift(const PairedPoses& poses);
 EndDrift identity_end_drift(const PairedPoses& poses);
 
-// Drift over pieces of the path that are `length_m` long in truth, one from each pose, in units of their
+// Drift over sections of the path with a true length of `length_m`, one from each pose, relative to this
 // length.
 struct DistanceError {
   double length_m = 0;
   Statistics translation_percent;
   Statistics rotation_deg_per_m;
 };
-// For lengths 0.1, 0.2, 0.5, 1, 2, 5, … m as far as the path reaches.
+// Returns the errors for lengths 0.1, 0.2, 0.5, 1, 2, 5, … m up to the length of the path.
 std::vector<DistanceError> distance_errors(const PairedPoses& poses);
 
-// Angle of a rotation in degrees, sound near zero.
+// Returns the angle of a rotation in degrees, accurate near zero.
 double rotation_angle_deg(const Matrix3& R);
 
 }  // namespace plvo::eval

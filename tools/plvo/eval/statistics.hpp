@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said about a list of errors.
+// Statistics of a list of errors.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct Statistics {
 
 Statistics statistics(std::vector<double> values);
 
-// fraction in [0, 1] of a list in increasing order, linear between the two neighbours; zero for an empty
-// list.
+// Returns the quantile of a list in increasing order, linear between neighbouring values; fraction in [0, 1];
+// zero for an empty list.
 double quantile(const std::vector<double>& sorted, double fraction);
 
 }  // namespace plvo::eval

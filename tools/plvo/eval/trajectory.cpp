@@ -9,15 +9,15 @@ namespace plvo::eval {
 namespace {
 
 constexpr std::int64_t kMaxInterpolationGapNs = 100'000'000;
-constexpr std::int64_t kSameStampNs = 1'000;  // closer than this to a sample, no neighbour is needed
+constexpr std::int64_t kSameStampNs = 1'000;  // a sample closer than this is used without a neighbour
 
-// Interpolation counts in doubles of seconds since 1970, as every script of the benchmark does: its stamps
-// are rounded to 0.2 µs thereby, and the figures agree with those scripts to the last digit printed.
+// Interpolation uses seconds since 1970 as doubles, as every script of the benchmark does. This rounds stamps
+// to 0.2 µs, and the results agree with those scripts to the last printed digit.
 double seconds(std::int64_t stamp_ns) {
   return static_cast<double>(static_cast<long double>(stamp_ns) / 1e9L);
 }
 
-// Spherical linear interpolation of two unit quaternions, the shorter way round.
+// Spherical linear interpolation of two unit quaternions, along the shorter arc.
 Quaternion slerp(const Quaternion& a, Quaternion b, double fraction) {
   double cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
   if (cosine < 0) {

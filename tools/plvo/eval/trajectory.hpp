@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The true pose at the stamps of an estimate.
+// Samples the ground truth at the stamps of an estimate.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ using plvo::TrajectorySource;
 
 enum class GroundTruthSampling : std::uint8_t {
   kNearest,       // the pose of the nearest stamp, as TUM's scripts do
-  kInterpolated,  // between the two neighbours: linear, slerp; they may be at most 0.1 s apart
+  kInterpolated,  // between the two neighbours, at most 0.1 s apart: linear, slerp
 };
 
 struct TruthSampling {
@@ -26,8 +26,8 @@ struct TruthSampling {
   std::int64_t max_difference_ns = 20'000'000;  // nearest: between a pose and its true pose
 };
 
-// The true pose at each stamp. valid[i] is false where there is none within max_difference_ns (nearest) or
-// between close enough neighbours (interpolated).
+// The true pose at each stamp. valid[i] is false if there is none within max_difference_ns (nearest) or
+// between sufficiently close neighbours (interpolated).
 struct SampledPoses {
   std::vector<Se3> poses;
   std::vector<bool> valid;
@@ -35,7 +35,7 @@ struct SampledPoses {
 SampledPoses sample(const Trajectory& ground_truth, const std::vector<std::int64_t>& stamps_ns,
                     const TruthSampling& sampling);
 
-// Metres travelled up to each pose.
+// Returns the path length up to each pose, in metres.
 std::vector<double> path_lengths(const std::vector<Se3>& poses);
 
 }  // namespace plvo::eval

@@ -18,24 +18,25 @@ namespace {
 constexpr std::size_t kLeastIndependent = 2;
 constexpr int kMostIterations = 50;
 constexpr double kMostClock_s = 0.1;
-// What derivatives are taken over, to either side. A true pose jitters, and so does the slope between two of
-// them that are 10 ms apart: over less than that the derivative would be of the jitter.
+// Half-widths of the central differences. True poses jitter, and so does the slope between two of them 10 ms
+// apart: a smaller step would differentiate the jitter.
 constexpr double kRotationStep_rad = 1e-4;
 constexpr double kClockStep_s = 0.005;
-constexpr double kConverged = 1e-6;    // rad and s
-constexpr double kLeastError = 1e-12;  // m and rad: an estimate without any has no unit of its errors
+constexpr double kConverged = 1e-6;  // rad and s
+constexpr double kLeastError =
+    1e-12;  // m and rad: lower limit of the units of the errors, for an estimate without errors
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
-// The errors of an estimate's motions against a truth that is turned and shifted.
+// Errors of an estimate's motions against a rotated and time-shifted truth.
 class SecondErrors {
  public:
   SecondErrors(const Trajectory& ground_truth, const Trajectory& estimate, std::int64_t offset_ns)
       : ground_truth_(ground_truth) {
     std::vector<std::int64_t> stamps;
     for (const StampedPose& pose : estimate.poses) stamps.push_back(pose.stamp_ns + offset_ns);
-    // The same motions whatever the clock: those with truth all around. Gaps that are interpolated over are
-    // longer than the steps taken here, so that none is stepped over.
+    // Use the same motions for every clock offset: those with truth at all offsets. Interpolated gaps are
+    // longer than the steps taken here, so that no step passes over one.
     std::vector<bool> valid(stamps.size(), true);
     for (int k = -2; k <= 2; ++k) {
       std::vector<std::int64_t> shifted = stamps;
@@ -147,8 +148,8 @@ Status fit_truth(const Trajectory& ground_truth, const Trajectory& estimate, std
     next[3] = std::clamp(next[3], -kMostClock_s, kMostClock_s);
     converged = (next - x).cwiseAbs().maxCoeff() < kConverged;
     x = next;
-    // The squares of the motions that overlap count as often as they are there, on both sides of the
-    // quotient.
+    // Overlapping motions contribute repeatedly, both to the cost and to the information matrix; dividing the
+    // cost by the number of independent motions corrects for this.
     const double variance = equations.cost / (6 * static_cast<double>(independent) - 4);
     const Vector4 sigma = (variance * cholesky.inverse().diagonal()).cwiseSqrt();
     fit = {x.head<3>(), sigma.head<3>(), x[3], sigma[3], errors.pairs().size(), independent};

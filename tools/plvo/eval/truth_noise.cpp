@@ -7,7 +7,7 @@
 namespace plvo::eval {
 namespace {
 
-// Where two estimates have a pose at the same stamp.
+// The poses of two estimates at their common stamps.
 struct CommonPoses {
   std::vector<std::int64_t> stamps_ns;
   std::vector<Se3> first, second;
@@ -33,7 +33,8 @@ Vector2 products(const Vector6& a, const Vector6& b) {
 
 double rms(double sum_of_squares, double count) { return std::sqrt(sum_of_squares / count); }
 
-// Of a pose in each axis, when `product` sums e_aᵀ e_b over motions, which have two poses and three axes.
+// Returns the standard deviation of a pose in each axis, from the sum of e_aᵀ e_b over motions; a motion has
+// two poses and three axes.
 double sigma_of(double product, double motions) {
   return std::sqrt(std::max(0.0, product / motions) / (2 * 3));
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the ground truth itself is off. Two estimates that err independently of each other, say of points
-// alone and of lines alone, have in their errors against the truth only the truth's own in common: the mean
-// of the product of the two errors is its variance. What the estimates do have in common (the calibration)
-// counts as the truth's.
+// Estimates the noise of the ground truth. If two estimates have independent errors, for example one from
+// points and one from lines, their errors against the truth have only the truth's error in common: the mean
+// of the product of the two errors is its variance. A common error of the estimates (the calibration) counts
+// as the truth's.
 #pragma once
 
 #include "plvo/eval/consistency.hpp"
@@ -15,11 +15,11 @@ struct TruthNoise {
   // RMS errors of these motions against the truth (m, rad).
   double first_m = 0, first_rad = 0;
   double second_m = 0, second_rad = 0;
-  // Of a single true pose, in each axis; 0 where the errors have nothing in common.
+  // Noise of a single true pose, in each axis; 0 if the errors are not positively correlated.
   TruthSigma sigma;
 };
 
-// Sums up the errors of two estimates of the same motions against the truth.
+// Accumulates the errors of two estimates of the same motions against the truth.
 class CommonErrors {
  public:
   void add(const Vector6& first, const Vector6& second);
@@ -27,11 +27,11 @@ class CommonErrors {
 
  private:
   std::size_t motions_ = 0;
-  // Of translation and of rotation.
+  // Components: translation, rotation.
   Vector2 first_squares_ = Vector2::Zero(), second_squares_ = Vector2::Zero(), products_ = Vector2::Zero();
 };
 
-// Of the motions from one stamp that both estimates have, and the truth, to the next.
+// Uses the motions between consecutive stamps that both estimates and the truth have.
 TruthNoise truth_noise(const Trajectory& ground_truth, const Trajectory& first, const Trajectory& second,
                        const TruthSampling& sampling);
 

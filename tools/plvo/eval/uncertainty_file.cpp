@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kFull = 36;
 constexpr std::size_t kUpper = 21;
-constexpr std::size_t kMostMatrices = kMostRows / 4;  // up to four times as large as a pose
+constexpr std::size_t kMostMatrices = kMostRows / 4;  // a matrix is up to four times as large as a pose
 
-// The covariance in the columns from `first` to the end of the row.
+// Parses the covariance in the columns from `first` to the end of the row.
 Status parse_covariance(const std::filesystem::path& path, const TableRow& row, std::size_t first,
                         Matrix6& covariance) {
   const std::size_t columns = row.words.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads back what `plvo run --covariance` and `--motions` wrote (docs/formats.md), or the same from another
-// system: a covariance is 36 numbers, row-major, or the 21 of its upper triangle.
+// Reads the files of `plvo run --covariance` and `--motions` (docs/formats.md), or those of another system: a
+// covariance is 36 numbers, row-major, or the 21 of its upper triangle.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct UncertainMotion {
   Matrix6 covariance;
 };
 
-// Sorted by stamp. As read_text_file; kDamaged with file and line.
+// Sorted by stamp. Returns the errors of read_text_file, and kDamaged with file and line.
 Status read_covariances(const std::filesystem::path& path, std::vector<StampedCovariance>& covariances);
 Status read_motions(const std::filesystem::path& path, std::vector<UncertainMotion>& motions);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RFC 4648: bytes as text, so that a picture can live inside a page.
+// Base64 (RFC 4648), to embed images in a page.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of depth, wherever it is shown: red is near, over yellow, green and cyan to blue, which is far.
+// Colour map of depth: red is near; yellow, green and cyan lead to blue, which is far.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace plvo::report {
 constexpr double kDepthNear_m = 0.4;
 constexpr double kDepthFar_m = 5.0;
 
-// Red, green, blue.
+// Returns red, green, blue.
 constexpr std::array<std::uint8_t, 3> depth_colour(double depth_m) {
   const double h = 4 * std::clamp((depth_m - kDepthNear_m) / (kDepthFar_m - kDepthNear_m), 0.0, 1.0);
   const auto level = [](double v) { return static_cast<std::uint8_t>(255 * std::clamp(v, 0.0, 1.0)); };

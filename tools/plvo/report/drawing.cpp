@@ -13,13 +13,13 @@ struct Colour {
   std::uint8_t r, g, b;
 };
 
-// The page (page/frames.js) draws with the same colours, widths and dimming.
+// Keep the colours, widths and dimming equal to those of the page (page/frames.js).
 constexpr Colour kGrey = {154, 163, 173};
 constexpr Colour kGreen = {61, 220, 109};
 constexpr Colour kOrange = {255, 166, 38};
 constexpr Colour kBlue = {92, 164, 240};
 constexpr Colour kRed = {255, 77, 60};
-constexpr double kDimming = 0.7;  // of the image, so that what is drawn stands out
+constexpr double kDimming = 0.7;  // factor for the image; the drawing stands out
 
 struct Pen {
   Colour colour;
@@ -53,13 +53,13 @@ void blend(Picture& picture, int x, int y, Colour colour, double share) {
   p[2] = mix(p[2], colour.b);
 }
 
-// A stroke with round ends; a pixel is covered by what its distance from the axis leaves of half the width.
-// Walks along the longer direction, and across it as far as the stroke reaches.
+// Draws a stroke with round ends. The coverage of a pixel is half the width minus its distance from the axis.
+// The loop runs along the longer direction and, across it, as far as the stroke reaches.
 void draw_stroke(Picture& picture, double x0, double y0, double x1, double y1, Pen pen) {
   const double dx = x1 - x0;
   const double dy = y1 - y0;
   const double squared = dx * dx + dy * dy;
-  // A feature may lie a little outside the image, never far: longer strokes are not worth drawing.
+  // A feature lies at most slightly outside the image; do not draw longer strokes.
   if (!(squared < 4096.0 * 4096.0)) return;
   const bool steep = std::abs(dy) > std::abs(dx);
   const double reach = 0.5 * pen.width_px + 1;
@@ -99,7 +99,7 @@ Picture draw_overlay(const FeatureView& f) {
       picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(kDimming * f.image.at(x, y) + 0.5));
   for (const Keypoint& k : f.keypoints) draw_stroke(picture, k.u, k.v, k.u, k.v, {kGrey, 2.5});
   const std::vector<SegmentFate> lines = segment_fates(f);
-  for (const bool matched : {false, true}) {  // what matters most lies on top
+  for (const bool matched : {false, true}) {  // matched segments lie on top
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const SegmentView& s = f.segments[i];
       if ((lines[i].reference >= 0) == matched)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of what the odometry saw: keypoints, segments and matches over the undistorted image, and
-// depth in colours.
+// Draws the features of the odometry: keypoints, segments and matches over the undistorted image; and depth
+// in colours.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace plvo::report {
 
-// What became of a segment; the report and the overlays use one set of colours.
+// Kind of a segment; the report and the overlays use the same colours.
 enum class FeatureKind : std::uint8_t {
   kPlain,    // as detected, without 3D
   kWith3d,   // lifted to 3D, unmatched
-  kOutlier,  // matched, but against the motion
+  kOutlier,  // matched, but inconsistent with the motion
   kInlier,
 };
 
@@ -36,12 +36,12 @@ struct SegmentFate {
 };
 std::vector<SegmentFate> segment_fates(const FeatureView& features);
 
-// The undistorted image, dimmed. Points: grey dots as detected; green where followed, with a stroke to where
-// they were in the reference; red where rejected. Segments: grey; blue with 3D; orange where matched; red
-// where the match was rejected.
+// Draws over the dimmed undistorted image. Points: grey as detected; green if matched, with a stroke to the
+// position in the reference; red if rejected. Segments: grey as detected; blue with 3D; orange if matched;
+// red if the match was rejected.
 Picture draw_overlay(const FeatureView& features);
 
-// In the colours of depth_palette.hpp, black where there is none; at half the size in each direction.
+// Uses the colours of depth_palette.hpp, black without depth; half the size in each direction.
 Picture draw_depth(const DepthView& depth);
 
 }  // namespace plvo::report

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a bounded number of frames for the report, evenly spread over a run whose length nobody knows
-// beforehand: every n-th frame is kept, and whenever twice the wanted number has gathered, every second one
-// is dropped and n doubles.
+// Keeps a bounded number of frames for the report, evenly spaced over a run of unknown length: it keeps every
+// n-th frame. When it holds twice the desired number, it drops every second one and doubles n.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +29,7 @@ class FrameRecorder {
  public:
   explicit FrameRecorder(std::size_t wanted) : wanted_(wanted) {}
 
-  // Call for each frame right after track(); takes a copy of what it keeps.
+  // Call for each frame directly after track(); copies what it keeps.
   void offer(std::size_t number, const RgbdFrame& frame, const TrackResult& result, const Odometry& odometry);
   const std::vector<RecordedFrame>& frames() const { return frames_; }
 
@@ -40,7 +39,7 @@ class FrameRecorder {
   std::vector<RecordedFrame> frames_;
 };
 
-// The picture and features of one frame.
+// Returns the image and features of one frame.
 RecordedFrame record_frame(std::size_t number, const RgbdFrame& frame, const TrackResult& result,
                            const FeatureView& features);
 

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Five significant digits are more than a chart shows, and a third of the bytes.
+// Five significant digits exceed the resolution of a chart and take a third of the bytes.
 double brief(double value) {
   if (!std::isfinite(value) || value == 0) return 0;
   const double scale = std::pow(10.0, 4 - std::floor(std::log10(std::abs(value))));
@@ -154,9 +154,9 @@ void fill(std::string& page, const std::string& mark, const std::string& text) {
   page.replace(at, mark.size(), text);
 }
 
-// JSON that may stand in an HTML script element. Its text cannot end the element (`</script`), begin a
-// comment in it (`<!--`) or stand for another character (`&`): these are escaped, and with them all that is
-// not ASCII, U+2028 and U+2029 included, which end a line of JavaScript.
+// Returns JSON for an HTML script element. Its text must not end the element (`</script`), begin a comment
+// (`<!--`) or contain a character reference (`&`): these characters are escaped, and so is every character
+// that is not ASCII, including U+2028 and U+2029, which end a line of JavaScript.
 std::string script_json(const Json& data) {
   std::string safe;
   for (const char c : data.dump(-1, ' ', true, Json::error_handler_t::replace)) {

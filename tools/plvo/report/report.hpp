@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One HTML file that shows a run or an evaluation: it holds its data, its pictures and its program, and loads
-// nothing from anywhere.
+// One HTML file that shows a run or an evaluation. It contains its data, images and scripts, and loads
+// nothing.
 #pragma once
 
 #include <filesystem>
@@ -19,16 +19,16 @@ namespace plvo::report {
 struct ReportInput {
   std::string title, subtitle;
   eval::Trajectory trajectory;                               // the estimate
-  std::optional<eval::Evaluation> evaluation;                // when there is ground truth
+  std::optional<eval::Evaluation> evaluation;                // if there is ground truth
   std::vector<RunSample> series;                             // of a run
   std::vector<RecordedFrame> frames;                         // of a run
   std::vector<std::pair<std::string, std::string>> summary;  // rows of two columns
 };
 
-// kIo with the operating system's reason.
+// Returns kIo with the operating system's reason.
 Status write_report(const std::filesystem::path& path, const ReportInput& input);
 
-// The page itself.
+// Returns the text of the page.
 std::string make_report(const ReportInput& input);
 
 }  // namespace plvo::report

@@ -13,7 +13,7 @@ void ConnectionTable::opened(int descriptor, const std::string& address, std::in
   entries_[descriptor] = {address, Step::kNew, now_ns, false};
 }
 
-// The rule at the top of the header; under mutex_.
+// Applies the rule at the top of the header. The caller holds mutex_.
 void ConnectionTable::make_room(const std::string& address) {
   std::map<std::string, std::size_t> held;
   std::size_t all = 0;

@@ -23,7 +23,7 @@ std::string lowered(std::string_view text) {
   return result;
 }
 
-// Where the port begins, with its colon; the end when there is none.
+// Returns the position of the port with its colon, or the end if there is none.
 std::size_t port_at(std::string_view name) {
   const std::size_t bracket = name.rfind(']');
   const std::size_t colon = name.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -88,7 +88,7 @@ HostNames::HostNames(const std::string& asked, const std::string& bound, int por
   for (const std::string& name : extra) add(name);
 }
 
-// A browser leaves a port out of the header that it would take by itself: 80, or 443 where a proxy adds TLS.
+// A browser omits a default port from the header: 80, or 443 if a proxy adds TLS.
 void HostNames::add(std::string name) {
   name = lowered(name);
   const std::size_t colon = port_at(name);
@@ -102,7 +102,7 @@ bool HostNames::allows(std::string_view header) const {
   const std::string name = lowered(header);
   if (names_.count(name) != 0) return true;
   if (!every_address_) return false;
-  // Networks come and go while the program runs, so that the machine is asked each time.
+  // The addresses of the machine may change while the program runs, so ask for them each time.
   const std::vector<std::string> addresses = addresses_of_this_machine();
   return std::any_of(addresses.begin(), addresses.end(), [&](const std::string& address) {
     return name == address + ':' + std::to_string(port_) || (port_ == 80 && name == address);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Under which names the live view answers. A page from anywhere may send the user's browser here under a name
-// of its own that resolves to this machine (DNS rebinding), and would see the camera as if it were its own:
-// the Host header gives it away, so that only names which this machine really has are answered, compared to
-// the last character, port included.
+// The names under which the live view answers. A foreign page may direct the user's browser to this machine
+// under a name of its own that resolves to it (DNS rebinding), and could then read the camera images. The
+// Host header shows that name. Therefore the server answers only names that this machine has, compared
+// exactly, port included.
 #pragma once
 
 #include <set>
@@ -14,20 +14,21 @@ namespace plvo {
 
 class HostNames {
  public:
-  // "NAME" or "NAME:PORT" as it may stand in a Host header: letters, digits, dots, hyphens and underscores,
-  // or an IPv6 address in brackets.
+  // "NAME" or "NAME:PORT" as in a Host header: letters, digits, dots, hyphens and underscores, or an IPv6
+  // address in brackets.
   static bool is_valid(std::string_view name);
 
-  // asked: the address as the user gave it; bound: what the system made of it, as numbers; extra: names that
-  // lead here by way of others (a proxy, a tunnel, the mDNS name), each for `port` unless it brings one.
+  // asked: the address as the user gave it; bound: the numeric address that the system resolved it to; extra:
+  // names that lead here indirectly (a proxy, a tunnel, the mDNS name), each for `port` unless it has its
+  // own.
   //
-  // Bound to the loopback these are localhost, 127.0.0.1, [::1] and the bound address; to another address it
-  // and the machine's host name; to all addresses all of those and whatever address the machine has at the
-  // moment.
+  // Bound to the loopback interface, the names are localhost, 127.0.0.1, [::1] and the bound address. Bound
+  // to another address, they are that address and the machine's host name. Bound to all addresses, they are
+  // all of these and every current address of the machine.
   HostNames(const std::string& asked, const std::string& bound, int port,
             const std::vector<std::string>& extra);
 
-  // header: the value of the Host header; upper and lower case are the same.
+  // header: the value of the Host header; case is ignored.
   bool allows(std::string_view header) const;
 
  private:

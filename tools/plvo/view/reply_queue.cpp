@@ -45,14 +45,14 @@ bool ReplyQueue::add(Request request) {
   return true;
 }
 
-// Without the mutex, for which the odometry might have to wait: if the queue's thread has just looked at
-// woken_ and is about to sleep, it misses this call, and the next frame or tick wakes it.
+// Does not lock the mutex: the odometry might have to wait for it. If the queue's thread has just read woken_
+// and is about to sleep, it misses this call, and the next frame or tick wakes it.
 void ReplyQueue::wake() {
   woken_ = true;
   work_.notify_one();
 }
 
-// For news, or for the next tick; false once the queue is stopped.
+// Waits for news or the next tick; returns false once the queue is stopped.
 bool ReplyQueue::wait() {
   std::unique_lock lock(mutex_);
   work_.wait_for(lock, std::chrono::milliseconds(kTick_ms), [this] { return woken_ || stopped_; });
@@ -60,7 +60,7 @@ bool ReplyQueue::wait() {
   return !stopped_;
 }
 
-// The first of those whose reply is due and allowed, or for whom nobody is left.
+// Returns the first request whose reply is due and allowed, or whose connection is over.
 std::optional<ReplyQueue::Request> ReplyQueue::take_ready() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now = posix_monotonic_ns();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that says when waiting requests are answered, and composes the updates among the replies: images
-// are encoded and numbers put into words here, so that neither the odometry nor the thread that moves the
-// bytes ever waits for it. Who has had more bytes than the limit allows waits longer, in the order of asking,
-// and gets what is the newest then.
+// The thread that decides when waiting requests are answered. It also composes the updates, that is, it
+// encodes the images and formats the numbers, so that neither the odometry nor the thread that transfers the
+// bytes waits for this. A viewer that exceeds its byte limit waits longer, in the order of the requests, and
+// then gets the newest update.
 #pragma once
 
 #include <atomic>
@@ -22,16 +22,16 @@ namespace plvo {
 
 class ReplyQueue {
  public:
-  static constexpr int kPatience_ms = 1000;  // without news for so long, a viewer gets an empty reply
-  // What a reply costs of the limit beside the bytes in it.
+  static constexpr int kPatience_ms = 1000;  // after this time without news a viewer gets an empty reply
+  // Cost of a reply in addition to its bytes.
   static constexpr std::int64_t kReplyBytes = 16 * 1024;
 
   struct Request {
     std::string address;
-    std::optional<ViewHub::Ask> ask;  // of a request for an update
-    std::int64_t bytes = 0;           // of the reply to any other
-    std::function<bool()> is_over;    // nobody is there any more to get the reply
-    // Gets the update, or an empty text, on this queue's thread; see ViewHub::reply.
+    std::optional<ViewHub::Ask> ask;  // for a request for an update
+    std::int64_t bytes = 0;           // of the reply to any other request
+    std::function<bool()> is_over;    // true if the connection is gone
+    // Receives the update, or an empty text, on this queue's thread; see ViewHub::reply.
     std::function<void(std::string)> done;
   };
 
@@ -42,11 +42,11 @@ class ReplyQueue {
   ReplyQueue& operator=(const ReplyQueue&) = delete;
 
   void start();
-  // Answers whoever still waits with nothing, and ends the thread.
+  // Sends an empty reply to every waiting request and ends the thread.
   void stop();
-  // False, and done is not called, once the queue is stopped.
+  // Returns false, without calling done, once the queue is stopped.
   bool add(Request request);
-  // There is news. From any thread; never waits.
+  // Signals news. Callable from any thread; never waits.
   void wake();
 
  private:
@@ -64,9 +64,9 @@ class ReplyQueue {
   const std::function<void()> tick_;
   std::thread thread_;
   std::atomic<bool> woken_{false};
-  std::mutex mutex_;  // the following; never held while composing
+  std::mutex mutex_;  // guards the following members; never held while composing
   std::condition_variable work_;
-  std::vector<Waiting> waiting_;  // who has waited for longest first
+  std::vector<Waiting> waiting_;  // the longest wait first
   bool stopped_ = true;
 };
 

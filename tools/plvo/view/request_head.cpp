@@ -46,7 +46,7 @@ bool is_well_formed(MHD_Connection* connection, std::string_view method, std::st
   std::size_t bytes = method.size() + kSpace + target.size() + kSpace + version.size() + kLineEnd + kLineEnd;
   bool clean = true;
   for_each_header(connection, [&](std::string_view name, std::string_view value) {
-    // Both lie where they were received: what is between them is the colon and the spaces behind it.
+    // Both point into the receive buffer: between them are the colon and the spaces after it.
     const auto begin = reinterpret_cast<std::uintptr_t>(name.data());
     const auto end = reinterpret_cast<std::uintptr_t>(value.data()) + value.size();
     bytes += end - begin + kLineEnd;

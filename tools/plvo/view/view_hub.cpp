@@ -16,7 +16,7 @@ namespace plvo {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kIdle_ns = 3 * kSecond;  // nobody asked for so long: nobody looks
+constexpr std::int64_t kIdle_ns = 3 * kSecond;  // after this time without a request there are no viewers
 constexpr std::size_t kMaxKnownViewers = 64;
 constexpr int kJpegQuality = 75;
 
@@ -73,14 +73,14 @@ void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const
   const bool watched = now - last_ask_ns_ < kIdle_ns;
   const bool with_image = watched && now - last_image_ns_ >= kSecond / ViewServer::kMaxRate;
   if (with_image) {
-    // back_ belongs to this thread; only the swap below gives it away.
+    // Only this thread uses back_ until the swap below.
     ViewSnapshot& snapshot = snapshots_[static_cast<std::size_t>(back_)];
     snapshot.copy_images(frame, features, lens_is_straight);
     snapshot.copy_features(features);
   }
   {
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) return;  // a viewer's thread has it, and may be kept from going on: the next frame is shown
+    if (!lock) return;  // never wait for a viewer's thread, which may be preempted: the next frame is shown
     result_ = result;
     status_ = status;
     if (result.state != TrackState::kLost) path_.add(result.T_world_camera.t);
@@ -126,7 +126,7 @@ void ViewHub::count_viewer(const Ask& ask) {
   if (seen_.size() < kMaxKnownViewers || seen_.count(viewer) != 0) seen_[viewer] = now;
 }
 
-// A number that is greater than ours is of a program that ran here before: whatever we have is news.
+// A sequence number above the current one comes from an earlier run of the program: everything is news.
 bool ViewHub::has_news(const Ask& ask) const {
   const std::lock_guard lock(mutex_);
   return sequence_ != ask.after;
@@ -163,7 +163,7 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
   ViewStatus status;
   std::uint64_t path_epoch = 0;
   std::size_t from = 0;
-  std::vector<Vector3> path;  // from `from` on
+  std::vector<Vector3> path;  // points from index `from` on
   {
     const std::lock_guard lock(mutex_);
     r = result_;
@@ -187,7 +187,7 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
       r.mean_brightness);
   put_array(out, "position", r.T_world_camera.t.data(), 3);
   put_array(out, "orientation", orientation.data(), 4);
-  put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: by rows or by columns alike
+  put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: row-major equals column-major
   put_counts(out, "point_counts", r.points);
   put_counts(out, "line_counts", r.lines);
   fmt::format_to(std::back_inserter(out), ",\"path_epoch\":{},\"path_from\":{},\"path\":[", path_epoch, from);
@@ -202,7 +202,7 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
 std::string ViewHub::reply(const Ask& ask) {
   std::uint64_t sequence = 0;
   {
-    // Before the image is taken: what comes meanwhile must be news to this viewer, if only once more.
+    // Read the number before the image: an image that arrives in between is then news again.
     const std::lock_guard lock(mutex_);
     sequence = sequence_;
   }

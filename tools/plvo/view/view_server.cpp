@@ -31,29 +31,29 @@ namespace plvo {
 namespace {
 
 constexpr int kBacklog = 128;
-// Of one connection: its request line and headers, and the headers of the reply. Who sends more gets 414 or
-// 431.
+// Memory of one connection: its request line and headers, and the headers of the reply. A longer request gets
+// status 414 or 431.
 constexpr std::size_t kConnectionBytes = 16 * 1024;
 constexpr unsigned kSilence_s = 5;
-// A browser needs a connection or two and keeps them; whoever makes more is refused before anything is read.
-// Of one address 10 a second, 32 at once; of all 40 a second, 64 at once.
+// A browser needs one or two connections and keeps them. More are refused before anything is read: for one
+// address above 10 a second or 32 at once, for all above 40 a second or 64 at once.
 constexpr RateLimit::Bucket kConnections{100'000'000, 3'200'000'000};
 constexpr RateLimit::Bucket kAllConnections{25'000'000, 1'600'000'000};
-// Bytes of replies, each with ReplyQueue::kReplyBytes more: of one address 8 MB/s, of all 16 MB/s; a second's
-// worth at once.
+// Bytes of replies, plus ReplyQueue::kReplyBytes for each: 8 MB/s for one address, 16 MB/s for all; bursts of
+// one second's amount.
 constexpr RateLimit::Bucket kBytes{125, 1'000'000'000};
 constexpr RateLimit::Bucket kAllBytes{62, 1'000'000'000};
-// The table hangs up before these are reached; the library's own limits stand behind it, with room for those
-// that were hung up on and are not closed yet.
+// The table hangs up before these limits are reached. They are a second safeguard, with capacity for
+// connections that were hung up but are not closed yet.
 constexpr unsigned kLibraryConnections = 2 * ConnectionTable::kMaxConnections;
 constexpr unsigned kLibraryPerAddress = 2 * ConnectionTable::kMaxPerAddress;
 
-// What is known of one request until its reply has gone.
+// State of one request until its reply is sent.
 struct Request {
   MHD_Connection* connection = nullptr;
-  std::string target;  // as it came, with the query
+  std::string target;  // as received, with the query
   bool judged = false;
-  std::optional<std::string> reply;  // once it may be answered: to /update the text
+  std::optional<std::string> reply;  // set when it may be answered; for /update the text
 };
 
 std::string machine_at(MHD_Connection* connection) {
@@ -89,7 +89,7 @@ MHD_Result send(MHD_Connection* connection, unsigned code, const char* type, MHD
   return result;
 }
 
-// text: must last for ever.
+// text must outlive the program's last reply.
 MHD_Result send_constant(MHD_Connection* connection, unsigned code, const char* type, const char* text) {
   return send(
       connection, code, type,
@@ -97,7 +97,7 @@ MHD_Result send_constant(MHD_Connection* connection, unsigned code, const char* 
 }
 
 MHD_Result send_update(MHD_Connection* connection, std::string text) {
-  auto* kept = new std::string(std::move(text));  // until the last byte has gone
+  auto* kept = new std::string(std::move(text));  // freed after the last byte is sent
   return send(
       connection, MHD_HTTP_OK, "application/octet-stream",
       MHD_create_response_from_buffer_with_free_callback_cls(
@@ -132,7 +132,7 @@ bool ViewServer::Impl::lets_in(const sockaddr& peer) {
   return true;
 }
 
-// Whoever has had all that it may have is hung up on without a word.
+// Closes the connection without a reply if its address has used up its limit.
 MHD_Result ViewServer::Impl::refuse(MHD_Connection* connection, unsigned code, const char* text) {
   const std::string machine = machine_at(connection);
   const std::int64_t now_ns = posix_monotonic_ns();
@@ -141,7 +141,7 @@ MHD_Result ViewServer::Impl::refuse(MHD_Connection* connection, unsigned code, c
   return send_constant(connection, code, "text/plain", text);
 }
 
-// What can be said once the headers are here: no names but ours, nothing but questions, and no luggage.
+// Checks made when the headers are complete: well-formed, a known host name, GET or HEAD, no body.
 MHD_Result ViewServer::Impl::refuse_or_go_on(Request& request, const char* method, const char* version) {
   MHD_Connection* connection = request.connection;
   if (!is_well_formed(connection, method, request.target, version)) {
@@ -163,7 +163,7 @@ MHD_Result ViewServer::Impl::refuse_or_go_on(Request& request, const char* metho
   return MHD_YES;
 }
 
-// The connection sleeps in the library until it may be answered; it cannot go away meanwhile.
+// Suspends the connection in the library until it may be answered; it cannot be closed meanwhile.
 void ViewServer::Impl::wait(Request& request, std::string_view path) {
   MHD_Connection* connection = request.connection;
   ReplyQueue::Request waiting;
@@ -205,11 +205,11 @@ bool ViewServer::Impl::start_daemon(int listener) {
   const MHD_AcceptPolicyCallback on_newcomer = [](void* self, const sockaddr* peer, socklen_t) {
     return static_cast<Impl*>(self)->lets_in(*peer) ? MHD_YES : MHD_NO;
   };
-  using OnTarget = void* (*)(void*, const char*, MHD_Connection*);  // what it returns becomes `known` below
+  using OnTarget = void* (*)(void*, const char*, MHD_Connection*);  // the return value becomes `known` below
   const OnTarget on_target = [](void*, const char* target, MHD_Connection* connection) -> void* {
     return new Request{connection, target, false, {}};
   };
-  // Nothing that is asked for has an escape in its name.
+  // Valid paths contain no escapes, so leave them.
   using Unescape = std::size_t (*)(void*, MHD_Connection*, char*);
   const Unescape leave_as_it_is = [](void*, MHD_Connection*, char* text) { return std::strlen(text); };
   const MHD_AccessHandlerCallback on_request = [](void* self, MHD_Connection* connection, const char* path,
@@ -217,7 +217,7 @@ bool ViewServer::Impl::start_daemon(int listener) {
                                                   std::size_t* body_bytes, void** known) {
     auto& impl = *static_cast<Impl*>(self);
     auto& request = *static_cast<Request*>(*known);
-    if (!request.judged) {  // the headers are here
+    if (!request.judged) {  // the headers are complete
       request.judged = true;
       impl.table.asked(socket_of(connection), posix_monotonic_ns());
       return impl.refuse_or_go_on(request, method, version);
@@ -236,7 +236,7 @@ bool ViewServer::Impl::start_daemon(int listener) {
     if (what == MHD_CONNECTION_NOTIFY_CLOSED) return impl.table.closed(socket_of(connection));
     impl.table.opened(socket_of(connection), machine_at(connection), posix_monotonic_ns());
   };
-  // The library's thread inherits the priority of the one that starts it.
+  // The library's thread inherits the priority of the thread that starts it.
   std::thread([&] {
     run_in_background();
     daemon = MHD_start_daemon(
@@ -264,14 +264,14 @@ Status ViewServer::start(const std::string& host, int port, const std::vector<st
   impl_->names.emplace(host, listener.address, listener.port, names);
   impl_->port = listener.port;
   impl_->queue.start();
-  if (!impl_->start_daemon(listener.descriptor)) {  // which owns the socket from here on, whatever happens
+  if (!impl_->start_daemon(listener.descriptor)) {  // takes ownership of the socket in any case
     impl_->queue.stop();
     return {StatusCode::kIo, "the live view cannot start its server; is there memory for another thread?"};
   }
   return {};
 }
 
-// The queue first: it lets go whoever waits, which the library wants before it stops.
+// Stop the queue first: it resumes the suspended connections, as the library requires before it stops.
 void ViewServer::stop() {
   impl_->queue.stop();
   if (impl_->daemon != nullptr) MHD_stop_daemon(std::exchange(impl_->daemon, nullptr));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live view: one page over HTTP, for several viewers at once. A viewer asks for what is newer than what
-// it has (long polling), so a slow one gets fewer updates and a vanished one none; the odometry never notices
-// either. Images are encoded once for all viewers, on the server's threads, and only while somebody looks.
-// The network is not trusted: names, sizes, times and numbers of connections are limited (SECURITY.md).
+// The live view: one page over HTTP, for several viewers at once. A viewer requests what is newer than its
+// own state (long polling): a slow viewer gets fewer updates, and a vanished one gets none. The odometry is
+// never affected. Images are encoded once for all viewers, on the server's threads, and only while there is a
+// viewer. The network is untrusted: names, sizes, times and numbers of connections are limited (SECURITY.md).
 #pragma once
 
 #include <cstdint>
@@ -24,29 +24,29 @@ class ViewServer {
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
 
-  // False where plvo was built without the HTTP library; then start() says which package to install.
+  // Returns false if plvo was built without the HTTP library; start() then names the package to install.
   static bool available();
 
-  // Serves on host:port (0: a free one) from threads of its own, under the names of host_names.hpp;
-  // names: more of them, each HostNames::is_valid. kBusy, kPermission or kInvalidArgument for an address that
-  // cannot be had. Once only.
+  // Serves on host:port (0: a free port) from threads of its own, under the names of host_names.hpp; names:
+  // further ones, each HostNames::is_valid. Returns kBusy, kPermission or kInvalidArgument if the address is
+  // not available. Call it only once.
   Status start(const std::string& host, int port, const std::vector<std::string>& names = {});
   void stop();
   int port() const;
 
-  // On the odometry's thread, once a frame. Never waits; copies nothing while nobody looks, and at most
-  // kMaxRate images a second.
+  // Call it on the odometry's thread, once per frame. It never waits, copies nothing without a viewer, and
+  // copies at most kMaxRate images a second.
   static constexpr int kMaxRate = 16;
   void publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
                const ViewStatus& status, bool lens_is_straight);
-  // When there is no frame to show: the status alone.
+  // Publishes only the status when there is no frame.
   void publish_status(const ViewStatus& status);
 
-  int viewers() const;              // that asked within the last seconds
-  int connections() const;          // now, those of strangers too
-  std::uint64_t images() const;     // of those published, taken for the viewers
-  std::uint64_t replies() const;    // with news in them
-  std::uint64_t encodings() const;  // images encoded, however many viewers got them
+  int viewers() const;              // that sent a request within the last seconds
+  int connections() const;          // open now, of viewers and others
+  std::uint64_t images() const;     // published images that were copied for the viewers
+  std::uint64_t replies() const;    // with news
+  std::uint64_t encodings() const;  // encoded images, regardless of the number of viewers
 
  private:
   struct Impl;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the viewers are shown, handed from the odometry's thread to the threads that encode and send. The
+// The data for the viewers, passed from the odometry's thread to the threads that encode and send. The
 // odometry copies into a spare snapshot and swaps it in: it never waits for a viewer, an encoder or a
 // network.
 #pragma once
@@ -14,25 +14,25 @@
 
 namespace plvo {
 
-// How the session goes, beside what the odometry itself says.
+// State of the session beyond the result of the odometry.
 struct ViewStatus {
-  std::string camera = "waiting for the first frame";  // the camera's state, in words
-  bool silent = false;  // no frames come: what else is shown is of the last one that did
+  std::string camera = "waiting for the first frame";  // state of the camera in words
+  bool silent = false;  // no frames arrive: all other values are those of the last frame
   double camera_hz = 0;
   double odometry_hz = 0;
-  double latency_ms = 0;  // from a frame's arrival to its pose
+  double latency_ms = 0;  // from the arrival of a frame to its pose
   std::uint64_t frames = 0;
   std::uint64_t lost = 0;
   std::uint64_t dropped = 0;
 };
 
-// What a feature has come to: the page colours it so.
+// Processing state of a feature; the page chooses its colour by it.
 enum class FeatureFate : std::uint8_t { kSeen, kWithDepth, kMatched, kInlier };
 
 struct ViewSnapshot {
   struct Point {
     float u = 0, v = 0;                      // px
-    float u_reference = 0, v_reference = 0;  // where it was, if it was matched
+    float u_reference = 0, v_reference = 0;  // position in the reference, if matched
     FeatureFate fate = FeatureFate::kSeen;
   };
   struct Segment {
@@ -42,20 +42,20 @@ struct ViewSnapshot {
   std::uint64_t image_sequence = 0;  // 0: no image yet
   int width = 0, height = 0;
   PixelFormat format = PixelFormat::kGray8;
-  std::vector<std::uint8_t> pixels;  // without gaps
+  std::vector<std::uint8_t> pixels;  // without padding
   int depth_width = 0, depth_height = 0;
   double metres_per_unit = 0.001;
   std::vector<std::uint16_t> depth;
   std::vector<Point> points;
   std::vector<Segment> segments;
 
-  // image: the camera's colours where the lens is straight, else what the features were found in.
+  // image: the camera's colours if the lens has no distortion, else the image in which features are detected.
   void copy_images(const RgbdFrame& frame, const FeatureView& features, bool lens_is_straight);
   void copy_features(const FeatureView& features);
 };
 
-// The way so far, thinned so that it never outgrows its capacity: when full, every second point goes, and the
-// spacing doubles. epoch() changes with that, to tell a viewer that what it has is stale.
+// The path so far, thinned to keep within its capacity: when it is full, every second point is removed and
+// the spacing doubles. epoch() then changes to tell a viewer that its copy is outdated.
 class ViewPath {
  public:
   static constexpr std::size_t kCapacity = 8192;
@@ -72,7 +72,8 @@ class ViewPath {
   std::uint64_t epoch_ = 0;
 };
 
-// Depth in the colours of report/depth_palette.hpp, every second pixel of every second row; black: none.
+// Paints depth in the colours of report/depth_palette.hpp, every second pixel of every second row; black: no
+// depth.
 void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, int& width, int& height);
 
 }  // namespace plvo

@@ -14,7 +14,7 @@
 namespace plvo::bench {
 namespace {
 
-// "model name : …" on x86; boards name themselves in the device tree.
+// Reads "model name : …" on x86; boards state their name in the device tree.
 std::string cpu_name() {
   std::ifstream stream("/proc/cpuinfo");
   for (std::string line; std::getline(stream, line);) {

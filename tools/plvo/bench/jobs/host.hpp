@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// On what, and with what, a measurement was made.
+// The machine and the software of a measurement.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@ namespace plvo::bench {
 struct Host {
   std::string cpu, kernel, compiler, plvo, opencv, open3d;
   int cores = 0;
-  double load = 0;  // average of the last minute: who else was at work
+  double load = 0;  // average over the last minute, including other programs
 
   nlohmann::ordered_json to_json() const;
   std::string to_line() const;

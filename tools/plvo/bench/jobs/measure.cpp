@@ -32,7 +32,7 @@ Status track_all(RecordedCamera& camera, System& system, Tracks& tracks) {
   for (RgbdFrame frame;;) {
     const Status status = camera.next(frame);
     if (status.code() == StatusCode::kEndOfStream) return {};
-    if (status.code() == StatusCode::kDamaged) continue;  // for every system alike
+    if (status.code() == StatusCode::kDamaged) continue;  // the same for every system
     if (!status.ok()) return status;
     system.prepare(frame);
     const std::int64_t start = posix_process_cpu_ns();
@@ -60,7 +60,7 @@ Status evaluate_tracks(const Job& job, const Tracks& tracks, Result& result) {
 
 Status measure(const Job& job, const fs::path& out) {
   Calibration calibration;
-  std::string guess;  // the table names the sequence: nobody needs to be told
+  std::string guess;  // unused: the table names the sequence
   Status found = job.options.camera_model.empty()
                      ? sequence_calibration(job.folder, calibration, guess)
                      : builtin_calibration(job.options.camera_model, calibration);
@@ -70,7 +70,7 @@ Status measure(const Job& job, const fs::path& out) {
   RecordedCamera camera;
   if (Status status = camera.open(job.folder, calibration, range); !status.ok()) return status;
 
-  // The peak is counted anew from here, so that what the loading of the program took does not hide it.
+  // Reset the peak here, so that the memory for loading the program does not hide it.
   forget_peak_resident();
   const std::int64_t before = resident_memory().total;
   std::unique_ptr<System> system;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs one job in this process: one thread, decoding and every conversion outside of the timed part, CPU time
-// (of all threads, so that a hidden one would show).
+// Runs one job in this process, on one thread. Decoding and every conversion are outside of the timed part.
+// The CPU time is that of all threads, so that a hidden thread would show.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace plvo::bench {
 
-// Writes the trajectory (every frame: a lost one stays where the last good one was) and then the result to
-// out/jobs.
+// Writes the trajectory and then the result to out/jobs. The trajectory has every frame; a lost frame gets
+// the last good pose.
 Status measure(const Job& job, const std::filesystem::path& out);
 
 }  // namespace plvo::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs command lines as child processes, a few at a time, in order.
+// Runs command lines as child processes in order, a limited number at a time.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@
 
 namespace plvo::bench {
 
-// Called when command `index` has ended, with how many have by then.
+// Called when command `index` has ended; `ended` counts the finished commands.
 using CommandEnded = std::function<void(std::size_t index, bool success, std::size_t ended)>;
 
-// Standard output of the children goes to standard error. Returns how many failed: a failure stops nobody
-// else. An interrupt (Ctrl-C) reaches the children through the terminal as well.
+// Redirects standard output of the children to standard error. Returns the number of failures; a failure does
+// not stop the other commands. The terminal sends an interrupt (Ctrl-C) to the children as well.
 std::size_t run_commands(const std::vector<std::vector<std::string>>& commands, int at_a_time,
                          const CommandEnded& ended);
 
-// This program, for commands that call it.
+// Returns the path of this program, for commands that call it.
 std::string own_program();
 
 }  // namespace plvo::bench

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// JSON has no NaN: the writer makes it null.
+// The JSON writer stores NaN as null.
 double number(const ordered_json& json, const char* name) {
   const ordered_json& value = json.at(name);
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
@@ -50,7 +50,7 @@ double rmse(const eval::Statistics& statistics, double scale) {
 }  // namespace
 
 void fill_accuracy(const eval::Evaluation& e, Result& result) {
-  const eval::RpeResult& frame = e.rpe.at(0);  // the evaluation's default deltas: one frame, one second
+  const eval::RpeResult& frame = e.rpe.at(0);  // the default deltas of the evaluation: one frame, one second
   const eval::RpeResult& second = e.rpe.at(1);
   const auto fill = [](Accuracy& accuracy, const eval::RpeErrors& per_second,
                        const eval::RpeErrors& per_frame, const eval::Statistics& ate,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one job found out, as it stands in its JSON file.
+// Result of one job, as stored in its JSON file.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace plvo::bench {
 
-// RMSE over all pairs; NaN where the sequence is too short for any.
+// RMSE over all pairs; NaN if the sequence is too short for a pair.
 struct Accuracy {
   double rpe_second_mm = 0, rpe_second_deg = 0;
   double rpe_frame_mm = 0, rpe_frame_deg = 0;
@@ -23,14 +23,14 @@ struct Accuracy {
 struct Result {
   std::string sequence, system;
   int repeat = 0;
-  int frames = 0;     // read
-  int lost = 0;       // of them: no motion was found
-  double path_m = 0;  // of the truth
+  int frames = 0;     // number of frames read
+  int lost = 0;       // of these, frames without a motion estimate
+  double path_m = 0;  // path length of the truth
   Accuracy estimate;
-  Accuracy identity;                         // of a camera that never moves
-  double cpu_median_ms = 0, cpu_p95_ms = 0;  // per frame, the first one left out
+  Accuracy identity;                         // a camera that never moves
+  double cpu_median_ms = 0, cpu_p95_ms = 0;  // per frame, without the first one
   double peak_mb = 0;                        // resident, of the whole process
-  double growth_mb = 0;  // of that, what came after the program was loaded and the sequence opened
+  double growth_mb = 0;  // part of the peak after the program was loaded and the sequence opened
 };
 
 void fill_accuracy(const eval::Evaluation& evaluation, Result& result);
@@ -38,10 +38,10 @@ void fill_accuracy(const eval::Evaluation& evaluation, Result& result);
 nlohmann::ordered_json to_json(const Accuracy& accuracy);
 nlohmann::ordered_json to_json(const Result& result, const nlohmann::ordered_json& job_key);
 
-// kNotFound when there is none; kDamaged when it is not a result, or one of another job (other frames, other
-// sampling of the truth): such a job is to be run again.
+// Returns kNotFound if the file does not exist; kDamaged if it is no result or belongs to another job (other
+// frames, other sampling of the truth). Such a job must run again.
 Status read_result(const std::filesystem::path& file, const Job& job, Result& result);
-// Through a file beside it that is renamed: an interruption leaves either no result or a whole one.
+// Writes a file beside it and renames that: an interruption leaves either no result or a complete one.
 Status write_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace plvo::bench

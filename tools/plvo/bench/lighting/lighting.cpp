@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo_bench lighting: the protocol of Lu & Song's Table 1 on simulated closed walks. Each site is walked
-// twice from every seed, under constant light and under a lamp that swings and dims; a walk ends where it
-// began, so the end-point drift (TED) needs no other ground truth. One walk is one unit of work: render
-// where there are no images yet, measure every system.
+// twice from every seed: under constant light and under a lamp that swings and dims. A walk ends where it
+// began, so that the end-point drift (TED) needs no other ground truth. The unit of work is one walk: render
+// its images if they do not exist yet, then measure every system.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct LightingOptions {
   int seeds = 3;
   int first_seed = 1;
   int frames = 180;
-  fs::path walks;  // of the images; empty: out/walks
+  fs::path walks;  // folder of the images; empty: out/walks
   bool render_only = false;
   bool discard_images = false;
 
@@ -67,7 +67,7 @@ Status render(const Walk& walk, const fs::path& folder) {
   SimulatorOptions options;
   options.seed = static_cast<std::uint64_t>(walk.seed);
   options.frames = walk.frames;
-  options.threads = 1;  // --jobs is for more
+  options.threads = 1;  // --jobs provides the parallelism
   if (Status status = parse_scene(walk.site, options.scene); !status.ok()) return status;
   if (Status status = parse_light(walk.light, options.light); !status.ok()) return status;
   return render_sequence(options, folder);
@@ -79,7 +79,7 @@ std::vector<Job> jobs_of(const Walk& walk, const std::vector<std::string>& syste
                           options.common.measuring);
 }
 
-// The command that does one walk alone.
+// Returns the command line that processes only this walk.
 std::vector<std::string> walk_command(const Walk& walk, const LightingOptions& options) {
   std::vector<std::string> words = {own_program(),  "walk",
                                     "--out",        fs::absolute(options.common.out).string(),

@@ -8,7 +8,7 @@
 namespace plvo::bench {
 namespace {
 
-using Results = std::map<std::pair<std::string, std::string>, Result>;  // sequence, system
+using Results = std::map<std::pair<std::string, std::string>, Result>;  // key: sequence, system
 using Value = double (*)(const Result&);
 
 double drift_mm(const Result& r) { return r.estimate.ted_mm; }
@@ -48,8 +48,8 @@ struct Column {
   Value value = nullptr;
 };
 
-// Rows of site × light, then the means over the sites of each light (NaN where one is missing), then their
-// ratio.
+// Returns a row for each site and light, then for each light the mean over the sites (NaN if a value is
+// missing), then the ratio of these means.
 Table make_table(const std::vector<Walk>& walks, const std::vector<Column>& columns, const Results& results) {
   Table table;
   table.header = {"site", "light"};
@@ -61,7 +61,7 @@ Table make_table(const std::vector<Walk>& walks, const std::vector<Column>& colu
     add_once(places, SiteLight{walk.site, walk.light});
     add_once(lights, walk.light);
   }
-  std::map<std::string, std::vector<std::vector<double>>> values;  // light → column → places
+  std::map<std::string, std::vector<std::vector<double>>> values;  // light → column → sites
   for (const SiteLight& place : places) {
     std::vector<std::string> row = {place.site, place.light};
     values[place.light].resize(columns.size());
@@ -86,7 +86,7 @@ Table make_table(const std::vector<Walk>& walks, const std::vector<Column>& colu
   return table;
 }
 
-// Every walk and system, in full.
+// Returns every result of each walk and system, unrounded.
 Table exact_table(const std::vector<Walk>& walks, const std::vector<std::string>& systems,
                   const Results& results) {
   constexpr int kDecimals = 6;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of the lighting experiment.
+// Tables of the lighting experiment.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ struct Walk {
   std::string site, light;
   int seed = 1;
   int frames = 0;
-  std::string sequence;  // the name that its results bear
+  std::string sequence;  // name of the sequence in its results
 };
 
-// A row for each site and light: the median over the seeds of every system's end-point drift, the mean over
-// the sites for each light, and how much the lamp makes it worse. A second table with the relative error per
-// second, in which standing still is seen for what it is (a closed walk ends where it began: no drift).
+// The first table has a row for each site and light with the median end-point drift of every system over the
+// seeds, the mean over the sites for each light, and the ratio of the two lights. The second table has the
+// relative error per second; it exposes an estimate that never moves, which has no drift on a closed walk.
 Report lighting_report(const std::vector<Walk>& walks, const std::vector<std::string>& systems,
                        const std::vector<Result>& results);
 

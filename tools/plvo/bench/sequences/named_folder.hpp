@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences as the command line names them.
+// Sequences as named on the command line.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace plvo::bench {
 
-// DIR, or DIR=MODEL. The last part of each path, made printable, names the sequence: kInvalidArgument when
-// two are alike or the model is unknown, kNotFound when there is no such folder.
+// Parses DIR or DIR=MODEL. The last part of each path, made printable, names the sequence. Returns
+// kInvalidArgument if two names are equal or the model is unknown, and kNotFound if the folder does not
+// exist.
 Status name_folders(const std::vector<std::string>& folders, std::vector<NamedFolder>& sequences);
 
 }  // namespace plvo::bench

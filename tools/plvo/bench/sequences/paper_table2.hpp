@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Lu & Song's Table 2 (ICCV 2015) reports for the nine fr1 sequences, to stand beside what is measured.
+// Results of Lu & Song's Table 2 (ICCV 2015) for the nine fr1 sequences, for comparison with the
+// measurements.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace plvo::bench {
 
-// The nine, in the paper's order: "360", "desk", …
+// The nine sequences in the paper's order: "360", "desk", …
 const std::vector<std::string>& paper_sequences();
 
 // "rpy" for freiburg1_rpy, rgbd_dataset_freiburg1_rpy, fr1_rpy, and for parts of it such as fr1_rpy_150;
@@ -20,7 +21,8 @@ struct PaperSequence {
 };
 PaperSequence paper_sequence(const std::string& folder);
 
-// One result for each system of the paper, NaN where it has no figure. `name`: one of the nine, or "mean".
+// Returns one result for each system of the paper; NaN if the paper has no value. `name`: one of the nine, or
+// "mean".
 std::vector<Result> paper_results(const std::string& name);
 
 }  // namespace plvo::bench

@@ -9,7 +9,8 @@
 
 namespace plvo::bench {
 
-// Nothing to do where `folder` is there already; else renders beside it and moves it there when it is whole.
+// Does nothing if `folder` exists. Otherwise renders into a folder beside it and renames that when it is
+// complete.
 Status render_sequence(const SimulatorOptions& options, const std::filesystem::path& folder);
 
 }  // namespace plvo::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench run and tum: recorded sequences × systems. They measure alike and differ in their table: run
-// gives all there is, tum the paper's Table 2, with means weighted by the number of frames.
+// plvo_bench run and tum measure several systems on recorded sequences. Only their tables differ: run gives
+// all values, tum the paper's Table 2, with means weighted by the number of frames.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -22,11 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPeer = "opencv-rgbd";  // whose time is the unit of the last column
+constexpr const char* kPeer = "opencv-rgbd";  // its time is the unit of the last column
 constexpr const char* kMean = "mean, weighted by frames";
 constexpr int kExactDecimals = 6;
 
-// A row for a camera that never moves goes before each sequence's systems.
+// Puts a row for a camera that never moves before the systems of each sequence.
 template <typename MakeRow>
 void add_rows(const std::vector<Result>& merged, MakeRow make_row, Table& table) {
   std::string sequence;
@@ -44,7 +44,7 @@ void add_rows(const std::vector<Result>& merged, MakeRow make_row, Table& table)
   }
 }
 
-// decimals: added to those of each column.
+// decimals: added to the number of decimals of each column.
 Table comparison_table(const std::vector<Result>& results, int decimals) {
   Table table;
   table.header = {
@@ -100,10 +100,10 @@ std::vector<Result> with_weighted_means(const std::vector<Result>& merged) {
   return all;
 }
 
-constexpr int kNotSaid = -1;  // lost, in what a paper reports
+constexpr int kNotSaid = -1;  // number of lost frames, which the paper does not report
 
-// Behind each fr1 sequence, or part of one, what the paper reports for the whole; behind the means the
-// paper's, where all nine are there.
+// Inserts the paper's rows: after each fr1 sequence, or part of one, the values for the whole sequence; after
+// the means the paper's means, if all nine sequences are present.
 std::vector<Result> with_paper(const std::vector<Result>& measured) {
   std::vector<Result> all;
   std::set<std::string> whole;

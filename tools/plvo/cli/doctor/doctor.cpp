@@ -62,9 +62,9 @@ int doctor_command(const DoctorOptions& options) {
   report.findings = diagnose(report.system);
   const Status listed = list_live_cameras(report.openni_devices);
   excuse_unknown_sensors(report);
-  // Without any camera the findings above say why; a capture would only fail once more.
-  const bool something = !report.openni_devices.empty() || !options.camera.device.empty();
-  if (!options.no_capture && something && listed.ok()) {
+  // Without a camera the findings above already give the reason; a capture would only fail again.
+  const bool has_camera = !report.openni_devices.empty() || !options.camera.device.empty();
+  if (!options.no_capture && has_camera && listed.ok()) {
     if (!is_standard_output(options.json) && isatty(STDERR_FILENO) == 1)
       StderrLog().write(LogLevel::kInfo, fmt::format("capturing for {:g} s", options.seconds));
     report.capture = capture(options.camera, options.seconds);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo._evaluation: `plvo eval` for Python. plvo/__init__.py makes a dictionary of its JSON.
+// plvo._evaluation: `plvo eval` for Python. plvo/__init__.py converts its JSON to a dictionary.
 #include <pybind11/pybind11.h>
 
 #include <nlohmann/json.hpp>
@@ -71,7 +71,7 @@ EvaluationOptions options_of(const std::string& sampling, double max_difference_
   return options;
 }
 
-// estimated: results, or bytes, which are the path of a file.
+// estimated: results, or bytes with the path of a file.
 std::string evaluate_json(const py::object& truth, const py::object& estimated, const std::string& sampling,
                           double max_difference_s, double offset_s, const py::iterable& deltas,
                           std::pair<double, double> truth_sigma, bool fit_truth) {

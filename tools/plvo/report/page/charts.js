@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines over time. All charts share one cursor; a tap moves it, and the frames below follow.
+// Time series. All charts share one cursor; a tap moves it, and the frames below follow.
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const palette = ["#0b7fd6", "#e07b1a", "#2a9d4a", "#c2378f", "#7a5cd6", "#8a8f98"];
 
@@ -10,7 +10,7 @@ function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-// The canvas's drawing context in CSS pixels, sharp on any screen.
+// Returns the drawing context of the canvas in CSS pixels, sharp at any resolution.
 function prepare(canvas, width, height) {
   const scale = window.devicePixelRatio || 1;
   canvas.width = Math.round(width * scale);
@@ -21,7 +21,7 @@ function prepare(canvas, width, height) {
   return context;
 }
 
-// Draws when the canvas gets its size or another one. The size comes from the style alone: drawing cannot change it.
+// Draws when the size of the canvas is set or changes. Only the style determines the size: drawing cannot change it.
 function keepDrawn(canvas, draw) {
   new ResizeObserver(draw).observe(canvas);
 }
@@ -41,7 +41,7 @@ const cursor = {
 };
 
 // series: [{name, y, colour, band: 3-sigma half-widths or null, stacked: on top of the stacked ones before it}];
-// marks: [[begin, end], …] in x, where tracking was lost.
+// marks: [[begin, end], …] in x, intervals without tracking.
 function chart(title, unit, x, series, marks = [], kind = "") {
   const canvas = element("canvas", { role: "img", "aria-label": title });
   const readout = element("div", { class: "readout" });

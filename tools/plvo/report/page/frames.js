@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scrubber: recorded frames with what was found in them drawn on top, and their depth.
-// Rows, lengths in tenths of a pixel: keypoints u, v, level; tracks u, v, reference u, reference v, inlier; segments
-// au, av, bu, bv, kind and the same four of the reference. Kinds: 0 plain, 1 segment with 3D, 2 outlier, 3 inlier.
+// The recorded frames with their features drawn on top, and their depth, selected by a slider. Rows, lengths in tenths of a
+// pixel: keypoints u, v, level; tracks u, v, reference u, reference v, inlier; segments au, av, bu, bv, kind and the same
+// four of the reference. Kinds: 0 plain, 1 segment with 3D, 2 outlier, 3 inlier.
 const pens = {  // as in drawing.cpp
   plain: ["#9aa3ad", 1.2], with3d: ["#5ca4f0", 1.6], outlier: ["#ff4d3c", 2], inlier: ["#ffa626", 3], followed: ["#3ddc6d", 1.2],
 };
@@ -83,7 +83,7 @@ function framesSection(data) {
     const context = canvas.getContext("2d");
     context.fillStyle = "#000";
     context.fillRect(0, 0, frame.w, frame.h);
-    context.globalAlpha = 0.7;  // so that what is drawn stands out
+    context.globalAlpha = 0.7;  // dims the image below the features
     if (image.complete && image.naturalWidth) context.drawImage(image, 0, 0, frame.w, frame.h);
     context.globalAlpha = 1;
     drawFeatures(context, frame, show);

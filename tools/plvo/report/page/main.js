@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the report together from what the data has.
+// Assembles the report from the data.
 const data = JSON.parse(document.getElementById("data").textContent);
 const main = document.getElementById("main");
 
@@ -13,7 +13,7 @@ function table(id, title, head, rows, note) {
 
 const median = values => { const v = [...values].sort((a, b) => a - b); return v[Math.floor(v.length / 2)]; };
 
-// The figures that one asks for first.
+// The most important numbers.
 function tiles(data) {
   const list = [];
   const s = data.series, m = data.metrics;
@@ -92,6 +92,6 @@ if (data.series) {
     chart("Brightness", "mean grey level, 0 to 255", s.t, [{ name: "brightness", y: s.brightness, colour: palette[1] }], marks));
 }
 if (marks.length) main.append(element("p", { class: "note wide" }, "Vertical stripes in the charts: frames that were lost or damaged."));
-// The first drawing, now that everything has its size. A link may end with #t=2.5, the second to look at.
+// The first drawing, after the layout is complete. A link may end with #t=2.5, the time to show in seconds.
 const moment = location.hash.match(/^#t=([0-9.]+)$/);
 cursor.move(moment ? Number(moment[1]) : null);

@@ -14,7 +14,7 @@ function pathBounds(paths) {
   return { centre, size, radius };
 }
 
-// A picture of the paths through `project`, which maps a point relative to the centre to right and up, in metres.
+// Draws the paths through `project`, which maps a point relative to the centre to right and up, in metres.
 function pathView(name, paths, times, project, turning) {
   const canvas = element("canvas", { role: "img", "aria-label": `Trajectory, ${name}` });
   const colours = { estimate: "--estimate", truth: "--truth" };
@@ -25,7 +25,7 @@ function pathView(name, paths, times, project, turning) {
   };
   const map = turning ? rotated : project;
   if (turning) yaw = widestYaw();
-  // Of a few, the angle from which the paths fill most of the picture.
+  // Returns the angle, of six, at which the paths fill most of the view.
   function widestYaw() {
     const area = angle => {
       yaw = angle;
@@ -110,7 +110,7 @@ function triples(flat) {
   return Array.from({ length: flat.length / 3 }, (_, i) => flat.slice(3 * i, 3 * i + 3));
 }
 
-// How the ground truth is laid onto the estimate. The error charts always start from the first pose.
+// Selects the alignment of ground truth and estimate. The error charts always start from the first pose.
 function truthChoice(data, truth) {
   const ways = { best: "best fit, as for the ATE", first: "onto the first pose" };
   const select = element("select", { "aria-label": "Ground truth laid" },
