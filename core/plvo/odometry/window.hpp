@@ -71,6 +71,8 @@ class Window {
   int keyframe() const { return keyframe_; }
   int recent() const { return recent_; }
   int older() const { return older_; }
+  // The frame that the current pose is chained to: the keyframe or, without one, the last frame.
+  int base() const { return has_keyframe() ? keyframe_ : last_; }
   bool has_last() const { return last_ != kNoFrame; }
   bool has_keyframe() const { return keyframe_ != kNoFrame; }
   bool has_recent() const { return recent_ != keyframe_; }

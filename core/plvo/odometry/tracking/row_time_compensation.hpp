@@ -19,7 +19,6 @@ namespace plvo {
 
 // What is known of a pair before its features are matched.
 struct PairPrior {
-  Se3 T_current_reference;                       // the predicted motion
   Se3 T_reference_last;                          // of the last good frame, which may be the reference itself
   double seconds_since_last = 0;                 // from the last good frame to the current one
   Vector6 reference_velocity = Vector6::Zero();  // per second, as in exposure.hpp
