@@ -68,6 +68,17 @@ Odometry::Odometry() = default;
   return result;
 }
 
+TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
+                            const std::optional<TranslationPrior>& wheels) {
+  MotionPrior prior;
+  prior.translation = wheels;
+  if (check(input, prior).ok()) prior = imu.prior(input.stamp_ns);
+  prior.translation = wheels;
+  const TrackResult result = track(input, prior);
+  if (const std::optional<ObservedRotation> observed = observed_rotation(result)) imu.correct(*observed);
+  return result;
+}
+
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Check.
   memory_.views.clear();

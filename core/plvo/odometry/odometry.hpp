@@ -5,7 +5,7 @@
 //   alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
 //   plvo::Odometry odometry;
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
-//   plvo::TrackResult result = odometry.track(frame);  // or track(frame, prior), with a gyro's help
+//   plvo::TrackResult result = odometry.track(frame);  // or track(frame, imu), or track(frame, prior)
 //
 // Memory: init divides the caller's block once; nothing is allocated or freed afterwards. Threads: one thread
 // at a time may use an Odometry. Determinism: the same frames and config give the same bits on every
@@ -21,6 +21,7 @@
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/feature_views.hpp"
@@ -84,6 +85,11 @@ class Odometry {
   // pose. An empty prior changes nothing; one that does not pass MotionPrior::validate() is refused with the
   // frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
+  // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
+  // by what was seen. Every frame must be tracked so, as the samples of the others are missing. A refused
+  // frame uses up no samples. wheels: a translation measured beside it.
+  TrackResult track(const RgbdFrame& input, ImuIntegrator& imu,
+                    const std::optional<TranslationPrior>& wheels = std::nullopt);
 
   // Restores the state after init: the next usable frame defines the world, and the learnt noise is
   // forgotten. The time budget stays, because it depends on the machine.

@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "plvo/base/status.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/math/covariance.hpp"
 #include "plvo/math/se3.hpp"
 
@@ -68,6 +70,10 @@ struct TrackResult {
   double mean_brightness = 0;  // of the grey image, 0 … 255
   StageTimes stage_ns{};       // zero without Config::stage_clock
 };
+
+// What a result tells ImuIntegrator::correct(); nothing where the frame was neither tracked nor starts a
+// trajectory.
+std::optional<ObservedRotation> observed_rotation(const TrackResult& result);
 
 // Called where a result leaves the library. Makes its covariances valid as described above; valid ones stay
 // the same bit by bit. Returns false where a number is not finite or a rotation is invalid: the caller must
