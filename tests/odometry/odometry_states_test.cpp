@@ -264,7 +264,7 @@ TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
   // up.
   for (int dark_frames : {4, 12}) {
     Config config;
-    config.references.max_lost_frames = 4;
+    config.references.max_lost_s = 0.09;
     Instance instance(config);
     TrackResult before;
     for (int i = 0; i < 4; ++i) before = instance.track(good(i));
@@ -295,7 +295,7 @@ TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
 
 TEST(OdometryTrack, RandomFramesGiveFiniteResults) {
   Config config;
-  config.references.max_lost_frames = 3;
+  config.references.max_lost_s = 0.06;
   Instance instance(config);
   Random random(666);
   ASSERT_EQ(instance.track(good(0)).state, TrackState::kInitialising);

@@ -17,21 +17,13 @@ constexpr int kLongestPrediction = 3;
 // still.
 constexpr std::int64_t kLongestCoast_ns = 300'000'000;
 
-double depth_after_colour(const CameraModel& camera, const RgbdFrame& input) {
-  if (!camera.depth_timing.known) return 0;
-  // Stamps farther apart than this do not belong to one frame.
-  constexpr double kMost_s = 0.1;
-  const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
-  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera.depth_timing.delay_s;
-}
-
 }  // namespace
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.
 PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
   PredictedMotion predicted;
-  predicted.depth_after_colour_s = depth_after_colour(camera_, input);
+  predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   if (!window_.has_last()) return predicted;
   const Window::Frame& last = window_.last_frame();
   const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
@@ -50,6 +42,15 @@ PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& pri
   if (window_.has_recent()) add(window_.recent());
   if (window_.has_older()) add(window_.older());
   return predicted;
+}
+
+// A repeated depth image is as old as when it came first, whatever its stamp.
+double Odometry::depth_after_colour_s(std::int64_t stamp_ns) const {
+  if (!camera_.depth_timing.known) return 0;
+  // Stamps farther apart than this do not belong to one frame.
+  constexpr double kMost_s = 0.1;
+  const double apart = static_cast<double>(repeats_.depth_stamp_ns()) - static_cast<double>(stamp_ns);
+  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera_.depth_timing.delay_s;
 }
 
 // Motion from the reference to the current frame: from other sensors, or else by constant velocity from the
@@ -80,30 +81,41 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   return reference;
 }
 
-// The last good pose with the process noise of the unobserved motion since then.
-PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
-  const Window::Frame& last = window_.last_frame();
-  PoseWithCovariance pose = last.pose;
-  const double seconds = static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9;
+// Adds the process noise of the unobserved motion since the last good frame.
+void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const {
+  const double seconds =
+      static_cast<double>(elapsed_ns(window_.last_frame().features.stamp_ns, stamp_ns)) * 1e-9;
   const double sigma_m = config_->references.process_noise_m_per_s * seconds;
   const double sigma_rad = config_->references.process_noise_rad_per_s * seconds;
   for (int i = 0; i < 3; ++i) {
-    pose.covariance(i, i) += sigma_m * sigma_m;
-    double& turned = pose.covariance(3 + i, 3 + i);
+    covariance(i, i) += sigma_m * sigma_m;
+    double& turned = covariance(3 + i, 3 + i);
     turned += std::clamp(kMostRotationVariance - turned, 0.0, sigma_rad * sigma_rad);
   }
+}
+
+// The last good pose with the process noise of the unobserved motion since then.
+PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
+  PoseWithCovariance pose = window_.last_frame().pose;
+  add_process_noise(stamp_ns, pose.covariance);
   return pose;
+}
+
+// The pose by the priors alone.
+Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const {
+  const PropagatedPrior& sensed = frame.predicted.sensed;
+  return pose_after(sensed.T_current_last(), sensed.covariance(), prior);
 }
 
 // Chained to the keyframe or, without one, to the last good frame. The correction by gravity applies to this
 // frame only: the kept frames were observed, this one was not.
-Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const {
-  const PropagatedPrior& sensed = frame.predicted.sensed;
-  const MotionReference& last = frame.predicted.last;
+Odometry::SensedPose Odometry::pose_after(const Se3& T_current_last, const Matrix6& covariance,
+                                          const MotionPrior& prior) const {
+  const MotionReference last = window_.from_keyframe(window_.last());
   SensedPose result;
-  result.T_camera_reference = sensed.T_current_last() * last.T_reference_base;
-  result.motion_covariance = compose_covariance(sensed.T_current_last(), sensed.covariance(),
-                                                last.T_reference_base, window_.last_motion().total());
+  result.T_camera_reference = T_current_last * last.T_reference_base;
+  result.motion_covariance =
+      compose_covariance(T_current_last, covariance, last.T_reference_base, window_.last_motion().total());
   PoseWithCovariance from = window_[window_.base()].pose;
   result.pose = advance(from, result.T_camera_reference, result.motion_covariance);
   GravityFilter gravity = gravity_;

@@ -95,6 +95,7 @@ bool Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked) {
   const MotionReference from = window_.from_keyframe(window_.last());
   window_.move_last(pose, inverse_covariance(from.T_reference_base, window_.last_motion().total()));
   window_.kept().drop(slot);
+  has_depth_pose_ = false;
 }
 
 }  // namespace plvo
