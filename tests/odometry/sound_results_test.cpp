@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kSoundSecond_ns = 1'000'000'000;
 constexpr std::int64_t kSoundFrame_ns = kSoundSecond_ns / 30;
-constexpr int kNothing = -1;      // a view that shows nothing
+constexpr int kNothing = -1;  // a view that shows nothing
 
 class SmallCamera {
  public:
