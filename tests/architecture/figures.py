@@ -7,13 +7,13 @@ import sys
 
 # (the value, a pattern of its statement, the page that may state it)
 ONE_PAGE = [
-    ("bytes of stack", r"\d[\d.,]* ?(?:KiB|kB|bytes) (?:of |for the )?stack|\bstack\b[^.|]{0,60}?\d[\d.,]* ?(?:KiB|kB)\b", "docs/memory.md"),
-    ("bytes of code", r"\d ?(?:KiB|kB)\b[^.|]{0,40}\b(?:flash|code)\b|\b(?:flash|code size)\b[^.|]{0,30}?\d+ ?(?:KiB|kB)\b", "docs/memory.md"),
-    ("bytes of the smaller limits", r"\b(?:tiny|qvga|QVGA)\b[^.|]{0,40}?\b(?!512)\d+ ?KiB", "docs/memory.md"),
-    ("what NEON spares", r"\b0\.\d+ of (?:what `?armhf|the instructions)", "docs/performance.md"),
-    ("instructions of a board's frame", r"\b320×240 is \d+ million", "docs/performance.md"),
+    ("bytes of stack", r"\d[\d.,]* ?(?:KiB|kB|bytes) (?:of |for the )?stack|\bstack\b[^.|]{0,60}?\d[\d.,]* ?(?:KiB|kB)\b", "docs/developer/memory.md"),
+    ("bytes of code", r"\d ?(?:KiB|kB)\b[^.|]{0,40}\b(?:flash|code)\b|\b(?:flash|code size)\b[^.|]{0,30}?\d+ ?(?:KiB|kB)\b", "docs/developer/memory.md"),
+    ("bytes of the smaller limits", r"\b(?:tiny|qvga|QVGA)\b[^.|]{0,40}?\b(?!512)\d+ ?KiB", "docs/developer/memory.md"),
+    ("what NEON spares", r"\b0\.\d+ of (?:what `?armhf|the instructions)", "docs/developer/performance.md"),
+    ("instructions of a board's frame", r"\b320×240 is \d+ million", "docs/developer/performance.md"),
     ("how true covariances are", r"covariances? (?:is|are|stays?) honest\b|honest covariance|normalised error squared[^.|]{0,20}is \d",
-     "docs/evaluation.md"),
+     "docs/user/accuracy.md"),
 ]
 
 

@@ -7,13 +7,13 @@ import sys
 
 # (topic, page and heading)
 FROM_README = [
-    ("a camera driver of one's own", "docs/cpp.md#a-camera-driver-of-your-own"),
-    ("covariance", "docs/cpp.md#pose-and-covariance"),
-    ("wheels", "docs/cpp.md#wheels-a-gyro-gravity"),
-    ("lost frames", "docs/cpp.md#lost-frames"),
-    ("poses in ROS", "docs/robot.md#a-node-for-ros-2"),
-    ("a Raspberry Pi", "docs/boards.md#raspberry-pi-4-and-5-zero-2-and-others-with-debians-arm64-raspberry-pi-os-64-bit"),
-    ("columns of stats.csv", "docs/formats.md#columns-of-statscsv"),
+    ("a camera driver of one's own", "docs/user/cpp.md#a-camera-driver-of-your-own"),
+    ("covariance", "docs/user/cpp.md#pose-and-covariance"),
+    ("wheels", "docs/user/cpp.md#wheels-a-gyro-gravity"),
+    ("lost frames", "docs/user/cpp.md#lost-frames"),
+    ("poses in ROS", "docs/user/robots.md#a-node-for-ros-2"),
+    ("a Raspberry Pi", "docs/user/small_board.md#raspberry-pi-4-and-5-zero-2-and-others-with-debians-arm64-raspberry-pi-os-64-bit"),
+    ("columns of stats.csv", "docs/user/recordings.md#columns-of-statscsv"),
 ]
 
 

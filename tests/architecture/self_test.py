@@ -200,7 +200,7 @@ LIGHTING = """
 class Figures(unittest.TestCase):
     def found(self, readme=README, recordings=RECORDINGS, lighting=LIGHTING, **more):
         files = {"README.md": readme, "docs/results/recordings.md": recordings, "docs/results/lighting.md": lighting}
-        with Tree({**files, **{f"docs/{name}.md": text for name, text in more.items()}}) as root:
+        with Tree({**files, **{f"docs/developer/{name}.md": text for name, text in more.items()}}) as root:
             return figures.check(root)
 
     def test_equal_copies_and_a_page_that_refers_pass(self):
@@ -212,7 +212,7 @@ class Figures(unittest.TestCase):
                      "The covariance is honest about it"):
             errors = self.found(porting="\n" + text + "\n")
             self.assertEqual(len(errors), 1, (text, errors))
-            self.assertTrue(errors[0].startswith("docs/porting.md:2:"), errors)
+            self.assertTrue(errors[0].startswith("docs/developer/porting.md:2:"), errors)
 
     def test_a_copy_that_differs_is_named(self):
         for row in ("| 7.5 | 0.89 | OpenCV B", "| 0.17 |", "mean, constant | 1.4"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names and words that were replaced by standard terms stay out of code, comments and pages (docs/glossary.md has the terms).
+"""Names and words that were replaced by standard terms stay out of code, comments and pages (docs/theory/notation.md has the terms).
 CHANGELOG.md may name them, as may golden files and the fuzzers' seeds."""
 import pathlib
 import re

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a gyro and an accelerometer recorded, for C; and the program of docs/c.md that tracks with it, as C++
-// does.
+// What a gyro and an accelerometer recorded, for C; and the program of docs/user/c.md that tracks with it, as
+// C++ does.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory of the odometry: it lies between a floor and a ceiling, equals required_bytes, and agrees with
-// docs/memory.md.
+// docs/developer/memory.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Run by tools/setup/package.sh in a clean root, in /try: installs the packages, uses them as docs/c.md, docs/python.md and a
+# Run by tools/setup/package.sh in a clean root, in /try: installs the packages, uses them as docs/user/c.md, docs/user/python.md and a
 # stranger's CMake project do, purges them, and compares the files with those before.
 set -euo pipefail
 cd /try
@@ -60,7 +60,7 @@ programs = re.findall(r"^```python\n(.*?)^```$", pathlib.Path("python.md").read_
 programs = [program for program in programs if "matplotlib" not in program]
 assert len(programs) >= 3
 for program in programs:
-    exec(compile(program, "docs/python.md", "exec"), {})
+    exec(compile(program, "docs/user/python.md", "exec"), {})
 import plvo
 poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("walk") if r.has_pose]
 assert poses == pathlib.Path("run.poses").read_text().splitlines()

@@ -95,7 +95,7 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
         StatusCode::kNotFound,
         fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), "
                     "associations.txt, or numbered images, as rgb/0.png and depth/0.png, or rgb_0.png and "
-                    "depth_0.png (docs/formats.md)",
+                    "depth_0.png (docs/user/recordings.md)",
                     list.string())};
   }
   std::vector<int> lines;
