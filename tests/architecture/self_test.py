@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that the checks of plvo can fail: each check gets a synthetic tree that breaks its rule."""
 import pathlib
+import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import dependencies
 import figures
 import links
 import paths
 import ran
+import results
 import rules
 import words
+
+sys.path.append(str(pathlib.Path(__file__).parents[2] / "tools/plvo/bench"))
+import update_results  # noqa: E402
 
 LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
 
@@ -175,31 +181,32 @@ class Ran(unittest.TestCase):
 README = """
 | sequence | plvo, mm per s | plvo, ° per s | best peer | its mm per s | time |
 |---|---:|---:|---|---:|---:|
-| rpy | 7.5 | 0.89 | OpenCV B | 20.0 | 0.17 |
-| mean, constant | 1.4 | – | OpenCV B | 85.7 | – |
+| rpy | 7.5 | 0.89 | OpenCV ICPOdometry | 20.0 | 0.17 |
+| mean, constant | 1.4 | – | OpenCV ICPOdometry | 85.7 | – |
 """
 RECORDINGS = """
-| sequence | system | mm per s | ° per s | mm per frame | ° per frame | time |
+| sequence | system | mm/s | °/s | mm/frame | °/frame | time / RgbdOdometry |
 |---|---|---:|---:|---:|---:|---:|
-| rpy | *never moves* | 86.0 | 38 | 3 | 1 | – |
-| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 | 0.17 |
-| rpy | OpenCV A | 36.2 | 2.32 | 7.45 | 0.441 | 1.00 |
-| rpy | OpenCV B | 20.0 | 1.00 | 4.00 | 0.300 | 2.00 |
-
+| rpy | never moves | 86.0 | 38 | 3 | 1 | – |
+| rpy | plvo-both | 7.5 | 0.89 | 2.80 | 0.261 | 0.17 |
+| rpy | opencv-rgbd | 36.2 | 2.32 | 7.45 | 0.441 | 1.00 |
+| rpy | opencv-icp | 20.0 | 1.00 | 4.00 | 0.300 | 2.00 |
+"""
+TABLE2 = """
 | sequence | system | mm/frame | °/frame | mm/s | °/s |
 |---|---|---:|---:|---:|---:|
 | rpy | plvo-both | 2.8 | 0.26 | 7.5 | 0.89 |
 """
 LIGHTING = """
-| site | light | *never moves* | plvo, points | **plvo, both** | A | B |
+| site | light | never moves | plvo-points | plvo-both | opencv-rgbd | opencv-icp |
 |---|---|---:|---:|---:|---:|---:|
 | mean | constant | 504.5 | 1.3 | 1.4 | 113.1 | 85.7 |
 """
 
 
 class Figures(unittest.TestCase):
-    def found(self, readme=README, recordings=RECORDINGS, lighting=LIGHTING, **more):
-        files = {"README.md": readme, "docs/results/recordings.md": recordings, "docs/results/lighting.md": lighting}
+    def found(self, readme=README, recordings=RECORDINGS, table2=TABLE2, lighting=LIGHTING, **more):
+        files = {"README.md": readme, figures.RECORDINGS: recordings, figures.TABLE2: table2, figures.LIGHTING: lighting}
         with Tree({**files, **{f"docs/developer/{name}.md": text for name, text in more.items()}}) as root:
             return figures.check(root)
 
@@ -215,10 +222,10 @@ class Figures(unittest.TestCase):
             self.assertTrue(errors[0].startswith("docs/developer/porting.md:2:"), errors)
 
     def test_a_copy_that_differs_is_named(self):
-        for row in ("| 7.5 | 0.89 | OpenCV B", "| 0.17 |", "mean, constant | 1.4"):
+        for row in ("| 7.5 | 0.89 | OpenCV", "| 0.17 |", "mean, constant | 1.4"):
             self.assertIn(row, README)
             self.assertEqual(len(self.found(readme=README.replace(row, row.replace("7", "8").replace("1.4", "1.5")))), 1, row)
-        self.assertEqual(len(self.found(recordings=RECORDINGS.replace("0.26 ", "0.27 "))), 1)
+        self.assertEqual(len(self.found(table2=TABLE2.replace("0.26 ", "0.27 "))), 1)
 
     def test_a_peer_that_is_not_the_best_is_named(self):
         self.assertEqual(len(self.found(recordings=RECORDINGS.replace("36.2", "19.9"))), 2, "its name and its error")
@@ -228,7 +235,41 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(self.found(readme=README.replace("| rpy", "| other"))), 1)
 
     def test_no_comparison_is_a_failure(self):
-        self.assertTrue(self.found(readme="", recordings=""))
+        self.assertTrue(self.found(readme="", table2=""))
+
+
+class Results(unittest.TestCase):
+    STAMPED = update_results.page("A", {"commit": "0123456789" * 4, "date": "2026-11-27", "machine": "two cores", "command": "`plvo_bench run a`",
+                                        "written": "by `tools/plvo/bench/update_results.py`"}, "| a |\n|---|\n")
+    INDEX = "[a](a.md)"
+
+    def found(self, page=STAMPED, index=INDEX):
+        with Tree({"docs/results/a.md": page, "docs/results/README.md": index}) as root:
+            return results.check(root)
+
+    def test_a_stamped_page_passes(self):
+        self.assertEqual(self.found(), [])
+
+    def test_a_missing_entry_of_the_stamp_is_named(self):
+        for entry in results.STAMP:
+            errors = self.found(self.STAMPED.replace(f"- {entry}: ", f"- no {entry}: "))
+            self.assertEqual(len(errors), 1, (entry, errors))
+            self.assertIn(f"no {entry}", errors[0])
+        self.assertEqual(len(self.found(self.STAMPED.replace("0123456789", "unknown"))), 1)
+
+    def test_a_page_that_the_index_does_not_name_is_an_error(self):
+        self.assertEqual(len(self.found(index="")), 1)
+
+    def test_update_results_stamps_what_the_bench_prints(self):
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)"}) as root:
+            (root / "bin/plvo_bench").chmod(0o755)
+            with mock.patch.object(update_results, "commit", lambda: "0123456789" * 4):
+                update_results.main(["--bench", str(root / "bin"), "--data", str(root / "data"), "--work", str(root / "work"),
+                                     "--out", str(root / "docs/results"), "table2"])
+            page = (root / "docs/results/table2.md").read_text(encoding="utf-8")
+            self.assertTrue(page.endswith("\n\n| tum |\n"), page)
+            self.assertIn("- command: `plvo_bench tum fr1_rpy_150=tum-fr1 --systems ours,peers --out results/table2`", page)
+            self.assertEqual(results.check(root), [])
 
 
 class Links(unittest.TestCase):
