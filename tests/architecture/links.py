@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that every relative link of a page leads to an existing file and heading, and that the README links directly to what a new
-user needs first."""
+"""Checks that every relative link of a page leads to an existing file and heading, that pages of docs/ link to nothing outside of it
+(docs/ is installed as share/doc/plvo), and that the README links directly to what a new user needs first."""
 import pathlib
 import re
 import sys
@@ -12,8 +12,8 @@ FROM_README = [
     ("wheels", "docs/user/cpp.md#wheels-a-gyro-gravity"),
     ("lost frames", "docs/user/cpp.md#lost-frames"),
     ("poses in ROS", "docs/user/robots.md#a-node-for-ros-2"),
-    ("a Raspberry Pi", "docs/user/small_board.md#raspberry-pi-4-and-5-zero-2-and-others-with-debians-arm64-raspberry-pi-os-64-bit"),
-    ("columns of stats.csv", "docs/user/recordings.md#columns-of-statscsv"),
+    ("a Raspberry Pi", "docs/user/small_board.md#raspberry-pi"),
+    ("columns of stats.csv", "docs/user/outputs.md#columns-of-statscsv"),
 ]
 
 
@@ -46,7 +46,9 @@ def check_links(root):
                 continue
             file, _, anchor = target.partition("#")
             path = page.parent / file if file else page
-            if not path.exists():
+            if page.parent != root and (root / "docs").resolve() not in path.resolve().parents:
+                yield f"{page.relative_to(root)}:{line}: {target}: is outside of docs/, and so not installed"
+            elif not path.exists():
                 yield f"{page.relative_to(root)}:{line}: {target}: there is no such file"
             elif anchor and anchor not in anchors(path.read_text(encoding="utf-8")):
                 yield f"{page.relative_to(root)}:{line}: {target}: {path.name} has no such heading"

@@ -9,6 +9,7 @@ from unittest import mock
 import dependencies
 import figures
 import links
+import messages
 import paths
 import ran
 import results
@@ -274,7 +275,7 @@ class Results(unittest.TestCase):
 
 class Links(unittest.TestCase):
     PAGES = {"README.md": "# A\n[b](docs/b.md#two-words-c) [web](https://example.org/x) [here](#a) <a id=\"own\"></a>[there](#own)\n",
-             "docs/b.md": "## Two words, `c`\n[up](../README.md) [again](#same-1)\n## Same\n## Same\n```sh\n# no heading\n[no](link.md)\n```\n"}
+             "docs/b.md": "## Two words, `c`\n[again](#same-1)\n## Same\n## Same\n```sh\n# no heading\n[no](link.md)\n```\n"}
 
     def found(self, **changed):
         with Tree({**self.PAGES, **changed}) as root:
@@ -288,6 +289,11 @@ class Links(unittest.TestCase):
             errors = self.found(**{"README.md": "# A\n" + bad})
             self.assertEqual(len(errors), 1, bad)
             self.assertTrue(errors[0].startswith("README.md:2:"), errors)
+
+    def test_a_link_out_of_docs_is_named(self):
+        errors = self.found(**{"docs/b.md": self.PAGES["docs/b.md"] + "[x](../README.md)\n"})
+        self.assertEqual(len(errors), 1)
+        self.assertIn("not installed", errors[0])
 
     def test_missing_links_of_the_readme_are_named(self):
         with Tree(self.PAGES) as root:
@@ -308,6 +314,34 @@ class Paths(unittest.TestCase):
             errors = self.found(f"# A\n`{bad}`\n")
             self.assertEqual(len(errors), 1, (bad, errors))
             self.assertTrue(errors[0].startswith("docs/a.md:2:"), errors)
+
+
+    def test_a_page_that_a_comment_names_must_exist(self):
+        with Tree({"docs/a.md": "", "core/a.hpp": "// docs/a.md\n// docs/b.md\n"}) as root:
+            self.assertEqual(paths.check(root), ["core/a.hpp:2: docs/b.md: there is no such page"])
+
+
+class Messages(unittest.TestCase):
+    SOURCE = 'fail("the file {} has " + n + " rows; "\n  "split it (share/doc/plvo/user/a.md#limits)");\n'
+    PAGE = "| message | cause | remedy |\n|---|---|---|\n| `the file … has …`, `rows; split it` | `an option` of it | `no message here` |\n"
+
+    def found(self, source=SOURCE, page=PAGE):
+        with Tree({"tools/a.cpp": source + '// "a comment"\nsay("an option");\n', messages.PAGE: page, "docs/user/a.md": "## Limits\n"}) as root:
+            return messages.check(root)
+
+    def test_quotes_of_messages_pass(self):
+        self.assertEqual(self.found(), [])
+
+    def test_a_quote_that_no_message_has_is_named(self):
+        for old, new in (("the file", "the folder"), ("split it", "join it"), ("an option", "a comment")):
+            errors = self.found(page=self.PAGE.replace(old, new))
+            self.assertEqual(len(errors), 1, (new, errors))
+            self.assertTrue(errors[0].startswith(f"{messages.PAGE}:3:"), errors)
+
+    def test_a_page_that_is_not_there_is_named(self):
+        for new in ("user/b.md#limits", "user/a.md#other"):
+            self.assertEqual(len(self.found(source=self.SOURCE.replace("user/a.md#limits", new))), 1, new)
+        self.assertEqual(len(self.found(source=self.SOURCE.replace("share/doc/plvo", "docs"))), 1)
 
 
 class Words(unittest.TestCase):

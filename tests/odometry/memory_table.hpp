@@ -32,7 +32,7 @@ inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 704 * 
 MemoryUse measure_memory(const Limits& limits, const Config& config, int frames);
 
 // docs/developer/memory.md, in Markdown, up to the heading of the part that no test writes.
-inline constexpr const char* kMemoryPageEnd = "\n## Tiny\n";
+inline constexpr const char* kMemoryPageEnd = "\n## Stack\n";
 std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny);
 
 }  // namespace plvo

@@ -208,7 +208,7 @@ TEST_F(CliBag, ReportsUnstampedMessages) {
     expect_refused(
         "", 1,
         fmt::format("all 6 images on {} have the stamp 0 in their headers: the driver does not stamp "
-                    "them; give each its time of receipt (docs/user/recordings.md)",
+                    "them; give each its time of receipt (share/doc/plvo/user/recordings.md)",
                     topic));
   }
   std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", test::ImuContent::kBoth);

@@ -30,7 +30,8 @@ class CliForeignFormats : public ::testing::Test {
       const CommandResult r = test::run_command(kPlvo + ' ' + command);
       EXPECT_EQ(r.exit_code, 1) << command << r.err;
       EXPECT_NE(r.err.find(recording + " is " + what), std::string::npos) << command << '\n' << r.err;
-      EXPECT_NE(r.err.find("docs/user/recordings.md"), std::string::npos) << "it says what to do: " << r.err;
+      EXPECT_NE(r.err.find("share/doc/plvo/user/recordings.md"), std::string::npos)
+          << "it says what to do: " << r.err;
     }
     EXPECT_FALSE(fs::exists(path("made")));
   }

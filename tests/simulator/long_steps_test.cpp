@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A camera that takes few pictures a second: where a wall repeats itself, or an image hardly shows anything,
 // a wrong motion explains some of what was matched, and the prediction is too far off to tell. A frame may be
-// lost; how many stand a brick beside themselves is what docs/developer/performance.md says.
+// lost; how many stand a brick beside themselves is what docs/decisions/first_motion.md says.
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -37,7 +37,7 @@ void expect_motions_off(int expected, SceneName scene, double fps, int frames) {
   }
   std::printf("%d of %d frames tracked, the others at most %.1f mm off\n", tracked, frames, 1e3 * most);
   EXPECT_EQ(off, expected)
-      << "where it is another number than before, docs/developer/performance.md has to say so";
+      << "where it is another number than before, docs/decisions/first_motion.md has to say so";
   EXPECT_GT(tracked, 0.85 * frames);
 }
 

@@ -113,7 +113,7 @@ TEST_F(CliOutputs, TwoOutputsNeedTwoFiles) {
 }
 
 TEST_F(CliOutputs, ColumnsOfStatsAreThoseOfThePage) {
-  std::istringstream page(read_file(PLVO_FORMATS_PAGE));
+  std::istringstream page(read_file(PLVO_OUTPUTS_PAGE));
   std::string columns;
   bool inside = false;
   for (std::string line; std::getline(page, line);) {

@@ -30,6 +30,9 @@ grep -v '^#' run.txt | cut -d' ' -f2- >run.poses
 echo "no bag" >no.bag
 if plvo run no.bag 2>no.bag.words; then exit 1; fi
 grep -q "is not a ROS 1 bag" no.bag.words  # bags were not left out when the packages were built
+echo "no recording" >no.mcap
+if plvo run no.mcap 2>no.mcap.words; then exit 1; fi
+test -s "/usr/$(grep -o 'share/doc/plvo/[a-z_/]*\.md' no.mcap.words)"  # the page that the message names
 
 step "C, by pkg-config: the same poses"
 # shellcheck disable=SC2046  # a list of words

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that each message that docs/user/troubleshooting.md quotes is one of the program's, and that each page that a message names is
+installed and has the heading. A message names a page as share/doc/plvo/...: as it lies below the prefix, and in a build folder."""
+import pathlib
+import re
+import sys
+
+import links
+import sources
+
+PAGE = "docs/user/troubleshooting.md"
+LAYERS = ("core", "hal", "platform", "tools")
+LITERAL = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
+PIECE = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+NAMED = re.compile(r"share/doc/plvo/([\w/]+\.md)(?:#([\w-]+))?")
+
+
+def literals(text):
+    """Yields (line number, text) of every literal of a C++ or Python file; adjacent ones are one."""
+    text = re.sub(r"//[^\n]*|^\s*#\s*include.*$", "", text, flags=re.M)
+    for match in LITERAL.finditer(text):
+        joined = "".join(PIECE.findall(match.group(0)))
+        yield text.count("\n", 0, match.start()) + 1, joined.replace('\\"', '"').replace("\\n", "\n")
+
+
+def quotes(text):
+    """Yields (line number, message) of the messages in the tables: what stands in backticks and has a space in it, in the columns
+    message and cause. In the column cause, options are no messages."""
+    header = []
+    for number, line in enumerate(text.splitlines(), 1):
+        cells = [cell.strip() for cell in line.strip().strip("|").split(" | ")] if line.startswith("|") else []
+        header = header if cells else []
+        header = header or cells
+        for name, cell in zip(header, cells):
+            if name in ("message", "cause"):
+                for quote in re.findall(r"`([^`]+)`", cell):
+                    if " " in quote and not (name == "cause" and quote.startswith("--")):
+                        yield number, quote
+
+
+def parts(message):
+    """The pieces of a message between its placeholders."""
+    return [part.strip() for part in re.split(r"…|\{[^{}]*\}", message) if len(part.strip()) > 3]
+
+
+def check(root):
+    root = pathlib.Path(root)
+    errors, all_literals = [], []
+    for path in sources.files(root, LAYERS, suffixes=(".cpp", ".hpp", ".h", ".py")):
+        name = path.relative_to(root).as_posix()
+        for number, text in literals(path.read_text(encoding="utf-8")):
+            all_literals.append(re.sub(r"\{[^{}]*\}", "…", text))
+            for page, anchor in NAMED.findall(text):
+                file = root / "docs" / page
+                if not file.is_file():
+                    errors.append(f"{name}:{number}: there is no page docs/{page}")
+                elif anchor and anchor not in links.anchors(file.read_text(encoding="utf-8")):
+                    errors.append(f"{name}:{number}: docs/{page} has no heading #{anchor}")
+            if re.search(r"\bdocs/\w+/\w+\.md", text):
+                errors.append(f"{name}:{number}: a message names a page as it is installed: share/doc/plvo/..., not docs/...")
+    everything = "\n".join(all_literals)
+    page = root / PAGE
+    for number, quote in quotes(page.read_text(encoding="utf-8")) if page.exists() else ():
+        for part in parts(quote):
+            if part not in everything:
+                errors.append(f"{PAGE}:{number}: no message has \"{part}\"")
+    return errors
+
+
+def main():
+    errors = check(sys.argv[1])
+    print("\n".join(errors) if errors else "every quoted message is one of the program's")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
