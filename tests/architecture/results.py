@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that each page of docs/results begins with its stamp: commit, date, machine, command and what wrote it. README.md there is
-written by hand: it says how the tables are read, and names every page."""
+"""Checks that each page of docs/results begins with its stamp (commit, date, machine, command and what wrote it), that a page of
+docs/decisions is short, and that README.md of either folder, which is written by hand, names every page."""
 import pathlib
 import re
 import sys
@@ -14,26 +14,39 @@ STAMP = {
 }
 
 
+MOST_LINES = 25  # of a decision
+
+
+def pages(folder):
+    """Yields (page, text, whether README.md names it) of a folder."""
+    readme = (folder / "README.md").read_text(encoding="utf-8") if (folder / "README.md").exists() else ""
+    for path in sorted(folder.glob("*.md")):
+        if path.name != "README.md":
+            yield path, path.read_text(encoding="utf-8"), f"]({path.name})" in readme
+
+
 def check(root):
     root = pathlib.Path(root)
-    folder = root / "docs/results"
-    pages = [path for path in sorted(folder.glob("*.md")) if path.name != "README.md"]
-    errors = [] if pages else ["docs/results: there is no page"]
-    readme = (folder / "README.md").read_text(encoding="utf-8") if (folder / "README.md").exists() else ""
-    for path in pages:
-        name = path.relative_to(root).as_posix()
-        text = path.read_text(encoding="utf-8")
-        for entry, pattern in STAMP.items():
-            if not re.search(rf"^- {entry}: {pattern}$", text, re.M):
-                errors.append(f"{name}: its stamp has no {entry}; tools/plvo/bench/update_results.py writes it")
-        if f"]({path.name})" not in readme:
-            errors.append(f"{name}: docs/results/README.md does not name it")
+    errors = []
+    for folder in ("docs/results", "docs/decisions"):
+        found = list(pages(root / folder))
+        if not found:
+            errors.append(f"{folder}: there is no page")
+        for path, text, named in found:
+            name = path.relative_to(root).as_posix()
+            if not named:
+                errors.append(f"{name}: README.md of {folder} does not name it")
+            if folder == "docs/decisions" and text.count("\n") > MOST_LINES:
+                errors.append(f"{name}: has more than {MOST_LINES} lines")
+            for entry, pattern in STAMP.items() if folder == "docs/results" else ():
+                if not re.search(rf"^- {entry}: {pattern}$", text, re.M):
+                    errors.append(f"{name}: its stamp has no {entry}; tools/plvo/bench/update_results.py writes it")
     return errors
 
 
 def main():
     errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every page of results has its stamp")
+    print("\n".join(errors) if errors else "every page of results has its stamp, and decisions are short")
     return 1 if errors else 0
 
 

@@ -244,8 +244,9 @@ class Results(unittest.TestCase):
                                         "written": "by `tools/plvo/bench/update_results.py`"}, "| a |\n|---|\n")
     INDEX = "[a](a.md)"
 
-    def found(self, page=STAMPED, index=INDEX):
-        with Tree({"docs/results/a.md": page, "docs/results/README.md": index}) as root:
+    def found(self, page=STAMPED, index=INDEX, decision="# B\n"):
+        with Tree({"docs/results/a.md": page, "docs/results/README.md": index, "docs/decisions/b.md": decision,
+                   "docs/decisions/README.md": "[b](b.md)"}) as root:
             return results.check(root)
 
     def test_a_stamped_page_passes(self):
@@ -261,8 +262,13 @@ class Results(unittest.TestCase):
     def test_a_page_that_the_index_does_not_name_is_an_error(self):
         self.assertEqual(len(self.found(index="")), 1)
 
+    def test_a_long_decision_is_named(self):
+        self.assertEqual(self.found(decision="\n" * results.MOST_LINES), [])
+        self.assertEqual(len(self.found(decision="\n" * (results.MOST_LINES + 1))), 1)
+
     def test_update_results_stamps_what_the_bench_prints(self):
-        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)"}) as root:
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)",
+                   "docs/decisions/b.md": "", "docs/decisions/README.md": "[b](b.md)"}) as root:
             (root / "bin/plvo_bench").chmod(0o755)
             with mock.patch.object(update_results, "commit", lambda: "0123456789" * 4):
                 update_results.main(["--bench", str(root / "bin"), "--data", str(root / "data"), "--work", str(root / "work"),
