@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that each message that docs/user/troubleshooting.md quotes is one of the program's, and that each page that a message names is
-installed and has the heading. A message names a page as share/doc/plvo/...: as it lies below the prefix, and in a build folder."""
+"""Checks that each message that docs/user/troubleshooting.md quotes is one of the program's, that each message of a Status is there, and
+that each page that a message names is installed and has the heading. A message names a page as share/doc/plvo/...: as it lies below
+the prefix, and in a build folder."""
 import pathlib
 import re
 import sys
@@ -12,15 +13,17 @@ PAGE = "docs/user/troubleshooting.md"
 LAYERS = ("core", "hal", "platform", "tools")
 LITERAL = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
 PIECE = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+OF_A_STATUS = re.compile(r"StatusCode::k\w+,\s*(?:fmt::format\()?\s*$")  # before a literal
 NAMED = re.compile(r"share/doc/plvo/([\w/]+\.md)(?:#([\w-]+))?")
 
 
 def literals(text):
-    """Yields (line number, text) of every literal of a C++ or Python file; adjacent ones are one."""
+    """Yields (line number, text, is it a message of a Status) of every literal of a C++ or Python file; adjacent ones are one."""
     text = re.sub(r"//[^\n]*|^\s*#\s*include.*$", "", text, flags=re.M)
     for match in LITERAL.finditer(text):
         joined = "".join(PIECE.findall(match.group(0)))
-        yield text.count("\n", 0, match.start()) + 1, joined.replace('\\"', '"').replace("\\n", "\n")
+        of_a_status = OF_A_STATUS.search(text, max(0, match.start() - 80), match.start()) is not None
+        yield text.count("\n", 0, match.start()) + 1, joined.replace('\\"', '"').replace("\\n", "\n"), of_a_status
 
 
 def quotes(text):
@@ -45,11 +48,16 @@ def parts(message):
 
 def check(root):
     root = pathlib.Path(root)
+    page = root / PAGE
+    quoted = list(quotes(page.read_text(encoding="utf-8"))) if page.exists() else []
+    quoted_parts = [part for _, quote in quoted for part in parts(quote)]
     errors, all_literals = [], []
     for path in sources.files(root, LAYERS, suffixes=(".cpp", ".hpp", ".h", ".py")):
         name = path.relative_to(root).as_posix()
-        for number, text in literals(path.read_text(encoding="utf-8")):
+        for number, text, of_a_status in literals(path.read_text(encoding="utf-8")):
             all_literals.append(re.sub(r"\{[^{}]*\}", "…", text))
+            if of_a_status and parts(text) and not any(q in part or part in q for part in parts(text) for q in quoted_parts):
+                errors.append(f"{name}:{number}: \"{text}\": give the message a row in {PAGE}")
             for page, anchor in NAMED.findall(text):
                 file = root / "docs" / page
                 if not file.is_file():
@@ -59,8 +67,7 @@ def check(root):
             if re.search(r"\bdocs/\w+/\w+\.md", text):
                 errors.append(f"{name}:{number}: a message names a page as it is installed: share/doc/plvo/..., not docs/...")
     everything = "\n".join(all_literals)
-    page = root / PAGE
-    for number, quote in quotes(page.read_text(encoding="utf-8")) if page.exists() else ():
+    for number, quote in quoted:
         for part in parts(quote):
             if part not in everything:
                 errors.append(f"{PAGE}:{number}: no message has \"{part}\"")
@@ -69,7 +76,7 @@ def check(root):
 
 def main():
     errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every quoted message is one of the program's")
+    print("\n".join(errors) if errors else "every message is on the page, and every quoted message is one of the program's")
     return 1 if errors else 0
 
 

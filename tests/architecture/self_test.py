@@ -344,6 +344,12 @@ class Messages(unittest.TestCase):
             self.assertEqual(len(errors), 1, (new, errors))
             self.assertTrue(errors[0].startswith(f"{messages.PAGE}:3:"), errors)
 
+    def test_a_message_of_a_status_that_is_not_on_the_page_is_named(self):
+        self.assertEqual(self.found(source=self.SOURCE + 'return {StatusCode::kIo, fmt::format("an option {}", x)};\n'), [])
+        errors = self.found(source=self.SOURCE + 'return {StatusCode::kIo,\n        "the disk is full"};\n')
+        self.assertEqual(len(errors), 1)
+        self.assertIn('"the disk is full": give the message a row', errors[0])
+
     def test_a_page_that_is_not_there_is_named(self):
         for new in ("user/b.md#limits", "user/a.md#other"):
             self.assertEqual(len(self.found(source=self.SOURCE.replace("user/a.md#limits", new))), 1, new)
