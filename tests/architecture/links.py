@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that every relative link of a page leads to an existing file and heading, that pages of docs/ link to nothing outside of it
-(docs/ is installed as share/doc/plvo), and that the README links directly to what a new user needs first."""
+(docs/ is installed as share/doc/plvo), and that the README is short and links directly to what a new user needs first."""
 import pathlib
 import re
 import sys
 
+README_LINES = 120  # at most
 # (topic, page and heading)
 FROM_README = [
     ("a camera driver of one's own", "docs/user/cpp.md#a-camera-driver-of-your-own"),
@@ -55,7 +56,10 @@ def check_links(root):
 
 
 def check_readme(root):
-    targets = {target for _, target in links((root / "README.md").read_text(encoding="utf-8"))}
+    text = (root / "README.md").read_text(encoding="utf-8")
+    if text.count("\n") > README_LINES:
+        yield f"README.md: has more than {README_LINES} lines"
+    targets = {target for _, target in links(text)}
     for what, target in FROM_README:
         if target not in targets:
             yield f"README.md: no link to {target}, where a reader finds {what}"

@@ -304,6 +304,8 @@ class Links(unittest.TestCase):
     def test_missing_links_of_the_readme_are_named(self):
         with Tree(self.PAGES) as root:
             self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README))
+            (root / "README.md").write_text("\n" * (links.README_LINES + 1), encoding="utf-8")
+            self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README) + 1)
 
 
 class Paths(unittest.TestCase):
