@@ -17,7 +17,6 @@ import sources
 OTHER_FOLDERS = {
     "accuracy": "the odometry on rendered and recorded sequences",
     "architecture": "rules for all modules; its scripts are checks, not tests",
-    "bare_metal": "board programs",
     "budget": "sizes and instructions that pages state; its scripts are checks, not tests",
     "cpp": "the programs of the page about C++",
     "fuzz": "fuzzers; fuzz_NAME.cpp is the entry fuzz_NAME",
