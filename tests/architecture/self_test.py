@@ -8,6 +8,7 @@ from unittest import mock
 
 import dependencies
 import figures
+import layout
 import links
 import messages
 import paths
@@ -356,6 +357,48 @@ class Messages(unittest.TestCase):
         for new in ("user/b.md#limits", "user/a.md#other"):
             self.assertEqual(len(self.found(source=self.SOURCE.replace("user/a.md#limits", new))), 1, new)
         self.assertEqual(len(self.found(source=self.SOURCE.replace("share/doc/plvo", "docs"))), 1)
+
+
+class Layout(unittest.TestCase):
+    GOOD = {
+        "core/plvo/math/se3.hpp": "",
+        "tools/plvo/cli/main.cpp": "",
+        "tests/math/se3_test.cpp": '#include "plvo/math/se3.hpp"\nTEST(A, B) {}\n',
+        "tests/math/a.hpp": '#include "plvo/math/se3.hpp"\n',
+        "tests/math/other_test.cpp": '#include "a.hpp"\n',
+        "tests/cli/cli_run_test.cpp": "",
+        "tests/accuracy/walk_test.py": "",
+        "tests/architecture/self_test.py": "",
+        "tests/budget/self_test.py": "",
+    }
+    ENTRIES = ("se3_test", "other_test.Alone", "cli_run_test", "walk_test", "golden_test")
+
+    def found(self, more, entries=None):
+        with Tree(self.GOOD | more) as root:
+            return layout.check(root, entries)
+
+    def test_a_good_layout_passes(self):
+        self.assertEqual(self.found({}), [])
+        self.assertEqual(self.found({}, self.ENTRIES), [])
+
+    def test_a_file_without_an_entry_is_named(self):
+        for k, name in enumerate(("se3_test", "other_test", "cli_run_test", "walk_test")):
+            errors = self.found({}, self.ENTRIES[:k] + self.ENTRIES[k + 1:])
+            self.assertEqual(len(errors), 1, errors)
+            self.assertTrue(errors[0].endswith(f"there is no ctest entry {name}"), errors)
+
+    def test_bad_places_and_names_are_named(self):
+        header = self.GOOD["tests/math/se3_test.cpp"]
+        for bad, text, words_of_error in (
+                ("tests/tools/a_test.cpp", header, "there is no such module"),
+                ("tests/slurm/array.sh", "", "there is no such module"),
+                ("tests/math/more/a_test.cpp", header, "directly"),
+                ("tests/cli/se3_test.cpp", header, "the same name"),
+                ("tests/python/se3_test.py", "", "there is no such module"),
+                ("tests/math/a_main.cpp", header, "is called *_test.cpp"),
+                ("tests/math/a_test.cpp", '#include "plvo/base/a.hpp"\n', "no header of math")):
+            errors = self.found({bad: text})
+            self.assertTrue(any(words_of_error in error for error in errors), (bad, errors))
 
 
 class Words(unittest.TestCase):

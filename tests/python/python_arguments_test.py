@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import plvo
-from stubs_test import runtime_parameters
+from python_stubs_test import runtime_parameters
 
 EYE = np.eye(3)
 PINHOLE = {"width": 320, "height": 240, "fx": 277, "fy": 277, "cx": 159.5, "cy": 119.5}

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the bench's job list as an array on a real Slurm with one node, which the script starts in its own folder and stops at
 # the end. It kills one task, submits the array again, and compares the tables with those of a run without Slurm.
-# usage: slurm_array.sh PLVO_BENCH; 77: skipped
+# usage: slurm_array_test.sh PLVO_BENCH; 77: skipped
 set -euo pipefail
 
 bench=$1
