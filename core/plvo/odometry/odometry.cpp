@@ -141,7 +141,7 @@ TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) cons
   result.status = refusal;
   const bool has_pose = window_.has_last();
   report(window_[has_pose ? window_.last() : window_.current()].pose,
-         has_pose ? window_.last_frame().velocity : Vector6::Zero(), result);
+         has_pose ? window_.last_frame().velocity.value : Vector6::Zero(), result);
   return result;
 }
 

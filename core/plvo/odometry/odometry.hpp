@@ -32,7 +32,7 @@
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
-#include "plvo/odometry/window.hpp"
+#include "plvo/odometry/window/window.hpp"
 
 namespace plvo {
 

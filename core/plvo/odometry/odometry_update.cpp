@@ -62,16 +62,17 @@ TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision
   }
   window_.set_pose(window_.current(), pose);
   window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, frame.stamp_ns()));
-  const Vector6& velocity = window_.current_frame().velocity;
+  const Vector6& velocity = window_.current_frame().velocity.value;
   result.motion_covariance =
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
-                                              window_[window_.keyframe()].velocity, camera_.stamp_sigma_s);
+                                              window_[window_.keyframe()].velocity.value,
+                                              camera_.stamp_sigma_s);
   lost_frames_ = 0;
   propagated_prior_.restart();
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
   result.returned = tracked.returned || relocalise(frame, tracked);
-  report(window_.last_frame().pose, window_.last_frame().velocity, result);
+  report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
 }
 
@@ -120,9 +121,9 @@ TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision, 
     result.reference_stamp_ns = window_[window_.base()].features.stamp_ns;
     result.T_camera_reference = sensed.T_camera_reference;
     result.motion_covariance = sensed.motion_covariance;
-    report(sensed.pose, last.velocity, result);
+    report(sensed.pose, last.velocity.value, result);
   } else {
-    report(last.pose, last.velocity, result);
+    report(last.pose, last.velocity.value, result);
   }
   // After many lost frames the views of the references are out of sight. Unless one comes back, the next
   // usable frame starts anew at the last good pose.

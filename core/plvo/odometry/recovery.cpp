@@ -34,10 +34,8 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
                          const PoseWithCovariance& believed, TrackedMotion& tracked) {
   Reference kept;
   kept.features = &window_[slot].features;
-  kept.prior.velocity = velocity;
-  kept.prior.velocity_known = true;
-  kept.prior.reference_velocity = window_[slot].velocity;
-  kept.prior.reference_velocity_known = window_[slot].motion_ns > 0;
+  kept.prior.recent = velocity;
+  kept.prior.reference = window_[slot].velocity;
   kept.prior.reference_is_last = false;
   kept.prior.depth_after_colour_s = frame.predicted.depth_after_colour_s;
   kept.chained = false;
@@ -83,7 +81,7 @@ bool Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked) {
   frames_since_relocalisation_ = 0;
   const int slot = window_.kept().next();
   const Window::Frame& last = window_.last_frame();  // the frame just tracked
-  if (!recognise(slot, frame, last.velocity, last.pose, tracked)) return false;
+  if (!recognise(slot, frame, last.velocity.value, last.pose, tracked)) return false;
   move_to_relocalised_pose(slot, tracked.motion);
   return true;
 }
