@@ -40,7 +40,7 @@ def machine():
         if line.startswith("model name"):
             processor = line.split(":", 1)[1].strip()
             break
-    return f"{processor}, {os.cpu_count()} cores, {platform.system()} {platform.release()} {platform.machine()}"
+    return f"{processor}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
 
 
 def page(title, stamp, text):
