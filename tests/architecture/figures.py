@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+import sources
+
 # (the value, a pattern of its statement, the page that may state it)
 ONE_PAGE = [
     ("bytes of stack", r"\d[\d.,]* ?(?:KiB|kB|bytes) (?:of |for the )?stack|\bstack\b[^.|]{0,60}?\d[\d.,]* ?(?:KiB|kB)\b", "docs/developer/memory.md"),
@@ -99,11 +101,5 @@ def check(root):
     return [*check_one_page(root), *check_copies(root)]
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every figure stands on one page")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every figure stands on one page"))

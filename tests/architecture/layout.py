@@ -92,9 +92,7 @@ def check(root, entries=None):
 
 def main():
     entries = pathlib.Path(sys.argv[2]).read_text(encoding="utf-8").split() if len(sys.argv) > 2 else None
-    errors = check(sys.argv[1], entries)
-    print("\n".join(errors) if errors else "every test file lies in the folder of a module and has a name of its own")
-    return 1 if errors else 0
+    return sources.report(check(sys.argv[1], entries), "every test file lies in the folder of a module and has a name of its own")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+import sources
+
 README_LINES = 120  # at most
 # (topic, page and heading)
 FROM_README = [
@@ -70,11 +72,5 @@ def check(root):
     return [*check_links(root), *check_readme(root)]
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every link leads to a heading")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every link leads to a heading"))

@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+import sources
+
 STAMP = {
     "commit": r"[0-9a-f]{40}\b.*",
     "date": r"\d{4}-\d\d-\d\d\b.*",
@@ -12,8 +14,6 @@ STAMP = {
     "command": r"`(?:plvo_bench|plvo|sequence_statistics|truth_noise) .*`",
     "written": r"by (?:`tools/plvo/bench/update_results.py`|hand, from .*)",
 }
-
-
 MOST_LINES = 25  # of a decision
 
 
@@ -44,11 +44,5 @@ def check(root):
     return errors
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every page of results has its stamp, and decisions are short")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every page of results has its stamp, and decisions are short"))

@@ -268,7 +268,7 @@ class Results(unittest.TestCase):
         self.assertEqual(len(self.found(decision="\n" * (results.MOST_LINES + 1))), 1)
 
     def test_update_results_stamps_what_the_bench_prints(self):
-        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)",
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| opencv-rgbd |\"\necho\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)",
                    "docs/decisions/b.md": "", "docs/decisions/README.md": "[b](b.md)"}) as root:
             (root / "bin/plvo_bench").chmod(0o755)
             with mock.patch.object(update_results, "commit", lambda: "0123456789" * 4):
@@ -278,6 +278,14 @@ class Results(unittest.TestCase):
             self.assertTrue(page.endswith("\n\n| tum |\n"), page)
             self.assertIn("- command: `plvo_bench tum fr1_rpy_150=tum-fr1 --systems ours,peers --out results/table2`", page)
             self.assertEqual(results.check(root), [])
+
+    def test_update_results_keeps_a_page_whose_peers_were_not_measured(self):
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| plvo |\"\n", "data/x": "", "docs/results/table2.md": "as it was"}) as root:
+            (root / "bin/plvo_bench").chmod(0o755)
+            with self.assertRaisesRegex(SystemExit, "measured no opencv-rgbd: build it where OpenCV"):
+                update_results.main(["--bench", str(root / "bin"), "--data", str(root / "data"), "--work", str(root / "work"),
+                                     "--out", str(root / "docs/results"), "table2"])
+            self.assertEqual((root / "docs/results/table2.md").read_text(encoding="utf-8"), "as it was")
 
 
 class Links(unittest.TestCase):

@@ -45,11 +45,5 @@ def check(root):
     return errors
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "no word that was replaced is back")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "no word that was replaced is back"))

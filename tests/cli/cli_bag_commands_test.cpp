@@ -10,9 +10,8 @@
 #include <string>
 
 #include "bag_of_folder.hpp"
-#include "command.hpp"
+#include "plvo_command.hpp"
 #include "recorded_walk.hpp"
-#include "temporary_folder.hpp"
 #include "turning_hand.hpp"
 
 namespace plvo {
@@ -21,14 +20,12 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
-using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
-using test::TemporaryFolder;
 using test::walk;
 using test::write_file;
 
-class CliBagCommands : public ::testing::Test {
+class CliBagCommands : public test::PlvoCommand {
  protected:
   void SetUp() override {
     std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", ImuContent::kBoth);
@@ -36,14 +33,8 @@ class CliBagCommands : public ::testing::Test {
     messages.insert(messages.end(), images.begin(), images.end());
     write_file(folder_ / "walk.bag", test::bag_of(messages, "none"));
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  static CommandResult plvo(const std::string& arguments) {
-    return test::run_command(kPlvo + ' ' + arguments);
-  }
   static void expect_refused(const std::string& arguments, int exit_code, const std::string& words) {
-    const CommandResult r = plvo(arguments);
-    EXPECT_EQ(r.exit_code, exit_code) << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    PlvoCommand::expect_refused(plvo(arguments), exit_code, words);
   }
   // Trajectory and covariances of `plvo run`.
   std::string bytes_of(const std::string& recording, const std::string& options = "") const {
@@ -52,8 +43,6 @@ class CliBagCommands : public ::testing::Test {
     EXPECT_EQ(r.exit_code, 0) << r.err;
     return read_file(folder_ / "t") + read_file(folder_ / "c");
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliBagCommands, EscapesControlCharactersInTopicNames) {

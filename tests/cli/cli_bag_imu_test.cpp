@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bag_of_folder.hpp"
-#include "command.hpp"
+#include "plvo_command.hpp"
 #include "recorded_walk.hpp"
-#include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
@@ -14,21 +13,17 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
-using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
-using test::run_command;
-using test::TemporaryFolder;
 using test::walk;
 using test::write_file;
 using Messages = std::vector<RecordedMessage>;
 
-class CliBagImu : public ::testing::Test {
+class CliBagImu : public test::PlvoCommand {
  protected:
   static Messages readings(const std::string& topic, ImuContent content) {
     return test::published_imu(walk(), topic, content);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::vector<Messages>& readings) const {
     Messages all;
     for (const Messages& part : readings) all.insert(all.end(), part.begin(), part.end());
@@ -37,8 +32,8 @@ class CliBagImu : public ::testing::Test {
     write_file(folder_ / "walk.bag", test::bag_of(all, "lz4"));
   }
   CommandResult run(const std::string& recording, const std::string& options) const {
-    return run_command(kPlvo + " run " + recording + " --readout 0 --quiet --out " + path("t") +
-                       " --covariance " + path("c") + ' ' + options);
+    return plvo("run " + recording + " --readout 0 --quiet --out " + path("t") + " --covariance " +
+                path("c") + ' ' + options);
   }
   // Trajectory and covariances.
   std::string bytes_of(const std::string& recording, const std::string& options) const {
@@ -47,12 +42,8 @@ class CliBagImu : public ::testing::Test {
     return read_file(folder_ / "t") + read_file(folder_ / "c");
   }
   void expect_refused(const std::string& options, int exit_code, const std::string& words) const {
-    const CommandResult r = run(path("walk.bag"), options);
-    EXPECT_EQ(r.exit_code, exit_code) << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    PlvoCommand::expect_refused(run(path("walk.bag"), options), exit_code, words);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliBagImu, EqualsTheBytesOfTheFolder) {

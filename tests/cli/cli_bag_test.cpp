@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bag_of_folder.hpp"
-#include "command.hpp"
+#include "plvo_command.hpp"
 #include "recorded_walk.hpp"
-#include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
@@ -21,24 +20,20 @@ using test::kPlvo;
 using test::read_file;
 using test::RecordedMessage;
 using test::run_command;
-using test::TemporaryFolder;
 using test::walk;
 using test::write_file;
 
 std::vector<RecordedMessage> published(bool metres) { return test::published(walk(), metres); }
 
-class CliBag : public ::testing::Test {
+class CliBag : public test::PlvoCommand {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  CommandResult run(const std::string& more) const {
-    return run_command(kPlvo + " run " + path("walk.bag") + ' ' + more);
-  }
+  CommandResult run(const std::string& more) const { return plvo("run " + path("walk.bag") + ' ' + more); }
   void write(const std::vector<RecordedMessage>& messages, const std::string& compression = "none") const {
     write_file(folder_ / "walk.bag", test::bag_of(messages, compression));
   }
   void run_folder() const {
-    const CommandResult r = run_command(kPlvo + " run " + walk().string() + " --quiet --out " +
-                                        path("folder") + " --covariance " + path("folder_c"));
+    const CommandResult r = plvo("run " + walk().string() + " --quiet --out " + path("folder") +
+                                 " --covariance " + path("folder_c"));
     ASSERT_EQ(r.exit_code, 0) << r.err;
   }
   void expect_the_folders_bytes(const std::string& options) const {
@@ -50,12 +45,8 @@ class CliBag : public ::testing::Test {
     EXPECT_EQ(read_file(folder_ / "bag_c"), read_file(folder_ / "folder_c"));
   }
   void expect_refused(const std::string& options, int exit_code, const std::string& words) const {
-    const CommandResult r = run(options);
-    EXPECT_EQ(r.exit_code, exit_code) << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    PlvoCommand::expect_refused(run(options), exit_code, words);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliBag, EqualsTheBytesOfTheFolder) {
@@ -247,7 +238,7 @@ TEST_F(CliBag, ReportsUnreadableBags) {
   expect_refused("--rate 30", 2, "does not apply to a ROS bag");
   expect_refused("--colour-topic ''", 2, "--colour-topic: expected the name of a topic");
   expect_refused("--out " + path("walk.bag"), 2, "is an input, which would be overwritten");
-  const CommandResult folder = run_command(kPlvo + " run " + walk().string() + " --depth-topic /x");
+  const CommandResult folder = plvo("run " + walk().string() + " --depth-topic /x");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--depth-topic: is for a ROS bag"), std::string::npos) << folder.err;
   // A damaged image costs only its frame.

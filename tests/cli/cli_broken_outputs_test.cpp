@@ -10,9 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "command.hpp"
+#include "plvo_command.hpp"
 #include "simulated_sequence.hpp"
-#include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
@@ -22,7 +21,6 @@ using test::CommandResult;
 using test::kPlvo;
 using test::read_file;
 using test::run_command;
-using test::TemporaryFolder;
 
 constexpr int kTrackedFrames = 24;
 
@@ -48,9 +46,8 @@ class BrokenPipe {
   std::array<int, 2> ends_{};
 };
 
-class CliBrokenOutputs : public ::testing::Test {
+class CliBrokenOutputs : public test::PlvoCommand {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   // redirection: of standard output.
   static CommandResult plvo(const std::string& arguments, const std::string& redirection = "") {
     return run_command("sh -c '" + kPlvo + ' ' + arguments + redirection + "'");
@@ -70,8 +67,6 @@ class CliBrokenOutputs : public ::testing::Test {
     EXPECT_EQ(text, expected.substr(0, text.size()));
     EXPECT_EQ(text.back(), '\n');
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliBrokenOutputs, FilesUnderALimitHoldWholeRows) {

@@ -5,9 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
-#include "plvo_binary.hpp"
+#include "plvo_command.hpp"
 #include "tiny_sequence.hpp"
 #include "turning_hand.hpp"
 
@@ -17,15 +16,16 @@ namespace {
 using test::CommandResult;
 using test::kPlvo;
 using test::run_command;
+using test::run_plvo;
 using test::TemporaryFolder;
 
 void record_turns(const TemporaryFolder& folder, const std::string& name, int seed, int frames) {
   const std::string hand = (folder / ("hand_" + name)).string();
   test::write_file(hand, test::turning_hand(0.2 + frames / 30.0));
   const CommandResult made =
-      run_command(kPlvo + " simulate --quiet --size 320x240 --depth-delay 0.012 --frames " +
-                  std::to_string(frames) + " --scene desk --seed " + std::to_string(seed) + " --out " +
-                  (folder / name).string() + " --trajectory " + hand);
+      run_plvo("simulate --quiet --size 320x240 --depth-delay 0.012 --frames " + std::to_string(frames) +
+               " --scene desk --seed " + std::to_string(seed) + " --out " + (folder / name).string() +
+               " --trajectory " + hand);
   ASSERT_EQ(made.exit_code, 0) << made.err;
 }
 
@@ -36,9 +36,8 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const std::string walk = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
   record_turns(folder, "walk", 1, 60);
   // The lens is given, but no timing of depth.
-  const CommandResult r =
-      run_command(kPlvo + " calibrate " + walk + " --find delay --quiet --json - --report " +
-                  (folder / "page.html").string() + " --out " + yaml + kLens);
+  const CommandResult r = run_plvo("calibrate " + walk + " --find delay --quiet --json - --report " +
+                                   (folder / "page.html").string() + " --out " + yaml + kLens);
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.err, "");
   const auto json = nlohmann::json::parse(r.out);
@@ -57,7 +56,7 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   EXPECT_EQ(found.depth_units_per_metre, 5000);
   EXPECT_TRUE(found.readout_given);
   EXPECT_NE(test::read_file(folder / "page.html").find("<polyline"), std::string::npos);
-  const CommandResult run = run_command(kPlvo + " run " + walk + " --quiet --calibration " + yaml);
+  const CommandResult run = run_plvo("run " + walk + " --quiet --calibration " + yaml);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
 }
@@ -69,11 +68,10 @@ TEST(CliCalibrate, SeveralRecordingsGiveOneAnswer) {
   const std::string first = (folder / "long").string(), second = (folder / "short").string();
   const std::string rest = " --find delay --out " + (folder / "camera.yaml").string() + kLens;
   // Each recording alone is too short.
-  const CommandResult alone = run_command(kPlvo + " calibrate --quiet " + first + rest);
+  const CommandResult alone = run_plvo("calibrate --quiet " + first + rest);
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_NE(alone.err.find("of 40 frames could be tracked"), std::string::npos) << alone.err;
-  const CommandResult r =
-      run_command(kPlvo + " calibrate " + first + rest + " --json - " + second + " --frames 60");
+  const CommandResult r = run_plvo("calibrate " + first + rest + " --json - " + second + " --frames 60");
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_EQ(json["frames"], 60);
@@ -109,11 +107,11 @@ TEST(CliCalibrate, RecordingsOfTwoSensorsAreRefused) {
   ASSERT_TRUE(test::write_tiny_sequence(folder / "two", 2).ok());
   test::write_file(folder / "two/calibration.txt", "81 80 47.5 31.5 5000\n");
   const std::string both = (folder / "one").string() + ' ' + (folder / "two").string();
-  const CommandResult r = run_command(kPlvo + " calibrate " + both + " --out " + (folder / "c").string());
+  const CommandResult r = run_plvo("calibrate " + both + " --out " + (folder / "c").string());
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("has another lens than"), std::string::npos) << r.err;
-  const CommandResult given = run_command(
-      kPlvo + " calibrate " + both + " --fx 80 --fy 80 --cx 47.5 --cy 31.5 --out " + (folder / "c").string());
+  const CommandResult given =
+      run_plvo("calibrate " + both + " --fx 80 --fy 80 --cx 47.5 --cy 31.5 --out " + (folder / "c").string());
   EXPECT_NE(given.err.find("of 4 frames could be tracked"), std::string::npos) << given.err;
 }
 
@@ -121,15 +119,13 @@ TEST(CliCalibrate, ARecordingThatIsTooShortIsRefusedInOneLine) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const std::string yaml = (folder / "camera.yaml").string();
-  const CommandResult r =
-      run_command(kPlvo + " calibrate --quiet " + (folder / "walk").string() + " --out " + yaml);
+  const CommandResult r = run_plvo("calibrate --quiet " + (folder / "walk").string() + " --out " + yaml);
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_EQ(r.out, "");
   EXPECT_EQ(r.err.rfind("plvo: error: only ", 0), 0u) << r.err;
   EXPECT_NE(r.err.find("record 10 s or more"), std::string::npos) << r.err;
   EXPECT_FALSE(std::filesystem::exists(yaml));
-  const CommandResult missing =
-      run_command(kPlvo + " calibrate " + (folder / "nothing").string() + " --out " + yaml);
+  const CommandResult missing = run_plvo("calibrate " + (folder / "nothing").string() + " --out " + yaml);
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_NE(missing.err.find("nothing"), std::string::npos) << missing.err;
 }
@@ -138,7 +134,7 @@ TEST(CliCalibrate, AnInputIsNotOverwritten) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 2).ok());
   const std::string walk = (folder / "walk").string();
-  const CommandResult r = run_command(kPlvo + " calibrate " + walk + " --out " + walk + "/calibration.txt");
+  const CommandResult r = run_plvo("calibrate " + walk + " --out " + walk + "/calibration.txt");
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.err.find("is an input, which would be overwritten"), std::string::npos) << r.err;
 }

@@ -6,11 +6,10 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "plvo/base/random.hpp"
 #include "plvo/eval/trajectory.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
-#include "plvo_binary.hpp"
+#include "plvo_command.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -20,6 +19,7 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::kPlvo;
 using test::run_command;
+using test::run_plvo;
 using test::TemporaryFolder;
 using test::write_file;
 
@@ -68,8 +68,8 @@ TEST(CliEval, AgreesWithTheIndependentScript) {
     for (const auto& [ours_mode, their_mode] :
          {std::pair("nearest", "nearest"), std::pair("interpolated", "interp")}) {
       const std::string truth = (sequence / "groundtruth.txt").string();
-      const CommandResult ours = run_command(kPlvo + " eval --json - --gt " + truth + " --est " +
-                                             estimate.string() + " --gt-sampling " + ours_mode);
+      const CommandResult ours = run_plvo("eval --json - --gt " + truth + " --est " + estimate.string() +
+                                          " --gt-sampling " + ours_mode);
       const CommandResult theirs = run_command("/usr/bin/python3 " + script.string() + ' ' + truth + ' ' +
                                                estimate.string() + " --json --gt " + their_mode);
       ASSERT_EQ(ours.exit_code, 0) << ours.err;
@@ -115,8 +115,8 @@ class CliEvalFiles : public ::testing::Test {
     write_file(folder_ / "cov.txt", covariances);
   }
   CommandResult eval(const std::string& more) const {
-    return run_command(kPlvo + " eval --gt " + (folder_ / "gt.txt").string() + " --est " +
-                       (folder_ / "est.txt").string() + ' ' + more);
+    return run_plvo("eval --gt " + (folder_ / "gt.txt").string() + " --est " +
+                    (folder_ / "est.txt").string() + ' ' + more);
   }
   TemporaryFolder folder_;
 };
@@ -131,10 +131,10 @@ TEST_F(CliEvalFiles, TextHasEveryRow) {
 }
 
 TEST_F(CliEvalFiles, UsageErrors) {
-  EXPECT_EQ(run_command(kPlvo + " eval").exit_code, 2);
-  EXPECT_EQ(run_command(kPlvo + " nonsense").exit_code, 2);
-  EXPECT_EQ(run_command(kPlvo + " eval --help").exit_code, 0);
-  EXPECT_NE(run_command(kPlvo + " --help").out.find("3 no frame could be tracked"), std::string::npos);
+  EXPECT_EQ(run_plvo("eval").exit_code, 2);
+  EXPECT_EQ(run_plvo("nonsense").exit_code, 2);
+  EXPECT_EQ(run_plvo("eval --help").exit_code, 0);
+  EXPECT_NE(run_plvo("--help").out.find("3 no frame could be tracked"), std::string::npos);
 }
 
 TEST_F(CliEvalFiles, UnneededKittiTimesAreRefused) {
@@ -344,9 +344,9 @@ TEST_F(CliEvalFiles, FilesOfTwoClocksAreNamedWithBoth) {
 
 TEST_F(CliEvalFiles, MissingAndDamagedFilesAreOneLine) {
   for (const char* more : {"--est-covariance /nowhere", "--est-motions /nowhere", "--est /nowhere"}) {
-    const CommandResult r = run_command(
-        kPlvo + " eval --gt " + (folder_ / "gt.txt").string() + ' ' + more +
-        (std::string(more).find("--est ") == 0 ? "" : " --est " + (folder_ / "est.txt").string()));
+    const CommandResult r =
+        run_plvo("eval --gt " + (folder_ / "gt.txt").string() + ' ' + more +
+                 (std::string(more).find("--est ") == 0 ? "" : " --est " + (folder_ / "est.txt").string()));
     EXPECT_EQ(r.exit_code, 1) << more;
     EXPECT_NE(r.err.find("plvo: error: cannot read /nowhere"), std::string::npos) << r.err;
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;

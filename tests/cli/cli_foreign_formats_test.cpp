@@ -5,29 +5,24 @@
 #include <filesystem>
 #include <string>
 
-#include "command.hpp"
-#include "plvo_binary.hpp"
-#include "temporary_folder.hpp"
+#include "plvo_command.hpp"
 
 namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
-using test::kPlvo;
-using test::TemporaryFolder;
 using test::write_file;
 
-class CliForeignFormats : public ::testing::Test {
+class CliForeignFormats : public test::PlvoCommand {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void expect_told(const std::string& name, const std::string& what) const {
     const std::string recording = path(name);
     for (const std::string& command : {"run " + recording, "live --device " + recording,
                                        "record " + path("made") + " --device " + recording,
                                        "calibrate " + recording + " --out " + path("c.yaml"),
                                        "eval --gt " + recording + " --est " + path("t.txt")}) {
-      const CommandResult r = test::run_command(kPlvo + ' ' + command);
+      const CommandResult r = plvo(command);
       EXPECT_EQ(r.exit_code, 1) << command << r.err;
       EXPECT_NE(r.err.find(recording + " is " + what), std::string::npos) << command << '\n' << r.err;
       EXPECT_NE(r.err.find("share/doc/plvo/user/recordings.md"), std::string::npos)
@@ -35,8 +30,6 @@ class CliForeignFormats : public ::testing::Test {
     }
     EXPECT_FALSE(fs::exists(path("made")));
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliForeignFormats, RecognisesNameOrFirstBytes) {
@@ -64,7 +57,7 @@ TEST_F(CliForeignFormats, RecognisesNameOrFirstBytes) {
 TEST_F(CliForeignFormats, AcceptsOtherFiles) {
   fs::create_directory(path("mine"));
   write_file(path("mine/metadata.yaml"), "author: me\n");
-  const CommandResult r = test::run_command(kPlvo + " run " + path("mine"));
+  const CommandResult r = plvo("run " + path("mine"));
   EXPECT_NE(r.err.find("rgb.txt"), std::string::npos) << r.err;
 }
 

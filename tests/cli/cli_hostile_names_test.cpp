@@ -6,20 +6,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "plvo/host/printable.hpp"
+#include "plvo_command.hpp"
 #include "simulated_sequence.hpp"
-#include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
-using test::kPlvo;
 using test::read_file;
-using test::run_command;
-using test::TemporaryFolder;
 
 constexpr int kNamedFrames = 4;
 // ESC, a newline, CSI as C1 in UTF-8 and as a byte, and what HTML takes for the begin of a comment.
@@ -34,20 +30,17 @@ void expect_one_line(const std::string& text) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-class CliHostileNames : public ::testing::Test {
+class CliHostileNames : public test::PlvoCommand {
  protected:
   CliHostileNames() : walk_((folder_ / kHostile).string()) {
     fs::copy(test::simulated_sequence<kNamedFrames>(), walk_, fs::copy_options::recursive);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static CommandResult plvo(const std::string& arguments) {
-    const CommandResult r = run_command(kPlvo + ' ' + arguments);
+    const CommandResult r = PlvoCommand::plvo(arguments);
     expect_harmless(r.out);
     expect_harmless(r.err);
     return r;
   }
-
-  TemporaryFolder folder_;
   const std::string walk_;
 };
 

@@ -8,13 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "command.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/images/image_writer.hpp"
+#include "plvo_command.hpp"
 #include "simulated_sequence.hpp"
-#include "temporary_folder.hpp"
 
 namespace plvo {
 namespace {
@@ -24,30 +23,23 @@ using test::CommandResult;
 using test::kPlvo;
 using test::read_file;
 using test::run_command;
-using test::TemporaryFolder;
 using test::write_file;
 
 constexpr int kShortWalk = 4;
 
 const fs::path& short_walk() { return test::simulated_sequence<kShortWalk>(); }
 
-class CliOutputs : public ::testing::Test {
+class CliOutputs : public test::PlvoCommand {
  protected:
   CliOutputs() { fs::copy(short_walk(), folder_ / "walk", fs::copy_options::recursive); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  CommandResult run(const std::string& more) const {
-    return run_command(kPlvo + " run " + path("walk") + ' ' + more);
-  }
+  CommandResult run(const std::string& more) const { return plvo("run " + path("walk") + ' ' + more); }
   void expect_refused(const CommandResult& r, const std::string& words) const {
-    EXPECT_EQ(r.exit_code, 2) << r.out << r.err;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    PlvoCommand::expect_refused(r, 2, words);
   }
   static std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
   fs::path first_image(const char* kind) const {
     return fs::directory_iterator(folder_ / "walk" / kind)->path();
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(CliOutputs, NoOutputOverwritesAnInput) {
@@ -80,23 +72,19 @@ TEST_F(CliOutputs, OtherCommandsKeepTheirInputs) {
   expect_refused(run_command(eval + " --json " + truth), "--json: ");
   fs::create_directory(folder_ / "new");
   fs::copy(truth, folder_ / "new/groundtruth.txt");
-  expect_refused(run_command(kPlvo + " simulate --scene bare --size 96x64 --frames 1 --trajectory " +
-                             path("new/groundtruth.txt") + " --out " + path("new")),
+  expect_refused(plvo("simulate --scene bare --size 96x64 --frames 1 --trajectory " +
+                      path("new/groundtruth.txt") + " --out " + path("new")),
                  "is an input");
   write_file(folder_ / "walk.oni", "mine");
-  expect_refused(run_command(kPlvo + " live --device " + path("walk.oni") + " --out " + path("walk.oni")),
-                 "is an input");
-  expect_refused(run_command(kPlvo + " run " + path("walk.oni") + " --stats " + path("walk.oni")),
-                 "is an input");
-  expect_refused(run_command(kPlvo + " record " + path("walk.oni") + " --device " + path("walk.oni")),
-                 "is an input");
+  expect_refused(plvo("live --device " + path("walk.oni") + " --out " + path("walk.oni")), "is an input");
+  expect_refused(plvo("run " + path("walk.oni") + " --stats " + path("walk.oni")), "is an input");
+  expect_refused(plvo("record " + path("walk.oni") + " --device " + path("walk.oni")), "is an input");
   fs::create_directory(folder_ / "half");
   write_file(folder_ / "half/calibration.txt", "131 131 79.5 59.5 5000\n");
-  expect_refused(
-      run_command(kPlvo + " record " + path("half") + " --calibration " + path("half/calibration.txt")),
-      "is an input");
-  expect_refused(run_command(kPlvo + " doctor --calibration " + path("half/calibration.txt") + " --json " +
-                             path("half/calibration.txt")),
+  expect_refused(plvo("record " + path("half") + " --calibration " + path("half/calibration.txt")),
+                 "is an input");
+  expect_refused(plvo("doctor --calibration " + path("half/calibration.txt") + " --json " +
+                      path("half/calibration.txt")),
                  "is an input");
   EXPECT_EQ(read_file(truth), before);
   EXPECT_EQ(read_file(folder_ / "walk.oni"), "mine");
@@ -166,8 +154,8 @@ TEST_F(CliOutputs, FilesStateTheirReferenceFrames) {
       << header("m");
   // Readers treat this line as a comment.
   const CommandResult read_back =
-      run_command(kPlvo + " eval --gt " + path("walk/groundtruth.txt") + " --est " + path("t") +
-                  " --est-covariance " + path("c") + " --est-motions " + path("m") + " --json -");
+      plvo("eval --gt " + path("walk/groundtruth.txt") + " --est " + path("t") + " --est-covariance " +
+           path("c") + " --est-motions " + path("m") + " --json -");
   ASSERT_EQ(read_back.exit_code, 0) << read_back.err;
   EXPECT_TRUE(nlohmann::json::parse(read_back.out).contains("nees_motion"));
 }
@@ -235,9 +223,9 @@ TEST_F(CliOutputs, PosesOfTheRobotsBase) {
   moved("camera.t", "moved.t", T_base_camera.inverse());
   moved("walk/groundtruth.txt", "truth.t", T_base_camera.inverse());
   const auto eval = [&](const std::string& truth, const std::string& name) {
-    const CommandResult e = run_command(kPlvo + " eval --gt " + path(truth) + " --est " + path(name + ".t") +
-                                        " --est-covariance " + path(name + ".c") + " --est-motions " +
-                                        path(name + ".m") + " --json -");
+    const CommandResult e =
+        plvo("eval --gt " + path(truth) + " --est " + path(name + ".t") + " --est-covariance " +
+             path(name + ".c") + " --est-motions " + path(name + ".m") + " --json -");
     EXPECT_EQ(e.exit_code, 0) << e.err;
     return nlohmann::json::parse(e.out);
   };
@@ -315,8 +303,7 @@ TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
     write_file(folder_ / "walk/calibration.txt", colour + "\n" + said);
     const CommandResult r = run("--quiet --out " + path("half"));
     ASSERT_EQ(r.exit_code, 0) << r.err;
-    const CommandResult e =
-        run_command(kPlvo + " eval --gt " + path("whole") + " --est " + path("half") + " --json -");
+    const CommandResult e = plvo("eval --gt " + path("whole") + " --est " + path("half") + " --json -");
     ASSERT_EQ(e.exit_code, 0) << e.err;
     const auto json = nlohmann::json::parse(e.out);
     EXPECT_EQ(json["poses"], kShortWalk);
@@ -364,7 +351,7 @@ TEST_F(CliOutputs, UnwritableOutputsAreFoundBeforeTheFirstFrame) {
     EXPECT_NE(r.err.find("choose a path that can be written"), std::string::npos) << r.err;
     EXPECT_FALSE(fs::exists(folder_ / "frames/000000.png")) << "no frame was tracked before";
   }
-  EXPECT_EQ(run_command(kPlvo + " simulate --scene bare --size 96x64 --out " + path("plain/x")).exit_code, 1);
+  EXPECT_EQ(plvo("simulate --scene bare --size 96x64 --out " + path("plain/x")).exit_code, 1);
   // A successful check leaves no file behind and keeps an old report.
   write_file(folder_ / "old.html", "old");
   EXPECT_EQ(
@@ -397,16 +384,16 @@ TEST_F(CliOutputs, AssumptionsAreReportedAtTheStart) {
   // hint.
   fs::remove(folder_ / "walk/calibration.txt");
   fs::rename(folder_ / "walk", folder_ / "fr1_walk");
-  r = run_command(kPlvo + " run " + path("fr1_walk") + " --quiet");
+  r = plvo("run " + path("fr1_walk") + " --quiet");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_NE(r.err.find("as its name may say: --camera-model tum-fr1"), std::string::npos) << r.err;
   fs::rename(folder_ / "fr1_walk", folder_ / "rgbd_dataset_freiburg1_walk");
-  r = run_command(kPlvo + " run " + path("rgbd_dataset_freiburg1_walk") + " --quiet");
+  r = plvo("run " + path("rgbd_dataset_freiburg1_walk") + " --quiet");
   EXPECT_NE(r.err.find("640x480"), std::string::npos) << "the guess does not fit these images: " << r.err;
 }
 
 TEST_F(CliOutputs, SequenceOfOneFrameIsNoFailure) {
-  const CommandResult r = run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --frames 1");
+  const CommandResult r = plvo("run --camera sim --scene bare --size 160x120 --frames 1");
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("started                1"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("tracked                0"), std::string::npos) << r.out;
@@ -481,11 +468,10 @@ TEST_F(CliOutputs, KittiRowsWithoutStampsMustMatchInNumber) {
       run_command(eval + " --json - --kitti-times " + path("times") + ' ' + path("fewer"));
   ASSERT_EQ(timed.exit_code, 0) << timed.err;
   EXPECT_LT(nlohmann::json::parse(timed.out)["ate_m"]["max"].get<double>(), 1e-6);
-  EXPECT_EQ(run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("truth")).exit_code, 0);
+  EXPECT_EQ(plvo("eval --gt " + path("truth") + " --est " + path("truth")).exit_code, 0);
   // One file with row numbers and one with stamps.
   write_file(folder_ / "stamped", "50 0 0 0 0 0 0 1\n51 0 0 0 0 0 0 1\n");
-  const CommandResult mixed =
-      run_command(kPlvo + " eval --gt " + path("truth") + " --est " + path("stamped"));
+  const CommandResult mixed = plvo("eval --gt " + path("truth") + " --est " + path("stamped"));
   EXPECT_EQ(mixed.exit_code, 1);
   EXPECT_NE(mixed.err.find("the truth has no stamps"), std::string::npos) << mixed.err;
 }
@@ -507,7 +493,7 @@ TEST_F(CliOutputs, KittiTimesMustMatchTheirRows) {
   EXPECT_NE(more.err.find("11 stamps"), std::string::npos) << more.err;
   const std::string truth = path("walk/groundtruth.txt");
   const CommandResult tum =
-      run_command(kPlvo + " eval --gt " + truth + " --est " + truth + " --kitti-times " + path("times"));
+      plvo("eval --gt " + truth + " --est " + truth + " --kitti-times " + path("times"));
   EXPECT_EQ(tum.exit_code, 2);
   EXPECT_NE(tum.err.find("--kitti-times is for KITTI's rows"), std::string::npos) << tum.err;
 }

@@ -7,10 +7,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "plvo/replay/images/image_writer.hpp"
+#include "plvo_command.hpp"
 #include "simulated_sequence.hpp"
-#include "temporary_folder.hpp"
 #include "tiny_sequence.hpp"
 
 namespace plvo {
@@ -38,16 +37,13 @@ bool contains(const std::string& text, std::string_view words) {
 // A walk through a simulated room, rendered once; each test works on its own copy.
 const fs::path& master_sequence() { return test::simulated_sequence<kFrames>(); }
 
-class CliRun : public ::testing::Test {
+class CliRun : public test::PlvoCommand {
  protected:
   CliRun() : sequence_(folder_ / "walk") {
     fs::copy(master_sequence(), sequence_, fs::copy_options::recursive);
   }
 
-  CommandResult run(const std::string& more) const {
-    return run_command(kPlvo + " run " + sequence_.string() + ' ' + more);
-  }
-  std::string file(const char* name) const { return (folder_ / name).string(); }
+  CommandResult run(const std::string& more) const { return plvo("run " + sequence_.string() + ' ' + more); }
   // Returns the file in the k-th line of a list.
   fs::path image(const char* kind, int k) const {
     std::vector<fs::path> files;
@@ -56,58 +52,55 @@ class CliRun : public ::testing::Test {
     return files.at(static_cast<std::size_t>(k));
   }
   void expect_refused(const CommandResult& result, std::string_view words) const {
-    EXPECT_EQ(result.exit_code, 1) << result.out;
-    EXPECT_TRUE(contains(result.err, words)) << result.err;
+    PlvoCommand::expect_refused(result, 1, words);
     EXPECT_EQ(result.err.rfind("plvo: error: ", 0), 0u) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   }
-
-  TemporaryFolder folder_;
   fs::path sequence_;
 };
 
 TEST_F(CliRun, WritesAllOutputsOfATrackedSequence) {
-  const CommandResult r = run("--out " + file("t.txt") + " --covariance " + file("c.txt") + " --motions " +
-                              file("m.txt") + " --stats " + file("s.csv") + " --json " + file("j.json"));
+  const CommandResult r = run("--out " + path("t.txt") + " --covariance " + path("c.txt") + " --motions " +
+                              path("m.txt") + " --stats " + path("s.csv") + " --json " + path("j.json"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_TRUE(r.err.empty()) << r.err;
   for (const char* words :
        {"tracked", "CPU per frame", "matching", "arena", "resident memory", "against the ground truth"})
     EXPECT_TRUE(contains(r.out, words)) << words << '\n' << r.out;
-  EXPECT_EQ(lines_of(file("t.txt")), 1 + kFrames);
-  EXPECT_EQ(lines_of(file("c.txt")), 1 + kFrames);
-  EXPECT_EQ(lines_of(file("m.txt")), kFrames);
-  EXPECT_EQ(lines_of(file("s.csv")), 1 + kFrames);
-  const auto json = nlohmann::json::parse(read_file(file("j.json")));
+  EXPECT_EQ(lines_of(path("t.txt")), 1 + kFrames);
+  EXPECT_EQ(lines_of(path("c.txt")), 1 + kFrames);
+  EXPECT_EQ(lines_of(path("m.txt")), kFrames);
+  EXPECT_EQ(lines_of(path("s.csv")), 1 + kFrames);
+  const auto json = nlohmann::json::parse(read_file(path("j.json")));
   EXPECT_EQ(json["frames"], kFrames);
   EXPECT_EQ(json["lost"], 0);
   EXPECT_GT(json["memory_bytes"]["arena"], 0);
   EXPECT_LT(json["evaluation"]["ate_m"]["rmse"], 0.05);
 
   const CommandResult evaluated =
-      run_command(kPlvo + " eval --gt " + (sequence_ / "groundtruth.txt").string() + " --est " +
-                  file("t.txt") + " --est-covariance " + file("c.txt") + " --est-motions " + file("m.txt"));
+      plvo("eval --gt " + (sequence_ / "groundtruth.txt").string() + " --est " + path("t.txt") +
+           " --est-covariance " + path("c.txt") + " --est-motions " + path("m.txt"));
   EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
   EXPECT_TRUE(contains(evaluated.out, "of the motions     all, 6")) << evaluated.out;
 }
 
 TEST_F(CliRun, SameInputSameBytes) {
-  ASSERT_EQ(run("--quiet --out " + file("a.txt") + " --covariance " + file("ca.txt")).exit_code, 0);
-  ASSERT_EQ(run("--quiet --out " + file("b.txt") + " --covariance " + file("cb.txt")).exit_code, 0);
-  EXPECT_EQ(read_file(file("a.txt")), read_file(file("b.txt")));
-  EXPECT_EQ(read_file(file("ca.txt")), read_file(file("cb.txt")));
+  ASSERT_EQ(run("--quiet --out " + path("a.txt") + " --covariance " + path("ca.txt")).exit_code, 0);
+  ASSERT_EQ(run("--quiet --out " + path("b.txt") + " --covariance " + path("cb.txt")).exit_code, 0);
+  EXPECT_EQ(read_file(path("a.txt")), read_file(path("b.txt")));
+  EXPECT_EQ(read_file(path("ca.txt")), read_file(path("cb.txt")));
 }
 
 TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
-  ASSERT_EQ(run("--quiet --out " + file("1.txt") + " --covariance " + file("c1.txt")).exit_code, 0);
-  const CommandResult two = run("--cores 2 --out " + file("2.txt") + " --covariance " + file("c2.txt") +
-                                " --json " + file("j.json"));
+  ASSERT_EQ(run("--quiet --out " + path("1.txt") + " --covariance " + path("c1.txt")).exit_code, 0);
+  const CommandResult two = run("--cores 2 --out " + path("2.txt") + " --covariance " + path("c2.txt") +
+                                " --json " + path("j.json"));
   ASSERT_EQ(two.exit_code, 0) << two.err;
   EXPECT_TRUE(contains(two.out, "elapsed per frame")) << two.out;
-  EXPECT_EQ(read_file(file("1.txt")), read_file(file("2.txt")));
-  EXPECT_EQ(read_file(file("c1.txt")), read_file(file("c2.txt")));
+  EXPECT_EQ(read_file(path("1.txt")), read_file(path("2.txt")));
+  EXPECT_EQ(read_file(path("c1.txt")), read_file(path("c2.txt")));
   // The time of the second thread is included.
-  const auto json = nlohmann::json::parse(read_file(file("j.json")));
+  const auto json = nlohmann::json::parse(read_file(path("j.json")));
   double stages = 0;
   for (const char* stage : {"image", "points", "lines", "matching", "motion"})
     stages += json["cpu_ms"][stage]["mean"].get<double>();
@@ -117,8 +110,8 @@ TEST_F(CliRun, TwoCoresGiveTheSameBytes) {
 
 TEST_F(CliRun, SurfacesAreUsedUnlessDisabled) {
   const auto trajectory = [&](const std::string& options) {
-    EXPECT_EQ(run("--quiet --out " + file("t.txt") + ' ' + options).exit_code, 0);
-    return read_file(file("t.txt"));
+    EXPECT_EQ(run("--quiet --out " + path("t.txt") + ' ' + options).exit_code, 0);
+    return read_file(path("t.txt"));
   };
   EXPECT_EQ(trajectory(""), trajectory("--surfaces 200"));
   EXPECT_NE(trajectory(""), trajectory("--surfaces 0"));
@@ -129,43 +122,40 @@ TEST_F(CliRun, SurfacesAreUsedUnlessDisabled) {
 }
 
 TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {
-  ASSERT_EQ(run("--quiet --out " + file("recorded.txt")).exit_code, 0);
-  ASSERT_EQ(run_command(kPlvo + " run --camera sim --scene bare --size 160x120 --seed 3 --quiet --frames :" +
-                        std::to_string(kFrames) + " --out " + file("live.txt"))
+  ASSERT_EQ(run("--quiet --out " + path("recorded.txt")).exit_code, 0);
+  ASSERT_EQ(plvo("run --camera sim --scene bare --size 160x120 --seed 3 --quiet --frames :" +
+                 std::to_string(kFrames) + " --out " + path("live.txt"))
                 .exit_code,
             0);
-  EXPECT_EQ(read_file(file("recorded.txt")), read_file(file("live.txt")));
+  EXPECT_EQ(read_file(path("recorded.txt")), read_file(path("live.txt")));
 }
 
 TEST_F(CliRun, GyroAndAccelerometerBridgeACoveredLens) {
   const std::string simulated = " --scene desk --size 160x120 --seed 3 --covered 6:9 --quiet";
-  const CommandResult made =
-      run_command(kPlvo + " simulate --frames 12 --out " + file("covered") + simulated);
+  const CommandResult made = plvo("simulate --frames 12 --out " + path("covered") + simulated);
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const std::string command = kPlvo + " run " + file("covered");
-  const CommandResult lost = run_command(command + " --json " + file("lost.json"));
+  const std::string command = kPlvo + " run " + path("covered");
+  const CommandResult lost = run_command(command + " --json " + path("lost.json"));
   ASSERT_EQ(lost.exit_code, 0) << lost.err;
-  EXPECT_EQ(nlohmann::json::parse(read_file(file("lost.json")))["lost"], 3);
-  const CommandResult helped = run_command(command + " --imu --json " + file("helped.json") + " --stats " +
-                                           file("s.csv") + " --out " + file("t.txt"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("lost.json")))["lost"], 3);
+  const CommandResult helped = run_command(command + " --imu --json " + path("helped.json") + " --stats " +
+                                           path("s.csv") + " --out " + path("t.txt"));
   ASSERT_EQ(helped.exit_code, 0) << helped.err;
-  const auto json = nlohmann::json::parse(read_file(file("helped.json")));
+  const auto json = nlohmann::json::parse(read_file(path("helped.json")));
   EXPECT_EQ(json["lost"], 0);
   EXPECT_EQ(json["predicted"], 3);
   EXPECT_TRUE(contains(helped.out, "predicted")) << helped.out;
-  EXPECT_TRUE(contains(read_file(file("s.csv")), "predicted,\"predicted: hardly anything")) << helped.out;
-  EXPECT_EQ(lines_of(file("t.txt")), 1 + 12);
+  EXPECT_TRUE(contains(read_file(path("s.csv")), "predicted,\"predicted: hardly anything")) << helped.out;
+  EXPECT_EQ(lines_of(path("t.txt")), 1 + 12);
   // The simulator's readings equal those of its files up to the last digit.
-  ASSERT_EQ(run_command(kPlvo + " run --camera sim --frames 12 --imu --out " + file("live.txt") + simulated)
-                .exit_code,
-            0);
-  EXPECT_EQ(lines_of(file("live.txt")), 1 + 12);
+  ASSERT_EQ(plvo("run --camera sim --frames 12 --imu --out " + path("live.txt") + simulated).exit_code, 0);
+  EXPECT_EQ(lines_of(path("live.txt")), 1 + 12);
   // One of the two files is enough; at least one is required.
-  fs::remove(file("covered") + "/gyroscope.txt");
+  fs::remove(path("covered") + "/gyroscope.txt");
   const CommandResult level = run_command(command + " --imu");
   EXPECT_EQ(level.exit_code, 0) << level.err;
   EXPECT_TRUE(contains(level.err, "no gyro")) << level.err;
-  fs::remove(file("covered") + "/accelerometer.txt");
+  fs::remove(path("covered") + "/accelerometer.txt");
   expect_refused(run_command(command + " --imu"), "gyroscope.txt");
 }
 
@@ -177,29 +167,29 @@ TEST_F(CliRun, ImuAxesAreThreeDifferentOnes) {
     EXPECT_TRUE(contains(r.err, "x,-y,z")) << r.err;
   }
   EXPECT_EQ(run("--imu-axes x,y,z").exit_code, 2) << "without --imu";
-  EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --imu --imu-axes x,y,z").exit_code, 2);
-  EXPECT_EQ(run_command(kPlvo + " run --camera sim --frames 2 --covered 3:2").exit_code, 2);
+  EXPECT_EQ(plvo("run --camera sim --frames 2 --imu --imu-axes x,y,z").exit_code, 2);
+  EXPECT_EQ(plvo("run --camera sim --frames 2 --covered 3:2").exit_code, 2);
 }
 
 TEST_F(CliRun, UnreachableBudgetReducesFeatures) {
-  const CommandResult free = run("--json " + file("free.json"));
+  const CommandResult free = run("--json " + path("free.json"));
   EXPECT_FALSE(contains(free.out, "frame budget"));
-  EXPECT_EQ(nlohmann::json::parse(read_file(file("free.json")))["fewer_features"]["frames"], 0);
-  const CommandResult tight = run("--frame-budget 0.001 --json " + file("tight.json"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("free.json")))["fewer_features"]["frames"], 0);
+  const CommandResult tight = run("--frame-budget 0.001 --json " + path("tight.json"));
   EXPECT_EQ(tight.exit_code, 0) << tight.err;
   EXPECT_TRUE(contains(tight.out, "frame budget")) << tight.out;
-  const auto fewer = nlohmann::json::parse(read_file(file("tight.json")))["fewer_features"];
+  const auto fewer = nlohmann::json::parse(read_file(path("tight.json")))["fewer_features"];
   EXPECT_EQ(fewer["frames"], kFrames - 1) << "the first came before anything was known";
   EXPECT_GE(fewer["lowest_step"], 1);
   EXPECT_EQ(run("--frame-budget 0").exit_code, 2);
 }
 
 TEST_F(CliRun, TheTinyPresetTakesLessMemory) {
-  const CommandResult tiny = run("--preset tiny --json " + file("tiny.json"));
+  const CommandResult tiny = run("--preset tiny --json " + path("tiny.json"));
   EXPECT_EQ(tiny.exit_code, 0) << tiny.err;
-  (void)run("--json " + file("all.json"));
+  (void)run("--json " + path("all.json"));
   const auto bytes = [this](const char* name) {
-    return nlohmann::json::parse(read_file(file(name)))["memory_bytes"]["arena_peak"].get<long>();
+    return nlohmann::json::parse(read_file(path(name)))["memory_bytes"]["arena_peak"].get<long>();
   };
   EXPECT_LT(bytes("tiny.json"), bytes("all.json") / 2);
   for (const char* one : {"keyframe", "previous"})
@@ -213,24 +203,24 @@ TEST_F(CliRun, QuietWritesNothing) {
 }
 
 TEST_F(CliRun, FrameRange) {
-  ASSERT_EQ(run("--quiet --frames 1:4 --out " + file("t.txt")).exit_code, 0);
-  EXPECT_EQ(lines_of(file("t.txt")), 1 + 3);
+  ASSERT_EQ(run("--quiet --frames 1:4 --out " + path("t.txt")).exit_code, 0);
+  EXPECT_EQ(lines_of(path("t.txt")), 1 + 3);
   expect_refused(run("--frames 50:60"), "the frame range is empty");
 }
 
 TEST_F(CliRun, StepEndsWithItsInput) {
   const CommandResult r =
-      run("--pace step --out " + file("t.txt"));  // standard input is empty: no frame is released
+      run("--pace step --out " + path("t.txt"));  // standard input is empty: no frame is released
   EXPECT_EQ(r.exit_code, 3);
   EXPECT_TRUE(contains(r.err, "no frame could be tracked")) << r.err;
 }
 
 TEST_F(CliRun, OverlayAndReportAreWritten) {
-  const CommandResult r = run("--quiet --overlay " + file("overlay") + " --report " + file("r.html"));
+  const CommandResult r = run("--quiet --overlay " + path("overlay") + " --report " + path("r.html"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_TRUE(fs::exists(folder_ / "overlay/000000.png"));
   EXPECT_TRUE(fs::exists(folder_ / "overlay/000005.png"));
-  const std::string page = read_file(file("r.html"));
+  const std::string page = read_file(path("r.html"));
   EXPECT_TRUE(contains(page, "data:image/jpeg;base64,"));
   EXPECT_FALSE(contains(page, "http:") || contains(page, "https:"));  // the page loads nothing
   EXPECT_FALSE(contains(page, "@DATA@") || contains(page, "@SCRIPT@") || contains(page, "@STYLE@"));
@@ -238,8 +228,8 @@ TEST_F(CliRun, OverlayAndReportAreWritten) {
 
 TEST_F(CliRun, EmptyFolder) {
   fs::create_directory(folder_ / "empty");
-  expect_refused(run_command(kPlvo + " run " + file("empty")), "a sequence needs rgb.txt and depth.txt");
-  expect_refused(run_command(kPlvo + " run " + file("none")), "is not a folder");
+  expect_refused(plvo("run " + path("empty")), "a sequence needs rgb.txt and depth.txt");
+  expect_refused(plvo("run " + path("none")), "is not a folder");
 }
 
 TEST_F(CliRun, MissingDepthList) {
@@ -251,19 +241,19 @@ TEST_F(CliRun, TruncatedImageInTheMiddleIsSkipped) {
   const fs::path victim = image("rgb", 2);
   fs::resize_file(victim, fs::file_size(victim) / 2);
   const CommandResult r =
-      run("--out " + file("t.txt") + " --stats " + file("s.csv") + " --json " + file("j.json"));
+      run("--out " + path("t.txt") + " --stats " + path("s.csv") + " --json " + path("j.json"));
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_TRUE(contains(r.err, "plvo: warning: frame 2 skipped: rgb/")) << r.err;
-  EXPECT_EQ(lines_of(file("t.txt")), 1 + kFrames - 1);
-  EXPECT_TRUE(contains(read_file(file("s.csv")), ",damaged,\"rgb/")) << read_file(file("s.csv"));
-  EXPECT_EQ(nlohmann::json::parse(read_file(file("j.json")))["damaged"], 1);
+  EXPECT_EQ(lines_of(path("t.txt")), 1 + kFrames - 1);
+  EXPECT_TRUE(contains(read_file(path("s.csv")), ",damaged,\"rgb/")) << read_file(path("s.csv"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("j.json")))["damaged"], 1);
 }
 
 TEST_F(CliRun, EightBitDepth) {
   const std::vector<std::uint8_t> grey(160 * 120, 80);
   ASSERT_TRUE(write_png(image("depth", 0), ColourView{grey.data(), 160, 120, 160, PixelFormat::kGray8}).ok());
-  expect_refused(run("--out " + file("t.txt")), "has 8 bits per channel; depth must be a 16-bit grey PNG");
-  EXPECT_FALSE(fs::exists(file("t.txt")));  // refused before any output is written
+  expect_refused(run("--out " + path("t.txt")), "has 8 bits per channel; depth must be a 16-bit grey PNG");
+  EXPECT_FALSE(fs::exists(path("t.txt")));  // refused before any output is written
 }
 
 TEST_F(CliRun, ColourAndDepthOfDifferentSizes) {
@@ -284,11 +274,11 @@ TEST_F(CliRun, AllZeroDepth) {
   const std::vector<std::uint16_t> none(160 * 120, 0);
   for (int k = 0; k < kFrames; ++k)
     ASSERT_TRUE(write_png(image("depth", k), DepthView{none.data(), 160, 120, 160, 0.0002}).ok());
-  const CommandResult r = run("--quiet --out " + file("t.txt") + " --stats " + file("s.csv"));
+  const CommandResult r = run("--quiet --out " + path("t.txt") + " --stats " + path("s.csv"));
   EXPECT_EQ(r.exit_code, 3);
   EXPECT_TRUE(contains(r.err, "plvo: error: no frame could be tracked: ")) << r.err;
-  EXPECT_EQ(lines_of(file("s.csv")), 1 + kFrames);
-  EXPECT_EQ(lines_of(file("t.txt")), 1);  // the header: no frame has a pose
+  EXPECT_EQ(lines_of(path("s.csv")), 1 + kFrames);
+  EXPECT_EQ(lines_of(path("t.txt")), 1);  // the header: no frame has a pose
 }
 
 TEST_F(CliRun, NaNInTheCalibration) {
@@ -307,7 +297,7 @@ TEST_F(CliRun, UnknownDistortionModel) {
       folder_ / "info.yaml",
       "image_width: 160\nimage_height: 120\ncamera_matrix: {data: [131, 0, 79.5, 0, 131, 59.5, 0, 0, 1]}\n"
       "distortion_model: thin_prism\ndistortion_coefficients: {data: [0.1, 0, 0, 0]}\n");
-  expect_refused(run("--calibration " + file("info.yaml")), "'thin_prism' is not supported, only plumb_bob");
+  expect_refused(run("--calibration " + path("info.yaml")), "'thin_prism' is not supported, only plumb_bob");
 }
 
 TEST_F(CliRun, ALensThatFoldsTheImage) {
@@ -317,21 +307,21 @@ TEST_F(CliRun, ALensThatFoldsTheImage) {
 
 TEST_F(CliRun, OutputsThatCannotBeWritten) {
   write_file(folder_ / "plain_file", "");
-  const std::string below_a_file = file("plain_file") + "/t.txt";
+  const std::string below_a_file = path("plain_file") + "/t.txt";
   for (const char* option : {"--out ", "--covariance ", "--motions ", "--stats ", "--json ", "--report "}) {
     expect_refused(run("--quiet " + std::string(option) + below_a_file), "choose a path that can be written");
     expect_refused(run("--quiet " + std::string(option) + "/dev/full"), "No space left on device");
   }
-  expect_refused(run("--quiet --overlay " + file("plain_file") + "/frames"), "cannot make the folder");
+  expect_refused(run("--quiet --overlay " + path("plain_file") + "/frames"), "cannot make the folder");
 }
 
 TEST_F(CliRun, FullDiskKeepsWhatWasWritten) {
   // A file may grow to 400 bytes: the header and the complete lines that fit.
   const CommandResult r = run_command("bash -c 'trap \"\" XFSZ; ulimit -f 1; exec " + kPlvo + " run " +
-                                      sequence_.string() + " --quiet --covariance " + file("c.txt") + "'");
+                                      sequence_.string() + " --quiet --covariance " + path("c.txt") + "'");
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_TRUE(contains(r.err, "plvo: error: cannot write")) << r.err;
-  const std::string text = read_file(file("c.txt"));
+  const std::string text = read_file(path("c.txt"));
   ASSERT_FALSE(text.empty());
   EXPECT_EQ(text.back(), '\n');
   EXPECT_EQ(text[0], '#');
@@ -340,8 +330,8 @@ TEST_F(CliRun, FullDiskKeepsWhatWasWritten) {
 TEST(CliSimulate, RejectsBadInputWithAMessage) {
   const TemporaryFolder folder;
   write_file(folder / "file", "");
-  const CommandResult r = run_command(kPlvo + " simulate --scene bare --size 96x64 --frames 1 --out " +
-                                      (folder / "file").string());
+  const CommandResult r =
+      test::run_plvo("simulate --scene bare --size 96x64 --frames 1 --out " + (folder / "file").string());
   EXPECT_EQ(r.exit_code, 1);
   EXPECT_EQ(r.err.rfind("plvo: error: ", 0), 0u) << r.err;
 }
@@ -351,8 +341,8 @@ TEST(CliRunReal, TracksAKinect) {
   const fs::path folder = fs::path(shared == nullptr ? "" : shared) / "data" / "fr1_xyz_10f";
   if (!fs::exists(folder)) GTEST_SKIP() << "the shared sequences are not here: " << folder;
   const TemporaryFolder out;
-  const CommandResult r = run_command(kPlvo + " run " + folder.string() + " --camera-model tum-fr1 --json " +
-                                      (out / "j.json").string());
+  const CommandResult r = test::run_plvo("run " + folder.string() + " --camera-model tum-fr1 --json " +
+                                         (out / "j.json").string());
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const auto json = nlohmann::json::parse(read_file(out / "j.json"));
   EXPECT_EQ(json["lost"], 0);

@@ -4,37 +4,29 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/images/image_writer.hpp"
-#include "plvo_binary.hpp"
-#include "temporary_folder.hpp"
+#include "plvo_command.hpp"
 
 namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
-using test::kPlvo;
 using test::read_file;
-using test::run_command;
-using test::TemporaryFolder;
 using test::write_file;
 
-class CliScale : public ::testing::Test {
+class CliScale : public test::PlvoCommand {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   void simulate(const std::string& name, const std::string& more) const {
-    const CommandResult made =
-        run_command(kPlvo + " simulate --seed 3 --quiet --out " + path(name) + ' ' + more);
+    const CommandResult made = plvo("simulate --seed 3 --quiet --out " + path(name) + ' ' + more);
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   CommandResult run(const std::string& name, const std::string& more) const {
-    return run_command(kPlvo + " run " + path(name) + ' ' + more);
+    return plvo("run " + path(name) + ' ' + more);
   }
   nlohmann::json eval(const std::string& truth, const std::string& estimate) const {
-    const CommandResult r =
-        run_command(kPlvo + " eval --gt " + path(truth) + " --est " + path(estimate) + " --json -");
+    const CommandResult r = plvo("eval --gt " + path(truth) + " --est " + path(estimate) + " --json -");
     EXPECT_EQ(r.exit_code, 0) << r.err;
     return nlohmann::json::parse(r.out);
   }
@@ -62,8 +54,6 @@ class CliScale : public ::testing::Test {
       ASSERT_TRUE(write_png(file.path(), DepthView{large_depth.data(), width, height, width, 0.0002}).ok());
     }
   }
-
-  TemporaryFolder folder_;
 };
 
 // The same walk is rendered at 640×480 and at half that size.
@@ -122,8 +112,7 @@ TEST_F(CliScale, ImagesAboveTheLimitAreReducedWithAMessage) {
             std::string::npos)
       << as_large.err;
   fs::create_directory(folder_ / "out");
-  const CommandResult calibrate =
-      run_command(kPlvo + " calibrate " + path("walk") + " --out " + path("out/c.yaml"));
+  const CommandResult calibrate = plvo("calibrate " + path("walk") + " --out " + path("out/c.yaml"));
   EXPECT_EQ(calibrate.exit_code, 1);
   EXPECT_NE(calibrate.err.find("record a smaller mode"), std::string::npos) << calibrate.err;
 }

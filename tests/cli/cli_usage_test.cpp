@@ -8,21 +8,19 @@
 #include <set>
 #include <sstream>
 
-#include "command.hpp"
+#include "plvo_command.hpp"
 #include "tiny_sequence.hpp"
 
 namespace plvo {
 namespace {
 
 using test::CommandResult;
-using test::run_command;
+using test::run_plvo;
 using test::TemporaryFolder;
-
-CommandResult plvo(const std::string& arguments) { return run_command(PLVO_BINARY " " + arguments); }
 
 void expect_usage(const std::string& arguments, const std::string& words) {
   SCOPED_TRACE("plvo " + arguments);
-  const CommandResult r = plvo(arguments);
+  const CommandResult r = run_plvo(arguments);
   EXPECT_EQ(r.exit_code, 2) << r.out << r.err;
   EXPECT_TRUE(r.out.empty()) << r.out;
   EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
@@ -189,7 +187,7 @@ TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
   test::write_file(folder / "walk.oni", "mine");
   test::write_file(folder / "poses.txt", "mine");
   const auto expect_refused = [](const std::string& arguments, const std::string& words) {
-    const CommandResult r = plvo(arguments);
+    const CommandResult r = run_plvo(arguments);
     EXPECT_EQ(r.exit_code, 1) << arguments << ": " << r.err;
     EXPECT_NE(r.err.find(words), std::string::npos) << arguments << ": " << r.err;
   };
@@ -208,8 +206,8 @@ TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
   expect_refused("live --stream unix:" + at("no/socket"), at("no/socket"));
   expect_refused("live --view 192.0.2.1:0", "192.0.2.1");
   // Valid outputs are only tested: without a sensor no file is created and none is lost.
-  plvo("record " + at("new") + " --seconds 0.01 --device freenect://9-9");
-  plvo("live --device freenect://9-9 --record " + at("new.oni") + " --out " + at("poses.txt"));
+  run_plvo("record " + at("new") + " --seconds 0.01 --device freenect://9-9");
+  run_plvo("live --device freenect://9-9 --record " + at("new.oni") + " --out " + at("poses.txt"));
   EXPECT_FALSE(std::filesystem::exists(folder / "new"));
   EXPECT_FALSE(std::filesystem::exists(folder / "new.oni"));
   EXPECT_EQ(test::read_file(folder / "poses.txt"), "mine");
@@ -218,7 +216,7 @@ TEST(CliUsage, OutputsAreTestedBeforeASensorIsOpened) {
 // Returns for each flag of a command its type and its description in the help, on one line.
 std::map<std::string, std::string> flags_of(const std::string& command) {
   std::map<std::string, std::string> flags;
-  std::istringstream help(plvo(command + " --help").out);
+  std::istringstream help(run_plvo(command + " --help").out);
   std::string* told = nullptr;
   for (std::string line; std::getline(help, line);) {
     if (line.rfind("  --", 0) == 0) {
@@ -274,14 +272,16 @@ TEST(CliUsage, SameFlagHasTheSameEffect) {
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
   const std::string walk = (folder / "walk").string();
   // --frames N: the first N; --json FILE, and - for standard output, whatever the command.
-  const CommandResult first = plvo("run " + walk + " --frames 2 --quiet --json -");
-  const CommandResult range = plvo("run " + walk + " --frames 0:2 --quiet --json -");
+  const CommandResult first = run_plvo("run " + walk + " --frames 2 --quiet --json -");
+  const CommandResult range = run_plvo("run " + walk + " --frames 0:2 --quiet --json -");
   EXPECT_NE(first.out.find("\"frames\": 2,"), std::string::npos) << first.out << first.err;
   EXPECT_NE(range.out.find("\"frames\": 2,"), std::string::npos) << range.out << range.err;
   for (const char* command : {"run", "live", "eval", "doctor", "tilt"})
-    EXPECT_NE(plvo(std::string(command) + " --help").out.find("--json FILE"), std::string::npos) << command;
+    EXPECT_NE(run_plvo(std::string(command) + " --help").out.find("--json FILE"), std::string::npos)
+        << command;
   for (const char* command : {"run", "live", "record", "simulate"})
-    EXPECT_NE(plvo(std::string(command) + " --help").out.find("Warnings and errors only"), std::string::npos)
+    EXPECT_NE(run_plvo(std::string(command) + " --help").out.find("Warnings and errors only"),
+              std::string::npos)
         << command;
 }
 

@@ -133,7 +133,7 @@ TEST_F(BagMemory, BoundsClaimsOfGigabytes) {
 // Names have a length limit, because a bag may have ten thousand topics.
 TEST_F(BagMemory, RejectsTopicNamesOfKilobytes) {
   BagWriter writer;
-  writer.connection(0, '/' + std::string(1000, 'x'), kImageType);
+  writer.connection(0, std::string("/").append(1000, 'x'), kImageType);
   writer.connection(1, kColour, std::string(1000, 'x'));
   writer.end_chunk("none");
   write_file(path_, writer.file());

@@ -16,6 +16,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 FR1, FR3, CORRIDORS = "fr1_rpy_150=tum-fr1", "fr3_notexture_120=tum-fr3", "corridor_constant corridor_varying"
 
 # page -> (title, command; names of sequences are those of folders in --data, {work} is a folder for what is measured)
+# What PEERS names is a row of the page: without it the program was built without that peer.
+PEERS = {"recordings": "opencv-rgbd", "table2": "opencv-rgbd", "lighting": "opencv-rgbd", "detectors": "EDLines"}
 PAGES = {
     "recordings": ("Recorded sequences: every system",
                    f"plvo_bench run {FR1} {FR3} {CORRIDORS} --systems ours,paper,opencv --repeats 3 --out {{work}}/recordings"),
@@ -40,7 +42,7 @@ def machine():
         if line.startswith("model name"):
             processor = line.split(":", 1)[1].strip()
             break
-    return f"{processor}, {os.cpu_count()} cores, {platform.system()} {platform.release()} {platform.machine()}"
+    return f"{processor}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
 
 
 def page(title, stamp, text):
@@ -54,6 +56,9 @@ def measure(name, bench, data, work):
     title, command = PAGES[name]
     program, *words = command.format(work=work).split()
     run = subprocess.run([str(bench / program), *words], cwd=data, stdout=subprocess.PIPE, text=True, check=True)
+    if (peer := PEERS.get(name, "")) not in run.stdout:
+        sys.exit(f"update_results.py: {name}: {program} measured no {peer}: build it where OpenCV with contrib is installed "
+                 "(sudo apt install libopencv-contrib-dev); the page stays as it was")
     stamp = {"commit": commit(), "date": datetime.date.today().isoformat(), "machine": machine(),
              "command": f"`{command.format(work='results')}`", "written": "by `tools/plvo/bench/update_results.py`"}
     return page(title, stamp, run.stdout)
