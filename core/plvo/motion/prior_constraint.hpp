@@ -20,6 +20,7 @@ class PriorConstraint final : public ConstraintSet {
   int dof() const override { return 6; }
   bool usable(std::size_t) const override { return usable_; }
   Primitive primitive(std::size_t) const override { return {}; }
+  Extent extent(std::size_t) const override { return {Vector3::UnitZ()}; }
   double mahalanobis_squared(std::size_t, const Se3&, double) const override { return 0; }
   void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,

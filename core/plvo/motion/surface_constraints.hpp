@@ -59,6 +59,7 @@ class SurfaceConstraints final : public ConstraintSet {
   int dof() const override { return 1; }
   bool usable(std::size_t) const override { return false; }  // not used by RANSAC
   Primitive primitive(std::size_t) const override { return {}; }
+  Extent extent(std::size_t i) const override { return {matches_[i].p_current}; }
   // r² / σ². σ² does not contain the errors that the matches share. Where these are visible, the matches
   // weigh less (gate, robust loss, the learning of σ²); on real sensors this works better than a model of the
   // shared errors (docs/theory/noise.md).
