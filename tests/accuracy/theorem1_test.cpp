@@ -33,40 +33,44 @@ struct Modules {
 // Runs the stages of the odometry itself, because its result does not contain the estimate.
 class Pairs {
  public:
-  explicit Pairs(const CameraModel& camera) : memory_(bytes()) {
+  explicit Pairs(const CameraModel& camera) : camera_(camera), memory_(bytes()) {
     // The theorem covers independent kinds: errors that both share are switched off.
     config_.noise.angular_rate_error_rad_per_s = config_.noise.shared_depth_m = 0;
     config_.surfaces = false;
     arena_ = Arena(memory_);
     modules_.allocate(arena_, Limits::vga());
     arena_.seal();
-    modules_.extraction.init(camera, config_);
+    modules_.extraction.init(camera_);
   }
 
   // The motion since the previous frame.
   MotionEstimate next(const RgbdFrame& frame) {
-    TrackResult result;
-    const DepthSampler depth = modules_.extraction.depth_sampler(frame);
-    FrameFeatures& current = modules_.frames[slot_];
     const NoiseScales noise = config_.noise.initial;
+    StageTimes times{};
+    const StageContext context{camera_, config_, noise, arena_, times};
+    FeatureExtraction& extraction = modules_.extraction;
+    const DepthSampler depth = extraction.depth_sampler(frame, config_.depth_noise);
+    PredictedMotion predicted;
+    const CurrentFrame current{context, extraction, depth, predicted, modules_.frames[slot_]};
     const Limits limits = Limits::vga();
-    current.clear({static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
-    modules_.extraction.extract(frame, depth, true, arena_, current, result);
+    current.features.clear(
+        {static_cast<std::size_t>(limits.keypoints), static_cast<std::size_t>(limits.segments)});
+    (void)extraction.prepare_image(context, frame.colour);
+    extraction.detect(context, depth, true, current.features);
+    current.describe_points();
     TrackedMotion tracked;
     const MotionEstimate& motion = tracked.motion;
     if (has_reference_) {
-      const Reference reference{&modules_.frames[1 - slot_], prior_, {}};
-      const PropagatedPrior nothing;
-      const MotionReference nobody;
-      const CurrentFrame now{current, modules_.extraction, depth, noise, nothing, nobody};
-      modules_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
+      Reference reference;
+      reference.features = &modules_.frames[1 - slot_];
+      modules_.tracking.find(reference, current, T_predicted_, config_.points.match.radius_px, tracked);
       const Se3 T_found = motion.T_current_reference;
-      if (motion.status == StatusCode::kOk)
-        modules_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);
+      if (tracked.ok()) modules_.tracking.refine({&reference, 1}, current, T_found, tracked);
+    } else {
+      extraction.lift_lines(context, depth, {}, current.features.lines);
     }
-    if (!has_reference_) modules_.extraction.lift_lines(depth, {}, noise, arena_, current.lines, result);
-    modules_.extraction.lift(depth, noise, arena_, current);
-    prior_.T_current_reference = motion.T_current_reference;  // predicts the motion of the next pair
+    extraction.lift(context, depth, current.features);
+    T_predicted_ = motion.T_current_reference;  // of the next pair
     has_reference_ = true;
     slot_ = 1 - slot_;
     return motion;
@@ -82,11 +86,12 @@ class Pairs {
     return sizer.peak() + kArenaAlignment;
   }
 
+  CameraModel camera_;
   Config config_;
   std::vector<std::byte> memory_;
   Arena arena_;
   Modules modules_;
-  PairPrior prior_;
+  Se3 T_predicted_;
   std::size_t slot_ = 0;
   bool has_reference_ = false;
 };

@@ -112,7 +112,7 @@ TEST(RecordedImu, EqualsALiveSensor) {
       (void)live.add_gyro(all.gyro[next]);
       (void)live.add_acceleration(all.accelerometer[next]);
     }
-    const MotionPrior a = recorded.prior(stamp), b = live.prior(stamp);
+    const MotionPrior a = recorded.until(stamp).prior(stamp), b = live.prior(stamp);
     ASSERT_EQ(a.rotation.has_value(), b.rotation.has_value());
     if (a.rotation) {
       EXPECT_EQ(a.rotation->R_now_before, b.rotation->R_now_before);

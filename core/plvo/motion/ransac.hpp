@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RANSAC over mixed minimal sets (section 5.1 of the paper) for any kinds of constraints.
+// RANSAC over mixed minimal sets (section 5.1 of the paper) for any kinds of features.
 //
 // Sampling: three different matches, uniformly over all usable matches of all kinds. The kinds drawn decide
 // which of the four solvers runs. Before the first test all matches are equally likely to be good, so each
@@ -40,7 +40,7 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint8_t kind = 0;
+  std::uint8_t set = 0;
   std::uint16_t index = 0;
   float evidence = 0;
 };
@@ -54,10 +54,12 @@ class Ransac {
   // A consensus that covers more than this share of the evidence is beyond dispute: no other covers more.
   static constexpr double kMajority = 0.5;
 
-  // scratch: one RansacCandidate for every match of all sets; matches that do not fit are ignored. solver:
-  // used by the refinements; the caller may use it between them. references must outlive this object.
-  Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
-         const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch, MotionSolver& solver);
+  // terms: what the refinements minimise, first the sets. scratch: one RansacCandidate for every match of all
+  // sets; matches that do not fit are ignored. solver: used by the refinements; the caller may use it between
+  // them. references and terms must outlive this object.
+  Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms, const MotionReferences& references,
+         const MotionConfig& config, const MotionProblem::Kernels& kernels,
+         std::span<RansacCandidate> scratch, MotionSolver& solver);
 
   // Number of all usable matches, and of those that may form minimal sets.
   std::size_t usable() const { return usable_; }
@@ -72,9 +74,9 @@ class Ransac {
   // Share of the evidence of all usable matches that the flagged inliers have.
   double covered() const;
 
-  // Returns false if no minimal set drawn from the flagged inliers determines the motion: all lines parallel,
-  // all points on a line. The covariance does not reveal this, since noise in the directions of parallel
-  // lines looks like information. Reorders the scratch.
+  // Returns false if no minimal set drawn from the flagged inliers determines the motion, and no other term
+  // does: all lines parallel, all points on a line. The covariance does not reveal this, since noise in the
+  // directions of parallel lines looks like information. Reorders the scratch.
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
@@ -89,6 +91,7 @@ class Ransac {
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
+  const CostTerms& terms_;
   const MotionReferences& references_;
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
@@ -100,7 +103,7 @@ class Ransac {
   double evidence_ = 0;       // of all candidates
   bool is_majority_ = false;  // the best hypothesis
   double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
-  std::array<double, kMaxConstraintKinds> threshold_{};
+  std::array<double, kMaxConstraintSets> threshold_{};
 };
 
 }  // namespace plvo

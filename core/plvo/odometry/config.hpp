@@ -13,6 +13,7 @@
 #include "plvo/lines/line_match.hpp"
 #include "plvo/motion/motion_config.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/noise_scales.hpp"
 #include "plvo/points/detector.hpp"
 #include "plvo/points/point_match.hpp"
 

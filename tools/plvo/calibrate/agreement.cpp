@@ -116,7 +116,7 @@ class PairJudge {
     const Se3 T_predicted = current_frame.T_world_camera.inverse() * reference_frame.T_world_camera;
     constexpr LmOptions kSolve{.max_iterations = 20, .step_tolerance = 1e-6, .decrease_tolerance = 1e-9};
     const MotionEstimate motion =
-        estimate_motion(sets, MotionReferences{}, MotionConfig{}, kSolve, 1, &T_predicted, scratch_);
+        estimate_motion(sets, {}, MotionReferences{}, MotionConfig{}, kSolve, 1, &T_predicted, scratch_);
     if (motion.status != StatusCode::kOk)
       return kFarthestPoint * static_cast<double>(pair.points.size()) +
              kFarthestLine * static_cast<double>(pair.lines.size());

@@ -21,8 +21,9 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/motion/motion_estimator.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
-#include "plvo/odometry/gravity_filter.hpp"
-#include "plvo/odometry/kept_keyframes.hpp"
+#include "plvo/odometry/motion_model.hpp"
+#include "plvo/odometry/window/kept_keyframes.hpp"
+#include "plvo/odometry/window/pose_with_covariance.hpp"
 
 namespace plvo {
 
@@ -35,10 +36,8 @@ class Window {
   struct Frame {
     FrameFeatures features;  // the current frame has only these until it is tracked
     PoseWithCovariance pose;
-    // Twist of the scene in the camera's axes, per second (exposure.hpp), measured over the motion_ns since
-    // the last good frame before it. When the next frame is tracked, it becomes the mean of both sides.
-    Vector6 velocity = Vector6::Zero();
-    std::int64_t motion_ns = 0;  // 0: there is no such frame, and the velocity is not known
+    // Since the last good frame before it. When the next frame is tracked, it becomes the mean of both sides.
+    Velocity velocity;
   };
   // Covariance of T_frame_keyframe.
   struct RelativeCovariance {
@@ -71,6 +70,8 @@ class Window {
   int keyframe() const { return keyframe_; }
   int recent() const { return recent_; }
   int older() const { return older_; }
+  // The frame that the current pose is chained to: the keyframe or, without one, the last frame.
+  int base() const { return has_keyframe() ? keyframe_ : last_; }
   bool has_last() const { return last_ != kNoFrame; }
   bool has_keyframe() const { return keyframe_ != kNoFrame; }
   bool has_recent() const { return recent_ != keyframe_; }
@@ -109,9 +110,9 @@ class Window {
   void resume(int slot);
   // Stores the covariance of T_current_keyframe of the tracked frame.
   void set_motion(const RelativeCovariance& covariance) { last_motion_ = covariance; }
-  // Computes the velocity of the current frame from its pose and the last frame's, motion_ns apart; it also
+  // Computes the velocity of the current frame from its pose and the last frame's, elapsed_ns apart; it also
   // refines the velocity of the last frame.
-  void set_velocity(std::int64_t motion_ns);
+  void set_velocity(std::int64_t elapsed_ns);
   // Makes the current frame the last one and gives it the roles that are not kept. keep_older: a replaced
   // keyframe becomes the older one.
   void advance(const Kept& kept, bool keep_older);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/odometry/window.hpp"
+#include "plvo/odometry/window/window.hpp"
 
 #include <utility>
 
@@ -67,7 +67,7 @@ FrameFeatures& Window::begin_frame() {
 
 void Window::start(const PoseWithCovariance& pose) {
   set_pose(current_, pose);
-  (*this)[current_].motion_ns = 0;
+  (*this)[current_].velocity = {};
   last_motion_ = recent_motion_ = {};
   keyframe_ = recent_ = last_ = current_;
   older_ = kNoFrame;
@@ -79,14 +79,15 @@ void Window::resume(int slot) {
   keyframe_ = recent_ = slot;
 }
 
-void Window::set_velocity(std::int64_t motion_ns) {
+void Window::set_velocity(std::int64_t elapsed_ns) {
   Frame& last = (*this)[last_];
   Frame& current = (*this)[current_];
   const Se3 T_current_last = current.pose.T_world_camera.inverse() * last.pose.T_world_camera;
-  current.velocity = boxminus(T_current_last, Se3{}) / (static_cast<double>(motion_ns) * 1e-9);
-  current.motion_ns = motion_ns;
-  last.velocity = last.motion_ns > 0 ? Vector6(0.5 * (last.velocity + current.velocity)) : current.velocity;
-  last.motion_ns = motion_ns;
+  current.velocity = {mean_velocity(T_current_last, static_cast<double>(elapsed_ns) * 1e-9), elapsed_ns};
+  const Vector6 both_sides = last.velocity.known()
+                                 ? Vector6(0.5 * (last.velocity.value + current.velocity.value))
+                                 : current.velocity.value;
+  last.velocity = {both_sides, elapsed_ns};
 }
 
 void Window::advance(const Kept& kept, bool keep_older) {
