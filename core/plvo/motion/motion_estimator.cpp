@@ -124,6 +124,16 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     ransac.judge(T, 1);
     return StatusCode::kOk;
   };
+  // Approaches the best motion that RANSAC finds. What was estimated with another motion is discarded.
+  const auto start_anew = [&] {
+    solving.references = references;
+    shared = start.shared;
+  };
+  const auto search = [&] {
+    start_anew();
+    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
+    return approach(kWiderThanRefined);
+  };
   StatusCode status = StatusCode::kOk;
   if (start.estimated) {
     T = *start.prediction;
@@ -131,12 +141,15 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
   }
   if (!start.estimated || !consensus()) {
-    // The matches do not support the caller's estimate; its references and nuisance parameters are discarded.
-    solving.references = references;
-    shared = start.shared;
-    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    status = approach(kWiderThanRefined);
+    status = search();
     if (status != StatusCode::kOk) return status;
+  } else if (const double covered = ransac.covered(); covered < Ransac::kMajority) {
+    if (search() != StatusCode::kOk || !(ransac.covered() > covered)) {
+      start_anew();
+      T = *start.prediction;
+      status = approach(kWiderThanEstimated);
+      if (status != StatusCode::kOk) return status;
+    }
   }
   status = refine(lm);
   if (status != StatusCode::kOk) return status;
