@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the depth mask of a keypoint with its definition: a pixel belongs to the mask when every pixel of
 // the level within two pixels has a depth that differs by less than 6 %, or has no depth and is surrounded by
-// such pixels: each square of 5×5 pixels that contains it contains one of them.
+// such pixels: each square of 3×3 pixels that contains it contains one of them.
 #include "plvo/points/depth_mask.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,7 @@ WindowMask depth_mask_of(const DepthSampler& depth, const Keypoint& keypoint, do
 
 WindowMask slow_mask(const Scene& scene, const Keypoint& keypoint, double depth_m) {
   constexpr int kRim = 2;
-  constexpr int kHole = 2;
+  constexpr int kHole = 1;
   const int step = 1 << keypoint.level;
   // The depth of the pixel of the keypoint's level at this offset in columns and rows from the keypoint. The
   // pixels beside the first that it covers serve where that has none.
@@ -176,7 +177,8 @@ TEST(DepthMask, EqualsItsDefinitionWithHoles) {
 }
 
 TEST(DepthMask, IsWholeWhereTheSurfaceSurroundsItsHoles) {
-  for (const HolePattern& pattern : kHolePatterns) {
+  // The last pattern has holes of 3×3 pixels.
+  for (const HolePattern& pattern : std::span(kHolePatterns).first(kHolePatterns.size() - 1)) {
     const Scene wall([&](int x, int y) { return pattern.missing(x, y) ? 0.0 : 1.0; });
     const DepthSampler sampler = wall.sampler();
     int pixels = 0, windows = 0;
@@ -186,12 +188,12 @@ TEST(DepthMask, IsWholeWhereTheSurfaceSurroundsItsHoles) {
           pixels += count(depth_mask_of(sampler, keypoint_at(u, v, level), 1.0));
     EXPECT_GT(pixels, 0.95 * windows * kWindowColumns * kWindowRows) << pattern.name;
   }
-  // A hole of 4×4 pixels is filled; one of 5×5 is not.
-  for (const int side : {4, 5}) {
+  // A hole of 2×2 pixels is filled; one of 3×3 is not, nor the rim of 2 px around it.
+  for (const int side : {2, 3}) {
     const Scene hole(
         [&](int x, int y) { return x >= 38 && y >= 38 && x < 38 + side && y < 38 + side ? 0.0 : 1.0; });
     EXPECT_EQ(count(depth_mask_of(hole.sampler(), keypoint_at(40, 40, 0), 1.0)),
-              side == 4 ? kWindowColumns * kWindowRows : 0);
+              side == 2 ? kWindowColumns * kWindowRows : kWindowColumns * kWindowRows - 7 * 7);
   }
   const Scene blind([](int, int) { return 0.0; });
   EXPECT_EQ(depth_mask_of(blind.sampler(), keypoint_at(40, 40, 0), 1.0), WindowMask{});

@@ -25,6 +25,7 @@ inline constexpr std::array kHolePatterns = {
     HolePattern{"every third row and column", [](int x, int y) { return x % 3 == 0 || y % 3 == 0; }},
     HolePattern{"all but every third row and column", [](int x, int y) { return x % 3 != 1 || y % 3 != 1; }},
     HolePattern{"every second row", [](int, int y) { return y % 2 == 0; }},
+    HolePattern{"64 % in a grid", [](int x, int y) { return 3 * x % 5 >= 3 || 3 * y % 5 >= 3; }},
     HolePattern{"36 % at random", [](int x, int y) { return one_of_hundred(x, y, 36); }},
     HolePattern{"64 % at random", [](int x, int y) { return one_of_hundred(x, y, 64); }},
 };

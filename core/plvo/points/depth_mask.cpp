@@ -21,7 +21,7 @@ constexpr double kSameSurface = 0.06;
 // Pixels without depth belong to the keypoint's surface where its readings surround them: where every square
 // of 2 · kHole + 1 pixels around them contains one. Beside an edge there is such a square without one, on the
 // other surface, whatever the width of the shadow between the two.
-constexpr int kHole = 2;
+constexpr int kHole = 1;
 
 constexpr int kSurfaceReach = kWindowReach + kRim;
 constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
