@@ -124,30 +124,34 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     ransac.judge(T, 1);
     return StatusCode::kOk;
   };
-  // Approaches the best motion that RANSAC finds. What was estimated with another motion is discarded.
-  const auto start_anew = [&] {
+  // Approaches the motion anew; what was estimated with another one is discarded.
+  const auto approach_from = [&](const Se3& from, double scale) {
     solving.references = references;
     shared = start.shared;
+    T = from;
+    return approach(scale);
   };
-  const auto search = [&] {
-    start_anew();
-    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    return approach(kWiderThanRefined);
-  };
-  StatusCode status = StatusCode::kOk;
+  Se3 first;
+  double scale = kWiderThanEstimated;
+  StatusCode status = StatusCode::kNoConsensus;
   if (start.estimated) {
-    T = *start.prediction;
-    status = approach(kWiderThanEstimated);
+    first = *start.prediction;
+    status = approach_from(first, scale);
     if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
   }
-  if (!start.estimated || !consensus()) {
-    status = search();
+  if (status != StatusCode::kOk || !consensus()) {
+    scale = kWiderThanRefined;
+    if (!ransac.run(seed, start.prediction, Ransac::Gain::kMatch, first, estimate.ransac))
+      return StatusCode::kNoConsensus;
+    status = approach_from(first, scale);
     if (status != StatusCode::kOk) return status;
-  } else if (const double covered = ransac.covered(); covered < Ransac::kMajority) {
-    if (search() != StatusCode::kOk || !(ransac.covered() > covered)) {
-      start_anew();
-      T = *start.prediction;
-      status = approach(kWiderThanEstimated);
+  }
+  if (const double covered = ransac.covered(); covered < Ransac::kMajority) {
+    Se3 other;
+    if (!ransac.run(seed, start.prediction, Ransac::Gain::kEvidence, other, estimate.ransac) ||
+        approach_from(other, kWiderThanRefined) != StatusCode::kOk || !consensus() ||
+        !(ransac.covered() > covered)) {
+      status = approach_from(first, scale);
       if (status != StatusCode::kOk) return status;
     }
   }

@@ -99,10 +99,12 @@ double Ransac::covered() const {
   return inliers / evidence_;
 }
 
-bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
+bool Ransac::run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary) {
   summary = {};
+  gain_ = gain;
   fresh_to_beat_ = 0;
   is_majority_ = false;
+  inliers_ = 0;
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
   if (samplable_ >= 3) {
@@ -184,14 +186,14 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_) {
     const double threshold = threshold_[candidate.set];
-    const auto evidence = static_cast<double>(candidate.evidence);
+    const double gained = gain(candidate);
     const ConstraintSet& set = *sets_[candidate.set];
     const double s =
         set.mahalanobis_squared(candidate.index, motions[set.reference()], kFreshScale * threshold);
-    if (s <= kFreshScale * threshold) refined_score_as_fresh += evidence * (kFreshScale * threshold - s);
+    if (s <= kFreshScale * threshold) refined_score_as_fresh += gained * (kFreshScale * threshold - s);
     if (s > threshold) continue;
-    refined_score += evidence * (threshold - s);
-    covered += evidence;
+    refined_score += gained * (threshold - s);
+    covered += static_cast<double>(candidate.evidence);
     ++inliers;
   }
   if (!(refined_score > summary.score)) return false;
@@ -208,17 +210,14 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  const auto gain = [](const RansacCandidate& candidate, double of) {
-    return static_cast<double>(candidate.evidence) * of;
-  };
   for (const RansacCandidate& candidate : candidates_)
-    possible += gain(candidate, kFreshScale * threshold_[candidate.set]);
+    possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : candidates_) {
     const double threshold = kFreshScale * threshold_[candidate.set];
     const ConstraintSet& set = *sets_[candidate.set];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
     // The match gains threshold − s instead of threshold, so the upper bound shrinks by s.
-    possible -= gain(candidate, s < threshold ? s : threshold);
+    possible -= gain(candidate) * (s < threshold ? s : threshold);
     if (possible <= to_beat) return 0;
   }
   return possible;
@@ -256,8 +255,8 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 }
 
 int Ransac::iterations_needed() const {
-  // Another motion may cover more and have fewer inliers.
-  if (inliers_ < 3 || !is_majority_) return config_.max_ransac_iterations;
+  // A consensus with few inliers may have the most evidence.
+  if (inliers_ < 3 || (gain_ == Gain::kEvidence && !is_majority_)) return config_.max_ransac_iterations;
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;

@@ -12,9 +12,10 @@
 //
 // Evidence: a scene may hold more than one motion, and the camera's is that of the larger part of the scene,
 // not that of the most features: an object or a part of the robot may have most of the texture, but it is
-// smaller than the room. So the gain of a match is weighted by the size of what it stands for. The image is
-// divided into square cells, and the matches of a cell with one reference share its evidence: its width in
-// metres, which is in proportion to the depth. A line has that of all the cells that it spans.
+// smaller than the room. The evidence of a match is the size of what it stands for. The image is divided into
+// square cells, and the matches of a cell with one reference share its evidence: its width in metres, which
+// is in proportion to the depth. A line has that of all the cells that it spans. If the consensus of the most
+// matches has less than half of the evidence, the estimator searches for the one that has the most.
 #pragma once
 
 #include <array>
@@ -65,8 +66,13 @@ class Ransac {
   std::size_t usable() const { return usable_; }
   std::size_t samplable() const { return samplable_; }
 
+  // What an inlier adds to the score is in proportion to this.
+  enum class Gain : std::uint8_t {
+    kMatch,     // every match counts the same
+    kEvidence,  // the part of the scene that it stands for
+  };
   // Writes the best motion to T. Returns false if no hypothesis has a score above zero.
-  bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
+  bool run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary);
 
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
@@ -81,6 +87,9 @@ class Ransac {
 
  private:
   void weigh();
+  double gain(const RansacCandidate& candidate) const {
+    return gain_ == Gain::kMatch ? 1 : static_cast<double>(candidate.evidence);
+  }
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
@@ -100,7 +109,8 @@ class Ransac {
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;
   int inliers_ = 0;
-  double evidence_ = 0;       // of all candidates
+  double evidence_ = 0;  // of all candidates
+  Gain gain_ = Gain::kMatch;
   bool is_majority_ = false;  // the best hypothesis
   double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
   std::array<double, kMaxConstraintSets> threshold_{};
