@@ -6,6 +6,7 @@
 #include "bag_writer.hpp"
 #include "peak_memory.hpp"
 #include "plvo/rosbag/bag_camera.hpp"
+#include "plvo/rosbag/containers/bag_file.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
 

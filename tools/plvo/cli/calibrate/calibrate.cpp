@@ -275,7 +275,7 @@ void check(const CLI::App& command, const CalibrateOptions& options) {
     add_inputs(camera_options(options, recording), files);
   }
   if (std::none_of(options.recordings.begin(), options.recordings.end(),
-                   [](const std::string& recording) { return is_bag_file(recording); }))
+                   [](const std::string& recording) { return is_bag(recording); }))
     refuse_bag_options(command);
   files.check();
 }

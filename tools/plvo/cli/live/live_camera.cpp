@@ -51,7 +51,7 @@ void check_live_camera_options(const CLI::App& command, const LiveCameraOptions&
   if (is_recorded_device(options.device))
     refuse_options(command, {"--mode"},
                    "does not apply to a recording, which has a size and a rate of its own");
-  if (!is_bag_file(options.device)) refuse_bag_options(command);
+  if (!is_bag(options.device)) refuse_bag_options(command);
 }
 
 void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
@@ -81,7 +81,7 @@ bool parse_video_mode(const std::string& text, VideoMode& mode) {
 }
 
 bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
-bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag_file(path); }
+bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag(path); }
 
 int exit_code_of_camera(const Status& status, const std::string& device) {
   switch (status.code()) {
@@ -217,8 +217,7 @@ Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); 
 
 Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
   if (Status status = refuse_foreign_format(options.device); !status.ok()) return status;
-  return is_bag_file(options.device) ? open_bag_device(options, log, camera)
-                                     : open_sensor(options, log, camera);
+  return is_bag(options.device) ? open_bag_device(options, log, camera) : open_sensor(options, log, camera);
 }
 
 }  // namespace plvo::cli

@@ -71,13 +71,13 @@ Status check_outputs(const RecordOptions& options) {
 
 // All that a bag has, before anything is made.
 Status read_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
-  return options.imu && is_bag_file(options.camera.device) ? camera.read_imu(readings) : Status();
+  return options.imu && is_bag(options.camera.device) ? camera.read_imu(readings) : Status();
 }
 
 Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
                  LiveAccelerometer& accelerometer) {
   if (!options.imu) return {};
-  if (is_bag_file(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
+  if (is_bag(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
   accelerometer.keep_in(options.path);
   return accelerometer.start(camera, false);
 }
@@ -146,8 +146,7 @@ void check(const CLI::App& command, const RecordOptions& options) {
         command, kCalibrationGroup,
         "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
     refuse_options(command, {"--imu"}, "an .oni file keeps no readings of it; record a folder instead");
-    if (is_bag_file(options.camera.device))
-      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
+    if (is_bag(options.camera.device)) refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
     for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
