@@ -318,6 +318,37 @@ class RosRecordings(unittest.TestCase):
         self.expect_equal(file)
         self.assertIn(f"depth is taken from {DEPTH}", plvo("run", file).stderr)
 
+    def test_info(self):
+        file = self.folder / "viewer.db3"
+        containers.write_db3(file, self.realsense("cdr_le"))
+        told = plvo("info", file, "--json", "-")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        info = json.loads(told.stdout)
+        self.assertEqual((info["opens"], info["frames"], info["depth_units_per_metre"]), (True, 6, UNITS))
+        self.assertFalse(info["depth_is_registered"])
+        used = {topic["used_as"]: topic for topic in info["topics"]}
+        self.assertEqual(used["colour"]["name"], "/device_0/sensor_1/Color_0/image/data")
+        self.assertEqual((used["depth"]["encoding"], used["depth"]["width"], used["depth"]["messages"]), ("mono16", 160, 6))
+        self.assertAlmostEqual(used["depth"]["rate_hz"], 30, places=1)
+        page = plvo("info", file).stdout
+        for words in ("database of rosbag2", "plvo run takes 6 frames", "15.0 mm from colour", "missing: no gyro"):
+            self.assertIn(words, page)
+        # Without depth it is described all the same, and the exit code says that it cannot be run.
+        containers.write_mcap(self.folder / "a.mcap", [m for m in self.messages("cdr_le") if m[0] != DEPTH])
+        told = plvo("info", self.folder / "a.mcap")
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("plvo run cannot start: no topic has images of depth", told.stdout)
+        told = plvo("info", self.walk.folder, "--json", "-")
+        self.assertEqual(json.loads(told.stdout)["frames"], 6, told.stderr)
+
+    def test_convert(self):
+        file, folder = self.folder / "a.mcap", self.folder / "converted"
+        containers.write_mcap(file, self.messages("cdr_be"), compression="lz4")
+        made = plvo("convert", file, "--out", folder, "--quiet")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.expect_equal(folder)
+        self.assertEqual(plvo("convert", folder, "--out", self.folder / "x").returncode, 2)
+
     def test_hostile_databases(self):
         import sqlite3
         file = self.folder / "a.db3"

@@ -252,7 +252,8 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
 TEST(CliUsage, SameFlagHasTheSameMeaning) {
   std::map<std::string, std::set<std::string>> meanings;
   std::map<std::string, std::string> where;
-  for (const char* command : {"run", "live", "record", "calibrate", "eval", "simulate", "doctor", "tilt"}) {
+  for (const char* command :
+       {"run", "live", "record", "convert", "info", "calibrate", "eval", "simulate", "doctor", "tilt"}) {
     const auto flags = flags_of(command);
     EXPECT_FALSE(flags.empty()) << command;
     for (const auto& [flag, words] : flags) {

@@ -32,8 +32,8 @@ void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, Play
       "--device", options.device,
       fmt::format("A sensor by its OpenNI2 URI (plvo doctor lists them){} an .oni file{} (default: the "
                   "first sensor)",
-                  bags ? "," : ", or", bags ? " or a ROS 1 bag" : ""),
-      bags ? "URI|FILE.oni|FILE.bag" : "URI|FILE.oni");
+                  bags ? "," : ", or", bags ? " or a recording of ROS" : ""),
+      bags ? "URI|FILE" : "URI|FILE.oni");
   group.add("--mode", "WIDTHxHEIGHT@FPS",
             "Size and rate of colour and depth, such as 640x480@30 (default), 320x240@30 or 320x240@60",
             [&options](const std::string& text) -> std::string {
