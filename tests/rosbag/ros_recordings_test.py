@@ -291,7 +291,9 @@ class RosRecordings(unittest.TestCase):
         file = self.folder / "viewer.db3"
         containers.write_db3(file, self.realsense("cdr_le"))
         self.expect_equal(file, poses=poses)
-        self.assertIn("it is registered to colour with the calibration in the recording", plvo("run", file).stderr)
+        told = plvo("run", file).stderr
+        self.assertIn("it is registered to colour with the calibration in the recording", told)
+        self.assertIn("and not from the grey images on /device_0/sensor_0/Infrared_1/image/data (mono8)", told)
         bag = self.folder / "viewer.bag"
         for compression in ("none", "lz4"):
             if not containers.write_ros1(bag, self.realsense("ros1"), compression):

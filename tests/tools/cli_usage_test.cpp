@@ -103,9 +103,9 @@ TEST(CliUsage, NumbersHaveReadableLimits) {
 }
 
 TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsCorrected) {
-  expect_usage(
-      "",
-      "a command is needed: run, live, record, calibrate, eval, simulate, doctor or tilt (see plvo --help)");
+  expect_usage("",
+               "a command is needed: run, live, record, convert, info, calibrate, eval, simulate, doctor or "
+               "tilt (see plvo --help)");
   expect_usage("rnu x", "there is no command 'rnu'");
   expect_usage("recrod x", "there is no command 'recrod'; did you mean record?");
   expect_usage("x --out y", "there is no command 'x'; choose run, live,");

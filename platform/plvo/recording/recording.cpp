@@ -138,11 +138,12 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   if (!has_ground_truth_) {
     std::size_t topic = 0;
     const Status found = choose_bag_poses(camera->messages(), options.topics.truth, topic);
+    if (!found.ok() && !options.topics.truth.empty()) return found;
     has_ground_truth_ = found.ok();
     if (found.ok())
       remarks_.push_back(fmt::format("the poses on {} are taken as the true poses of the camera",
                                      camera->messages().topics()[topic].name));
-    else if (!options.topics.truth.empty() || found.code() != StatusCode::kNotFound)
+    else if (found.code() != StatusCode::kNotFound)
       remarks_.push_back(found.message());
   }
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {

@@ -126,12 +126,15 @@ std::vector<std::size_t> TopicChoice::candidates(bool depth) {
   for (std::size_t i = 0; i < images_.size(); ++i)
     if (depth ? is_depth_encoding(images_[i].encoding) : is_colour_encoding(images_[i].encoding))
       topics.push_back(i);
-  drop(topics, [this](std::size_t topic) { return is_grey_encoding(images_[topic].encoding); });
+  const std::vector<std::size_t> grey =
+      drop(topics, [this](std::size_t topic) { return is_grey_encoding(images_[topic].encoding); });
+  if (!depth && topics.size() == 1 && !grey.empty())
+    remarks_.push_back(fmt::format("colour is taken from {}, and not from the grey images on {}",
+                                   name_of(topics[0]), listed(with_encodings(grey))));
   const std::vector<std::size_t> all = topics;
   drop(topics, [&](std::size_t topic) { return is_copy(topic, all); });
   if (!depth || topics.size() < 2) return topics;
   const std::string& frame = images_[colour_].frame;
-  const char* why = "its view is that of colour";
   std::vector<std::size_t> dropped =
       drop(topics, [&](std::size_t topic) { return frame.empty() || images_[topic].frame != frame; });
   if (topics.size() > 1) {
@@ -140,8 +143,8 @@ std::vector<std::size_t> TopicChoice::candidates(bool depth) {
     dropped.insert(dropped.end(), more.begin(), more.end());
   }
   if (topics.size() == 1 && !dropped.empty())
-    remarks_.push_back(fmt::format("depth is taken from {}, because {}, and not from {}", name_of(topics[0]),
-                                   why, listed(with_encodings(dropped))));
+    remarks_.push_back(fmt::format("depth is taken from {}, which is in the view of colour, and not from {}",
+                                   name_of(topics[0]), listed(with_encodings(dropped))));
   return topics;
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kInfoHelp =
     "Examples:\n"
-    "  plvo info walk.mcap                   topics, rates, gaps, calibration, and what plvo run would take\n"
+    "  plvo info walk.mcap                   topics, rates, gaps, calibration, what run would take\n"
     "  plvo info walk.mcap --json -          the same for programs\n"
     "\n"
     "The exit code says whether plvo run would start.\n";

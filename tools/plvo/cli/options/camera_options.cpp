@@ -184,7 +184,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
           "need)",
           Limits::kMostSide));
   add_bag_options(command, options.topics, BagImu::kWithTruth);
-  add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
+  add_calibration_options(command, options.calibration, DepthScale::kAsked,
+                          "the calibration in the recording");
   add_simulator_options(command, options.simulator);
 }
 

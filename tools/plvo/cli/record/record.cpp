@@ -199,7 +199,7 @@ void add_convert(CLI::App& app, int& exit_code) {
   require(group.path("recording", options->camera.device,
                      "A recording of ROS (a .bag, an .mcap, a .db3, or a folder of rosbag2), or an .oni file",
                      "DIR|FILE"));
-  require(group.path("--out", options->path, "A new folder (rgb.txt, depth.txt, PNG)", "DIR"));
+  require(group.path("--out", options->path, "A new folder for the sequence", "DIR"));
   group.flag("--imu", options->imu, kImuText);
   add_limit_options(command, options->frames, options->seconds);
   add_calibration_options(command, options->camera.calibration, DepthScale::kFromCamera,
