@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of docs/c.md, compiled as C11, give the bits of C++.
+// The functions of docs/user/c.md, compiled as C11, give the bits of C++.
 #include <gtest/gtest.h>
 
 #include <vector>

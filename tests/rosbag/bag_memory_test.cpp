@@ -26,7 +26,7 @@ using test::wire_u32;
 using test::write_file;
 
 constexpr const char* kColour = "/camera/rgb/image_color";
-constexpr const char* kDepth = "/camera/depth/image";
+constexpr const char* kDepthTopic = "/camera/depth/image";
 
 // The shortest message with a readable stamp, in the shortest record.
 std::string shortest_record(std::uint32_t connection, std::int64_t stamp_ns) {
@@ -39,7 +39,7 @@ class BagMemory : public ::testing::Test {
   void write_images(std::size_t count) const {
     BagWriter writer;
     writer.connection(0, kColour, kImageType);
-    writer.connection(1, kDepth, kImageType);
+    writer.connection(1, kDepthTopic, kImageType);
     for (std::size_t i = 0; i < count; ++i)
       writer.put(shortest_record(i % 2, static_cast<std::int64_t>(i / 2) * 33'000'000));
     writer.end_chunk("lz4");
@@ -66,26 +66,29 @@ TEST_F(BagMemory, ReadsTheLargestNumberOfImages) {
   });
 }
 
+std::string mcap_record(char op, const std::string& data) {
+  return std::string(1, op).append(test::wire(data.size(), 8)).append(data);
+}
+
 // An MCAP file with one compressed chunk: the shortest messages with a readable stamp, colour and depth
 // alternately.
 std::string mcap_of_images(std::size_t count) {
-  const auto record = [](char op, const std::string& data) { return op + test::wire(data.size(), 8) + data; };
   std::string records;
-  for (const auto& [number, topic] : {std::pair<std::uint64_t, const char*>{1, kColour}, {2, kDepth}})
-    records += record(3, test::wire(number, 2) + test::wire_text("sensor_msgs/msg/Image") +
-                             test::wire_text("ros2msg") + wire_u32(0)) +
-               record(4, test::wire(number, 2) + test::wire(number, 2) + test::wire_text(topic) +
-                             test::wire_text("cdr") + wire_u32(0));
+  for (const auto& [number, topic] : {std::pair<std::uint64_t, const char*>{1, kColour}, {2, kDepthTopic}})
+    records += mcap_record(3, test::wire(number, 2) + test::wire_text("sensor_msgs/msg/Image") +
+                                  test::wire_text("ros2msg") + wire_u32(0)) +
+               mcap_record(4, test::wire(number, 2) + test::wire(number, 2) + test::wire_text(topic) +
+                                  test::wire_text("cdr") + wire_u32(0));
   for (std::size_t i = 0; i < count; ++i)
     records +=
-        record(5, test::wire(1 + i % 2, 2) + std::string(4 + 8 + 8, '\0') + std::string("\0\1\0\0", 4) +
-                      wire_time(static_cast<std::int64_t>(i / 2) * 33'000'000));
+        mcap_record(5, test::wire(1 + i % 2, 2) + std::string(4 + 8 + 8, '\0') + std::string("\0\1\0\0", 4) +
+                           wire_time(static_cast<std::int64_t>(i / 2) * 33'000'000));
   std::string packed(LZ4F_compressFrameBound(records.size(), nullptr), '\0');
   packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), records.data(), records.size(), nullptr));
   return "\x89MCAP0\r\n" +
-         record(6, std::string(16, '\0') + test::wire(records.size(), 8) + wire_u32(0) +
-                       test::wire_text("lz4") + test::wire(packed.size(), 8) + packed) +
-         record(15, wire_u32(0));
+         mcap_record(6, std::string(16, '\0') + test::wire(records.size(), 8) + wire_u32(0) +
+                            test::wire_text("lz4") + test::wire(packed.size(), 8) + packed) +
+         mcap_record(15, wire_u32(0));
 }
 
 TEST_F(BagMemory, ReadsTheLargestNumberOfImagesOfMcap) {
@@ -104,11 +107,10 @@ TEST_F(BagMemory, ReadsTheLargestNumberOfImagesOfMcap) {
 
 // A small file that claims to unpack to gigabytes.
 TEST_F(BagMemory, BoundsWhatMcapUnpacksTo) {
-  const auto record = [](char op, const std::string& data) { return op + test::wire(data.size(), 8) + data; };
   for (const std::uint64_t claimed : {std::uint64_t{1} << 33, std::uint64_t{1} << 62}) {
     const std::string chunk = std::string(16, '\0') + test::wire(claimed, 8) + wire_u32(0) +
                               test::wire_text("zstd") + test::wire(4, 8) + "\x28\xb5\x2f\xfd";
-    write_file(folder_ / "a.mcap", "\x89MCAP0\r\n" + record(6, chunk) + record(15, wire_u32(0)));
+    write_file(folder_ / "a.mcap", "\x89MCAP0\r\n" + mcap_record(6, chunk) + mcap_record(15, wire_u32(0)));
     expect_within_the_ceiling("a claim of MCAP", [&] {
       McapFile file;
       return file.open(folder_ / "a.mcap").ok() &&
@@ -208,7 +210,7 @@ TEST_F(BagMemory, BoundsClaimsOfGigabytes) {
 // Names have a length limit, because a bag may have ten thousand topics.
 TEST_F(BagMemory, RejectsTopicNamesOfKilobytes) {
   BagWriter writer;
-  writer.connection(0, '/' + std::string(1000, 'x'), kImageType);
+  writer.connection(0, std::string("/").append(1000, 'x'), kImageType);
   writer.connection(1, kColour, std::string(1000, 'x'));
   writer.end_chunk("none");
   write_file(path_, writer.file());

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""usage: ros_recordings_test.py PLVO. Recordings that something other than plvo wrote open with `plvo run FILE` alone, and give the
+"""Recordings that something other than plvo wrote open with `plvo run FILE` alone, and give the
 poses of the folder that they were made of, byte for byte where nothing is lost."""
 import io
 import json
+import os
 import pathlib
 import shutil
+import sqlite3
 import struct
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -17,7 +18,7 @@ from PIL import Image
 import ros_containers as containers
 import ros_messages as ros
 
-PLVO = sys.argv.pop(1)
+PLVO = os.environ["PLVO_BINARY"]
 COLOUR, DEPTH = "/camera/color/image_raw", "/camera/aligned_depth_to_color/image_raw"
 INFO = "/camera/color/camera_info"
 UNITS = 5000  # a metre, in the simulated folder
@@ -297,7 +298,7 @@ class RosRecordings(unittest.TestCase):
         bag = self.folder / "viewer.bag"
         for compression in ("none", "lz4"):
             if not containers.write_ros1(bag, self.realsense("ros1"), compression):
-                self.skipTest("SKIPPED: no python3-rosbag")
+                self.skipTest("no python3-rosbag")
             self.expect_equal(bag, poses=poses)
 
     def test_depth_of_another_frame(self):
@@ -352,7 +353,6 @@ class RosRecordings(unittest.TestCase):
         self.assertEqual(plvo("convert", folder, "--out", self.folder / "x").returncode, 2)
 
     def test_hostile_databases(self):
-        import sqlite3
         file = self.folder / "a.db3"
 
         def expect(words, *statements):
@@ -388,7 +388,3 @@ class RosRecordings(unittest.TestCase):
             run = plvo("run", file)
             self.assertEqual(run.returncode, 1)
             self.assertIn(words, run.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

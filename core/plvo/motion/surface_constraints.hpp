@@ -61,7 +61,7 @@ class SurfaceConstraints final : public ConstraintSet {
   Primitive primitive(std::size_t) const override { return {}; }
   // r² / σ². σ² does not contain the errors that the matches share. Where these are visible, the matches
   // weigh less (gate, robust loss, the learning of σ²); on real sensors this works better than a model of the
-  // shared errors (docs/sensors.md).
+  // shared errors (docs/theory/noise.md).
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
   void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
              std::size_t every) override;

@@ -13,9 +13,10 @@ Status refuse_foreign_format(const std::filesystem::path& path) {
   if (path.extension() != ".mkv" && !first_bytes_of(path).starts_with("\x1a\x45\xdf\xa3")) return {};
   return {
       StatusCode::kUnsupported,
-      fmt::format("{} is a Matroska video (.mkv), as the Azure Kinect's recorder makes, which is not read: "
-                  "export its colour and its depth as a folder of images; see docs/formats.md",
-                  path.string())};
+      fmt::format(
+          "{} is a Matroska video (.mkv), as the Azure Kinect's recorder makes, which is not read: "
+          "export its colour and its depth as a folder of images; see share/doc/plvo/user/ros_recordings.md",
+          path.string())};
 }
 
 }  // namespace plvo

@@ -14,7 +14,8 @@
 namespace plvo::calibrate {
 namespace {
 
-// Typical residuals of real and simulated sensors (docs/sensors.md); they only weigh image against depth.
+// Typical residuals of real and simulated sensors (docs/theory/noise.md); they only weigh image against
+// depth.
 constexpr double kReference_px = 0.05, kCurrent_px = 0.15;
 constexpr double kShareOfSigma = 0.5;
 // Mahalanobis distances above which a match is an outlier: the tail of χ²(3) and χ²(4) beyond is about 1e-6.

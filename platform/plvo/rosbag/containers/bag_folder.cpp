@@ -34,14 +34,17 @@ bool comes_before(const fs::path& a, const fs::path& b) {
 Status BagFolder::open_file(const fs::path& path) {
   std::vector<fs::path> found = bag_files_in(path);
   if (found.empty())
-    return {StatusCode::kNotFound,
-            fmt::format("{} has the metadata.yaml of rosbag2, but no .db3 and no .mcap file", path.string())};
+    return {
+        StatusCode::kNotFound,
+        fmt::format("{} has the metadata.yaml of rosbag2, but no .db3 and no .mcap file: copy its files here",
+                    path.string())};
   const auto databases = std::count_if(found.begin(), found.end(), [](const fs::path& file) {
     return by_extension(file) == Container::kSqlite;
   });
   if (databases != 0 && databases != static_cast<std::ptrdiff_t>(found.size()))
     return {StatusCode::kInvalidArgument,
-            fmt::format("{} has both .db3 and .mcap files: name one of them", path.string())};
+            fmt::format("{} has both .db3 and .mcap files: name one file, or move one kind elsewhere",
+                        path.string())};
   // The recorder keeps a file beside its packed copy when it dies in between.
   std::erase_if(found, [&](const fs::path& file) {
     std::error_code error;

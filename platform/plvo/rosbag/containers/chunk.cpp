@@ -132,8 +132,11 @@ Status unpack_zstd_file(const std::filesystem::path& packed, std::uintmax_t most
       ZSTD_outBuffer out = {out_bytes.data(), out_bytes.size(), 0};
       // A file that is cut off gives what lies before.
       if (ZSTD_isError(ZSTD_decompressStream(stream.get(), &out, &in)))
-        return written > 0 ? Status()
-                           : Status(StatusCode::kDamaged, fmt::format("{} does not unpack", packed.string()));
+        return written > 0
+                   ? Status()
+                   : Status(StatusCode::kDamaged,
+                            fmt::format("{} cannot be unpacked: it is damaged, or not compressed by zstd",
+                                        packed.string()));
       full = out.pos == out.size;
       written += out.pos;
       if (written > most)

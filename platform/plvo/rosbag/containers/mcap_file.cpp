@@ -35,7 +35,8 @@ Status McapFile::check_beginning() {
   if (read_file(0, start) && start == kMagic) return {};
   const bool other = std::equal(start.begin(), start.begin() + kVersionByte, kMagic.begin());
   if (other)
-    return {StatusCode::kUnsupported, fmt::format("{} is MCAP of another version than 0", path().string())};
+    return {StatusCode::kUnsupported,
+            fmt::format("{} is MCAP of another version than 0, which is not read", path().string())};
   return {StatusCode::kDamaged, fmt::format("{} is not an MCAP file", path().string())};
 }
 

@@ -58,7 +58,10 @@ class PrivateFolder {
 Status open_packed(const fs::path& path, MessageFile& file) {
   const PrivateFolder folder;
   if (folder.path().empty())
-    return {StatusCode::kIo, fmt::format("there is no folder to unpack {} to (TMPDIR)", path.string())};
+    return {
+        StatusCode::kIo,
+        fmt::format("there is no folder to unpack {} to: set TMPDIR to one, or unpack it yourself (unzstd)",
+                    path.string())};
   std::error_code error;
   const std::uintmax_t most = fs::space(folder.path(), error).available / 10 * 9;  // leaves room for others
   const fs::path unpacked = folder.path() / path.stem();
