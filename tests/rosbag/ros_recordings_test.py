@@ -166,11 +166,47 @@ class RosRecordings(unittest.TestCase):
             for name in names:
                 subprocess.run(["zstd", "-q", "--rm", folder / name, "-o", folder / f"{name}.zstd"], check=True)
             self.expect_equal(folder)
+            (folder / f"walk_7.{kind}.zstd").unlink()
+            self.assertIn(f"after walk_6.{kind}.zstd comes walk_8.{kind}.zstd: is a file between them missing?", plvo("run", folder).stderr)
             if kind == "mcap":
                 (folder / "walk_11.mcap.zstd").write_bytes(b"no zstd")
                 self.assertIn("a file is left out", plvo("run", folder).stderr)
                 shutil.copy(self.folder / "db3" / "walk_0.db3.zstd", folder)
                 self.assertIn("has both .db3 and .mcap files", plvo("run", folder).stderr)
+
+    def test_packed_files_and_files_beside_images(self):
+        file = self.folder / "a.mcap"
+        containers.write_mcap(file, self.messages("cdr_le"))
+        for ending in (".zstd", ".zst"):
+            subprocess.run(["zstd", "-q", file, "-o", f"{file}{ending}"], check=True)
+            self.expect_equal(f"{file}{ending}")
+        # A folder of images stays one if a recording lies in it.
+        for number, (_, rgb, _, units) in enumerate(self.walk.frames):
+            Image.fromarray(rgb).save(self.folder / f"frame-{number:06}.color.png")
+            Image.fromarray(units).save(self.folder / f"frame-{number:06}.depth.png")
+        self.assertEqual(json.loads(plvo("info", self.folder, "--json", "-").stdout)["format"], "folder of images")
+
+    def test_what_is_not_read_is_named(self):
+        file = self.folder / "a.mcap"
+        containers.write_mcap(file, self.messages("cdr_le"), wire="protobuf")
+        self.assertIn("messages in the encoding 'protobuf' are not read", plvo("run", file).stderr)
+        depth = (DEPTH + "/compressedDepth", "sensor_msgs/CompressedImage",
+                 lambda t, a: ros.compressed_depth("cdr_le", t, "16UC1; compressedDepth rvl", b"rvl"))
+        containers.write_mcap(file, self.messages("cdr_le", None, depth))
+        self.assertIn("/compressedDepth (compressedDepth of the format rvl is not read; png is)", plvo("run", file).stderr)
+
+    def test_inputs_are_not_overwritten(self):
+        folder = self.folder / "walk"
+        folder.mkdir()
+        file = folder / "walk_0.db3"
+        containers.write_db3(file, self.messages("cdr_le"))
+        for command in (("info", folder, "--json", file), ("info", file, "--json", file), ("run", folder, "--out", file),
+                        ("eval", "--gt", folder, "--est", "e", "--json", file), ("convert", folder, "--out", file),
+                        ("info", self.walk.folder, "--json", self.walk.folder / "rgb.txt")):
+            run = plvo(*command)
+            self.assertNotEqual(run.returncode, 0, command)
+        self.expect_equal(folder)
+        self.expect_equal(self.walk.folder)
 
     def test_compressed_topics(self):
         for wire in ("cdr_le", "ros1"):

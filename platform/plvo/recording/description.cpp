@@ -64,6 +64,8 @@ void describe_opening(const fs::path& path, const RecordingOptions& options,
   description.frames = recording.frame_count();
   description.unpaired_colour = recording.unpaired_colour();
   description.calibration = recording.calibration();
+  for (const std::string& assumed : recording.calibration().assumptions())
+    description.remarks.push_back(assumed);
   description.whole_image = recording.whole_image();
   if (!recording.has_ground_truth()) description.missing.emplace_back("no true poses, to compare with");
   ImuRecording imu;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where depth was not registered to colour: the camera of depth, as the recording states it.
 //   librealsense  (the RealSense Viewer's recordings, topics /device_N/sensor_M/…): depth is never
-//   registered.
-//                 camera_info of both streams; …/tf/G of each maps from a point of reference G to the stream;
-//                 the option Depth Units is the unit of depth in metres.
+//                 registered. camera_info of both streams; …/tf/G of each maps from a point of reference G
+//                 to the stream; the option Depth Units is the unit of depth in metres.
 //   ROS           the headers of depth name another frame than those of colour, and /tf_static (or /tf) leads
 //                 from one to the other.
 #pragma once

@@ -72,7 +72,7 @@ void TopicChoice::look_at_images(ImageConversion& conversion) {
 Status TopicChoice::refused(StatusCode code, const std::string& sentence,
                             const std::vector<std::string>& names) {
   constexpr std::size_t kAndMore = 20;  // letters
-  const std::string all = names.empty() ? "the recording has none" : listed(names);
+  const std::string all = names.empty() ? "none" : listed(names);
   if (sentence.size() + all.size() < Status::kCapacity) return {code, sentence + all};
   remarks_.push_back("the topics are " + all);
   const std::size_t taken = std::min(sentence.size() + kAndMore, Status::kCapacity);
@@ -94,8 +94,9 @@ std::vector<std::size_t> TopicChoice::image_topics() const {
 }
 
 std::string TopicChoice::with_encoding(std::size_t topic) const {
-  const std::string& encoding = images_[topic].encoding;
-  return fmt::format("{} ({})", name_of(topic), encoding.empty() ? "no image that can be read" : encoding);
+  const Images& images = images_[topic];
+  if (!images.encoding.empty()) return fmt::format("{} ({})", name_of(topic), images.encoding);
+  return fmt::format("{} ({})", name_of(topic), images.failure.empty() ? "no image" : images.failure);
 }
 
 std::vector<std::string> TopicChoice::with_encodings(const std::vector<std::size_t>& topics) const {

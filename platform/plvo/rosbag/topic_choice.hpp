@@ -39,7 +39,7 @@ class TopicChoice {
   struct Images {
     std::string encoding, frame;
     int width = 0, height = 0;
-    std::string failure;  // of the first image, if none can be read
+    std::string failure;  // why the first image cannot be read, if none can
   };
   const Images& images(std::size_t topic) const { return images_[topic]; }
 

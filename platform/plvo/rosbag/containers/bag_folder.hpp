@@ -23,7 +23,7 @@ class BagFolder final : public MessageFile {
  private:
   std::vector<std::unique_ptr<MessageFile>> files_;
   std::size_t last_read_ = 0;
-  std::string unreadable_;  // what is wrong with a file that is left out
+  std::string remark_of_files_;  // a file that is missing or left out
 };
 
 }  // namespace plvo

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "plvo/host/files/input_file.hpp"
+#include "plvo/replay/index/numbered_index.hpp"
 
 namespace plvo {
 namespace {
@@ -23,11 +24,13 @@ constexpr ContainerKind kContainers[] = {{Container::kBag, ".bag", "#ROSBAG V"sv
 
 bool is_bag_folder(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder / "rgb.txt", error)) return false;
-  if (!bag_files_in(folder).empty()) return true;
+  for (const char* list : {"rgb.txt", "associations.txt"})
+    if (fs::exists(folder / list, error)) return false;
   std::string text;
-  return read_text_file(folder / "metadata.yaml", kMaxTextBytes, text).ok() &&
-         text.find("rosbag2_bagfile_information") != std::string::npos;
+  if (read_text_file(folder / "metadata.yaml", kMaxTextBytes, text).ok() &&
+      text.find("rosbag2_bagfile_information") != std::string::npos)
+    return true;
+  return !bag_files_in(folder).empty() && !is_numbered_folder(folder);
 }
 
 }  // namespace
@@ -41,8 +44,12 @@ std::string first_bytes_of(const fs::path& path) {
   return {bytes.data(), static_cast<std::size_t>(file.gcount())};
 }
 
+bool has_packed_name(const fs::path& path) {
+  return path.extension() == ".zstd" || path.extension() == ".zst";
+}
+
 Container by_extension(const fs::path& path) {
-  const fs::path name = path.extension() == ".zstd" ? path.stem() : path;
+  const fs::path name = has_packed_name(path) ? path.stem() : path;
   for (const ContainerKind& kind : kContainers)
     if (name.extension() == kind.extension) return kind.container;
   return Container::kNone;

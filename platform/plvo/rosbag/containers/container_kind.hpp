@@ -12,11 +12,14 @@ namespace plvo {
 
 enum class Container : std::uint8_t { kNone, kBag, kMcap, kSqlite, kFolder };
 
-// By the first bytes of a file, where there are any; else by its extension. A folder is one if it has files
-// of rosbag2, or its metadata.yaml. Anything else is kNone.
+// By the first bytes of a file, where there are any; else by its extension. A folder is one if it has
+// rosbag2's metadata.yaml, or files of rosbag2 and no images. Anything else is kNone.
 Container container_of(const std::filesystem::path& path);
 
-// .bag, .mcap and .db3, each also with .zstd behind it.
+// Whether the name ends in .zstd, as rosbag2 names packed files, or .zst, as the program zstd does.
+bool has_packed_name(const std::filesystem::path& path);
+
+// .bag, .mcap and .db3, each also packed.
 Container by_extension(const std::filesystem::path& path);
 
 std::vector<std::filesystem::path> bag_files_in(const std::filesystem::path& folder);

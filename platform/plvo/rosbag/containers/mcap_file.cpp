@@ -15,7 +15,7 @@ constexpr std::size_t kVersionByte = 5;
 constexpr std::size_t kRecordStart = 1 + 8;           // the kind and the length
 constexpr std::size_t kMessageStart = 2 + 4 + 8 + 8;  // channel, number, two stamps
 constexpr std::size_t kChunkStart = 8 + 8 + 8 + 4;    // two stamps, the unpacked size, a checksum
-constexpr std::size_t kLongestCompressionName = 16;
+constexpr std::size_t kLongestCompressionName = 16, kLongestEncodingName = 40;
 constexpr std::size_t kMostOfDescription = 4096;  // read of a schema or a channel: the names stand in front
 
 enum Opcode : std::uint8_t {
@@ -40,6 +40,14 @@ Status McapFile::check_beginning() {
   return {StatusCode::kDamaged, fmt::format("{} is not an MCAP file", path().string())};
 }
 
+Status McapFile::scan(const Take& take) {
+  const Status status = ChunkedFile::scan(take);
+  if (!status.ok() || !topics().empty() || other_encoding_.empty()) return status;
+  set_remark(fmt::format("{}{}messages in the encoding '{}' are not read; those in cdr and ros1 are",
+                         remark(), remark().empty() ? "" : "; ", other_encoding_));
+  return status;
+}
+
 std::uint64_t McapFile::first_record() const { return kMagic.size(); }
 
 ChunkedFile::End McapFile::scan_records(Source& source, std::uint64_t begin, std::uint64_t end,
@@ -49,6 +57,7 @@ ChunkedFile::End McapFile::scan_records(Source& source, std::uint64_t begin, std
     closed_ = false;
     schemas_.clear();
     channels_.clear();
+    other_encoding_.clear();
   }
   for (std::uint64_t position = begin; position < end;) {
     if (source.unpacked == nullptr) stopped_at_ = position;
@@ -112,16 +121,20 @@ void McapFile::add_schema() {
   WireReader reader(start_);
   const std::uint16_t number = reader.u16();
   const std::string_view name = reader.text();
-  if (reader.ok()) schemas_.emplace(number, std::string(name));
+  if (reader.ok() && name.size() <= kMostTopicName) schemas_.emplace(number, std::string(name));
 }
 
 void McapFile::add_channel() {
   WireReader reader(start_);
   const std::uint16_t number = reader.u16(), schema = reader.u16();
   const std::string_view topic = reader.text(), encoding = reader.text();
+  if (!reader.ok()) return;
+  if (encoding != "cdr" && encoding != "ros1") {
+    other_encoding_ = encoding.substr(0, kLongestEncodingName);
+    return;
+  }
   const auto type = schemas_.find(schema);
-  if (!reader.ok() || type == schemas_.end() || channels_.contains(number)) return;
-  if (encoding != "cdr" && encoding != "ros1") return;
+  if (type == schemas_.end() || channels_.contains(number)) return;
   const std::size_t found =
       topic_number(topic, type->second, encoding == "cdr" ? WireFormat::kCdr : WireFormat::kRos1);
   if (found != kNoTopic) channels_.emplace(number, found);

@@ -12,6 +12,9 @@
 namespace plvo {
 
 class McapFile final : public ChunkedFile {
+ public:
+  Status scan(const Take& take) override;
+
  private:
   struct Record {
     std::uint8_t op = 0;
@@ -36,6 +39,7 @@ class McapFile final : public ChunkedFile {
   bool closed_ = false;                            // the end of the messages was read
   std::map<std::uint16_t, std::string> schemas_;   // the type
   std::map<std::uint16_t, std::size_t> channels_;  // the topic
+  std::string other_encoding_;                     // of a channel that is passed over
   std::vector<unsigned char> start_;
 };
 

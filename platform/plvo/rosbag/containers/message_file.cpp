@@ -14,8 +14,7 @@ namespace plvo {
 namespace {
 
 constexpr std::size_t kMostTopics = 10'000;
-constexpr std::size_t kMostTopicName = 512;  // also of its type
-constexpr std::size_t kMostKept = 100;       // messages of a topic without images
+constexpr std::size_t kMostKept = 100;  // messages of a topic without images
 
 // "sensor_msgs/msg/Image" of ROS 2 becomes "sensor_msgs/Image", as in ROS 1.
 std::string ros1_type(std::string_view type) {

@@ -94,6 +94,7 @@ class MessageFile {
   // Finds the topic, or adds it. Returns kNoTopic for a name or type that is empty or too long, and for one
   // topic too many.
   static constexpr std::size_t kNoTopic = SIZE_MAX;
+  static constexpr std::size_t kMostTopicName = 512;  // letters, also of its type
   std::size_t topic_number(std::string_view name, std::string_view type, WireFormat wire);
   void set_remark(std::string remark) { remark_ = std::move(remark); }
   // Drops the old content first, so that old and new memory do not exist at once.

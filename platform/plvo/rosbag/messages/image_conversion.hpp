@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts the pixels of an image message to plvo's formats: colour as RGB, depth in whole units.
-//   colour  rgb8 and the like; a Bayer pattern of 8 bits, interpolated linearly; yuv422 (UYVY or YUYV;
-//   BT.601);
-//           PNG and JPEG. 8UC3 does not define its channels: they are taken as BGR, as in OpenCV.
-//   depth   16UC1 is millimetres, 32FC1 metres (REP 118); mono16 is 16UC1, as librealsense writes it; a grey
-//   PNG
-//           of 16 bits; the PNG of the transport compressedDepth.
+//   colour  rgb8 and the like; a Bayer pattern of 8 bits, interpolated linearly;
+//           yuv422 (UYVY or YUYV; BT.601); PNG and JPEG.
+//           8UC3 does not define its channels: they are taken as BGR, as in OpenCV.
+//   depth   16UC1 is millimetres, 32FC1 metres (REP 118); mono16 is 16UC1, as librealsense writes it;
+//           a grey PNG of 16 bits; the PNG of the transport compressedDepth.
 #pragma once
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads numbers and strings of messages and containers in two formats.
 //   ROS 1  little-endian, without gaps; the length stands before each string. Bags and MCAP records, too.
-//   CDR    of ROS 2 (OMG's Common Data Representation): four bytes state the byte order; after them each
-//   number
-//          begins at a multiple of its size; strings end with a zero byte that their length includes.
+//   CDR    of ROS 2 (OMG's Common Data Representation): four bytes state the byte order; after them
+//          each number begins at a multiple of its size; strings end with a zero byte that their length
+//          includes.
 // A read beyond the end returns zero or an empty string, and ok() is false from then on.
 #pragma once
 

@@ -22,6 +22,7 @@
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
 #include "plvo/report/report.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -141,6 +142,7 @@ void check(const CLI::App& command, const EvalOptions& options) {
   files.writes("--report", options.report);
   files.writes("--json", options.json);
   files.reads(is_bag(truth) ? bag_ground_truth_file(truth) : truth / "groundtruth.txt");
+  for (const std::filesystem::path& file : bag_files_in(truth)) files.reads(file);
   SequenceIndex index;
   if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
     for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);

@@ -14,6 +14,7 @@
 #include "plvo/cli/live/live_camera.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/cli/options/camera_options.hpp"
 #include "plvo/host/printable.hpp"
 #include "plvo/recording/description.hpp"
 
@@ -141,8 +142,10 @@ void check(const CLI::App& command, const InfoOptions& options) {
     refuse("recording", "an .oni file is described by OpenNI2's own tools; plvo run FILE.oni tracks it");
   if (!is_bag(options.recording)) refuse_bag_options(command);
   FileRoles files;
-  files.reads(options.recording);
   files.writes("--json", options.json);
+  CameraOptions camera;
+  camera.sequence = options.recording;
+  add_inputs(camera, files);
   files.check();
 }
 

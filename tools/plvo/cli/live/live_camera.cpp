@@ -10,6 +10,7 @@
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"
@@ -57,6 +58,7 @@ void check_live_camera_options(const CLI::App& command, const LiveCameraOptions&
 void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
   files.reads(options.calibration.file);
   if (is_recorded_device(options.device)) files.reads(options.device);
+  for (const std::filesystem::path& file : bag_files_in(options.device)) files.reads(file);
 }
 
 void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds) {
