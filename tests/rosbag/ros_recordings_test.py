@@ -24,8 +24,9 @@ INFO = "/camera/color/camera_info"
 UNITS = 5000  # a metre, in the simulated folder
 
 
-def plvo(*arguments):
-    return subprocess.run([PLVO, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+def plvo(*arguments, **environment):
+    return subprocess.run([PLVO, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+                          env=os.environ | environment)
 
 
 def png(array):
@@ -180,6 +181,11 @@ class RosRecordings(unittest.TestCase):
         for ending in (".zstd", ".zst"):
             subprocess.run(["zstd", "-q", file, "-o", f"{file}{ending}"], check=True)
             self.expect_equal(f"{file}{ending}")
+        temporary = self.folder / "tmp"
+        self.assertIn("set TMPDIR to one", plvo("run", f"{file}.zst", TMPDIR=str(temporary)).stderr)
+        temporary.mkdir()
+        self.assertEqual(plvo("run", f"{file}.zst", TMPDIR=str(temporary)).returncode, 0)
+        self.assertEqual(list(temporary.iterdir()), [])
         # A folder of images stays one if a recording lies in it.
         for number, (_, rgb, _, units) in enumerate(self.walk.frames):
             Image.fromarray(rgb).save(self.folder / f"frame-{number:06}.color.png")
