@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <sqlite3.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -71,9 +72,9 @@ Status SqliteFile::open_file(const fs::path& path) {
       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE, nullptr);
   database_.reset(made);
   if (opened != SQLITE_OK) return {StatusCode::kPermission, fmt::format("{} cannot be read", path.string())};
-  if (Status restricted = restrict_database(); !restricted.ok()) return restricted;
   steps_left_ = kMostChecks;
   sqlite3_progress_handler(made, kStepsPerCheck, check_steps, &steps_left_);
+  if (Status restricted = restrict_database(); !restricted.ok()) return restricted;
   if (!has_tables()) return damaged("is not a database of rosbag2: it has no tables 'topics' and 'messages'");
   return read_topics();
 }
@@ -122,7 +123,6 @@ Status SqliteFile::read_topics() {
       prepare(database_.get(), "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   if (statement == nullptr) return damaged("has a table of topics that is not rosbag2's");
   while (sqlite3_step(statement.get()) == SQLITE_ROW) {
-    steps_left_ = kMostChecks;
     const std::string_view format = text_of(statement.get(), 3);
     if (format != "cdr" && format != "ros1") continue;
     const std::size_t topic = topic_number(text_of(statement.get(), 1), text_of(statement.get(), 2),
@@ -155,10 +155,15 @@ Status SqliteFile::scan(const Take& take) {
   if (statement == nullptr) return damaged("has a table of messages that is not rosbag2's");
   steps_left_ = kMostChecks;
   int step = SQLITE_ROW;
+  std::optional<std::int64_t> last_row;
   while ((step = sqlite3_step(statement.get())) == SQLITE_ROW) {
+    const std::int64_t row = sqlite3_column_int64(statement.get(), 0);
+    // In a damaged file the pages may form a circle, which has rows without end.
+    if (last_row && row <= *last_row) break;
+    last_row = row;
+    steps_left_ = kMostChecks;
     const auto topic = topics_by_number_.find(sqlite3_column_int64(statement.get(), 1));
     if (topic == topics_by_number_.end()) continue;
-    const std::int64_t row = sqlite3_column_int64(statement.get(), 0);
     const int bytes = open_data(row);
     if (bytes < 0) {
       ++damaged_rows;
