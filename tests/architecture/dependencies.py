@@ -118,11 +118,5 @@ def check(root):
     return errors
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every dependency runs down")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every dependency runs down"))

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/ransac.hpp"
 
+#include <algorithm>
+
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -22,36 +24,87 @@ constexpr double kFreshShare = 0.5;
 // Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
 
+// Cells of the image, in the plane z = 1: 40 pixels of a Kinect. The grid is wider than any lens without
+// fisheye; what lies beyond counts to its border.
+constexpr double kCellSide = 0.075;
+constexpr int kCells = 32;
+// A line that spans more cells counts as this many.
+constexpr double kMostCellsOfALine = 4;
+
+std::size_t cell_of(const Vector3& p) {
+  const auto along = [](double x) {
+    return static_cast<std::size_t>(std::clamp(x / kCellSide + kCells / 2, 0.0, kCells - 1.0));
+  };
+  const double inverse = 1 / p.z();
+  return along(p.y() * inverse) * kCells + along(p.x() * inverse);
+}
+
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
 }
 
 }  // namespace
 
-Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-               const MotionConfig& config, const MotionProblem::Kernels& kernels,
-               std::span<RansacCandidate> scratch, MotionSolver& solver)
-    : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
+Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
+               const MotionReferences& references, const MotionConfig& config,
+               const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch,
+               MotionSolver& solver)
+    : sets_(sets),
+      terms_(terms),
       references_(references),
       config_(config),
       kernels_(kernels),
       solver_(solver) {
   for (const bool samplable : {true, false})
-    for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-      const ConstraintSet& set = *sets_[kind];
-      threshold_[kind] = chi_square_quantile(set.dof(), config_.inlier_probability);
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const ConstraintSet& set = *sets_[s];
+      threshold_[s] = chi_square_quantile(set.dof(), config_.inlier_probability);
       for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
         if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
-        scratch[usable_++] = {static_cast<std::uint8_t>(kind), static_cast<std::uint16_t>(i)};
+        scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
         if (samplable) ++samplable_;
       }
     }
   candidates_ = scratch.first(usable_);
+  weigh();
 }
 
-bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
+// Not inlined: the grid would otherwise stay on the stack while the motion is solved for.
+[[gnu::noinline]] void Ransac::weigh() {
+  std::array<std::uint8_t, kCells * kCells> crowd;
+  for (std::size_t reference = 0; reference < kMaxReferences; ++reference) {
+    const auto each = [&](const auto& visit) {
+      for (RansacCandidate& candidate : candidates_)
+        if (const ConstraintSet& set = *sets_[candidate.set]; set.reference() == reference)
+          visit(candidate, set.extent(candidate.index));
+    };
+    crowd.fill(0);
+    each([&](const RansacCandidate&, const Extent& extent) {
+      std::uint8_t& matches = crowd[cell_of(extent.middle)];
+      if (matches < 255) ++matches;
+    });
+    each([&](RansacCandidate& candidate, const Extent& extent) {
+      const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
+      candidate.evidence = static_cast<float>(extent.middle.z() * cells / crowd[cell_of(extent.middle)]);
+      evidence_ += static_cast<double>(candidate.evidence);
+    });
+  }
+}
+
+double Ransac::covered() const {
+  double inliers = 0;
+  for (const RansacCandidate& candidate : candidates_)
+    if (sets_[candidate.set]->inliers()[candidate.index] != 0)
+      inliers += static_cast<double>(candidate.evidence);
+  return inliers / evidence_;
+}
+
+bool Ransac::run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary) {
   summary = {};
+  gain_ = gain;
   fresh_to_beat_ = 0;
+  is_majority_ = false;
+  inliers_ = 0;
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
   if (samplable_ >= 3) {
@@ -86,7 +139,7 @@ std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
   if (c >= low) ++c;
   if (c >= high) ++c;
   const auto primitive = [&](std::uint32_t k) {
-    const ConstraintSet& set = *sets_[candidates_[k].kind];
+    const ConstraintSet& set = *sets_[candidates_[k].set];
     Primitive match = set.primitive(candidates_[k].index);
     if (set.reference() == 0) return match;
     const Se3 T_base_reference = references_[set.reference()].T_reference_base.inverse();
@@ -98,9 +151,10 @@ std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
 }
 
 bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
+  if (terms_.fix_motion()) return true;
   std::uint32_t n = 0;
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    if (sets_[candidates_[k].kind]->inliers()[candidates_[k].index] == 0) continue;
+    if (sets_[candidates_[k].set]->inliers()[candidates_[k].index] == 0) continue;
     if (k >= samplable_) return true;  // a kind without minimal sets: its covariance decides
     const RansacCandidate inlier = candidates_[k];
     candidates_[k] = candidates_[n];
@@ -128,21 +182,25 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   double refined_score = 0;
   double refined_score_as_fresh = 0;
   int inliers = 0;
+  double covered = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_) {
-    const double threshold = threshold_[candidate.kind];
-    const ConstraintSet& set = *sets_[candidate.kind];
+    const double threshold = threshold_[candidate.set];
+    const double gained = gain(candidate);
+    const ConstraintSet& set = *sets_[candidate.set];
     const double s =
         set.mahalanobis_squared(candidate.index, motions[set.reference()], kFreshScale * threshold);
-    if (s <= kFreshScale * threshold) refined_score_as_fresh += kFreshScale * threshold - s;
+    if (s <= kFreshScale * threshold) refined_score_as_fresh += gained * (kFreshScale * threshold - s);
     if (s > threshold) continue;
-    refined_score += threshold - s;
+    refined_score += gained * (threshold - s);
+    covered += static_cast<double>(candidate.evidence);
     ++inliers;
   }
   if (!(refined_score > summary.score)) return false;
   summary.score = refined_score;
   best = T;
   inliers_ = inliers;
+  is_majority_ = covered > kMajority * evidence_;
   const double share = kFreshShare * refined_score_as_fresh;
   if (share > fresh_to_beat_) fresh_to_beat_ = share;
   return true;
@@ -152,13 +210,14 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.kind];
+  for (const RansacCandidate& candidate : candidates_)
+    possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : candidates_) {
-    const double threshold = kFreshScale * threshold_[candidate.kind];
-    const ConstraintSet& set = *sets_[candidate.kind];
+    const double threshold = kFreshScale * threshold_[candidate.set];
+    const ConstraintSet& set = *sets_[candidate.set];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
     // The match gains threshold − s instead of threshold, so the upper bound shrinks by s.
-    possible -= s < threshold ? s : threshold;
+    possible -= gain(candidate) * (s < threshold ? s : threshold);
     if (possible <= to_beat) return 0;
   }
   return possible;
@@ -171,7 +230,7 @@ void Ransac::refine(Se3& T) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
     // A hypothesis does not need exact weights, so the references' poses are treated as exact.
-    solver_.problem.start(sets_, references_, {}, kernels_, T, stride, true);
+    solver_.problem.start(terms_, references_, {}, kernels_, T, stride, true);
     (void)solver_.solve(LmOptions::one_step());
     T = solver_.problem.T_current_reference();
   }
@@ -183,8 +242,8 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const RansacCandidate& candidate = candidates_[k];
-    ConstraintSet& set = *sets_[candidate.kind];
-    const double threshold = scale * threshold_[candidate.kind];
+    ConstraintSet& set = *sets_[candidate.set];
+    const double threshold = scale * threshold_[candidate.set];
     const std::uint8_t flag =
         k % stride == 0 &&
                 set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold
@@ -196,7 +255,8 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 }
 
 int Ransac::iterations_needed() const {
-  if (inliers_ < 3) return config_.max_ransac_iterations;
+  // A consensus with few inliers may have the most evidence.
+  if (inliers_ < 3 || (gain_ == Gain::kEvidence && !is_majority_)) return config_.max_ransac_iterations;
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;

@@ -53,7 +53,9 @@ Odometry::Odometry() = default;
 
 // All results leave the library here, so every invalid one is found, whatever its cause.
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
-  TrackResult result = process(input, prior);
+  memory_.views.clear();
+  const Status refusal = check(input, prior);
+  TrackResult result = refusal.ok() ? process(input, prior) : refuse(input, refusal);
   if (make_sound(result)) return result;
   forget_world();
   result.T_world_camera = result.T_camera_reference = Se3();
@@ -79,11 +81,8 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
   return result;
 }
 
+// A frame that passed check(), step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
-  // Check.
-  memory_.views.clear();
-  const Status refusal = check(input, prior);
-  if (!refusal.ok()) return refuse(input, refusal);
   repeats_.look(input);
   if (is_passed_over()) return pass_over(input, prior);
 
@@ -109,14 +108,21 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
   depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 
-  // Decide: what the frame is, and which references stay.
-  const Decision decision = decide(frame, tracked, prior);
+  // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.
+  TrackResult result = conclude(frame, tracked, prior);
 
-  // Update: the window, the world, the learnt noise.
-  TrackResult result = update(frame, decision, prior, tracked);
+  // Relocalise: where the view of an earlier keyframe is back.
+  if (result.state == TrackState::kTracking && !result.returned) relocalise(frame, tracked, result);
   result.mean_brightness = brightness;
   result.stage_ns = times;
   return result;
+}
+
+// Not inlined, as the steps that it calls: what a step needs on the stack is there during it alone.
+[[gnu::noinline]] TrackResult Odometry::conclude(const CurrentFrame& frame, const TrackedMotion& tracked,
+                                                 const MotionPrior& prior) {
+  const Decision decision = decide(frame, tracked, prior);
+  return update(frame, decision, prior, tracked);
 }
 
 Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
@@ -141,14 +147,14 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
 }
 
 // The pose stays that of the last good frame.
-TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
+[[gnu::noinline]] TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   result.state = TrackState::kLost;
   result.status = refusal;
   const bool has_pose = window_.has_last();
   report(window_[has_pose ? window_.last() : window_.current()].pose,
-         has_pose ? window_.last_frame().velocity : Vector6::Zero(), result);
+         has_pose ? window_.last_frame().velocity.value : Vector6::Zero(), result);
   return result;
 }
 

@@ -33,7 +33,7 @@
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
-#include "plvo/odometry/window.hpp"
+#include "plvo/odometry/window/window.hpp"
 
 namespace plvo {
 
@@ -142,6 +142,7 @@ class Odometry {
   // odometry.cpp: the pipeline.
   TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
+  TrackResult conclude(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior);
   TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
   bool wants_points() const;
 
@@ -149,7 +150,6 @@ class Odometry {
   PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
   double depth_after_colour_s(std::int64_t stamp_ns) const;
-  void add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const;
   PoseWithCovariance unobserved_pose(std::int64_t stamp_ns) const;
   SensedPose sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const;
   SensedPose pose_after(const Se3& T_current_last, const Matrix6& covariance, const MotionPrior& prior) const;
@@ -165,11 +165,11 @@ class Odometry {
     return window_.has_recent() && window_.recent_age() + 1 < config_->references.recent_frames;
   }
 
-  // odometry_update.cpp: the state after the frame, and its result. tracked: overwritten by a relocalisation.
+  // odometry_update.cpp: the state after the frame, and its result.
   TrackResult update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     TrackedMotion& tracked);
+                     const TrackedMotion& tracked);
   TrackResult accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     TrackedMotion& tracked);
+                     const TrackedMotion& tracked);
   TrackResult start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
                     const TrackedMotion& tracked);
   TrackResult lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
@@ -198,7 +198,7 @@ class Odometry {
 
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
   TrackedMotion resume(const CurrentFrame& frame);
-  bool relocalise(const CurrentFrame& frame, TrackedMotion& tracked);
+  void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
   bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
                  const PoseWithCovariance& believed, TrackedMotion& tracked);
   void move_to_relocalised_pose(int slot, const MotionEstimate& motion);

@@ -23,16 +23,16 @@ void Odometry::search_after_loss(const RgbdFrame& input, const MotionPrior& prio
 // The motion since the lost frame, which is the frame before.
 PredictedMotion Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const {
   const Window::Frame& lost = window_[window_.lost()];
-  const double seconds = static_cast<double>(elapsed_ns(lost.features.stamp_ns, input.stamp_ns)) * 1e-9;
+  const std::int64_t elapsed = elapsed_ns(lost.features.stamp_ns, input.stamp_ns);
   PredictedMotion predicted;
   predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   predicted.sensed.restart();
-  predicted.sensed.extend(prior, Vector6::Zero(), seconds, config_->references);
+  predicted.sensed.extend(prior, Vector6::Zero(), static_cast<double>(elapsed) * 1e-9, config_->references);
   Reference& reference = predicted.all_references[0];
   predicted.reference_count = 1;
   reference.features = &lost.features;
   if (predicted.sensed.known()) reference.T_current_predicted = predicted.sensed.T_current_last();
-  reference.prior.seconds_since_last = seconds;
+  reference.prior.since_last_ns = elapsed;
   reference.prior.depth_after_colour_s = predicted.depth_after_colour_s;
   predicted.exposure = current_exposure(camera_, reference.prior, reference.T_current_predicted);
   return predicted;

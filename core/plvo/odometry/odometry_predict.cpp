@@ -8,29 +8,20 @@
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo {
-namespace {
-
-// A prediction over more than this multiple of the last motion's duration is worse than none.
-constexpr int kLongestPrediction = 3;
-
-// The velocity replaces a missing part of a prior for this long; after that the camera is taken to stand
-// still.
-constexpr std::int64_t kLongestCoast_ns = 300'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.
-PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
+[[gnu::noinline]] PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
   PredictedMotion predicted;
   predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   if (!window_.has_last()) return predicted;
   const Window::Frame& last = window_.last_frame();
-  const bool goes_on = last.motion_ns > 0 && last.motion_ns <= kLongestCoast_ns &&
-                       elapsed_ns(last.features.stamp_ns, input.stamp_ns) <= kLongestCoast_ns;
+  const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
   const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, input.stamp_ns)) * 1e-9;
   predicted.sensed = propagated_prior_;
-  predicted.sensed.extend(prior, goes_on ? last.velocity : Vector6::Zero(), seconds, config_->references);
+  predicted.sensed.extend(prior, last.velocity.continues(elapsed) ? last.velocity.value : Vector6::Zero(),
+                          seconds, config_->references);
   predicted.last = window_.from_keyframe(window_.last());
   const Reference from_last = reference_of(window_.last(), input.stamp_ns, predicted);
   predicted.exposure = current_exposure(camera_, from_last.prior, from_last.T_current_predicted);
@@ -59,6 +50,7 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   const Window::Frame& from = window_[slot];
   const Window::Frame& last = window_.last_frame();
   const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, stamp_ns);
+  const double seconds = static_cast<double>(elapsed) * 1e-9;
   const Se3 T_last_reference = last.pose.T_world_camera.inverse() * from.pose.T_world_camera;
   Reference reference;
   reference.features = &from.features;
@@ -66,38 +58,25 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   reference.T_current_predicted = T_last_reference;
   if (predicted.sensed.known())
     reference.T_current_predicted = predicted.sensed.T_current_last() * T_last_reference;
-  else if (static_cast<double>(elapsed) < kLongestPrediction * static_cast<double>(last.motion_ns))
-    reference.T_current_predicted =
-        boxplus(Se3{}, static_cast<double>(elapsed) * 1e-9 * last.velocity) * T_last_reference;
+  else if (last.velocity.predicts(elapsed))
+    reference.T_current_predicted = motion_at(last.velocity.value, seconds) * T_last_reference;
   PairPrior& prior = reference.prior;
   prior.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
-  prior.seconds_since_last = static_cast<double>(elapsed) * 1e-9;
-  prior.reference_velocity = from.velocity;
-  prior.reference_velocity_known = from.motion_ns > 0;
+  prior.since_last_ns = elapsed;
+  prior.reference = from.velocity;
   prior.reference_is_last = slot == window_.last();
-  prior.last_velocity = last.velocity;
-  prior.last_velocity_known = last.motion_ns > 0;
+  prior.last = last.velocity;
   prior.depth_after_colour_s = predicted.depth_after_colour_s;
   return reference;
 }
 
-// Adds the process noise of the unobserved motion since the last good frame.
-void Odometry::add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const {
-  const double seconds =
-      static_cast<double>(elapsed_ns(window_.last_frame().features.stamp_ns, stamp_ns)) * 1e-9;
-  const double sigma_m = config_->references.process_noise_m_per_s * seconds;
-  const double sigma_rad = config_->references.process_noise_rad_per_s * seconds;
-  for (int i = 0; i < 3; ++i) {
-    covariance(i, i) += sigma_m * sigma_m;
-    double& turned = covariance(3 + i, 3 + i);
-    turned += std::clamp(kMostRotationVariance - turned, 0.0, sigma_rad * sigma_rad);
-  }
-}
-
 // The last good pose with the process noise of the unobserved motion since then.
 PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
-  PoseWithCovariance pose = window_.last_frame().pose;
-  add_process_noise(stamp_ns, pose.covariance);
+  const Window::Frame& last = window_.last_frame();
+  PoseWithCovariance pose = last.pose;
+  add_process_noise(config_->references,
+                    static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9,
+                    pose.covariance);
   return pose;
 }
 
@@ -109,8 +88,9 @@ Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame, const Moti
 
 // Chained to the keyframe or, without one, to the last good frame. The correction by gravity applies to this
 // frame only: the kept frames were observed, this one was not.
-Odometry::SensedPose Odometry::pose_after(const Se3& T_current_last, const Matrix6& covariance,
-                                          const MotionPrior& prior) const {
+[[gnu::noinline]] Odometry::SensedPose Odometry::pose_after(const Se3& T_current_last,
+                                                            const Matrix6& covariance,
+                                                            const MotionPrior& prior) const {
   const MotionReference last = window_.from_keyframe(window_.last());
   SensedPose result;
   result.T_camera_reference = T_current_last * last.T_reference_base;

@@ -16,8 +16,6 @@ constexpr std::int64_t kOldestDepth_ns = 200'000'000;
 // A camera that stands still may see the same depth for ever, if the depth has no noise (a simulator). The
 // depth is called stopped when the camera has moved by this much since the image came (m and rad).
 constexpr double kMovedSinceDepth = 0.01;
-// A velocity measured over a longer time does not predict the next motion.
-constexpr std::int64_t kLongestMeasured_ns = 300'000'000;
 
 }  // namespace
 
@@ -37,13 +35,12 @@ TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior
   const Window::Frame& last = window_.last_frame();
   if (!propagated_prior_.known()) {
     // The velocity holds for as long as it was measured over; after that the camera is taken to stand still.
+    const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
     const std::int64_t coasted_ns =
-        last.motion_ns <= kLongestMeasured_ns
-            ? std::min(last.motion_ns, elapsed_ns(last.features.stamp_ns, input.stamp_ns))
-            : 0;
-    T_current_last = boxplus(Se3{}, static_cast<double>(coasted_ns) * 1e-9 * window_.mean_velocity());
+        last.velocity.continues(0) ? std::min(last.velocity.measured_ns, elapsed) : 0;
+    T_current_last = motion_at(window_.smooth_velocity(), static_cast<double>(coasted_ns) * 1e-9);
     covariance.setZero();
-    add_process_noise(input.stamp_ns, covariance);
+    add_process_noise(config_->references, static_cast<double>(elapsed) * 1e-9, covariance);
   }
   const SensedPose predicted = pose_after(T_current_last, covariance, prior);
   TrackResult result;
@@ -55,7 +52,7 @@ TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior
   result.T_camera_reference = predicted.T_camera_reference;
   result.motion_covariance = predicted.motion_covariance;
   result.feature_step = budget_.step();
-  report(predicted.pose, last.velocity, result);
+  report(predicted.pose, last.velocity.value, result);
   return result;
 }
 

@@ -26,8 +26,8 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
 
 }  // namespace
 
-TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                             TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision,
+                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   view_slot_ = window_.current();
   memory_.views.show(frame.features.lines);
   last_stamp_ns_ = frame.stamp_ns();
@@ -40,8 +40,8 @@ TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision
   }
 }
 
-TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                             TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision,
+                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
   if (!tracked.returned) show_tracks();
@@ -63,24 +63,25 @@ TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision
   }
   window_.set_pose(window_.current(), pose);
   window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, frame.stamp_ns()));
-  const Vector6& velocity = window_.current_frame().velocity;
+  const Vector6& velocity = window_.current_frame().velocity.value;
   result.motion_covariance =
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
-                                              window_[window_.keyframe()].velocity, camera_.stamp_sigma_s);
+                                              window_[window_.keyframe()].velocity.value,
+                                              camera_.stamp_sigma_s);
   is_lost_ = false;
   propagated_prior_.restart();
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
   note_depth();
-  result.returned = tracked.returned || relocalise(frame, tracked);
-  report(window_.last_frame().pose, window_.last_frame().velocity, result);
+  result.returned = tracked.returned;
+  report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
 }
 
 // Makes the current frame the keyframe and the last good one, without a motion before it; or waits for one
 // that can be that.
-TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                            const TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
+                                              const MotionPrior& prior, const TrackedMotion& tracked) {
   if (decision.new_world) forget_world();
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kInitialising;
@@ -110,8 +111,8 @@ TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
   return result;
 }
 
-TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                           const TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision,
+                                             const MotionPrior& prior, const TrackedMotion& tracked) {
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kLost;
   result.status = decision.status;
@@ -123,9 +124,9 @@ TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision, 
     result.reference_stamp_ns = window_[window_.base()].features.stamp_ns;
     result.T_camera_reference = sensed.T_camera_reference;
     result.motion_covariance = sensed.motion_covariance;
-    report(sensed.pose, last.velocity, result);
+    report(sensed.pose, last.velocity.value, result);
   } else {
-    report(last.pose, last.velocity, result);
+    report(last.pose, last.velocity.value, result);
   }
   note_loss(frame, decision, prior);
   return result;

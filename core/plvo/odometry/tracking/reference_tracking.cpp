@@ -30,13 +30,11 @@ double weight_of_one(std::size_t references) { return 2 / (1 + static_cast<doubl
 // The bounds on the SDs are then this large, so that no estimate fails by them.
 constexpr double kUnboundedSigma = 1e6;
 
-// Order of the constraint sets of an estimate: points and lines of each reference, then the propagated prior,
-// then surfaces. Inliers of points and lines are counted by this index; surfaces are never looked up by
-// index.
+// Order of the constraint sets of an estimate: points and lines of each reference.
 constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
 constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
 constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
-static_assert(matched_sets(kMaxReferences) < kInformedKinds, "and the sensed motion");
+static_assert(matched_sets(kMaxReferences) == kMaxConstraintSets);
 
 void count_matches(std::span<ReferenceTracks> tracks, TrackedMotion& tracked) {
   const MotionEstimate& estimate = tracked.motion;
@@ -142,28 +140,28 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
   const ScratchScope scope(scratch);
   const auto features = std::span(association.features).first(association.references);
   FeatureConstraints constraints = constraints_of(features, tracks_, config.noise, scratch);
-  std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
+  std::array<ConstraintSet*, kMaxConstraintSets> sets{};
   for (std::size_t r = 0; r < features.size(); ++r) {
     sets[points_set(r)] = &constraints.points[r];
     sets[lines_set(r)] = &constraints.lines[r];
   }
-  std::size_t set_count = matched_sets(features.size());
+  std::array<CostTerm*, kMaxTerms - kMaxConstraintSets> others{};
+  std::size_t other_count = 0;
   const PropagatedPrior& sensed = current.predicted.sensed;
   MotionConfig motion_config = config.motion;
-  std::uint8_t prior_flag = 0;
-  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&prior_flag, 1});
+  PriorConstraint prior(sensed.T_current_last(), sensed.covariance());
   if (sensed.known() && association.chained) {
     prior.set_reference(association.last_frame, 0);
-    sets[set_count++] = &prior;
+    others[other_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kUnboundedSigma;
   }
   for (SurfaceConstraints& set : constraints.surfaces)
-    if (set.size() > 0) sets[set_count++] = &set;
+    if (set.size() > 0) others[other_count++] = &set;
 
   tracked.exposure = {};
   tracked.observed = {};
-  estimate_motion(std::span(sets).first(set_count), association.poses, motion_config, lm, config.seed, start,
-                  scratch, tracked.motion);
+  estimate_motion(std::span(sets).first(matched_sets(features.size())), std::span(others).first(other_count),
+                  association.poses, motion_config, lm, config.seed, start, scratch, tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
     const std::span<const std::uint8_t> points = constraints.points[r].inliers();
     const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
