@@ -75,6 +75,23 @@ TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
   EXPECT_LT(result.pose_covariance(0, 0), 1e-3);
 }
 
+TEST(Loss, TheCovarianceOfANewPieceContainsACameraThatWentOnAsBefore) {
+  constexpr int kViewsPerFrame = 4;  // fast, and yet tracked
+  SlowCamera camera(1);
+  int view = 0;
+  TrackResult before;
+  for (; view <= 5 * kViewsPerFrame; view += kViewsPerFrame) before = camera.see(view);
+  ASSERT_EQ(before.state, TrackState::kTracking) << before.status.message();
+  view -= kViewsPerFrame;
+  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
+  const TrackResult result = camera.see(kAway + 1);
+  ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  const Vector6 going_on = boxminus(ProceduralSequence::T_world_camera(view),
+                                    ProceduralSequence::T_world_camera(view - kViewsPerFrame));
+  const Matrix6 process_noise = 0.1 * 0.1 * Matrix6::Identity();  // half of a metre and of a radian a second
+  EXPECT_GT(result.pose_covariance.trace(), process_noise.trace() + 0.5 * going_on.squaredNorm());
+}
+
 TEST(Loss, WithoutMemoryTheReferencesAreGivenUpAfterHalfASecond) {
   SlowCamera camera(0);
   for (int view = 0; view <= kLeft; ++view) (void)camera.see(view);

@@ -150,6 +150,7 @@ class Odometry {
   PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
   double depth_after_colour_s(std::int64_t stamp_ns) const;
+  Se3 coasted_motion(std::int64_t stamp_ns) const;
   PoseWithCovariance unobserved_pose(std::int64_t stamp_ns) const;
   SensedPose sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const;
   SensedPose pose_after(const Se3& T_current_last, const Matrix6& covariance, const MotionPrior& prior) const;

@@ -70,10 +70,24 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   return reference;
 }
 
-// The last good pose with the process noise of the unobserved motion since then.
-PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
+// The motion since the last good frame, if the camera went on as before for as long as its velocity was
+// measured over, and has stood still since.
+Se3 Odometry::coasted_motion(std::int64_t stamp_ns) const {
+  const Window::Frame& last = window_.last_frame();
+  if (!last.velocity.continues(0)) return {};
+  const std::int64_t coasted_ns =
+      std::min(last.velocity.measured_ns, elapsed_ns(last.features.stamp_ns, stamp_ns));
+  return motion_at(window_.smooth_velocity(), static_cast<double>(coasted_ns) * 1e-9);
+}
+
+// The last good pose, with the uncertainty of the unobserved motion since then: the process noise, and as one
+// standard deviation the motion of a camera that went on as before. Tracking is mostly lost in fast motion.
+[[gnu::noinline]] PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
   const Window::Frame& last = window_.last_frame();
   PoseWithCovariance pose = last.pose;
+  const Vector6 coasted =
+      boxminus(pose.T_world_camera * coasted_motion(stamp_ns).inverse(), pose.T_world_camera);
+  pose.covariance += coasted.lazyProduct(coasted.transpose());
   add_process_noise(config_->references,
                     static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9,
                     pose.covariance);

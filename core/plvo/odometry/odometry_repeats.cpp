@@ -3,8 +3,6 @@
 // shows no motion; the frame is passed over, and its pose is predicted. A depth image that is repeated for a
 // short time comes from a slower depth camera and is used. If it stays for longer while the camera moves, the
 // depth stream has stopped, and the frames are lost until a new depth image comes.
-#include <algorithm>
-
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 
@@ -34,11 +32,8 @@ TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior
   Matrix6 covariance = propagated_prior_.covariance();
   const Window::Frame& last = window_.last_frame();
   if (!propagated_prior_.known()) {
-    // The velocity holds for as long as it was measured over; after that the camera is taken to stand still.
     const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
-    const std::int64_t coasted_ns =
-        last.velocity.continues(0) ? std::min(last.velocity.measured_ns, elapsed) : 0;
-    T_current_last = motion_at(window_.smooth_velocity(), static_cast<double>(coasted_ns) * 1e-9);
+    T_current_last = coasted_motion(input.stamp_ns);
     covariance.setZero();
     add_process_noise(config_->references, static_cast<double>(elapsed) * 1e-9, covariance);
   }
