@@ -55,7 +55,10 @@ Odometry::Odometry() = default;
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   memory_.views.clear();
   const Status refusal = check(input, prior);
-  TrackResult result = refusal.ok() ? process(input, prior) : refuse(input, refusal);
+  if (refusal.ok()) repeats_.look(input);
+  TrackResult result = !refusal.ok()      ? refuse(input, refusal)
+                       : is_passed_over() ? pass_over(input, prior)
+                                          : process(input, prior);
   if (make_sound(result)) return result;
   forget_world();
   result.T_world_camera = result.T_camera_reference = Se3();
@@ -81,11 +84,8 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
   return result;
 }
 
-// A frame that passed check(), step by step.
+// A frame that passed check() and shows something new, step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
-  repeats_.look(input);
-  if (is_passed_over()) return pass_over(input, prior);
-
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
   const StageContext context{camera_, *config_, noise_, arena_, times};
@@ -93,7 +93,8 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   const double brightness = extraction.prepare_image(context, input.colour);
 
   // Predict: the motion since each reference, and that during the exposure.
-  PredictedMotion predicted = predict(input, prior);
+  PredictedMotion predicted;
+  predict(input, prior, predicted);
 
   // Associate and estimate: for one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
@@ -102,10 +103,8 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   frame.features.stamp_ns = input.stamp_ns;
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
   depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
-  TrackedMotion tracked = depth_has_stopped_       ? TrackedMotion()
-                          : window_.has_keyframe() ? search_motion(frame, memory_.tracking)
-                                                   : resume(frame);
-  if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
+  TrackedMotion tracked;
+  if (!depth_has_stopped_) search(input, prior, frame, predicted, tracked);
   depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.

@@ -147,7 +147,7 @@ class Odometry {
   bool wants_points() const;
 
   // odometry_predict.cpp: where the camera is expected, and from where it is looked for.
-  PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
+  void predict(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
   double depth_after_colour_s(std::int64_t stamp_ns) const;
   Se3 coasted_motion(std::int64_t stamp_ns) const;
@@ -189,16 +189,16 @@ class Odometry {
   Status stopped_depth(const char* first_word) const;
 
   // odometry_loss.cpp: lost frames are matched with each other, and references are given up.
-  void search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-                         PredictedMotion& predicted, TrackedMotion& tracked);
-  PredictedMotion predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const;
+  void search(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
+              PredictedMotion& predicted, TrackedMotion& tracked);
+  void predict_from_lost(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
   bool search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                         PredictedMotion& predicted, TrackedMotion& tracked);
   bool lost_too_long(std::int64_t stamp_ns) const;
   void note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior);
 
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
-  TrackedMotion resume(const CurrentFrame& frame);
+  void resume(const CurrentFrame& frame, TrackedMotion& tracked);
   void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
   bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
                  const PoseWithCovariance& believed, TrackedMotion& tracked);

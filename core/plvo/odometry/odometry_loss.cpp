@@ -10,21 +10,27 @@
 
 namespace plvo {
 
-// Called where the search from the references failed.
-void Odometry::search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-                                 PredictedMotion& predicted, TrackedMotion& tracked) {
-  if (!window_.has_keyframe() || search_from_lost(input, prior, frame, predicted, tracked)) return;
-  if (!lost_too_long(input.stamp_ns)) return;
-  // The views of the references are out of sight. Unless one comes back, this frame starts anew.
-  window_.give_up();
-  tracked = resume(frame);
+// The search for the motion of a frame: from the references, from the lost frame before, from a kept
+// keyframe.
+[[gnu::noinline]] void Odometry::search(const RgbdFrame& input, const MotionPrior& prior,
+                                        const CurrentFrame& frame, PredictedMotion& predicted,
+                                        TrackedMotion& tracked) {
+  if (window_.has_keyframe()) {
+    search_motion(frame, memory_.tracking, tracked);
+    if (tracked.ok() || search_from_lost(input, prior, frame, predicted, tracked)) return;
+    if (!lost_too_long(input.stamp_ns)) return;
+    // The views of the references are out of sight. Unless one comes back, this frame starts anew.
+    window_.give_up();
+  }
+  resume(frame, tracked);
 }
 
 // The motion since the lost frame, which is the frame before.
-PredictedMotion Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const {
+[[gnu::noinline]] void Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior,
+                                                   PredictedMotion& predicted) const {
   const Window::Frame& lost = window_[window_.lost()];
   const std::int64_t elapsed = elapsed_ns(lost.features.stamp_ns, input.stamp_ns);
-  PredictedMotion predicted;
+  predicted = PredictedMotion();
   predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   predicted.sensed.restart();
   predicted.sensed.extend(prior, Vector6::Zero(), static_cast<double>(elapsed) * 1e-9, config_->references);
@@ -35,7 +41,6 @@ PredictedMotion Odometry::predict_from_lost(const RgbdFrame& input, const Motion
   reference.prior.since_last_ns = elapsed;
   reference.prior.depth_after_colour_s = predicted.depth_after_colour_s;
   predicted.exposure = current_exposure(camera_, reference.prior, reference.T_current_predicted);
-  return predicted;
 }
 
 // Searches for the motion since the lost frame. If it is found, that frame is the keyframe from now on.
@@ -43,13 +48,13 @@ bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior
                                 PredictedMotion& predicted, TrackedMotion& tracked) {
   // Two equal images agree, and yet show no motion.
   if (!window_.has_lost() || repeats_.colour_is_repeated()) return false;
-  predicted = predict_from_lost(input, prior);
-  tracked = search_motion(frame, memory_.tracking);
+  predict_from_lost(input, prior, predicted);
+  search_motion(frame, memory_.tracking, tracked);
   tracked.new_piece = tracked.ok();
   if (tracked.ok())
     window_.go_on_from_lost();
   else
-    predicted = predict(input, prior);
+    predict(input, prior, predicted);
   return tracked.ok();
 }
 
@@ -60,7 +65,8 @@ bool Odometry::lost_too_long(std::int64_t stamp_ns) const {
 
 // Called for each lost frame. A usable one stays for the next frame. Its pose is the last good one with the
 // process noise since then, or that of the priors.
-void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior) {
+[[gnu::noinline]] void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision,
+                                           const MotionPrior& prior) {
   if (!is_lost_) lost_since_ns_ = frame.stamp_ns();
   is_lost_ = true;
   window_.drop_lost();

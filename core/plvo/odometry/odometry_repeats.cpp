@@ -25,8 +25,10 @@ bool Odometry::is_passed_over() const {
 
 // Predicts the pose at the stamp of a repeated frame, by the priors or by the last velocity. Nothing that the
 // next frame needs is changed.
-TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
-  propagated_prior_ = predict(input, prior).sensed;
+[[gnu::noinline]] TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
+  PredictedMotion motion;
+  predict(input, prior, motion);
+  propagated_prior_ = motion.sensed;
   last_stamp_ns_ = input.stamp_ns;
   Se3 T_current_last = propagated_prior_.T_current_last();
   Matrix6 covariance = propagated_prior_.covariance();
@@ -59,7 +61,7 @@ void Odometry::note_depth() {
 }
 
 // Whether the depth image is an old one, and the camera has moved since it came.
-bool Odometry::depth_has_stopped(const TrackedMotion& tracked) const {
+[[gnu::noinline]] bool Odometry::depth_has_stopped(const TrackedMotion& tracked) const {
   if (!tracked.ok() || !has_depth_pose_ || repeats_.depth_age_ns() <= kOldestDepth_ns) return false;
   const Se3& T_world_keyframe = window_[window_.keyframe()].pose.T_world_camera;
   const Se3 T_current_depth =

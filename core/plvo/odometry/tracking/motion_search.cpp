@@ -49,8 +49,8 @@ bool is_findable(const Reference& reference) {
 }  // namespace
 
 // Not inlined: its variables are on the stack during the search alone.
-[[gnu::noinline]] TrackedMotion search_motion(const CurrentFrame& current, ReferenceTracking& tracking) {
-  TrackedMotion tracked;
+[[gnu::noinline]] void search_motion(const CurrentFrame& current, ReferenceTracking& tracking,
+                                     TrackedMotion& tracked) {
   const std::span<const Reference> references = current.predicted.references();
   const StageContext& context = current.context;
   const Config& config = context.config;
@@ -86,7 +86,7 @@ bool is_findable(const Reference& reference) {
 
   if (Se3 start; registered && tracking.align(latest, current, start)) {
     start = start * latest.pose.T_reference_base;
-    if (refine(start) && is_accepted(start, kAcceptedShareByImage)) return tracked;
+    if (refine(start) && is_accepted(start, kAcceptedShareByImage)) return;
   }
   current.find_points();
   current.describe_points();
@@ -99,7 +99,6 @@ bool is_findable(const Reference& reference) {
                     config.references.wide_search_px);
   }
   if (!accepted && best.inliers > 0 && !last_is_best) (void)refine(best.start);
-  return tracked;
 }
 
 }  // namespace plvo
