@@ -134,9 +134,10 @@ struct ReferenceConfig {
   // When tracking fails, features are searched this far from their old positions, whatever the prediction.
   double wide_search_px = 120;
   // When every frame has been lost for this long, the odometry gives up the references and starts anew from
-  // the last good pose. The covariance of that pose then grows by the unobserved motion: at most this fast
-  // (SD per second). Where Limits have memory for a kept keyframe, a lost frame is matched with the lost
-  // frame before as well, and tracking starts anew as soon as they agree.
+  // the last good pose. The covariance of that pose then grows by the unobserved motion: this fast (SD per
+  // second), and by the motion of a camera that went on as before. Where Limits have memory for a kept
+  // keyframe, a lost frame is matched with the lost frame before as well, and tracking starts anew as soon as
+  // they agree.
   double max_lost_s = 0.5;
   double process_noise_m_per_s = 0.5;
   double process_noise_rad_per_s = 0.5;

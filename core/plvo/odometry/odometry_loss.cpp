@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Part of the odometry: frames after a loss. Each is searched from the references first. Where that fails, it
 // is matched with the lost frame before: if the two agree, tracking goes on in a new piece of the trajectory.
-// The piece begins at the last good pose, with the process noise of the unobserved motion in its covariance.
+// The piece begins at the last good pose, with the unobserved motion in its covariance.
 // The old keyframe is kept (kept_keyframes.hpp); when its view comes back, the pieces are joined
 // (recovery.cpp). After some time the references are given up.
 #include "plvo/odometry/elapsed.hpp"
@@ -64,7 +64,7 @@ bool Odometry::lost_too_long(std::int64_t stamp_ns) const {
 }
 
 // Called for each lost frame. A usable one stays for the next frame. Its pose is the last good one with the
-// process noise since then, or that of the priors.
+// unobserved motion since then, or that of the priors.
 [[gnu::noinline]] void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision,
                                            const MotionPrior& prior) {
   if (!is_lost_) lost_since_ns_ = frame.stamp_ns();
