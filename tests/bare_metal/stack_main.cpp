@@ -49,7 +49,7 @@ int main() {
   if (!sequence.init(320, 240, frames)) return 1;
   bool ready = false;
   Config config;
-  config.references.max_lost_frames = 2;
+  config.references.max_lost_s = 0.03;
   CameraModel camera = sequence.camera();
   camera.readout_s = 0.0261;  // a rolling shutter's corrections too
   const std::size_t init_bytes = stack_of([&] { ready = init(camera, config); });

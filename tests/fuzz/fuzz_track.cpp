@@ -82,7 +82,7 @@ Config read_config(Bytes& bytes) {
   ReferenceConfig& references = config.references;
   references.policy = static_cast<ReferencePolicy>((bytes.below(4) + 2) % 4);
   references.recent_frames = 1 + bytes.below(4);
-  references.max_lost_frames = 1 + bytes.below(4);
+  references.max_lost_s = 0.03 * bytes.below(4);
   references.relocalisation_interval_frames = 1 + bytes.below(4);
   tune(references.keyframe_inlier_ratio, 0, 1);
   tune(references.window_inlier_ratio, 0, 1);

@@ -119,7 +119,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
   points.features = Features::kPoints;
   lines.features = Features::kLines;
   keyframe.references.policy = ReferencePolicy::kKeyframe;
-  lost.references.max_lost_frames = 3;
+  lost.references.max_lost_s = 0.06;
   // A new keyframe every few frames, though the camera is slow.
   window.references.policy = ReferencePolicy::kWindow;
   window.references.window_inlier_ratio = 0.8;

@@ -65,7 +65,7 @@ Walk walk(ProceduralSequence& sequence, Config config, TaskPair* pair) {
   limits.width = sequence.camera().width;
   limits.height = sequence.camera().height;
   limits.kept_keyframes = 1;
-  config.references.max_lost_frames = 2;
+  config.references.max_lost_s = 0.03;
   if (pair != nullptr) {
     limits.cores = 2;
     config.executor = pair->executor();

@@ -108,7 +108,7 @@ std::vector<Entry> all_entries() {
           PLVO_ENTRY(references.window_inlier_ratio, "0", "1"),
           PLVO_ENTRY(references.older_inlier_ratio, "0", "1"),
           PLVO_ENTRY(references.wide_search_px, "1", "4000"),
-          PLVO_ENTRY(references.max_lost_frames, "1", "1000000"),
+          PLVO_ENTRY(references.max_lost_s, "0", "1000000"),
           PLVO_ENTRY(references.process_noise_m_per_s, "0", "100"),
           PLVO_ENTRY(references.process_noise_rad_per_s, "0", "100"),
           PLVO_ENTRY(references.recent_frames, "1", "1000000"),

@@ -108,7 +108,7 @@ TEST(NoAllocationWhenLostForGood, GivesUpTheReferenceAndStartsAnew) {
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   std::vector<std::byte> memory(required_bytes(kLimits));
   Config config;
-  config.references.max_lost_frames = 3;
+  config.references.max_lost_s = 0.06;
   Odometry odometry;
   ASSERT_TRUE(odometry.init(memory, sequence.camera(), config, kLimits).ok());
   AllocationGuard guard;

@@ -164,7 +164,7 @@ TEST(OdometryPrior, AMissingPriorEndsThePrediction) {
 // predict.
 TEST(OdometryPrior, PredictsThroughALongCover) {
   Config config;
-  config.references.max_lost_frames = 4;
+  config.references.max_lost_s = 0.09;
   Limits limits = kPriorLimits;
   limits.kept_keyframes = 0;  // no relocalisation at the view from before the loss
   WithPrior instance(config, limits);

@@ -3,6 +3,7 @@
 // finite for any content of a frame.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -264,10 +265,15 @@ TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
   // up.
   for (int dark_frames : {4, 12}) {
     Config config;
-    config.references.max_lost_frames = 4;
+    config.references.max_lost_s = 0.09;
     Instance instance(config);
     TrackResult before;
-    for (int i = 0; i < 4; ++i) before = instance.track(good(i));
+    double largest_step = 0;
+    for (int i = 0; i < 4; ++i) {
+      const Se3 last = before.T_world_camera;
+      before = instance.track(good(i));
+      largest_step = std::max(largest_step, boxminus(before.T_world_camera, last).norm());
+    }
     for (int i = 4; i < 4 + dark_frames; ++i) {
       const Recorded frame = dark(i);
       const TrackResult lost = instance.track(frame.frame());
@@ -284,8 +290,10 @@ TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
     for (int k = 0; k < 6; ++k) {
       const double rate =
           k < 3 ? config.references.process_noise_m_per_s : config.references.process_noise_rad_per_s;
-      const double expected = before.pose_covariance(k, k) + (rate * seconds) * (rate * seconds);
-      EXPECT_NEAR(anew.pose_covariance(k, k), expected, 1e-9 * expected);
+      const double least = before.pose_covariance(k, k) + (rate * seconds) * (rate * seconds);
+      EXPECT_GE(anew.pose_covariance(k, k), (1 - 1e-9) * least);
+      // The camera may have gone on as before, for one more frame.
+      EXPECT_LE(anew.pose_covariance(k, k), least + 1.01 * largest_step * largest_step);
     }
     const TrackResult next = instance.track(good(i + 1));
     EXPECT_EQ(next.state, TrackState::kTracking) << next.status.message();
@@ -295,7 +303,7 @@ TEST(OdometryTrack, RestartsAtTheLastPoseWithALargerCovarianceAfterALongLoss) {
 
 TEST(OdometryTrack, RandomFramesGiveFiniteResults) {
   Config config;
-  config.references.max_lost_frames = 3;
+  config.references.max_lost_s = 0.06;
   Instance instance(config);
   Random random(666);
   ASSERT_EQ(instance.track(good(0)).state, TrackState::kInitialising);

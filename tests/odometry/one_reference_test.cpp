@@ -19,7 +19,7 @@ Limits with_references(Limits limits, int references) {
 
 // One hash per frame, of its result, its features and their tracks, as the public API shows them.
 std::vector<std::uint64_t> walk(Config config, const Limits& limits) {
-  config.references.max_lost_frames = 3;
+  config.references.max_lost_s = 0.06;
   ProceduralSequence sequence(limits.width, limits.height);
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;

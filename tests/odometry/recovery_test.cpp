@@ -25,7 +25,7 @@ class Walk {
   }
   static Config quick_to_give_up() {
     Config config;
-    config.references.max_lost_frames = 3;
+    config.references.max_lost_s = 0.06;
     return config;
   }
   // Takes frame `view` of the sequence now (kDark: a frame that shows nothing).

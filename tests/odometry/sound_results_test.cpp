@@ -20,14 +20,13 @@ namespace {
 
 constexpr std::int64_t kSoundSecond_ns = 1'000'000'000;
 constexpr std::int64_t kSoundFrame_ns = kSoundSecond_ns / 30;
-constexpr int kGivenUpAfter = 2;  // lost frames
-constexpr int kNothing = -1;      // a view that shows nothing
+constexpr int kNothing = -1;  // a view that shows nothing
 
 class SmallCamera {
  public:
   explicit SmallCamera(Config config = {}, const Limits& limits = kSmallest)
       : memory_(required_bytes(limits)) {
-    config.references.max_lost_frames = kGivenUpAfter;
+    config.references.max_lost_s = 0.03;
     const Status status = odometry.init(memory_, sequence_.camera(), config, limits);
     EXPECT_TRUE(status.ok()) << status.message();
   }

@@ -37,11 +37,11 @@ inline bool is_sound_pose(const Se3& T) {
          T.R.col(0).cross(T.R.col(1)).dot(T.R.col(2)) > 0;
 }
 
-// A reason exactly when there is no new pose, and numbers that fit the state.
+// A reason when there is no new pose, and numbers that fit the state.
 inline bool is_sound_state(const TrackResult& result) {
   switch (result.state) {
     case TrackState::kInitialising: return !result.returned;
-    case TrackState::kTracking: return result.status.ok() && result.status.message()[0] == '\0';
+    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.returned);
     case TrackState::kLost:
     case TrackState::kPredicted:
       return !result.status.ok() && result.status.message()[0] != '\0' && !result.returned;

@@ -133,10 +133,11 @@ struct ReferenceConfig {
   double older_inlier_ratio = 0.2;
   // When tracking fails, features are searched this far from their old positions, whatever the prediction.
   double wide_search_px = 120;
-  // After this many lost frames in a row, the odometry gives up the references and starts anew from the last
-  // good pose. The covariance of that pose then grows by the unobserved motion: at most this fast (SD per
-  // second).
-  int max_lost_frames = 15;
+  // When every frame has been lost for this long, the odometry gives up the references and starts anew from
+  // the last good pose. The covariance of that pose then grows by the unobserved motion: at most this fast
+  // (SD per second). Where Limits have memory for a kept keyframe, a lost frame is matched with the lost
+  // frame before as well, and tracking starts anew as soon as they agree.
+  double max_lost_s = 0.5;
   double process_noise_m_per_s = 0.5;
   double process_noise_rad_per_s = 0.5;
   // Once tracking resumes, the odometry checks every so many frames whether the view of a kept keyframe is

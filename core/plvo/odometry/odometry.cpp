@@ -62,7 +62,7 @@ Odometry::Odometry() = default;
   result.pose_covariance.setZero();
   result.motion_covariance.setZero();
   result.mean_brightness = 0;
-  result.returned = false;
+  result.returned = result.repeated = false;
   result.state = TrackState::kLost;
   result.status = {
       StatusCode::kDegenerate,
@@ -83,6 +83,9 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
 
 // A frame that passed check(), step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
+  repeats_.look(input);
+  if (is_passed_over()) return pass_over(input, prior);
+
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
   const StageContext context{camera_, *config_, noise_, arena_, times};
@@ -90,7 +93,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   const double brightness = extraction.prepare_image(context, input.colour);
 
   // Predict: the motion since each reference, and that during the exposure.
-  const PredictedMotion predicted = predict(input, prior);
+  PredictedMotion predicted = predict(input, prior);
 
   // Associate and estimate: for one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
@@ -98,7 +101,12 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   frame.features.clear(budget_.capacity());
   frame.features.stamp_ns = input.stamp_ns;
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
-  TrackedMotion tracked = window_.has_keyframe() ? search_motion(frame, memory_.tracking) : resume(frame);
+  depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
+  TrackedMotion tracked = depth_has_stopped_       ? TrackedMotion()
+                          : window_.has_keyframe() ? search_motion(frame, memory_.tracking)
+                                                   : resume(frame);
+  if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
+  depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.
   TrackResult result = conclude(frame, tracked, prior);
@@ -169,6 +177,7 @@ void Odometry::reset() {
   noise_ = config_->noise.initial;
   last_stamp_ns_ = 0;
   has_stamp_ = false;
+  repeats_.forget();
   memory_.views.clear();
 }
 

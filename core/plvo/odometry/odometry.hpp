@@ -28,6 +28,7 @@
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
+#include "plvo/odometry/image_repeats.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
@@ -129,8 +130,9 @@ class Odometry {
     PoseWithCovariance pose;  // kStart
     Gravity gravity = Gravity::kRead;
     bool new_world = false;  // the position in the old world is not known any more
+    bool usable = false;     // kLose: the frame has enough features for the next one to be matched with it
   };
-  // The pose by the priors alone.
+  // A pose after a motion that was not seen.
   struct SensedPose {
     Se3 T_camera_reference;
     Matrix6 motion_covariance;
@@ -147,8 +149,11 @@ class Odometry {
   // odometry_predict.cpp: where the camera is expected, and from where it is looked for.
   PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
+  double depth_after_colour_s(std::int64_t stamp_ns) const;
+  Se3 coasted_motion(std::int64_t stamp_ns) const;
   PoseWithCovariance unobserved_pose(std::int64_t stamp_ns) const;
   SensedPose sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const;
+  SensedPose pose_after(const Se3& T_current_last, const Matrix6& covariance, const MotionPrior& prior) const;
 
   // odometry_decide.cpp: the outcome of a frame, and which references are still matched.
   Decision decide(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior) const;
@@ -176,6 +181,22 @@ class Odometry {
   void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
   void forget_world();
 
+  // odometry_repeats.cpp: images that the sensor delivers again.
+  bool is_passed_over() const;
+  TrackResult pass_over(const RgbdFrame& input, const MotionPrior& prior);
+  void note_depth();
+  bool depth_has_stopped(const TrackedMotion& tracked) const;
+  Status stopped_depth(const char* first_word) const;
+
+  // odometry_loss.cpp: lost frames are matched with each other, and references are given up.
+  void search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
+                         PredictedMotion& predicted, TrackedMotion& tracked);
+  PredictedMotion predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const;
+  bool search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
+                        PredictedMotion& predicted, TrackedMotion& tracked);
+  bool lost_too_long(std::int64_t stamp_ns) const;
+  void note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior);
+
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
   TrackedMotion resume(const CurrentFrame& frame);
   void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
@@ -201,9 +222,14 @@ class Odometry {
   NoiseScales noise_;               // learnt so far
   std::int64_t last_stamp_ns_ = 0;  // of the last frame that was processed, good or not
   bool has_stamp_ = false;
-  bool start_is_set_ = false;   // by set_pose()
-  bool world_is_lost_ = false;  // and the next one has not started
-  int lost_frames_ = 0;
+  bool start_is_set_ = false;       // by set_pose()
+  bool world_is_lost_ = false;      // and the next one has not started
+  bool is_lost_ = false;            // the last frame had no pose from its images
+  std::int64_t lost_since_ns_ = 0;  // stamp of the first lost frame
+  ImageRepeats repeats_;
+  Se3 T_world_depth_;  // where the camera was when the last depth image came
+  bool has_depth_pose_ = false;
+  bool depth_has_stopped_ = false;
   FeatureCounts points_found_;  // of the latest frame in which points were searched
   int view_slot_ = 0;           // whose keypoints features() shows
 };

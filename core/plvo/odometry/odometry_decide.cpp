@@ -43,12 +43,20 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
                                                       const MotionPrior& prior) const {
   Decision decision;
   const char* const first_word = frame.predicted.sensed.known() ? "predicted: " : "lost: ";
-  if (tracked.ok()) {
+  if (depth_has_stopped_) {
+    decision.outcome = Decision::Outcome::kLose;
+    decision.status = stopped_depth(first_word);
+  } else if (tracked.ok()) {
     decision.outcome = Decision::Outcome::kTrack;
+    if (tracked.new_piece)
+      decision.status = {StatusCode::kOk,
+                         "a new piece of the trajectory starts: the motion before it was not seen, and the "
+                         "covariance includes it"};
     decision.kept = still_good();
   } else if (window_.has_keyframe()) {
     decision.outcome = Decision::Outcome::kLose;
     decision.status = explain_loss(frame.features, tracked, first_word);
+    decision.usable = frame.features.count_3d() >= kMinStartFeatures;
   } else if (frame.features.count_3d() >= kMinStartFeatures) {
     decide_start(frame, prior, decision);
   } else if (window_.has_last()) {

@@ -8,23 +8,13 @@
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo {
-namespace {
-
-double depth_after_colour(const CameraModel& camera, const RgbdFrame& input) {
-  if (!camera.depth_timing.known) return 0;
-  // Stamps farther apart than this do not belong to one frame.
-  constexpr double kMost_s = 0.1;
-  const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
-  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera.depth_timing.delay_s;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.
 [[gnu::noinline]] PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
   PredictedMotion predicted;
-  predicted.depth_after_colour_s = depth_after_colour(camera_, input);
+  predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   if (!window_.has_last()) return predicted;
   const Window::Frame& last = window_.last_frame();
   const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
@@ -43,6 +33,15 @@ double depth_after_colour(const CameraModel& camera, const RgbdFrame& input) {
   if (window_.has_recent()) add(window_.recent());
   if (window_.has_older()) add(window_.older());
   return predicted;
+}
+
+// A repeated depth image is as old as when it came first, whatever its stamp.
+double Odometry::depth_after_colour_s(std::int64_t stamp_ns) const {
+  if (!camera_.depth_timing.known) return 0;
+  // Stamps farther apart than this do not belong to one frame.
+  constexpr double kMost_s = 0.1;
+  const double apart = static_cast<double>(repeats_.depth_stamp_ns()) - static_cast<double>(stamp_ns);
+  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera_.depth_timing.delay_s;
 }
 
 // Motion from the reference to the current frame: from other sensors, or else by constant velocity from the
@@ -71,26 +70,46 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   return reference;
 }
 
-// The last good pose with the process noise of the unobserved motion since then.
-PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
+// The motion since the last good frame, if the camera went on as before for as long as its velocity was
+// measured over, and has stood still since.
+Se3 Odometry::coasted_motion(std::int64_t stamp_ns) const {
+  const Window::Frame& last = window_.last_frame();
+  if (!last.velocity.continues(0)) return {};
+  const std::int64_t coasted_ns =
+      std::min(last.velocity.measured_ns, elapsed_ns(last.features.stamp_ns, stamp_ns));
+  return motion_at(window_.smooth_velocity(), static_cast<double>(coasted_ns) * 1e-9);
+}
+
+// The last good pose, with the uncertainty of the unobserved motion since then: the process noise, and as one
+// standard deviation the motion of a camera that went on as before. Tracking is mostly lost in fast motion.
+[[gnu::noinline]] PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
   const Window::Frame& last = window_.last_frame();
   PoseWithCovariance pose = last.pose;
+  const Vector6 coasted =
+      boxminus(pose.T_world_camera * coasted_motion(stamp_ns).inverse(), pose.T_world_camera);
+  pose.covariance += coasted.lazyProduct(coasted.transpose());
   add_process_noise(config_->references,
                     static_cast<double>(elapsed_ns(last.features.stamp_ns, stamp_ns)) * 1e-9,
                     pose.covariance);
   return pose;
 }
 
+// The pose by the priors alone.
+Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const {
+  const PropagatedPrior& sensed = frame.predicted.sensed;
+  return pose_after(sensed.T_current_last(), sensed.covariance(), prior);
+}
+
 // Chained to the keyframe or, without one, to the last good frame. The correction by gravity applies to this
 // frame only: the kept frames were observed, this one was not.
-[[gnu::noinline]] Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame,
-                                                             const MotionPrior& prior) const {
-  const PropagatedPrior& sensed = frame.predicted.sensed;
-  const MotionReference& last = frame.predicted.last;
+[[gnu::noinline]] Odometry::SensedPose Odometry::pose_after(const Se3& T_current_last,
+                                                            const Matrix6& covariance,
+                                                            const MotionPrior& prior) const {
+  const MotionReference last = window_.from_keyframe(window_.last());
   SensedPose result;
-  result.T_camera_reference = sensed.T_current_last() * last.T_reference_base;
-  result.motion_covariance = compose_covariance(sensed.T_current_last(), sensed.covariance(),
-                                                last.T_reference_base, window_.last_motion().total());
+  result.T_camera_reference = T_current_last * last.T_reference_base;
+  result.motion_covariance =
+      compose_covariance(T_current_last, covariance, last.T_reference_base, window_.last_motion().total());
   PoseWithCovariance from = window_[window_.base()].pose;
   result.pose = advance(from, result.T_camera_reference, result.motion_covariance);
   GravityFilter gravity = gravity_;

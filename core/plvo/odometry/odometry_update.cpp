@@ -48,6 +48,7 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   if (!kept.recent) make_reference(frame, tracked.exposure, !kept.keyframe);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;
+  result.status = decision.status;
   result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
   result.T_camera_reference = motion.T_current_reference;
   const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
@@ -67,10 +68,11 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
       covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
                                               window_[window_.keyframe()].velocity.value,
                                               camera_.stamp_sigma_s);
-  lost_frames_ = 0;
+  is_lost_ = false;
   propagated_prior_.restart();
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
+  note_depth();
   result.returned = tracked.returned;
   report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
@@ -99,8 +101,9 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   window_.start(pose);
   report(window_.last_frame().pose, Vector6::Zero(), result);
   result.reference_stamp_ns = frame.stamp_ns();
-  lost_frames_ = 0;
+  is_lost_ = false;
   propagated_prior_.restart();
+  note_depth();
   if (!world_is_lost_) return result;
   world_is_lost_ = false;
   result.status = {StatusCode::kOk,
@@ -125,9 +128,7 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   } else {
     report(last.pose, last.velocity.value, result);
   }
-  // After many lost frames the views of the references are out of sight. Unless one comes back, the next
-  // usable frame starts anew at the last good pose.
-  if (window_.has_keyframe() && ++lost_frames_ >= config_->references.max_lost_frames) window_.give_up();
+  note_loss(frame, decision, prior);
   return result;
 }
 
@@ -176,7 +177,7 @@ void Odometry::forget_world() {
   start_is_set_ = false;
   propagated_prior_ = PropagatedPrior();
   gravity_.forget();
-  lost_frames_ = 0;
+  is_lost_ = has_depth_pose_ = depth_has_stopped_ = false;
   world_is_lost_ = true;
 }
 
@@ -196,6 +197,8 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   start_is_set_ = true;
   world_is_lost_ = false;
   window_.kept().clear();  // their poses belong to the old world
+  window_.drop_lost();
+  has_depth_pose_ = false;
   // The keyframe moves with the last frame: the motion between them does not change.
   if (window_.has_last())
     window_.move_last(pose, Matrix6::Zero());

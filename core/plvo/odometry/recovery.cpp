@@ -95,6 +95,7 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
   const MotionReference from = window_.from_keyframe(window_.last());
   window_.move_last(pose, inverse_covariance(from.T_reference_base, window_.last_motion().total()));
   window_.kept().drop(slot);
+  has_depth_pose_ = false;
 }
 
 }  // namespace plvo

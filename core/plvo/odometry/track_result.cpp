@@ -26,7 +26,7 @@ const char* to_string(Stage stage) {
 
 std::optional<ObservedRotation> observed_rotation(const TrackResult& result) {
   const bool starts = result.state == TrackState::kInitialising && result.status.ok();
-  if (result.state != TrackState::kTracking && !starts) return std::nullopt;
+  if ((result.state != TrackState::kTracking || result.repeated) && !starts) return std::nullopt;
   return ObservedRotation{result.stamp_ns, result.reference_stamp_ns, result.T_camera_reference.R,
                           result.motion_covariance.block<3, 3>(3, 3)};
 }

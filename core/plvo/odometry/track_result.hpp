@@ -64,6 +64,9 @@ struct TrackResult {
   FeatureCounts lines;
   // The pose was corrected: the camera recognised the view of a keyframe from before a loss.
   bool returned = false;
+  // The colour image is that of the frame before, so no motion was measured: the pose is predicted, and its
+  // covariance includes the process noise. The state is kTracking, and the status is ok() with a message.
+  bool repeated = false;
   int ransac_iterations = 0;
   int lm_iterations = 0;
   int feature_step = 0;        // of Config::budget; 0: all the features that fit

@@ -76,6 +76,7 @@ void bind_result(py::module_& module) {
       .def_readonly("lm_iterations", &TrackResult::lm_iterations)
       .def_readonly("mean_brightness", &TrackResult::mean_brightness)
       .def_readonly("returned", &TrackResult::returned)
+      .def_readonly("repeated", &TrackResult::repeated)
       .def_readonly("feature_step", &TrackResult::feature_step)
       .def("__repr__", &describe);
 }

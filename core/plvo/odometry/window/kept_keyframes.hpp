@@ -18,6 +18,8 @@ class KeptKeyframes {
   void init(int capacity) { capacity_ = capacity; }
   void clear() { count_ = 0; }
   bool empty() const { return count_ == 0; }
+  bool full() const { return count_ == capacity_; }
+  int capacity() const { return capacity_; }
   int latest() const { return slots_[static_cast<std::size_t>(count_ - 1)]; }
 
   bool holds(int slot) const {

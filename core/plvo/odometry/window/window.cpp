@@ -16,7 +16,7 @@ void Window::clear() {
     frame = Frame();
     frame.features = features;
   }
-  keyframe_ = recent_ = last_ = older_ = kNoFrame;
+  keyframe_ = recent_ = last_ = older_ = lost_ = kNoFrame;
   recent_age_ = 0;
   last_motion_ = recent_motion_ = {};
   kept_.clear();
@@ -70,7 +70,7 @@ void Window::start(const PoseWithCovariance& pose) {
   (*this)[current_].velocity = {};
   last_motion_ = recent_motion_ = {};
   keyframe_ = recent_ = last_ = current_;
-  older_ = kNoFrame;
+  older_ = lost_ = kNoFrame;
   current_ = free_slot();
 }
 
@@ -88,9 +88,11 @@ void Window::set_velocity(std::int64_t elapsed_ns) {
                                  ? Vector6(0.5 * (last.velocity.value + current.velocity.value))
                                  : current.velocity.value;
   last.velocity = {both_sides, elapsed_ns};
+  smooth_velocity_ = both_sides;
 }
 
 void Window::advance(const Kept& kept, bool keep_older) {
+  lost_ = kNoFrame;
   if (!kept.older) older_ = kNoFrame;
   last_ = current_;
   if (!kept.keyframe) {
@@ -112,14 +114,40 @@ void Window::advance(const Kept& kept, bool keep_older) {
 }
 
 void Window::give_up() {
-  kept_.keep(keyframe_);
-  keyframe_ = recent_ = older_ = kNoFrame;
+  keep_keyframe();
+  keyframe_ = recent_ = older_ = lost_ = kNoFrame;
   last_motion_ = recent_motion_ = {};
+}
+
+// A keyframe that no frame was tracked with takes no other's place.
+void Window::keep_keyframe() {
+  if ((*this)[keyframe_].velocity.known() || !kept_.full()) kept_.keep(keyframe_);
+}
+
+bool Window::can_keep_lost() const {
+  if (kept_.capacity() == 0) return false;
+  for (int slot = 0; slot < static_cast<int>(kFrames); ++slot)
+    if (slot != current_ && !is_reference(slot) && !(*this)[slot].features.points.points.empty()) return true;
+  return false;
+}
+
+void Window::keep_lost(const PoseWithCovariance& pose) {
+  set_pose(current_, pose);
+  Frame& lost = (*this)[current_];
+  lost.velocity = {};
+  lost_ = current_;
   current_ = free_slot();
 }
 
+void Window::go_on_from_lost() {
+  keep_keyframe();
+  keyframe_ = recent_ = last_ = lost_;
+  older_ = lost_ = kNoFrame;
+  last_motion_ = recent_motion_ = {};
+}
+
 bool Window::is_reference(int slot) const {
-  return slot == keyframe_ || slot == recent_ || slot == older_ || kept_.holds(slot);
+  return slot == keyframe_ || slot == recent_ || slot == older_ || slot == lost_ || kept_.holds(slot);
 }
 
 int Window::free_slot() const {

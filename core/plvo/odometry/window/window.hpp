@@ -8,6 +8,7 @@
 //   recent    a later frame that is matched beside the keyframe; the keyframe itself where there is no other
 //   older     the keyframe before, which is still matched (ReferencePolicy::kWindow)
 //   kept      keyframes from before a loss, which may come back into view (kept_keyframes.hpp)
+//   lost      the last lost frame, which the next one is matched with where the references fail
 //
 // One frame can have several roles. Slots identify the frames. Memory: the features of as many frames as
 // Limits ask for, from the arena; two frames without a role share it (begin_frame()).
@@ -76,6 +77,8 @@ class Window {
   bool has_keyframe() const { return keyframe_ != kNoFrame; }
   bool has_recent() const { return recent_ != keyframe_; }
   bool has_older() const { return older_ != kNoFrame; }
+  int lost() const { return lost_; }
+  bool has_lost() const { return lost_ != kNoFrame; }
   int recent_age() const { return recent_age_; }  // frames since the recent one was tracked
   const KeptKeyframes& kept() const { return kept_; }
   KeptKeyframes& kept() { return kept_; }
@@ -113,15 +116,28 @@ class Window {
   // Computes the velocity of the current frame from its pose and the last frame's, elapsed_ns apart; it also
   // refines the velocity of the last frame.
   void set_velocity(std::int64_t elapsed_ns);
+  // Mean velocity over the last two motions, in the axes of the frame between them. It has less noise than
+  // that over the last one.
+  const Vector6& smooth_velocity() const { return smooth_velocity_; }
   // Makes the current frame the last one and gives it the roles that are not kept. keep_older: a replaced
   // keyframe becomes the older one.
   void advance(const Kept& kept, bool keep_older);
   // No reference is in view any more: the keyframe joins the kept ones, and its role stays empty.
   void give_up();
 
+  // Whether the current frame can stay as the lost one: there is memory for the next frame, and a place where
+  // the keyframe can be kept if tracking goes on from the lost frame.
+  bool can_keep_lost() const;
+  // Makes the current frame the lost one, with this pose.
+  void keep_lost(const PoseWithCovariance& pose);
+  void drop_lost() { lost_ = kNoFrame; }
+  // Makes the lost frame the keyframe and the last frame; the old keyframe joins the kept ones.
+  void go_on_from_lost();
+
  private:
   bool is_reference(int slot) const;
   int free_slot() const;
+  void keep_keyframe();
 
   std::array<Frame, kFrames> frames_;
   int current_ = 0;
@@ -129,7 +145,9 @@ class Window {
   int keyframe_ = kNoFrame;
   int recent_ = kNoFrame;
   int older_ = kNoFrame;
+  int lost_ = kNoFrame;
   int recent_age_ = 0;
+  Vector6 smooth_velocity_ = Vector6::Zero();
   // Zero while the frame is the keyframe.
   RelativeCovariance last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();

@@ -144,6 +144,9 @@ class Result:
     @property
     def returned(self) -> bool: ...
     @property
+    def repeated(self) -> bool:
+        """The colour image is that of the frame before; the pose is predicted."""
+    @property
     def feature_step(self) -> int:
         """Of the budget of time: 0, all the features that fit, to 8."""
 

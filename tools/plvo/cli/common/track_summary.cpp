@@ -56,6 +56,10 @@ void TrackSummary::add(const FrameRecord& record) {
     ++predicted_;
     return;
   }
+  if (result.repeated) {
+    ++repeated_;
+    return;
+  }
   ++tracked_;
   returned_ += result.returned ? 1 : 0;
   point_inliers_.add(result.points.inliers);
@@ -75,6 +79,9 @@ SummaryRows TrackSummary::frame_rows() const {
                       {"tracked", fmt::format("{}", tracked_)}};
   if (predicted_ > 0)
     rows.emplace_back("predicted", fmt::format("{} (nothing seen; from gyro and accelerometer)", predicted_));
+  if (repeated_ > 0)
+    rows.emplace_back("repeated",
+                      fmt::format("{} (the image of the frame before; pose predicted)", repeated_));
   if (returned_ > 0)
     rows.emplace_back("returned", fmt::format("{} (back at a view from before a loss)", returned_));
   rows.emplace_back("lost", fmt::format("{}", lost_));
@@ -111,11 +118,11 @@ std::string TrackSummary::stage_table() const {
 }
 
 nlohmann::ordered_json TrackSummary::to_json() const {
-  nlohmann::ordered_json json = {{"camera", camera_name}, {"interrupted", interrupted},
-                                 {"frames", frames_},     {"initialised", started_},
-                                 {"tracked", tracked_},   {"predicted", predicted_},
-                                 {"returned", returned_}, {"lost", lost_},
-                                 {"damaged", damaged_},   {"path_m", path_m_}};
+  nlohmann::ordered_json json = {
+      {"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
+      {"initialised", started_}, {"tracked", tracked_},        {"predicted", predicted_},
+      {"repeated", repeated_},   {"returned", returned_},      {"lost", lost_},
+      {"damaged", damaged_},     {"path_m", path_m_}};
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// After a loss, lost frames are matched with each other: the trajectory goes on in a new piece with an honest
+// covariance, and is joined when an old view comes back. References are given up by time, not by frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+#include "sound.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr std::int64_t kFifth_ns = 200'000'000;
+
+// Takes five frames a second.
+class SlowCamera {
+ public:
+  explicit SlowCamera(int kept_keyframes) {
+    limits_.kept_keyframes = kept_keyframes;
+    memory_.resize(required_bytes(limits_));
+    EXPECT_TRUE(odometry.init(memory_, sequence_.camera(), {}, limits_).ok());
+  }
+  TrackResult see(int view) {
+    RgbdFrame frame = sequence_.render(view);
+    frame.stamp_ns = frame.depth_stamp_ns = kFifth_ns * ++taken_;
+    const TrackResult result = odometry.track(frame);
+    EXPECT_TRUE(test::is_sound(result)) << result.status.message();
+    return result;
+  }
+  // No frame comes for this many frames' time.
+  void pause(int frames) { taken_ += frames; }
+  Odometry odometry;
+
+ private:
+  Limits limits_{160, 120, 250, 64};
+  std::vector<std::byte> memory_;
+  ProceduralSequence sequence_{160, 120};
+  int taken_ = 0;
+};
+
+double normalised_error(const TrackResult& result, int view) {
+  const Se3 first = ProceduralSequence::T_world_camera(0);
+  const Vector6 error =
+      boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));
+  return error.dot(result.pose_covariance.ldlt().solve(error));
+}
+
+constexpr int kLeft = 6;   // the last view before the jump
+constexpr int kAway = 60;  // a view that shares nothing with those before
+
+TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
+  SlowCamera camera(1);
+  TrackResult before;
+  for (int view = 0; view <= kLeft; ++view) before = camera.see(view);
+  ASSERT_EQ(before.state, TrackState::kTracking);
+  camera.pause(9);  // so that the camera may have come that far
+  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
+  TrackResult result = camera.see(kAway + 1);
+  EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  EXPECT_NE(std::string(result.status.message()).find("a new piece"), std::string::npos);
+  const double unobserved_m = 0.5 * 2.0;  // ReferenceConfig::process_noise_m_per_s
+  EXPECT_GE(result.pose_covariance(0, 0), unobserved_m * unobserved_m);
+  bool returned = false;
+  for (int view = kAway; view >= kLeft && !returned; --view) {
+    result = camera.see(view);
+    EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+    EXPECT_EQ(result.status.message()[0], '\0');
+    returned = result.returned;
+  }
+  EXPECT_TRUE(returned) << "the pieces are joined";
+  EXPECT_LT(result.pose_covariance(0, 0), 1e-3);
+}
+
+TEST(Loss, TheCovarianceOfANewPieceContainsACameraThatWentOnAsBefore) {
+  constexpr int kViewsPerFrame = 4;  // fast, and yet tracked
+  SlowCamera camera(1);
+  int view = 0;
+  TrackResult before;
+  for (; view <= 5 * kViewsPerFrame; view += kViewsPerFrame) before = camera.see(view);
+  ASSERT_EQ(before.state, TrackState::kTracking) << before.status.message();
+  view -= kViewsPerFrame;
+  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
+  const TrackResult result = camera.see(kAway + 1);
+  ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  const Vector6 going_on = boxminus(ProceduralSequence::T_world_camera(view),
+                                    ProceduralSequence::T_world_camera(view - kViewsPerFrame));
+  const Matrix6 process_noise = 0.1 * 0.1 * Matrix6::Identity();  // half of a metre and of a radian a second
+  EXPECT_GT(result.pose_covariance.trace(), process_noise.trace() + 0.5 * going_on.squaredNorm());
+}
+
+TEST(Loss, WithoutMemoryTheReferencesAreGivenUpAfterHalfASecond) {
+  SlowCamera camera(0);
+  for (int view = 0; view <= kLeft; ++view) (void)camera.see(view);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.see(kAway + i).state, TrackState::kLost) << i;
+  EXPECT_EQ(camera.see(kAway + 3).state, TrackState::kInitialising);
+  const TrackResult result = camera.see(kAway + 4);
+  EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+}
+
+TEST(Loss, ASingleLostFrameChangesNothing) {
+  SlowCamera camera(1);
+  TrackResult result;
+  for (int view = 0; view <= kLeft; ++view) result = camera.see(view);
+  const std::int64_t reference = result.reference_stamp_ns;
+  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
+  result = camera.see(kLeft + 1);
+  EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  EXPECT_EQ(result.reference_stamp_ns, reference);
+  EXPECT_LT(normalised_error(result, kLeft + 1), 25);
+}
+
+}  // namespace
+}  // namespace plvo
