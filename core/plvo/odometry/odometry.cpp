@@ -55,7 +55,10 @@ Odometry::Odometry() = default;
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   memory_.views.clear();
   const Status refusal = check(input, prior);
-  TrackResult result = refusal.ok() ? process(input, prior) : refuse(input, refusal);
+  if (refusal.ok()) repeats_.look(input);
+  TrackResult result = !refusal.ok()      ? refuse(input, refusal)
+                       : is_passed_over() ? pass_over(input, prior)
+                                          : process(input, prior);
   if (make_sound(result)) return result;
   forget_world();
   result.T_world_camera = result.T_camera_reference = Se3();
@@ -81,11 +84,8 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
   return result;
 }
 
-// A frame that passed check(), step by step.
+// A frame that passed check() and is not repeated, step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
-  repeats_.look(input);
-  if (is_passed_over()) return pass_over(input, prior);
-
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
   const StageContext context{camera_, *config_, noise_, arena_, times};
@@ -102,9 +102,9 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   frame.features.stamp_ns = input.stamp_ns;
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
   depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
-  TrackedMotion tracked = depth_has_stopped_       ? TrackedMotion()
-                          : window_.has_keyframe() ? search_motion(frame, memory_.tracking)
-                                                   : resume(frame);
+  TrackedMotion tracked;
+  if (!depth_has_stopped_ && window_.has_keyframe()) search_motion(frame, memory_.tracking, tracked);
+  if (!depth_has_stopped_ && !window_.has_keyframe()) resume(frame, tracked);
   if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
   depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 

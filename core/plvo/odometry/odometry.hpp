@@ -191,14 +191,15 @@ class Odometry {
   // odometry_loss.cpp: lost frames are matched with each other, and references are given up.
   void search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                          PredictedMotion& predicted, TrackedMotion& tracked);
-  PredictedMotion predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const;
+  void predict_from_lost(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
+  void predict_anew(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
   bool search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                         PredictedMotion& predicted, TrackedMotion& tracked);
   bool lost_too_long(std::int64_t stamp_ns) const;
   void note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior);
 
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
-  TrackedMotion resume(const CurrentFrame& frame);
+  void resume(const CurrentFrame& frame, TrackedMotion& tracked);
   void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
   bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
                  const PoseWithCovariance& believed, TrackedMotion& tracked);

@@ -11,20 +11,23 @@
 namespace plvo {
 
 // Called where the search from the references failed.
-void Odometry::search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-                                 PredictedMotion& predicted, TrackedMotion& tracked) {
+[[gnu::noinline]] void Odometry::search_after_loss(const RgbdFrame& input, const MotionPrior& prior,
+                                                   const CurrentFrame& frame, PredictedMotion& predicted,
+                                                   TrackedMotion& tracked) {
   if (!window_.has_keyframe() || search_from_lost(input, prior, frame, predicted, tracked)) return;
   if (!lost_too_long(input.stamp_ns)) return;
   // The views of the references are out of sight. Unless one comes back, this frame starts anew.
   window_.give_up();
-  tracked = resume(frame);
+  resume(frame, tracked);
 }
 
-// The motion since the lost frame, which is the frame before.
-PredictedMotion Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior) const {
+// The motion since the lost frame, which is the frame before. Not inlined, as predict_anew: the temporary
+// would otherwise stay on the stack during the search.
+[[gnu::noinline]] void Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior,
+                                                   PredictedMotion& predicted) const {
   const Window::Frame& lost = window_[window_.lost()];
   const std::int64_t elapsed = elapsed_ns(lost.features.stamp_ns, input.stamp_ns);
-  PredictedMotion predicted;
+  predicted = PredictedMotion();
   predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
   predicted.sensed.restart();
   predicted.sensed.extend(prior, Vector6::Zero(), static_cast<double>(elapsed) * 1e-9, config_->references);
@@ -35,7 +38,11 @@ PredictedMotion Odometry::predict_from_lost(const RgbdFrame& input, const Motion
   reference.prior.since_last_ns = elapsed;
   reference.prior.depth_after_colour_s = predicted.depth_after_colour_s;
   predicted.exposure = current_exposure(camera_, reference.prior, reference.T_current_predicted);
-  return predicted;
+}
+
+[[gnu::noinline]] void Odometry::predict_anew(const RgbdFrame& input, const MotionPrior& prior,
+                                              PredictedMotion& predicted) const {
+  predicted = predict(input, prior);
 }
 
 // Searches for the motion since the lost frame. If it is found, that frame is the keyframe from now on.
@@ -43,13 +50,13 @@ bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior
                                 PredictedMotion& predicted, TrackedMotion& tracked) {
   // Two equal images agree, and yet show no motion.
   if (!window_.has_lost() || repeats_.colour_is_repeated()) return false;
-  predicted = predict_from_lost(input, prior);
-  tracked = search_motion(frame, memory_.tracking);
+  predict_from_lost(input, prior, predicted);
+  search_motion(frame, memory_.tracking, tracked);
   tracked.new_piece = tracked.ok();
   if (tracked.ok())
     window_.go_on_from_lost();
   else
-    predicted = predict(input, prior);
+    predict_anew(input, prior, predicted);
   return tracked.ok();
 }
 

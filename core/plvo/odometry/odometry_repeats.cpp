@@ -25,7 +25,7 @@ bool Odometry::is_passed_over() const {
 
 // Predicts the pose at the stamp of a repeated frame, by the priors or by the last velocity. Nothing that the
 // next frame needs is changed.
-TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
+[[gnu::noinline]] TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
   propagated_prior_ = predict(input, prior).sensed;
   last_stamp_ns_ = input.stamp_ns;
   Se3 T_current_last = propagated_prior_.T_current_last();
@@ -52,14 +52,14 @@ TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior
 }
 
 // Remembers where the camera was when the depth image of this frame came. Called for a frame with a pose.
-void Odometry::note_depth() {
+[[gnu::noinline]] void Odometry::note_depth() {
   if (has_depth_pose_ && repeats_.depth_is_repeated()) return;
   T_world_depth_ = window_.last_frame().pose.T_world_camera;
   has_depth_pose_ = true;
 }
 
 // Whether the depth image is an old one, and the camera has moved since it came.
-bool Odometry::depth_has_stopped(const TrackedMotion& tracked) const {
+[[gnu::noinline]] bool Odometry::depth_has_stopped(const TrackedMotion& tracked) const {
   if (!tracked.ok() || !has_depth_pose_ || repeats_.depth_age_ns() <= kOldestDepth_ns) return false;
   const Se3& T_world_keyframe = window_[window_.keyframe()].pose.T_world_camera;
   const Se3 T_current_depth =

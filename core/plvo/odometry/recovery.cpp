@@ -52,20 +52,19 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
 
 // Called before tracking starts anew: takes up the kept keyframe again if its view is back. Otherwise there
 // is no motion, and the lines are lifted without one.
-[[gnu::noinline]] TrackedMotion Odometry::resume(const CurrentFrame& frame) {
-  TrackedMotion tracked;
+[[gnu::noinline]] void Odometry::resume(const CurrentFrame& frame, TrackedMotion& tracked) {
+  tracked.returned = false;
   if (!window_.kept().empty()) {
     const int slot = window_.kept().latest();
     // The camera is taken to stand still: its velocity before the loss is out of date.
     tracked.returned = recognise(slot, frame, Vector6::Zero(), unobserved_pose(frame.stamp_ns()), tracked);
     if (tracked.returned) window_.resume(slot);
   }
-  if (tracked.returned) return tracked;
+  if (tracked.returned) return;
   tracked.motion.status = StatusCode::kNoConsensus;
   tracked.points = tracked.lines = {};
   tracked.ransac_iterations = tracked.lm_iterations = 0;
   memory_.extraction.lift_lines(frame.context, frame.depth, frame.predicted.exposure, frame.features.lines);
-  return tracked;
 }
 
 // Tracking has resumed with a new start, whose pose was not observed. If the view of a kept keyframe is back,

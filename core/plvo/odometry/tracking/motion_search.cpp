@@ -96,8 +96,8 @@ bool is_findable(const Reference& reference) {
 }  // namespace
 
 // Not inlined: its variables are on the stack during the search alone.
-[[gnu::noinline]] TrackedMotion search_motion(const CurrentFrame& current, ReferenceTracking& tracking) {
-  TrackedMotion tracked;
+[[gnu::noinline]] void search_motion(const CurrentFrame& current, ReferenceTracking& tracking,
+                                     TrackedMotion& tracked) {
   const std::span<const Reference> references = current.predicted.references();
   const StageContext& context = current.context;
   const Config& config = context.config;
@@ -147,7 +147,7 @@ bool is_findable(const Reference& reference) {
           distance_px(*latest.features, context.camera.pinhole, aligned, predicted) > kSameStart_px)
         (void)explain(predicted * latest.pose.T_reference_base);
       take_best();
-      return tracked;
+      return;
     }
   }
   current.find_points();
@@ -161,7 +161,6 @@ bool is_findable(const Reference& reference) {
                     config.references.wide_search_px);
   }
   if (!accepted) take_best();
-  return tracked;
 }
 
 }  // namespace plvo
