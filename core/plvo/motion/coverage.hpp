@@ -27,7 +27,8 @@ struct Extent {
 };
 
 inline Extent extent_of(const Point3d& point) { return {point.p}; }
-inline Extent extent_of(const Line3d& line) {
+// Always inlined: used by code that is compiled for speed and by code that is compiled for size.
+[[gnu::always_inline]] inline Extent extent_of(const Line3d& line) {
   const Vector3 image = line.b / line.b.z() - line.a / line.a.z();
   return {0.5 * (line.a + line.b), sqrt(image.squaredNorm())};
 }
