@@ -80,7 +80,8 @@ class CliLiveFaults : public LiveCommand {
     const nlohmann::json json = summary();
     EXPECT_EQ(rows(), json["frames"].get<long>());
     const std::string poses = read_file(path("t.txt"));
-    EXPECT_EQ(lines_in(poses) - 1, json["tracked"].get<long>() + json["initialised"].get<long>());
+    EXPECT_EQ(lines_in(poses) - 1,
+              json["tracked"].get<long>() + json["repeated"].get<long>() + json["initialised"].get<long>());
     EXPECT_EQ(poses.back(), '\n');
   }
 };

@@ -24,7 +24,8 @@ class CliLiveSignals : public LiveCommand {
   void expect_whole_files() const {
     const nlohmann::json json = nlohmann::json::parse(read_file(path("j.json")));
     EXPECT_EQ(json["interrupted"], true);
-    const long frames = json["frames"], poses = json["tracked"].get<long>() + json["initialised"].get<long>();
+    const long frames = json["frames"], poses = json["tracked"].get<long>() + json["repeated"].get<long>() +
+                                                json["initialised"].get<long>();
     EXPECT_EQ(lines_in(read_file(path("s.csv"))), frames + 1);
     EXPECT_EQ(lines_in(read_file(path("t.txt"))), poses + 1);
     EXPECT_EQ(lines_in(read_file(path("c.txt"))), poses + 1);

@@ -82,7 +82,8 @@ TEST_F(KinectCommand, LiveAtFullRateWithoutAllocationsInFlatMemory) {
       << "it went through the wrap";
   EXPECT_EQ(json["camera_counters"]["clock_jumps"], 0);
   EXPECT_EQ(json["lost"], 0) << json;
-  EXPECT_GE(json["tracked"].get<int>(), wanted - 1);
+  // On a loaded machine a colour image may come twice.
+  EXPECT_GE(json["tracked"].get<int>() + json["repeated"].get<int>(), wanted - 1);
   EXPECT_EQ(tracks, json["frames"].get<std::int64_t>());
   if (plvo::AllocationGuard::available()) {
     EXPECT_EQ(allocations, 0) << "by the core, in " << tracks << " frames";

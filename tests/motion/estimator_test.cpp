@@ -355,7 +355,7 @@ class PlaneSamples final : public ConstraintSet {
   int dof() const override { return 1; }
   bool usable(std::size_t) const override { return true; }
   Primitive primitive(std::size_t) const override { return {}; }
-  Extent extent(std::size_t i) const override { return {samples_[i].measured}; }
+  Extent extent(std::size_t i) const override { return {samples_[i].measured, 0}; }
   double mahalanobis_squared(std::size_t i, const Se3& T, double) const override {
     const double r = residual(samples_[i], T) / samples_[i].sigma;
     return r * r;

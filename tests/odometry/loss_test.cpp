@@ -49,8 +49,8 @@ double normalised_error(const TrackResult& result, int view) {
   return error.dot(result.pose_covariance.ldlt().solve(error));
 }
 
-constexpr int kLeft = 6;   // the last view before the jump
-constexpr int kAway = 60;  // a view that shares nothing with those before
+constexpr int kLeft = 6;        // the last view before the jump
+constexpr int kElsewhere = 60;  // a view that shares nothing with those before
 
 TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
   SlowCamera camera(1);
@@ -58,14 +58,14 @@ TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
   for (int view = 0; view <= kLeft; ++view) before = camera.see(view);
   ASSERT_EQ(before.state, TrackState::kTracking);
   camera.pause(9);  // so that the camera may have come that far
-  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
-  TrackResult result = camera.see(kAway + 1);
+  EXPECT_EQ(camera.see(kElsewhere).state, TrackState::kLost);
+  TrackResult result = camera.see(kElsewhere + 1);
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
   EXPECT_NE(std::string(result.status.message()).find("a new piece"), std::string::npos);
   const double unobserved_m = 0.5 * 2.0;  // ReferenceConfig::process_noise_m_per_s
   EXPECT_GE(result.pose_covariance(0, 0), unobserved_m * unobserved_m);
   bool returned = false;
-  for (int view = kAway; view >= kLeft && !returned; --view) {
+  for (int view = kElsewhere; view >= kLeft && !returned; --view) {
     result = camera.see(view);
     EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
     EXPECT_EQ(result.status.message()[0], '\0');
@@ -83,8 +83,8 @@ TEST(Loss, TheCovarianceOfANewPieceContainsACameraThatWentOnAsBefore) {
   for (; view <= 5 * kViewsPerFrame; view += kViewsPerFrame) before = camera.see(view);
   ASSERT_EQ(before.state, TrackState::kTracking) << before.status.message();
   view -= kViewsPerFrame;
-  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
-  const TrackResult result = camera.see(kAway + 1);
+  EXPECT_EQ(camera.see(kElsewhere).state, TrackState::kLost);
+  const TrackResult result = camera.see(kElsewhere + 1);
   ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
   const Vector6 going_on = boxminus(ProceduralSequence::T_world_camera(view),
                                     ProceduralSequence::T_world_camera(view - kViewsPerFrame));
@@ -95,9 +95,9 @@ TEST(Loss, TheCovarianceOfANewPieceContainsACameraThatWentOnAsBefore) {
 TEST(Loss, WithoutMemoryTheReferencesAreGivenUpAfterHalfASecond) {
   SlowCamera camera(0);
   for (int view = 0; view <= kLeft; ++view) (void)camera.see(view);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.see(kAway + i).state, TrackState::kLost) << i;
-  EXPECT_EQ(camera.see(kAway + 3).state, TrackState::kInitialising);
-  const TrackResult result = camera.see(kAway + 4);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.see(kElsewhere + i).state, TrackState::kLost) << i;
+  EXPECT_EQ(camera.see(kElsewhere + 3).state, TrackState::kInitialising);
+  const TrackResult result = camera.see(kElsewhere + 4);
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
 }
 
@@ -106,7 +106,7 @@ TEST(Loss, ASingleLostFrameChangesNothing) {
   TrackResult result;
   for (int view = 0; view <= kLeft; ++view) result = camera.see(view);
   const std::int64_t reference = result.reference_stamp_ns;
-  EXPECT_EQ(camera.see(kAway).state, TrackState::kLost);
+  EXPECT_EQ(camera.see(kElsewhere).state, TrackState::kLost);
   result = camera.see(kLeft + 1);
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
   EXPECT_EQ(result.reference_stamp_ns, reference);

@@ -55,7 +55,8 @@ def test_a_result_says_what_the_library_knows(walk):
         assert covariance.shape == (6, 6) and np.allclose(covariance, covariance.T, rtol=1e-9, atol=0)
         assert np.linalg.eigvalsh(covariance).min() > 0
         assert not covariance.flags.writeable and covariance.base is last, "a view of the result"
-    assert last.points.detected >= last.points.with_depth >= last.points.matched >= last.points.inliers > 0
+    assert last.points.detected >= last.points.with_depth > 0
+    assert last.points.matched >= last.points.inliers > 0, "with all references"
     assert "tracking" in repr(last)
 
 

@@ -146,11 +146,12 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     status = approach_from(first, scale);
     if (status != StatusCode::kOk) return status;
   }
-  if (const double covered = ransac.covered(); covered < Ransac::kMajority) {
+  if (const double covered = ransac.covered(); covered < kMajority) {
     Se3 other;
-    if (!ransac.run(seed, start.prediction, Ransac::Gain::kEvidence, other, estimate.ransac) ||
-        approach_from(other, kWiderThanRefined) != StatusCode::kOk || !consensus() ||
-        !(ransac.covered() > covered)) {
+    estimate.is_other = ransac.run(seed, start.prediction, Ransac::Gain::kEvidence, other, estimate.ransac) &&
+                        approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus() &&
+                        ransac.covered() > covered;
+    if (!estimate.is_other) {
       status = approach_from(first, scale);
       if (status != StatusCode::kOk) return status;
     }

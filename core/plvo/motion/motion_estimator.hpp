@@ -26,7 +26,9 @@ struct MotionEstimate {
   // min_inliers; kNoConsensus; kDegenerate; kNotConverged; kOutOfMemory. Every number here is finite whatever
   // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
-  Se3 T_current_reference;   // X' = R X + t, equation (11)
+  Se3 T_current_reference;  // X' = R X + t, equation (11)
+  // Whether another motion than the first one with a consensus was taken, because it has more evidence.
+  bool is_other = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad².

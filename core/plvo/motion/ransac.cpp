@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/ransac.hpp"
 
-#include <algorithm>
-
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -23,21 +21,6 @@ constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
 // Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
-
-// Cells of the image, in the plane z = 1: 40 pixels of a Kinect. The grid is wider than any lens without
-// fisheye; what lies beyond counts to its border.
-constexpr double kCellSide = 0.075;
-constexpr int kCells = 32;
-// A line that spans more cells counts as this many.
-constexpr double kMostCellsOfALine = 4;
-
-std::size_t cell_of(const Vector3& p) {
-  const auto along = [](double x) {
-    return static_cast<std::size_t>(std::clamp(x / kCellSide + kCells / 2, 0.0, kCells - 1.0));
-  };
-  const double inverse = 1 / p.z();
-  return along(p.y() * inverse) * kCells + along(p.x() * inverse);
-}
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
@@ -69,23 +52,19 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   weigh();
 }
 
-// Not inlined: the grid would otherwise stay on the stack while the motion is solved for.
+// Not inlined: the cells would otherwise stay on the stack while the motion is solved for.
 [[gnu::noinline]] void Ransac::weigh() {
-  std::array<std::uint8_t, kCells * kCells> crowd;
+  Coverage coverage;
   for (std::size_t reference = 0; reference < kMaxReferences; ++reference) {
     const auto each = [&](const auto& visit) {
       for (RansacCandidate& candidate : candidates_)
         if (const ConstraintSet& set = *sets_[candidate.set]; set.reference() == reference)
           visit(candidate, set.extent(candidate.index));
     };
-    crowd.fill(0);
-    each([&](const RansacCandidate&, const Extent& extent) {
-      std::uint8_t& matches = crowd[cell_of(extent.middle)];
-      if (matches < 255) ++matches;
-    });
+    coverage.clear();
+    each([&](const RansacCandidate&, const Extent& extent) { coverage.count(extent); });
     each([&](RansacCandidate& candidate, const Extent& extent) {
-      const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
-      candidate.evidence = static_cast<float>(extent.middle.z() * cells / crowd[cell_of(extent.middle)]);
+      candidate.evidence = static_cast<float>(coverage.evidence(extent));
       evidence_ += static_cast<double>(candidate.evidence);
     });
   }

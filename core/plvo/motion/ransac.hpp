@@ -10,12 +10,8 @@
 // cannot raise it to the best score; this does not change the result. A new best hypothesis is refined on its
 // inliers by a few steps of the maximum-likelihood problem (LO-RANSAC, Chum, Matas & Kittler 2003).
 //
-// Evidence: a scene may hold more than one motion, and the camera's is that of the larger part of the scene,
-// not that of the most features: an object or a part of the robot may have most of the texture, but it is
-// smaller than the room. The evidence of a match is the size of what it stands for. The image is divided into
-// square cells, and the matches of a cell with one reference share its evidence: its width in metres, which
-// is in proportion to the depth. A line has that of all the cells that it spans. If the consensus of the most
-// matches has less than half of the evidence, the estimator searches for the one that has the most.
+// If the consensus of the most matches has less than half of the evidence (coverage.hpp), the estimator
+// searches for the one that has the most.
 #pragma once
 
 #include <array>
@@ -52,9 +48,6 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::siz
 
 class Ransac {
  public:
-  // A consensus that covers more than this share of the evidence is beyond dispute: no other covers more.
-  static constexpr double kMajority = 0.5;
-
   // terms: what the refinements minimise, first the sets. scratch: one RansacCandidate for every match of all
   // sets; matches that do not fit are ignored. solver: used by the refinements; the caller may use it between
   // them. references and terms must outlive this object.
@@ -69,7 +62,7 @@ class Ransac {
   // What an inlier adds to the score is in proportion to this.
   enum class Gain : std::uint8_t {
     kMatch,     // every match counts the same
-    kEvidence,  // the part of the scene that it stands for
+    kEvidence,  // by its evidence
   };
   // Writes the best motion to T. Returns false if no hypothesis has a score above zero.
   bool run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary);

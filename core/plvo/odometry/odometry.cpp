@@ -84,7 +84,7 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
   return result;
 }
 
-// A frame that passed check() and shows something new, step by step.
+// A frame that passed check() and is not repeated, step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
@@ -93,8 +93,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   const double brightness = extraction.prepare_image(context, input.colour);
 
   // Predict: the motion since each reference, and that during the exposure.
-  PredictedMotion predicted;
-  predict(input, prior, predicted);
+  PredictedMotion predicted = predict(input, prior);
 
   // Associate and estimate: for one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
@@ -104,7 +103,9 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
   depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
   TrackedMotion tracked;
-  if (!depth_has_stopped_) search(input, prior, frame, predicted, tracked);
+  if (!depth_has_stopped_ && window_.has_keyframe()) search_motion(frame, memory_.tracking, tracked);
+  if (!depth_has_stopped_ && !window_.has_keyframe()) resume(frame, tracked);
+  if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
   depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.

@@ -147,7 +147,7 @@ class Odometry {
   bool wants_points() const;
 
   // odometry_predict.cpp: where the camera is expected, and from where it is looked for.
-  void predict(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
+  PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
   double depth_after_colour_s(std::int64_t stamp_ns) const;
   Se3 coasted_motion(std::int64_t stamp_ns) const;
@@ -189,9 +189,10 @@ class Odometry {
   Status stopped_depth(const char* first_word) const;
 
   // odometry_loss.cpp: lost frames are matched with each other, and references are given up.
-  void search(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-              PredictedMotion& predicted, TrackedMotion& tracked);
+  void search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
+                         PredictedMotion& predicted, TrackedMotion& tracked);
   void predict_from_lost(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
+  void predict_anew(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
   bool search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                         PredictedMotion& predicted, TrackedMotion& tracked);
   bool lost_too_long(std::int64_t stamp_ns) const;

@@ -10,22 +10,19 @@
 
 namespace plvo {
 
-// The search for the motion of a frame: from the references, from the lost frame before, from a kept
-// keyframe.
-[[gnu::noinline]] void Odometry::search(const RgbdFrame& input, const MotionPrior& prior,
-                                        const CurrentFrame& frame, PredictedMotion& predicted,
-                                        TrackedMotion& tracked) {
-  if (window_.has_keyframe()) {
-    search_motion(frame, memory_.tracking, tracked);
-    if (tracked.ok() || search_from_lost(input, prior, frame, predicted, tracked)) return;
-    if (!lost_too_long(input.stamp_ns)) return;
-    // The views of the references are out of sight. Unless one comes back, this frame starts anew.
-    window_.give_up();
-  }
+// Called where the search from the references failed.
+[[gnu::noinline]] void Odometry::search_after_loss(const RgbdFrame& input, const MotionPrior& prior,
+                                                   const CurrentFrame& frame, PredictedMotion& predicted,
+                                                   TrackedMotion& tracked) {
+  if (!window_.has_keyframe() || search_from_lost(input, prior, frame, predicted, tracked)) return;
+  if (!lost_too_long(input.stamp_ns)) return;
+  // The views of the references are out of sight. Unless one comes back, this frame starts anew.
+  window_.give_up();
   resume(frame, tracked);
 }
 
-// The motion since the lost frame, which is the frame before.
+// The motion since the lost frame, which is the frame before. Not inlined, as predict_anew: the temporary
+// would otherwise stay on the stack during the search.
 [[gnu::noinline]] void Odometry::predict_from_lost(const RgbdFrame& input, const MotionPrior& prior,
                                                    PredictedMotion& predicted) const {
   const Window::Frame& lost = window_[window_.lost()];
@@ -43,6 +40,11 @@ namespace plvo {
   predicted.exposure = current_exposure(camera_, reference.prior, reference.T_current_predicted);
 }
 
+[[gnu::noinline]] void Odometry::predict_anew(const RgbdFrame& input, const MotionPrior& prior,
+                                              PredictedMotion& predicted) const {
+  predicted = predict(input, prior);
+}
+
 // Searches for the motion since the lost frame. If it is found, that frame is the keyframe from now on.
 bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                                 PredictedMotion& predicted, TrackedMotion& tracked) {
@@ -54,7 +56,7 @@ bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior
   if (tracked.ok())
     window_.go_on_from_lost();
   else
-    predict(input, prior, predicted);
+    predict_anew(input, prior, predicted);
   return tracked.ok();
 }
 
@@ -65,8 +67,7 @@ bool Odometry::lost_too_long(std::int64_t stamp_ns) const {
 
 // Called for each lost frame. A usable one stays for the next frame. Its pose is the last good one with the
 // unobserved motion since then, or that of the priors.
-[[gnu::noinline]] void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision,
-                                           const MotionPrior& prior) {
+void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior) {
   if (!is_lost_) lost_since_ns_ = frame.stamp_ns();
   is_lost_ = true;
   window_.drop_lost();

@@ -12,11 +12,10 @@ namespace {}  // namespace
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.
-[[gnu::noinline]] void Odometry::predict(const RgbdFrame& input, const MotionPrior& prior,
-                                         PredictedMotion& predicted) const {
-  predicted = PredictedMotion();
+[[gnu::noinline]] PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
+  PredictedMotion predicted;
   predicted.depth_after_colour_s = depth_after_colour_s(input.stamp_ns);
-  if (!window_.has_last()) return;
+  if (!window_.has_last()) return predicted;
   const Window::Frame& last = window_.last_frame();
   const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
   const double seconds = static_cast<double>(elapsed_ns(last_stamp_ns_, input.stamp_ns)) * 1e-9;
@@ -26,13 +25,14 @@ namespace {}  // namespace
   predicted.last = window_.from_keyframe(window_.last());
   const Reference from_last = reference_of(window_.last(), input.stamp_ns, predicted);
   predicted.exposure = current_exposure(camera_, from_last.prior, from_last.T_current_predicted);
-  if (!window_.has_keyframe()) return;
+  if (!window_.has_keyframe()) return predicted;
   const auto add = [&](int slot) {
     predicted.all_references[predicted.reference_count++] = reference_of(slot, input.stamp_ns, predicted);
   };
   add(window_.keyframe());
   if (window_.has_recent()) add(window_.recent());
   if (window_.has_older()) add(window_.older());
+  return predicted;
 }
 
 // A repeated depth image is as old as when it came first, whatever its stamp.

@@ -26,9 +26,7 @@ bool Odometry::is_passed_over() const {
 // Predicts the pose at the stamp of a repeated frame, by the priors or by the last velocity. Nothing that the
 // next frame needs is changed.
 [[gnu::noinline]] TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
-  PredictedMotion motion;
-  predict(input, prior, motion);
-  propagated_prior_ = motion.sensed;
+  propagated_prior_ = predict(input, prior).sensed;
   last_stamp_ns_ = input.stamp_ns;
   Se3 T_current_last = propagated_prior_.T_current_last();
   Matrix6 covariance = propagated_prior_.covariance();
@@ -54,7 +52,7 @@ bool Odometry::is_passed_over() const {
 }
 
 // Remembers where the camera was when the depth image of this frame came. Called for a frame with a pose.
-void Odometry::note_depth() {
+[[gnu::noinline]] void Odometry::note_depth() {
   if (has_depth_pose_ && repeats_.depth_is_repeated()) return;
   T_world_depth_ = window_.last_frame().pose.T_world_camera;
   has_depth_pose_ = true;

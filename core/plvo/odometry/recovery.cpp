@@ -53,6 +53,7 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
 // Called before tracking starts anew: takes up the kept keyframe again if its view is back. Otherwise there
 // is no motion, and the lines are lifted without one.
 [[gnu::noinline]] void Odometry::resume(const CurrentFrame& frame, TrackedMotion& tracked) {
+  tracked.returned = false;
   if (!window_.kept().empty()) {
     const int slot = window_.kept().latest();
     // The camera is taken to stand still: its velocity before the loss is out of date.

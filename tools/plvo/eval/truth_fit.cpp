@@ -16,7 +16,7 @@ namespace plvo::eval {
 namespace {
 
 constexpr std::size_t kLeastIndependent = 2;
-constexpr int kMostIterations = 50;
+constexpr int kMostIterations = 100;
 constexpr double kMostClock_s = 0.1;
 // Half-widths of the central differences. True poses jitter, and so does the slope between two of them 10 ms
 // apart: a smaller step would differentiate the jitter.

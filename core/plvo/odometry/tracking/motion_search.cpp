@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/tracking/motion_search.hpp"
 
+#include "plvo/math/trigonometry.hpp"
+#include "plvo/motion/coverage.hpp"
+
 namespace plvo {
 namespace {
 
-// A first motion is accepted if at least this share of the features that it puts into the image are found. A
+// A first motion is accepted if at least this share of the evidence that it puts into the image is found. A
 // wrongly aligned image mostly finds less than a tenth. A search by features finds up to a fifth when it is a
 // brick off before a wall that repeats itself. A correct motion in a blurred image may find as little: it is
 // not refused, but other motions are searched as well.
@@ -12,32 +15,76 @@ constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
 // A motion is also accepted if two searches lead to it: within this distance (m and rad).
 constexpr double kSameMotion = 0.02;
+// Features are registered again where the estimate is another motion than that of the start, so many times in
+// all: those that move so are now found.
+constexpr int kMostRegistrations = 3;
+// An aligned motion that explains less than this share is compared with the predicted one: the image may be
+// aligned to an object. While nothing moves, most frames explain more: a third to a half.
+constexpr double kBeyondDoubt = 0.3;
+// Two starts that differ by less than this in the image: registration finds the same features from both.
+constexpr double kSameStart_px = 2;
 
-// Whether the number of inliers is at least this share of the features that the motion from the base puts
-// into the image: points, and lines by their midpoints, of all references.
-bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
-                      const CameraModel& camera, const Se3& T_current_base) {
-  // Nearly always the inliers are that share of all features, in view or not.
-  std::size_t all = 0;
-  for (const Reference& reference : references)
-    all += reference.features->points.keypoints.size() + reference.features->lines.count_3d;
-  if (inliers >= share * static_cast<double>(all)) return true;
-  int in_view = 0;
-  for (const Reference& reference : references) {
-    const Se3 T_current_reference = T_current_base * reference.pose.T_reference_base.inverse();
-    const auto is_seen = [&](const Vector3& p) {
-      const Vector3 here = T_current_reference * p;
-      if (!(here.z() > kNearestSeen_m)) return false;
-      const Vector2 at = project(camera.pinhole, here);
-      return at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1;
+// Evidence (coverage.hpp) of the inliers, and its share of that of all features in view.
+struct Explained {
+  double evidence = 0;
+  double share = 0;
+};
+
+// Calls visit(extent) for the 3D points and lines of a reference.
+template <typename Visit>
+void for_each_extent(const FrameFeatures& features, const Visit& visit) {
+  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
+    if (point.p.z() > 0) visit(extent_of(point));
+  for (const Line3d& line : features.lines.lines_3d()) visit(extent_of(line));
+}
+
+// What the motion from the base explains of the view of all references. Not inlined: the cells would
+// otherwise stay on the stack during the search.
+[[gnu::noinline]] Explained explained_by(const Se3& T_current_base, std::span<const Reference> references,
+                                         const ReferenceTracking& tracking, const CameraModel& camera) {
+  Coverage coverage;
+  Explained found;
+  double all = 0;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const FrameFeatures& features = *references[r].features;
+    const ReferenceTracks& tracks = tracking.tracks(r);
+    const Se3 T_current_reference = T_current_base * references[r].pose.T_reference_base.inverse();
+    const auto each_in_view = [&](const auto& visit) {
+      for_each_extent(features, [&](const Extent& extent) {
+        const Vector3 here = T_current_reference * extent.middle;
+        if (!(here.z() > kNearestSeen_m)) return;
+        const Vector2 at = project(camera.pinhole, here);
+        if (at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1)
+          visit(extent);
+      });
     };
-    const PointFeatures& points = reference.features->points;
-    for (const Point3d& point : points.points.first(points.keypoints.size()))
-      in_view += point.p.z() > 0 && is_seen(point.p) ? 1 : 0;
-    for (const Line3d& line : reference.features->lines.lines_3d())
-      in_view += is_seen(0.5 * (line.a + line.b)) ? 1 : 0;
+    coverage.clear();
+    each_in_view([&](const Extent& extent) { coverage.count(extent); });
+    each_in_view([&](const Extent& extent) { all += coverage.evidence(extent); });
+    for (std::size_t i = 0; i < tracks.points.matches.size(); ++i)
+      if (tracks.point_inliers[i] != 0)
+        found.evidence +=
+            coverage.evidence(extent_of(features.points.points[tracks.points.matches[i].reference]));
+    for (std::size_t i = 0; i < tracks.lines.size(); ++i)
+      if (tracks.line_inliers[i] != 0)
+        found.evidence += coverage.evidence(extent_of(features.lines.lines_3d()[tracks.lines[i].reference]));
   }
-  return inliers >= share * in_view;
+  if (all > 0) found.share = found.evidence / all;
+  return found;
+}
+
+// Mean distance in px between where two motions put the features of a reference.
+double distance_px(const FrameFeatures& features, const Pinhole& pinhole, const Se3& a, const Se3& b) {
+  double sum = 0;
+  int n = 0;
+  for_each_extent(features, [&](const Extent& extent) {
+    const Vector3 at_a = a * extent.middle;
+    const Vector3 at_b = b * extent.middle;
+    if (!(at_a.z() > kNearestSeen_m && at_b.z() > kNearestSeen_m)) return;
+    sum += sqrt((project(pinhole, at_a) - project(pinhole, at_b)).squaredNorm());
+    ++n;
+  });
+  return n > 0 ? sum / n : 0;
 }
 
 // Whether the reference can be searched by descriptors: those of a recent frame are not computed.
@@ -56,23 +103,30 @@ bool is_findable(const Reference& reference) {
   const Config& config = context.config;
   const Reference& latest = references[latest_of(references)];
   const bool registered = config.points.registered;
-  const auto refine = [&](const Se3& T_current_base) {
-    tracking.refine(references, current, T_current_base, tracked);
+  const auto refine = [&](Se3 T_current_base) {
+    for (int i = 0; i < kMostRegistrations; ++i) {
+      tracking.refine(references, current, T_current_base, tracked);
+      if (!tracked.ok() || !tracked.motion.is_other) break;
+      T_current_base = tracked.motion.T_current_reference;
+    }
     return tracked.ok();
   };
-  // The best of the motions that were not accepted: its result, its start, and its number of inliers.
+  // The start of the motion that explains most so far, the motion, and what it explains.
   struct {
-    Se3 motion, start;
-    int inliers = 0;
+    Se3 start, motion;
+    Explained explained;
   } best;
   bool last_is_best = false;  // nothing was tried since
-  const auto is_accepted = [&](const Se3& start, double share) {
-    const Se3& motion = tracked.motion.T_current_reference;
-    const int inliers = tracked.inliers();
-    if (is_share_of_view(inliers, share, references, context.camera, motion)) return true;
-    last_is_best = inliers > best.inliers;
-    if (last_is_best) best = {motion, start, inliers};
-    return false;
+  const auto explain = [&](const Se3& start) {
+    Explained explained;
+    if (refine(start))
+      explained = explained_by(tracked.motion.T_current_reference, references, tracking, context.camera);
+    last_is_best = explained.evidence > best.explained.evidence;
+    if (last_is_best) best = {start, tracked.motion.T_current_reference, explained};
+    return explained;
+  };
+  const auto take_best = [&] {
+    if (!last_is_best && best.explained.evidence > 0) (void)refine(best.start);
   };
   const auto find = [&](const Reference& from, const Se3& T_predicted, double radius_px) {
     last_is_best = false;
@@ -80,13 +134,21 @@ bool is_findable(const Reference& reference) {
     if (!tracked.ok()) return false;
     if (!registered) return true;
     const Se3 start = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    if (best.inliers > 0 && boxminus(start, best.motion).norm() < kSameMotion) return refine(best.start);
-    return refine(start) && is_accepted(start, kAcceptedShareByFeatures);
+    if (best.explained.evidence > 0 && boxminus(start, best.motion).norm() < kSameMotion)
+      return refine(best.start);
+    return explain(start).share >= kAcceptedShareByFeatures;
   };
 
-  if (Se3 start; registered && tracking.align(latest, current, start)) {
-    start = start * latest.pose.T_reference_base;
-    if (refine(start) && is_accepted(start, kAcceptedShareByImage)) return;
+  if (Se3 aligned; registered && tracking.align(latest, current, aligned)) {
+    const Explained explained = explain(aligned * latest.pose.T_reference_base);
+    if (explained.share >= kAcceptedShareByImage) {
+      const Se3& predicted = latest.T_current_predicted;
+      if (explained.share < kBeyondDoubt &&
+          distance_px(*latest.features, context.camera.pinhole, aligned, predicted) > kSameStart_px)
+        (void)explain(predicted * latest.pose.T_reference_base);
+      take_best();
+      return;
+    }
   }
   current.find_points();
   current.describe_points();
@@ -98,7 +160,7 @@ bool is_findable(const Reference& reference) {
     accepted = find(reference, current.predicted.sensed.known() ? reference.T_current_predicted : Se3{},
                     config.references.wide_search_px);
   }
-  if (!accepted && best.inliers > 0 && !last_is_best) (void)refine(best.start);
+  if (!accepted) take_best();
 }
 
 }  // namespace plvo

@@ -8,11 +8,11 @@
 
 namespace plvo {
 
-// Searches for the motion from the base, the first of the references that were predicted. The first motion
-// comes from the latest reference, by image alignment; if that fails, from features: first near the
-// prediction, then from each reference over a wide area, around the propagated prior if there is one. Each
-// first motion is refined with all references. The first that explains enough of the view is taken, else the
-// one with most inliers.
+// Finds the motion from the base, the first of the references that were predicted. The first motion comes
+// from the latest reference, by image alignment; if that fails, from features: first near the prediction,
+// then from each reference over a wide area, around the propagated prior if there is one. Each first motion
+// is refined with all references. The first that explains enough of the view is taken, else the one that
+// explains most.
 void search_motion(const CurrentFrame& current, ReferenceTracking& tracking, TrackedMotion& tracked);
 
 }  // namespace plvo

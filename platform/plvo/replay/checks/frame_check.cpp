@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPixelStep = 3;  // columns and rows; odd, because some sensors leave every second one empty
 constexpr int kBlack = 20;     // grey levels: black images have no brighter pixel
-constexpr int kBlank = 10;     // grey levels between the darkest and the brightest pixel
+constexpr int kLeastContrast = 10;  // grey levels between the darkest and the brightest pixel
 constexpr double kEmpty = 0.005;
 constexpr double kFarMedian_m = 8;
 // In a recording that is too deep by a factor of five, even the nearest depth is large.
@@ -84,7 +84,7 @@ std::string FrameCheck::finding_of_colour() const {
     return fmt::format(
         "the colour images are black: of the first {} frames no pixel is brighter than {} of 255; {}",
         frames_, brightest_, remedy);
-  if (brightest_ - darkest_ <= kBlank)
+  if (brightest_ - darkest_ <= kLeastContrast)
     return fmt::format(
         "the colour images show nothing: of the first {} frames all pixels lie between {} and {}; {}",
         frames_, darkest_, brightest_, remedy);

@@ -40,18 +40,18 @@ Status check_order(const fs::path& list, const std::vector<StampedFile>& files,
   return fault ? damaged(list, lines[fault->at], in_words(*fault, stamps)) : Status();
 }
 
-constexpr std::string_view kBlank = " \t\r";
+constexpr std::string_view kBlankInRow = " \t\r";
 
 std::string_view trim(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
+  const std::size_t begin = std::min(text.find_first_not_of(kBlankInRow), text.size());
   text.remove_prefix(begin);
-  return text.substr(0, text.find_last_not_of(kBlank) + 1);
+  return text.substr(0, text.find_last_not_of(kBlankInRow) + 1);
 }
 
 // Takes the next word off the front of the line.
 std::string_view take_word(std::string_view& line) {
   line = trim(line);
-  const std::string_view word = line.substr(0, line.find_first_of(kBlank));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlankInRow));
   line.remove_prefix(word.size());
   return word;
 }

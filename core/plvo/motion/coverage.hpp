@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of a scene features stand for. A scene may hold more than one motion, and the camera's is that of
+// the larger part of the scene, not that of the most features: an object or a part of the robot may have most
+// of the texture, but it is smaller than the room. So the evidence of a feature is the size of what it stands
+// for. The image is divided into square cells, and the features of a cell share its evidence: its width in
+// metres, which is in proportion to the depth. A line has that of all the cells that it spans.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "plvo/camera/observation.hpp"
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+
+// What has more than this share of the evidence is beyond dispute: nothing else has more.
+inline constexpr double kMajority = 0.5;
+
+// The part of the scene that a feature stands for: its place in camera coordinates, z > 0, and the length of
+// its image in the plane z = 1 (0 for a point).
+struct Extent {
+  Vector3 middle;
+  double length = 0;
+};
+
+inline Extent extent_of(const Point3d& point) { return {point.p}; }
+// Always inlined: used by code that is compiled for speed and by code that is compiled for size.
+[[gnu::always_inline]] inline Extent extent_of(const Line3d& line) {
+  const Vector3 image = line.b / line.b.z() - line.a / line.a.z();
+  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm())};
+}
+
+// The features of one frame: first all of them are counted, then their evidence is asked for.
+class Coverage {
+ public:
+  Coverage() { clear(); }
+  void clear() { crowd_.fill(0); }
+  void count(const Extent& extent) {
+    std::uint8_t& features = crowd_[cell_of(extent.middle)];
+    if (features < 255) ++features;
+  }
+  // In metres. A feature that was not counted has its cell for itself, at the most.
+  double evidence(const Extent& extent) const {
+    const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
+    return extent.middle.z() * cells / std::max(crowd_[cell_of(extent.middle)], std::uint8_t{1});
+  }
+
+ private:
+  // In the plane z = 1: 40 pixels of a Kinect. The grid is wider than any lens without fisheye; what lies
+  // beyond counts to its border.
+  static constexpr double kCellSide = 0.075;
+  static constexpr int kCells = 32;
+  // A line that spans more cells counts as this many.
+  static constexpr double kMostCellsOfALine = 4;
+
+  static std::size_t cell_of(const Vector3& p) {
+    const auto along = [](double x) {
+      return static_cast<std::size_t>(std::clamp(x / kCellSide + kCells / 2, 0.0, kCells - 1.0));
+    };
+    const double inverse = 1 / p.z();
+    return along(p.y() * inverse) * kCells + along(p.x() * inverse);
+  }
+
+  std::array<std::uint8_t, kCells * kCells> crowd_;
+};
+
+}  // namespace plvo
