@@ -26,15 +26,9 @@ std::string_view librealsense_stream(std::string_view topic) {
 std::optional<Se3> first_transform(MessageFile& bag, std::size_t topic) {
   std::vector<unsigned char> bytes;
   Se3 transform;
-  if (bag.messages(topic).empty() || !bag.read(bag.messages(topic).front(), bytes).ok()) return {};
-  if (!parse_transform(bag.topics()[topic].wire, bytes, transform).ok()) return {};
+  if (!bag.read_first(topic, bytes) || !parse_transform(bag.topics()[topic].wire, bytes, transform).ok())
+    return {};
   return transform;
-}
-
-std::optional<std::size_t> topic_named(const MessageFile& bag, std::string_view name, std::string_view type) {
-  for (std::size_t i = 0; i < bag.topics().size(); ++i)
-    if (bag.topics()[i].name == name && bag.topics()[i].type == type) return i;
-  return {};
 }
 
 // From depth to colour by a point of reference that both streams have.
@@ -44,7 +38,7 @@ std::optional<Se3> librealsense_transform(MessageFile& bag, std::string_view col
     const BagTopic& topic = bag.topics()[i];
     if (topic.type != kTransformType || !topic.name.starts_with(of_colour)) continue;
     const std::string group = topic.name.substr(of_colour.size());
-    const auto other = topic_named(bag, std::string(depth) + "/tf/" + group, kTransformType);
+    const auto other = bag.find_topic(std::string(depth) + "/tf/" + group, kTransformType);
     if (!other) continue;
     const auto T_colour_group = first_transform(bag, i), T_depth_group = first_transform(bag, *other);
     if (T_colour_group && T_depth_group) return *T_colour_group * T_depth_group->inverse();
@@ -56,11 +50,10 @@ std::optional<Se3> librealsense_transform(MessageFile& bag, std::string_view col
 std::optional<double> librealsense_units(MessageFile& bag, std::string_view depth) {
   const std::string sensor(depth.substr(0, depth.rfind('/')));
   for (const char* name : {"/option/Depth Units/value", "/option/Depth_Units/value"}) {
-    const auto topic = topic_named(bag, sensor + name, kFloatType);
+    const auto topic = bag.find_topic(sensor + name, kFloatType);
     std::vector<unsigned char> bytes;
     float metres = 0;
-    if (!topic || bag.messages(*topic).empty() || !bag.read(bag.messages(*topic).front(), bytes).ok())
-      continue;
+    if (!topic || !bag.read_first(*topic, bytes)) continue;
     if (!parse_float(bag.topics()[*topic].wire, bytes, metres).ok() || !(metres > 0)) continue;
     // A float is not exactly a thousandth.
     const double units = 1 / static_cast<double>(metres), whole = std::round(units);
@@ -120,8 +113,7 @@ std::optional<Se3> way_between(const std::vector<Edge>& edges, const std::string
 std::optional<Calibration> calibration_of(MessageFile& bag, std::optional<std::size_t> topic) {
   std::vector<unsigned char> bytes;
   Calibration calibration;
-  if (!topic || bag.messages(*topic).empty() || !bag.read(bag.messages(*topic).front(), bytes).ok())
-    return {};
+  if (!topic || !bag.read_first(*topic, bytes)) return {};
   if (!parse_camera_info(bag.topics()[*topic].wire, bytes, calibration).ok()) return {};
   return calibration;
 }

@@ -187,8 +187,7 @@ std::optional<std::size_t> TopicChoice::info_beside(std::size_t topic) const {
   if (folder.ends_with(kImage))
     places.push_back(folder.substr(0, folder.size() - kImage.size()) + "/info/camera_info");
   for (const std::string& place : places)
-    for (std::size_t i = 0; i < bag_->topics().size(); ++i)
-      if (bag_->topics()[i].type == kCameraInfoType && name_of(i) == place) return i;
+    if (const std::optional<std::size_t> info = bag_->find_topic(place, kCameraInfoType)) return info;
   return {};
 }
 
@@ -196,9 +195,7 @@ Status TopicChoice::choose_info(const std::string& wanted) {
   colour_info_ = info_beside(colour_);
   depth_info_ = info_beside(depth_);
   if (wanted.empty()) return {};
-  colour_info_.reset();
-  for (std::size_t i = 0; i < bag_->topics().size(); ++i)
-    if (bag_->topics()[i].type == kCameraInfoType && name_of(i) == wanted) colour_info_ = i;
+  colour_info_ = bag_->find_topic(wanted, kCameraInfoType);
   if (colour_info_) return {};
   return refused(StatusCode::kNotFound,
                  fmt::format("there is no camera_info on {}; topics of that type: ", wanted),

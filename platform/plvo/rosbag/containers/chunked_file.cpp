@@ -11,11 +11,8 @@ namespace fs = std::filesystem;
 
 Status ChunkedFile::open_file(const fs::path& path) {
   path_ = path;
+  if (Status status = require_regular_file(path); !status.ok()) return status;
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return {StatusCode::kNotFound, fmt::format("{} is not there", path.string())};
-  if (!fs::is_regular_file(status))
-    return {StatusCode::kInvalidArgument, fmt::format("{} is not a regular file", path.string())};
   file_bytes_ = fs::file_size(path, error);
   file_.open(path, std::ios::binary);
   if (error || !file_) return {StatusCode::kPermission, fmt::format("{} cannot be read", path.string())};

@@ -48,6 +48,12 @@ Status MessageFile::index(const std::filesystem::path& path) {
   });
 }
 
+std::optional<std::size_t> MessageFile::find_topic(std::string_view name, std::string_view type) const {
+  for (std::size_t i = 0; i < topics_.size(); ++i)
+    if (topics_[i].name == name && topics_[i].type == type) return i;
+  return {};
+}
+
 std::size_t MessageFile::topic_number(std::string_view name, std::string_view type, WireFormat wire) {
   if (name.empty() || std::max(name.size(), type.size()) > kMostTopicName) return kNoTopic;
   const std::string known_type = ros1_type(type);
@@ -106,6 +112,10 @@ Status MessageFile::read(const BagMessage& message, std::vector<unsigned char>& 
   return unpack_zstd_message(stored_, kMaxPiece, bytes);
 }
 
+bool MessageFile::read_first(std::size_t topic, std::vector<unsigned char>& bytes) {
+  return !messages_[topic].empty() && read(messages_[topic].front(), bytes).ok();
+}
+
 Status MessageFile::visit(std::string_view type, const Visit& visit) {
   std::size_t left = 0;
   for (const BagTopic& topic : topics_) left += topic.type == type ? topic.messages : 0;
@@ -122,6 +132,16 @@ Status MessageFile::visit(std::string_view type, const Visit& visit) {
   if (status.ok() && left > 0)
     return {StatusCode::kIo, fmt::format("{} cannot be read any more", path_.string())};
   return status;
+}
+
+Status MessageFile::require_regular_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    return {StatusCode::kNotFound, fmt::format("{} is not there", path.string())};
+  if (!std::filesystem::is_regular_file(status))
+    return {StatusCode::kInvalidArgument, fmt::format("{} is not a regular file", path.string())};
+  return {};
 }
 
 void MessageFile::resize_anew(std::vector<unsigned char>& bytes, std::size_t size) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -56,12 +57,16 @@ class MessageFile {
   const std::vector<BagTopic>& topics() const { return topics_; }
   // The kept messages of one of topics(), in the order of the recording.
   const std::vector<BagMessage>& messages(std::size_t topic) const { return messages_[topic]; }
+  // The topic of this name and type ("sensor_msgs/Image"); empty if there is none.
+  std::optional<std::size_t> find_topic(std::string_view name, std::string_view type) const;
   // Describes damage of a recording whose rest can be used; empty if there is none.
   const std::string& remark() const { return remark_; }
 
   // Reads the bytes of a message of a topic. Returns kDamaged, also for one that is larger than kMaxPiece;
   // kIo.
   Status read(const BagMessage& message, std::vector<unsigned char>& bytes);
+  // The same for the first message of a topic. Returns false if there is none, or it cannot be read.
+  bool read_first(std::size_t topic, std::vector<unsigned char>& bytes);
 
   // Reads the whole recording once more. Each message of the type goes to `visit`, in the order of the
   // recording; one that cannot be read goes without its bytes. An error that `visit` returns ends the
@@ -96,6 +101,8 @@ class MessageFile {
   static constexpr std::size_t kNoTopic = SIZE_MAX;
   static constexpr std::size_t kMostTopicName = 512;  // letters, also of its type
   std::size_t topic_number(std::string_view name, std::string_view type, WireFormat wire);
+  // Returns kNotFound or kInvalidArgument, with the path, for what is not a regular file.
+  static Status require_regular_file(const std::filesystem::path& path);
   void set_remark(std::string remark) { remark_ = std::move(remark); }
   // Drops the old content first, so that old and new memory do not exist at once.
   static void resize_anew(std::vector<unsigned char>& bytes, std::size_t size);

@@ -61,11 +61,7 @@ Status SqliteFile::damaged(const char* what) const {
 
 Status SqliteFile::open_file(const fs::path& path) {
   path_ = path;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return {StatusCode::kNotFound, fmt::format("{} is not there", path.string())};
-  if (!fs::is_regular_file(status))
-    return {StatusCode::kInvalidArgument, fmt::format("{} is not a regular file", path.string())};
+  if (Status status = require_regular_file(path); !status.ok()) return status;
   sqlite3* made = nullptr;
   const int opened = sqlite3_open_v2(
       uri_of(path).c_str(), &made,

@@ -31,6 +31,14 @@ MessageHeader take_header(WireFormat wire, WireReader& reader) {
   return header;
 }
 
+ImageMessage take_image_header(WireFormat wire, WireReader& reader) {
+  const MessageHeader header = take_header(wire, reader);
+  ImageMessage image;
+  image.stamp_ns = header.stamp_ns;
+  image.frame = header.frame;
+  return image;
+}
+
 // Returns false for numbers that are not a rotation and a translation.
 bool take_transform(WireReader& reader, Se3& transform) {
   const double x = reader.f64(), y = reader.f64(), z = reader.f64();
@@ -56,10 +64,7 @@ std::int64_t stamp_of_message(WireFormat wire, std::span<const unsigned char> st
 
 Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image) {
   WireReader reader(wire, bytes);
-  const MessageHeader header = take_header(wire, reader);
-  image = {};
-  image.stamp_ns = header.stamp_ns;
-  image.frame = header.frame;
+  image = take_image_header(wire, reader);
   const std::uint32_t height = reader.u32(), width = reader.u32();
   image.encoding = reader.text();
   image.big_endian = reader.u8() != 0;
@@ -81,10 +86,7 @@ Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageM
 
 Status parse_compressed_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image) {
   WireReader reader(wire, bytes);
-  const MessageHeader header = take_header(wire, reader);
-  image = {};
-  image.stamp_ns = header.stamp_ns;
-  image.frame = header.frame;
+  image = take_image_header(wire, reader);
   // Such as "rgb8; jpeg compressed bgr8", "16UC1; compressedDepth png" or "jpeg".
   const std::string_view format = reader.text();
   image.data = reader.take(reader.u32());
