@@ -3,49 +3,23 @@
 // covariance, and is joined when an old view comes back. References are given up by time, not by frames.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
-#include <vector>
 
-#include "plvo/odometry/odometry.hpp"
-#include "procedural_sequence.hpp"
-#include "sound.hpp"
+#include "procedural_camera.hpp"
 
 namespace plvo {
 namespace {
 
-constexpr std::int64_t kFifth_ns = 200'000'000;
+using test::ProceduralCamera;
 
 // Takes five frames a second.
-class SlowCamera {
+class SlowCamera : public ProceduralCamera {
  public:
-  explicit SlowCamera(int kept_keyframes) {
-    limits_.kept_keyframes = kept_keyframes;
-    memory_.resize(required_bytes(limits_));
-    EXPECT_TRUE(odometry.init(memory_, sequence_.camera(), {}, limits_).ok());
-  }
-  TrackResult see(int view) {
-    RgbdFrame frame = sequence_.render(view);
-    frame.stamp_ns = frame.depth_stamp_ns = kFifth_ns * ++taken_;
-    const TrackResult result = odometry.track(frame);
-    EXPECT_TRUE(test::is_sound(result)) << result.status.message();
-    return result;
-  }
-  // No frame comes for this many frames' time.
-  void pause(int frames) { taken_ += frames; }
-  Odometry odometry;
-
- private:
-  Limits limits_{160, 120, 250, 64};
-  std::vector<std::byte> memory_;
-  ProceduralSequence sequence_{160, 120};
-  int taken_ = 0;
+  explicit SlowCamera(int kept_keyframes) : ProceduralCamera(kept_keyframes, {}, 200'000'000) {}
 };
 
 double normalised_error(const TrackResult& result, int view) {
-  const Se3 first = ProceduralSequence::T_world_camera(0);
-  const Vector6 error =
-      boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));
+  const Vector6 error = test::pose_error(result, view);
   return error.dot(result.pose_covariance.ldlt().solve(error));
 }
 

@@ -5,48 +5,28 @@
 
 #include <cmath>
 #include <cstdio>
-#include <vector>
 
-#include "plvo/odometry/odometry.hpp"
-#include "procedural_sequence.hpp"
+#include "procedural_camera.hpp"
 
 namespace plvo {
 namespace {
 
-constexpr int kDark = -1;
+using test::pose_error;
+using test::ProceduralCamera;
 
-class Walk {
+constexpr int kDark = ProceduralCamera::kDark;
+
+// Thirty frames a second.
+class Walk : public ProceduralCamera {
  public:
-  explicit Walk(int kept_keyframes, const Config& config = quick_to_give_up()) {
-    limits_.kept_keyframes = kept_keyframes;
-    memory_.resize(required_bytes(limits_));
-    const Status status = odometry.init(memory_, sequence_.camera(), config, limits_);
-    EXPECT_TRUE(status.ok()) << status.message();
-  }
+  explicit Walk(int kept_keyframes, const Config& config = quick_to_give_up())
+      : ProceduralCamera(kept_keyframes, config, 33'333'333) {}
   static Config quick_to_give_up() {
     Config config;
     config.references.max_lost_s = 0.06;
     return config;
   }
-  // Takes frame `view` of the sequence now (kDark: a frame that shows nothing).
-  TrackResult see(int view) {
-    RgbdFrame frame = view == kDark ? sequence_.render_dark(0) : sequence_.render(view);
-    frame.stamp_ns = frame.depth_stamp_ns = ProceduralSequence::stamp_ns(taken_++);
-    return odometry.track(frame);
-  }
-  Odometry odometry;
-
- private:
-  Limits limits_{160, 120, 250, 64};
-  std::vector<std::byte> memory_;
-  ProceduralSequence sequence_{160, 120};
-  int taken_ = 0;
 };
-
-Vector6 pose_error(const TrackResult& result, int view) {
-  const Se3 first = ProceduralSequence::T_world_camera(0);
-  return boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));
-}
 
 double distance_to_truth(const TrackResult& result, int view) {
   return pose_error(result, view).head<3>().norm();
