@@ -2,8 +2,8 @@
 // How much of a scene features stand for. A scene may hold more than one motion, and the camera's is that of
 // the larger part of the scene, not that of the most features: an object or a part of the robot may have most
 // of the texture, but it is smaller than the room. So the evidence of a feature is the size of what it stands
-// for. The image is divided into square cells, and the features of a cell share its evidence: its width in
-// metres, which is in proportion to the depth. A line has that of all the cells that it spans.
+// for. The image is divided into square cells, and the features of a cell share its evidence: its width,
+// which is in proportion to the depth. A line has that of all the cells that it spans.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ class Coverage {
     std::uint8_t& features = crowd_[cell_of(extent.middle)];
     if (features < 255) ++features;
   }
-  // In metres. A feature that was not counted has its cell for itself, at the most.
+  // In depths (m) of a cell. A feature that was not counted counts as one that shares its cell with no other.
   double evidence(const Extent& extent) const {
     const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
     return extent.middle.z() * cells / std::max(crowd_[cell_of(extent.middle)], std::uint8_t{1});

@@ -103,9 +103,13 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
   depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
   TrackedMotion tracked;
-  if (!depth_has_stopped_ && window_.has_keyframe()) search_motion(frame, memory_.tracking, tracked);
-  if (!depth_has_stopped_ && !window_.has_keyframe()) resume(frame, tracked);
-  if (!tracked.ok() && !depth_has_stopped_) search_after_loss(input, prior, frame, predicted, tracked);
+  if (!depth_has_stopped_) {
+    if (window_.has_keyframe())
+      search_motion(frame, memory_.tracking, tracked);
+    else
+      resume(frame, tracked);
+    if (!tracked.ok()) search_after_loss(input, prior, frame, predicted, tracked);
+  }
   depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.

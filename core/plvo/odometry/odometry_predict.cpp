@@ -8,7 +8,6 @@
 #include "plvo/odometry/odometry.hpp"
 
 namespace plvo {
-namespace {}  // namespace
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.

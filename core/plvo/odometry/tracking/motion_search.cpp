@@ -20,7 +20,7 @@ constexpr double kSameMotion = 0.02;
 constexpr int kMostRegistrations = 3;
 // An aligned motion that explains less than this share is compared with the predicted one: the image may be
 // aligned to an object. While nothing moves, most frames explain more: a third to a half.
-constexpr double kBeyondDoubt = 0.3;
+constexpr double kComparedShare = 0.3;
 // Two starts that differ by less than this in the image: registration finds the same features from both.
 constexpr double kSameStart_px = 2;
 
@@ -143,7 +143,7 @@ bool is_findable(const Reference& reference) {
     const Explained explained = explain(aligned * latest.pose.T_reference_base);
     if (explained.share >= kAcceptedShareByImage) {
       const Se3& predicted = latest.T_current_predicted;
-      if (explained.share < kBeyondDoubt &&
+      if (explained.share < kComparedShare &&
           distance_px(*latest.features, context.camera.pinhole, aligned, predicted) > kSameStart_px)
         (void)explain(predicted * latest.pose.T_reference_base);
       take_best();
