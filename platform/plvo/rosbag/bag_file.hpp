@@ -3,6 +3,11 @@
 // compressed (http://wiki.ros.org/Bags/Format/2.0). The index at the end is not used: a truncated recording
 // has no index, but still has every message before the cut. All sizes in a file are first compared with the
 // file's size and the bounds below.
+//
+// The reader is ours because librosbag is not designed for hostile files: it allocates what the header of a
+// chunk claims, up to 4 GiB, before it reads, and only asserts that the sizes agree (ros_comm,
+// tools/rosbag_storage/src/bag.cpp). It also needs the index at the end, and throws BagUnindexedException at a
+// recording without one.
 #pragma once
 
 #include <array>
