@@ -18,7 +18,7 @@ Segment segment(double ax, double ay, double bx, double by) {
   return s;
 }
 
-constexpr SampleOptions kPaper{100, 1, 0};
+constexpr SampleOptions kPaper{1, 0};
 
 TEST(LineSamples, SpacingOfOnePixelGivesTheCountOfThePaper) {
   EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), kPaper), 0);

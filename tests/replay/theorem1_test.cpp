@@ -59,7 +59,7 @@ class Pairs {
       const PropagatedPrior nothing;
       const MotionReference nobody;
       const CurrentFrame now{current, modules_.extraction, depth, noise, nothing, nobody};
-      modules_.tracking.find(reference, now, config_.points.match.radius_px, arena_, tracked, result);
+      modules_.tracking.find(reference, now, PointMatchConfig().radius_px, arena_, tracked, result);
       const Se3 T_found = motion.T_current_reference;
       if (motion.status == StatusCode::kOk)
         modules_.tracking.refine({&reference, 1}, now, T_found, arena_, tracked, result);

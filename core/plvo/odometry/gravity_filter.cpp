@@ -22,7 +22,7 @@ Matrix6 carry(const PoseWithCovariance& from, const PoseWithCovariance& current)
 }
 
 template <int N>
-Matrix<N, N> symmetric(const Matrix<N, N>& M) {
+[[gnu::noinline]] Matrix<N, N> symmetric(const Matrix<N, N>& M) {
   return 0.5 * (M + Matrix<N, N>(M.transpose()));
 }
 

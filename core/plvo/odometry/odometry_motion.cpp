@@ -18,6 +18,8 @@ constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
 // A motion is also accepted if two searches lead to it: within this distance (m and rad).
 constexpr double kSameMotion = 0.02;
+// When tracking fails, features are searched this far from their old positions, whatever the prediction.
+constexpr double kWideSearch_px = 120;
 
 }  // namespace
 
@@ -124,11 +126,11 @@ PairPrior Odometry::prior_of(int reference, std::int64_t stamp_ns) const {
     if (best.inliers > 0 && boxminus(start, best.motion).norm() < kSameMotion) return refine(best.start);
     return refine(start) && is_accepted(start, kAcceptedShareByFeatures);
   };
-  if (find(findable(latest) ? latest : all[0], config().points.match.radius_px)) return;
+  if (find(findable(latest) ? latest : all[0], PointMatchConfig().radius_px)) return;
   for (std::size_t r = count; r-- > 0;) {
     if (!findable(references[r])) continue;
     if (!propagated_prior_.known()) references[r].prior.T_current_reference = Se3{};
-    if (find(references[r], config().references.wide_search_px)) return;
+    if (find(references[r], kWideSearch_px)) return;
   }
   if (best.inliers > 0 && !last_is_best) (void)refine(best.start);
 }

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "plvo/base/build.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
@@ -34,7 +33,6 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   config_ = config;
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  if constexpr (!kLinesBuilt) return;
   segment_search_.width = pyramid_.level(kLineLevel).width;
   segment_search_.height = pyramid_.level(kLineLevel).height;
   segment_detector_[0] = SegmentDetector(segment_search_);
@@ -68,7 +66,7 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points, T
   const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
   const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
   const std::span<std::uint16_t> row = take_smoothing_row(scratch, camera_.width);
-  for (int level = 0; level < config_->points.detector.levels; ++level) {
+  for (int level = 0; level < DetectorConfig().levels; ++level) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
     smooth_binomial7(image, smoothed, row);
@@ -88,7 +86,7 @@ void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& dept
     prepare_image(frame.colour, scratch);
     result.mean_brightness = mean_brightness(pyramid_.level(0));
   }
-  const bool lines = kLinesBuilt && config_->features != Features::kPoints;
+  const bool lines = config_->features != Features::kPoints;
   const bool at_once = has_points() && points && lines && config_->executor;
   if (at_once) {
     const StageTimer timer(*config_, result, Stage::kPoints);
@@ -117,7 +115,7 @@ void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
                                       TrackResult& result) const {
   points.looked_for = true;
   const DetectionSummary summary =
-      detect_keypoints(pyramid_, depth, config_->points.detector, scratch, points.keypoints);
+      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints);
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
     points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
@@ -138,7 +136,6 @@ void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise
 
 void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
                                     PointFeatures& points) const {
-  if constexpr (!kPointsBuilt) return;
   // A registered patch is a landmark by definition, whatever its centre: only its depth is uncertain. The
   // small variance across the ray keeps its covariance invertible.
   constexpr double kPatchCentre_px = 0.02;
@@ -164,7 +161,7 @@ void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const Noi
 bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
                                   Line3d& line) const {
   const Line3dReport report = observe_line(segment, depth, camera_.pinhole, config_->depth_noise,
-                                           config_->lines.fit, config_->seed, line);
+                                           config_->lines, config_->seed, line);
   if (report.outcome != Line3dOutcome::kOk) return false;
   line.Sigma *= noise.lines;
   return true;
@@ -173,7 +170,6 @@ bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& 
 void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& exposure,
                                    const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
                                    TrackResult& result) const {
-  if constexpr (!kLinesBuilt) return;
   const StageTimer timer(*config_, result, Stage::kLines);
   if (!lines.lifted) {
     depth.fetch();

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
-#include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/image/pyramid.hpp"
@@ -106,7 +105,7 @@ class FeatureExtraction {
     reserve_detection(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
-  bool has_points() const { return kPointsBuilt && config_->features != Features::kLines; }
+  bool has_points() const { return config_->features != Features::kLines; }
   void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
   void prepare_image(const ColourView& colour, Arena& scratch);
   void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "plvo/base/build.hpp"
 #include "plvo/motion/prior_constraint.hpp"
 #include "plvo/odometry/stage_timer.hpp"
 
@@ -22,6 +21,9 @@ constexpr int kCoarseRounds = 4;
 constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
 constexpr double kAligned = 5e-4;
+// Gates of the lines once the motion is known.
+constexpr double kGuidedOffset_px = 8;
+constexpr double kGuidedAngle_rad = 0.1;
 
 // All references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and n such residuals weigh as n / (1 + (n − 1) / 2) independent ones.
@@ -219,7 +221,7 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
                                                 TrackResult& result) const {
   const Config& config = current.extraction.config();
   const CameraModel& camera = current.extraction.camera();
-  if (!kPointsBuilt || !alignment_.holds(reference.features->stamp_ns)) return false;
+  if (!alignment_.holds(reference.features->stamp_ns)) return false;
   const StageTimer timer(config, result, Stage::kMatching);
   const ScratchScope scope(scratch);
   const PointFeatures& features = reference.features->points;
@@ -263,7 +265,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
                         features.reference_points, current.features.points, T_predicted, radius_px, scratch,
                         tracks_[0].points);
-    LineMatchConfig gates = config.lines.match;
+    LineMatchConfig gates;
     gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
     match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                           features.reference_lines, current.features.lines, T_predicted, gates, scratch,
@@ -304,13 +306,13 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
     const StageTimer timer(config, result, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points,
                     features[r].reference_points, motions[r], tracks_[r].points);
-    LineMatchConfig gates = config.lines.match;
-    gates.max_offset_px = config.lines.guided_offset_px;
-    gates.max_angle_rad = config.lines.guided_angle_rad;
+    LineMatchConfig gates;
+    gates.max_offset_px = kGuidedOffset_px;
+    gates.max_angle_rad = kGuidedAngle_rad;
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features[r].reference_lines,
                           current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
-    track_surfaces(depth, camera.pinhole, config.noise, current.noise.surfaces,
-                   features[r].reference_surfaces, motions[r], tracks_[r].surfaces);
+    track_surfaces(depth, camera.pinhole, current.noise.surfaces, features[r].reference_surfaces, motions[r],
+                   tracks_[r].surfaces);
   }
   solve(std::span(features).first(references.size()), poses, current, at,
         {&T_current_base, nuisance_parameters(config.noise, exposure, current.noise), true}, kFineSolve,
