@@ -6,8 +6,8 @@
 //
 // The reader is ours because librosbag is not designed for hostile files: it allocates what the header of a
 // chunk claims, up to 4 GiB, before it reads, and only asserts that the sizes agree (ros_comm,
-// tools/rosbag_storage/src/bag.cpp). It also needs the index at the end, and throws BagUnindexedException at a
-// recording without one.
+// tools/rosbag_storage/src/bag.cpp). It also needs the index at the end, and throws BagUnindexedException at
+// a recording without one.
 #pragma once
 
 #include <array>
