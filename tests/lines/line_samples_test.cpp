@@ -25,15 +25,14 @@ TEST(LineSamples, SpacingOfOnePixelGivesTheCountOfThePaper) {
   EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), kPaper), 20);
   EXPECT_EQ(sample_count(segment(0, 0, 60, 80), kPaper), 100);
   EXPECT_EQ(sample_count(segment(0, 0, 600, 80), kPaper), 100);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {50, 1, 0}), 50);
 }
 
 TEST(LineSamples, WiderSpacingTakesFewerSamplesDownToTheMinimum) {
-  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {100, 3, 0}), 0);
-  EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {100, 3, 0}), 12);
-  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {100, 3, 0}), kEnoughSamples);
-  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {100, 3, 0}), 33);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {100, 3, 0}), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {3, 0}), 0);
+  EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {3, 0}), 12);
+  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {3, 0}), kEnoughSamples);
+  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {3, 0}), 33);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {3, 0}), 100);
 }
 
 TEST(LineSamples, AreEvenlySpacedFromEndToEnd) {
@@ -68,9 +67,9 @@ TEST(LineSamples, SigmaGrowsWithTheSlopeAcrossTheSegment) {
   noise.registration_px = 2;
   LineSamples samples;
   const test::DepthFunction slope{[](int, int y) { return 2 + 0.01 * y; }};
-  sample_segment(segment(0, 0, 50, 0), noise, {100, 1, 3}, slope, samples);
+  sample_segment(segment(0, 0, 50, 0), noise, {1, 3}, slope, samples);
   EXPECT_NEAR(samples.sample[10].sigma_d_m, std::sqrt(noise.sigma(2) * noise.sigma(2) + 0.02 * 0.02), 1e-6);
-  sample_segment(segment(0, 0, 0, 50), noise, {100, 1, 3}, slope, samples);
+  sample_segment(segment(0, 0, 0, 50), noise, {1, 3}, slope, samples);
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
 }
 

@@ -31,8 +31,8 @@ struct Limits {
   // (references_of). With 1 instead of 2, features take a third less memory and matches take half.
   int references = 2;
   // Horizontal bands of the image in which segments are searched one after the other, 1 … 8. All bands use
-  // the same memory: without three of them tiny() would not fit within 512 KiB. A segment that crosses a
-  // border between bands comes out as two.
+  // the same memory: with a single band tiny() would not fit within 512 KiB. A segment that crosses a border
+  // between bands comes out as two.
   int line_bands = 1;
   // Number of keyframes kept after a loss, 0 … 4 (3 with 3 references). Each is as large as a reference
   // (kept_keyframes.hpp).
