@@ -9,8 +9,9 @@ target_compile_options(plvo_warnings INTERFACE
 # Without fused multiply-add and sums that depend on the vector width, x86-64, aarch64 and armhf give the same bits.
 # The definitions of the build for size apply to all files, since a template must be identical in all files that are linked
 # together: PLVO_SIZE_OPTIMISED prefers code size to speed (base/build.hpp); EIGEN_UNROLLING_LIMIT, which Eigen's documentation
-# describes, keeps it from unrolling assignments of more than a few entries. The limit is above the cost of the longest sum, 13
-# products, because Eigen adds in another order in a loop; golden_small_test would show it.
+# describes, keeps it from unrolling assignments of more than a few entries. Eigen adds in another order in a loop, so the limit is
+# above the cost of every sum in the core: the longest one, of seven products, costs 27. A costlier one is written as a sum of
+# shorter ones, or of values that are evaluated first.
 set(PLVO_SIZE_DEFINITIONS PLVO_SIZE_OPTIMISED EIGEN_UNROLLING_LIMIT=28)
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY "$<$<CONFIG:MinSizeRel>:${PLVO_SIZE_DEFINITIONS}>")

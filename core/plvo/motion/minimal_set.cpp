@@ -150,7 +150,8 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
       aligned =
           aligned && (s[i] * lines[i].d_current - R * lines[i].d_reference).squaredNorm() <= limit * limit;
     }
-    const double trace = (R_expected.transpose() * R).trace();
+    const Matrix3 turn = R_expected.transpose() * R;
+    const double trace = turn.trace();
     Vector3 t;
     if (!aligned || trace <= best_trace ||
         !translation_of_lines(lines, R, sigma / sqrt(largest_sine_squared), t))
