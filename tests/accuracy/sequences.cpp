@@ -26,7 +26,7 @@ Status keep_frames(RgbdCamera& camera, Sequence& sequence) {
 
 }  // namespace
 
-// The truth's own noise as docs/evaluation.md has measured it.
+// The truth's own noise as docs/decisions/truth_noise.md has measured it.
 const std::vector<Recorded>& recorded_sequences() {
   static const std::vector<Recorded> sequences = {
       {"fr1_rpy_150", "tum-fr1", 0.0004, 0.102}, {"fr3_notexture_120", "tum-fr3", 0.0003, 0.2},

@@ -41,6 +41,16 @@ if(installed)
   message(SEND_ERROR "installed, though no public header needs it: ${installed} (take it out of plvo_public_headers)")
 endif()
 
+# The pages are where messages name them: below the prefix and in the build folder.
+set(docs ${CMAKE_CURRENT_LIST_DIR}/../../docs)
+file(GLOB_RECURSE pages RELATIVE ${docs} ${docs}/*)
+foreach(folder ${WORK}/prefix ${BUILD})
+  file(GLOB_RECURSE found FOLLOW_SYMLINKS RELATIVE ${folder}/share/doc/plvo ${folder}/share/doc/plvo/*)
+  if(NOT found STREQUAL pages)
+    message(SEND_ERROR "${folder}/share/doc/plvo has ${found}, docs/ has ${pages}")
+  endif()
+endforeach()
+
 file(GLOB_RECURSE archive ${WORK}/prefix/libplvo_core.a)
 run(python3 ${CMAKE_CURRENT_LIST_DIR}/symbols.py ${archive} --sealed)
 run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER}

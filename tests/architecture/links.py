@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that every relative link of a page leads to an existing file and heading, and that the README links directly to what a new
-user needs first."""
+"""Checks that every relative link of a page leads to an existing file and heading, that pages of docs/ link to nothing outside of it
+(docs/ is installed as share/doc/plvo), and that the README is short and links directly to what a new user needs first."""
 import pathlib
 import re
 import sys
 
+import sources
+
+README_LINES = 120  # at most
 # (topic, page and heading)
 FROM_README = [
-    ("a camera driver of one's own", "docs/cpp.md#a-camera-driver-of-your-own"),
-    ("covariance", "docs/cpp.md#pose-and-covariance"),
-    ("wheels", "docs/cpp.md#wheels-a-gyro-gravity"),
-    ("lost frames", "docs/cpp.md#lost-frames"),
-    ("poses in ROS", "docs/robot.md#a-node-for-ros-2"),
-    ("a Raspberry Pi", "docs/boards.md#raspberry-pi-4-and-5-zero-2-and-others-with-debians-arm64-raspberry-pi-os-64-bit"),
-    ("columns of stats.csv", "docs/formats.md#columns-of-statscsv"),
+    ("a camera driver of one's own", "docs/user/cpp.md#a-camera-driver-of-your-own"),
+    ("covariance", "docs/user/cpp.md#pose-and-covariance"),
+    ("wheels", "docs/user/cpp.md#wheels-a-gyro-gravity"),
+    ("lost frames", "docs/user/cpp.md#lost-frames"),
+    ("poses in ROS", "docs/user/robots.md#a-node-for-ros-2"),
+    ("a Raspberry Pi", "docs/user/small_board.md#raspberry-pi"),
+    ("columns of stats.csv", "docs/user/outputs.md#columns-of-statscsv"),
 ]
 
 
@@ -46,14 +49,19 @@ def check_links(root):
                 continue
             file, _, anchor = target.partition("#")
             path = page.parent / file if file else page
-            if not path.exists():
+            if page.parent != root and (root / "docs").resolve() not in path.resolve().parents:
+                yield f"{page.relative_to(root)}:{line}: {target}: is outside of docs/, and so not installed"
+            elif not path.exists():
                 yield f"{page.relative_to(root)}:{line}: {target}: there is no such file"
             elif anchor and anchor not in anchors(path.read_text(encoding="utf-8")):
                 yield f"{page.relative_to(root)}:{line}: {target}: {path.name} has no such heading"
 
 
 def check_readme(root):
-    targets = {target for _, target in links((root / "README.md").read_text(encoding="utf-8"))}
+    text = (root / "README.md").read_text(encoding="utf-8")
+    if text.count("\n") > README_LINES:
+        yield f"README.md: has more than {README_LINES} lines"
+    targets = {target for _, target in links(text)}
     for what, target in FROM_README:
         if target not in targets:
             yield f"README.md: no link to {target}, where a reader finds {what}"
@@ -64,11 +72,5 @@ def check(root):
     return [*check_links(root), *check_readme(root)]
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every link leads to a heading")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every link leads to a heading"))

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every path of the repository that a page names in backticks exists. Globs match at least one file; {a,b} stands for both."""
+"""Every path of the repository that a page names in backticks exists. Globs match at least one file; {a,b} stands for both. So does
+every page of docs/ that a comment, a script or a CMakeLists.txt names."""
 import pathlib
 import re
 import sys
+
+import sources
 
 FOLDERS = ("core", "hal", "platform", "tools", "tests", "docs")
 
@@ -42,14 +45,14 @@ def check(root):
                 for path in expand(re.sub(r"(?::\d+)?[,;:.)]*$", "", word)):
                     if not exists(root, path):
                         errors.append(f"{page.relative_to(root)}:{line}: {path}: there is no such file")
+    for path in sources.files(root, suffixes=(*sources.CODE, *sources.SCRIPTS, ".txt", ".ld", ".in")):
+        name = path.relative_to(root).as_posix()
+        text = "" if name == "tests/architecture/self_test.py" else path.read_text(encoding="utf-8", errors="replace")
+        for match in re.finditer(r"(?<![\w/])docs/[\w/]+\.md\b", text):
+            if not (root / match.group(0)).exists():
+                errors.append(f"{name}:{text.count(chr(10), 0, match.start()) + 1}: {match.group(0)}: there is no such page")
     return errors
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every path on the pages exists")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "every path on the pages exists"))

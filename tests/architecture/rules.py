@@ -101,10 +101,9 @@ def sizes(root):
 
 
 def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "every rule is kept")
+    code = sources.report(check(sys.argv[1]), "every rule is kept")
     print(sizes(sys.argv[1]))
-    return 1 if errors else 0
+    return code
 
 
 if __name__ == "__main__":

@@ -1,16 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that the checks of plvo can fail: each check gets a synthetic tree that breaks its rule."""
 import pathlib
+import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import dependencies
 import figures
+import layout
 import links
+import messages
 import paths
 import ran
+import results
 import rules
 import words
+
+sys.path.append(str(pathlib.Path(__file__).parents[2] / "tools/plvo/bench"))
+import update_results  # noqa: E402
 
 LICENCE = "// SPDX-License-Identifier: Apache-2.0\n"
 
@@ -185,32 +193,33 @@ class Ran(unittest.TestCase):
 README = """
 | sequence | plvo, mm per s | plvo, ° per s | best peer | its mm per s | time |
 |---|---:|---:|---|---:|---:|
-| rpy | 7.5 | 0.89 | OpenCV B | 20.0 | 0.17 |
-| mean, constant | 1.4 | – | OpenCV B | 85.7 | – |
+| rpy | 7.5 | 0.89 | OpenCV ICPOdometry | 20.0 | 0.17 |
+| mean, constant | 1.4 | – | OpenCV ICPOdometry | 85.7 | – |
 """
 RECORDINGS = """
-| sequence | system | mm per s | ° per s | mm per frame | ° per frame | time |
+| sequence | system | mm/s | °/s | mm/frame | °/frame | time / RgbdOdometry |
 |---|---|---:|---:|---:|---:|---:|
-| rpy | *never moves* | 86.0 | 38 | 3 | 1 | – |
-| rpy | **plvo, both** | 7.5 | 0.89 | 2.80 | 0.261 | 0.17 |
-| rpy | OpenCV A | 36.2 | 2.32 | 7.45 | 0.441 | 1.00 |
-| rpy | OpenCV B | 20.0 | 1.00 | 4.00 | 0.300 | 2.00 |
-
+| rpy | never moves | 86.0 | 38 | 3 | 1 | – |
+| rpy | plvo-both | 7.5 | 0.89 | 2.80 | 0.261 | 0.17 |
+| rpy | opencv-rgbd | 36.2 | 2.32 | 7.45 | 0.441 | 1.00 |
+| rpy | opencv-icp | 20.0 | 1.00 | 4.00 | 0.300 | 2.00 |
+"""
+TABLE2 = """
 | sequence | system | mm/frame | °/frame | mm/s | °/s |
 |---|---|---:|---:|---:|---:|
 | rpy | plvo-both | 2.8 | 0.26 | 7.5 | 0.89 |
 """
 LIGHTING = """
-| site | light | *never moves* | plvo, points | **plvo, both** | A | B |
+| site | light | never moves | plvo-points | plvo-both | opencv-rgbd | opencv-icp |
 |---|---|---:|---:|---:|---:|---:|
 | mean | constant | 504.5 | 1.3 | 1.4 | 113.1 | 85.7 |
 """
 
 
 class Figures(unittest.TestCase):
-    def found(self, readme=README, recordings=RECORDINGS, lighting=LIGHTING, **more):
-        files = {"README.md": readme, "docs/results/recordings.md": recordings, "docs/results/lighting.md": lighting}
-        with Tree({**files, **{f"docs/{name}.md": text for name, text in more.items()}}) as root:
+    def found(self, readme=README, recordings=RECORDINGS, table2=TABLE2, lighting=LIGHTING, **more):
+        files = {"README.md": readme, figures.RECORDINGS: recordings, figures.TABLE2: table2, figures.LIGHTING: lighting}
+        with Tree({**files, **{f"docs/developer/{name}.md": text for name, text in more.items()}}) as root:
             return figures.check(root)
 
     def test_equal_copies_and_a_page_that_refers_pass(self):
@@ -222,13 +231,13 @@ class Figures(unittest.TestCase):
                      "The covariance is honest about it"):
             errors = self.found(porting="\n" + text + "\n")
             self.assertEqual(len(errors), 1, (text, errors))
-            self.assertTrue(errors[0].startswith("docs/porting.md:2:"), errors)
+            self.assertTrue(errors[0].startswith("docs/developer/porting.md:2:"), errors)
 
     def test_a_copy_that_differs_is_named(self):
-        for row in ("| 7.5 | 0.89 | OpenCV B", "| 0.17 |", "mean, constant | 1.4"):
+        for row in ("| 7.5 | 0.89 | OpenCV", "| 0.17 |", "mean, constant | 1.4"):
             self.assertIn(row, README)
             self.assertEqual(len(self.found(readme=README.replace(row, row.replace("7", "8").replace("1.4", "1.5")))), 1, row)
-        self.assertEqual(len(self.found(recordings=RECORDINGS.replace("0.26 ", "0.27 "))), 1)
+        self.assertEqual(len(self.found(table2=TABLE2.replace("0.26 ", "0.27 "))), 1)
 
     def test_a_peer_that_is_not_the_best_is_named(self):
         self.assertEqual(len(self.found(recordings=RECORDINGS.replace("36.2", "19.9"))), 2, "its name and its error")
@@ -238,12 +247,60 @@ class Figures(unittest.TestCase):
         self.assertEqual(len(self.found(readme=README.replace("| rpy", "| other"))), 1)
 
     def test_no_comparison_is_a_failure(self):
-        self.assertTrue(self.found(readme="", recordings=""))
+        self.assertTrue(self.found(readme="", table2=""))
+
+
+class Results(unittest.TestCase):
+    STAMPED = update_results.page("A", {"commit": "0123456789" * 4, "date": "2026-11-27", "machine": "two cores", "command": "`plvo_bench run a`",
+                                        "written": "by `tools/plvo/bench/update_results.py`"}, "| a |\n|---|\n")
+    INDEX = "[a](a.md)"
+
+    def found(self, page=STAMPED, index=INDEX, decision="# B\n"):
+        with Tree({"docs/results/a.md": page, "docs/results/README.md": index, "docs/decisions/b.md": decision,
+                   "docs/decisions/README.md": "[b](b.md)"}) as root:
+            return results.check(root)
+
+    def test_a_stamped_page_passes(self):
+        self.assertEqual(self.found(), [])
+
+    def test_a_missing_entry_of_the_stamp_is_named(self):
+        for entry in results.STAMP:
+            errors = self.found(self.STAMPED.replace(f"- {entry}: ", f"- no {entry}: "))
+            self.assertEqual(len(errors), 1, (entry, errors))
+            self.assertIn(f"no {entry}", errors[0])
+        self.assertEqual(len(self.found(self.STAMPED.replace("0123456789", "unknown"))), 1)
+
+    def test_a_page_that_the_index_does_not_name_is_an_error(self):
+        self.assertEqual(len(self.found(index="")), 1)
+
+    def test_a_long_decision_is_named(self):
+        self.assertEqual(self.found(decision="\n" * results.MOST_LINES), [])
+        self.assertEqual(len(self.found(decision="\n" * (results.MOST_LINES + 1))), 1)
+
+    def test_update_results_stamps_what_the_bench_prints(self):
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| opencv-rgbd |\"\necho\necho \"| $1 |\"\n", "data/x": "", "docs/results/README.md": "[t](table2.md)",
+                   "docs/decisions/b.md": "", "docs/decisions/README.md": "[b](b.md)"}) as root:
+            (root / "bin/plvo_bench").chmod(0o755)
+            with mock.patch.object(update_results, "commit", lambda: "0123456789" * 4):
+                update_results.main(["--bench", str(root / "bin"), "--data", str(root / "data"), "--work", str(root / "work"),
+                                     "--out", str(root / "docs/results"), "table2"])
+            page = (root / "docs/results/table2.md").read_text(encoding="utf-8")
+            self.assertTrue(page.endswith("\n\n| tum |\n"), page)
+            self.assertIn("- command: `plvo_bench tum fr1_rpy_150=tum-fr1 --systems ours,peers --out results/table2`", page)
+            self.assertEqual(results.check(root), [])
+
+    def test_update_results_keeps_a_page_whose_peers_were_not_measured(self):
+        with Tree({"bin/plvo_bench": "#!/bin/sh\necho \"| plvo |\"\n", "data/x": "", "docs/results/table2.md": "as it was"}) as root:
+            (root / "bin/plvo_bench").chmod(0o755)
+            with self.assertRaisesRegex(SystemExit, "measured no opencv-rgbd: build it where OpenCV"):
+                update_results.main(["--bench", str(root / "bin"), "--data", str(root / "data"), "--work", str(root / "work"),
+                                     "--out", str(root / "docs/results"), "table2"])
+            self.assertEqual((root / "docs/results/table2.md").read_text(encoding="utf-8"), "as it was")
 
 
 class Links(unittest.TestCase):
     PAGES = {"README.md": "# A\n[b](docs/b.md#two-words-c) [web](https://example.org/x) [here](#a) <a id=\"own\"></a>[there](#own)\n",
-             "docs/b.md": "## Two words, `c`\n[up](../README.md) [again](#same-1)\n## Same\n## Same\n```sh\n# no heading\n[no](link.md)\n```\n"}
+             "docs/b.md": "## Two words, `c`\n[again](#same-1)\n## Same\n## Same\n```sh\n# no heading\n[no](link.md)\n```\n"}
 
     def found(self, **changed):
         with Tree({**self.PAGES, **changed}) as root:
@@ -258,9 +315,16 @@ class Links(unittest.TestCase):
             self.assertEqual(len(errors), 1, bad)
             self.assertTrue(errors[0].startswith("README.md:2:"), errors)
 
+    def test_a_link_out_of_docs_is_named(self):
+        errors = self.found(**{"docs/b.md": self.PAGES["docs/b.md"] + "[x](../README.md)\n"})
+        self.assertEqual(len(errors), 1)
+        self.assertIn("not installed", errors[0])
+
     def test_missing_links_of_the_readme_are_named(self):
         with Tree(self.PAGES) as root:
             self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README))
+            (root / "README.md").write_text("\n" * (links.README_LINES + 1), encoding="utf-8")
+            self.assertEqual(len(list(links.check_readme(root))), len(links.FROM_README) + 1)
 
 
 class Paths(unittest.TestCase):
@@ -277,6 +341,82 @@ class Paths(unittest.TestCase):
             errors = self.found(f"# A\n`{bad}`\n")
             self.assertEqual(len(errors), 1, (bad, errors))
             self.assertTrue(errors[0].startswith("docs/a.md:2:"), errors)
+
+
+    def test_a_page_that_a_comment_names_must_exist(self):
+        with Tree({"docs/a.md": "", "core/a.hpp": "// docs/a.md\n// docs/b.md\n"}) as root:
+            self.assertEqual(paths.check(root), ["core/a.hpp:2: docs/b.md: there is no such page"])
+
+
+class Messages(unittest.TestCase):
+    SOURCE = 'fail("the file {} has " + n + " rows; "\n  "split it (share/doc/plvo/user/a.md#limits)");\n'
+    PAGE = "| message | cause | remedy |\n|---|---|---|\n| `the file … has …`, `rows; split it` | `an option` of it | `no message here` |\n"
+
+    def found(self, source=SOURCE, page=PAGE):
+        with Tree({"tools/a.cpp": source + '// "a comment"\nsay("an option");\n', messages.PAGE: page, "docs/user/a.md": "## Limits\n"}) as root:
+            return messages.check(root)
+
+    def test_quotes_of_messages_pass(self):
+        self.assertEqual(self.found(), [])
+
+    def test_a_quote_that_no_message_has_is_named(self):
+        for old, new in (("the file", "the folder"), ("split it", "join it"), ("an option", "a comment")):
+            errors = self.found(page=self.PAGE.replace(old, new))
+            self.assertEqual(len(errors), 1, (new, errors))
+            self.assertTrue(errors[0].startswith(f"{messages.PAGE}:3:"), errors)
+
+    def test_a_message_of_a_status_that_is_not_on_the_page_is_named(self):
+        self.assertEqual(self.found(source=self.SOURCE + 'return {StatusCode::kIo, fmt::format("an option {}", x)};\n'), [])
+        errors = self.found(source=self.SOURCE + 'return {StatusCode::kIo,\n        "the disk is full"};\n')
+        self.assertEqual(len(errors), 1)
+        self.assertIn('"the disk is full": give the message a row', errors[0])
+
+    def test_a_page_that_is_not_there_is_named(self):
+        for new in ("user/b.md#limits", "user/a.md#other"):
+            self.assertEqual(len(self.found(source=self.SOURCE.replace("user/a.md#limits", new))), 1, new)
+        self.assertEqual(len(self.found(source=self.SOURCE.replace("share/doc/plvo", "docs"))), 1)
+
+
+class Layout(unittest.TestCase):
+    GOOD = {
+        "core/plvo/math/se3.hpp": "",
+        "tools/plvo/cli/main.cpp": "",
+        "tests/math/se3_test.cpp": '#include "plvo/math/se3.hpp"\nTEST(A, B) {}\n',
+        "tests/math/a.hpp": '#include "plvo/math/se3.hpp"\n',
+        "tests/math/other_test.cpp": '#include "a.hpp"\n',
+        "tests/cli/cli_run_test.cpp": "",
+        "tests/accuracy/walk_test.py": "",
+        "tests/architecture/self_test.py": "",
+        "tests/budget/self_test.py": "",
+    }
+    ENTRIES = ("se3_test", "other_test.Alone", "cli_run_test", "walk_test", "golden_test")
+
+    def found(self, more, entries=None):
+        with Tree(self.GOOD | more) as root:
+            return layout.check(root, entries)
+
+    def test_a_good_layout_passes(self):
+        self.assertEqual(self.found({}), [])
+        self.assertEqual(self.found({}, self.ENTRIES), [])
+
+    def test_a_file_without_an_entry_is_named(self):
+        for k, name in enumerate(("se3_test", "other_test", "cli_run_test", "walk_test")):
+            errors = self.found({}, self.ENTRIES[:k] + self.ENTRIES[k + 1:])
+            self.assertEqual(len(errors), 1, errors)
+            self.assertTrue(errors[0].endswith(f"there is no ctest entry {name}"), errors)
+
+    def test_bad_places_and_names_are_named(self):
+        header = self.GOOD["tests/math/se3_test.cpp"]
+        for bad, text, words_of_error in (
+                ("tests/tools/a_test.cpp", header, "there is no such module"),
+                ("tests/slurm/array.sh", "", "there is no such module"),
+                ("tests/math/more/a_test.cpp", header, "directly"),
+                ("tests/cli/se3_test.cpp", header, "the same name"),
+                ("tests/python/se3_test.py", "", "there is no such module"),
+                ("tests/math/a_main.cpp", header, "is called *_test.cpp"),
+                ("tests/math/a_test.cpp", '#include "plvo/base/a.hpp"\n', "no header of math")):
+            errors = self.found({bad: text})
+            self.assertTrue(any(words_of_error in error for error in errors), (bad, errors))
 
 
 class Words(unittest.TestCase):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions shared by the checks of plvo: list the files, and extract the code of a C++ file."""
+"""Functions shared by the checks of plvo: list the files, extract the code of a C++ file, and report."""
 import pathlib
 import re
 
@@ -38,3 +38,9 @@ def includes(text):
         match = re.match(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', line)
         if match:
             yield number, ("quote" if match.group(1) else "angle"), match.group(1) or match.group(2)
+
+
+def report(errors, kept):
+    """Prints the errors, or that the rule is kept; returns the exit code."""
+    print("\n".join(errors) if errors else kept)
+    return 1 if errors else 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names and words that were replaced by standard terms stay out of code, comments and pages (docs/glossary.md has the terms).
+"""Names and words that were replaced by standard terms stay out of code, comments and pages (docs/theory/notation.md has the terms).
 CHANGELOG.md may name them, as may golden files and the fuzzers' seeds."""
 import pathlib
 import re
@@ -45,11 +45,5 @@ def check(root):
     return errors
 
 
-def main():
-    errors = check(sys.argv[1])
-    print("\n".join(errors) if errors else "no word that was replaced is back")
-    return 1 if errors else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(sources.report(check(sys.argv[1]), "no word that was replaced is back"))

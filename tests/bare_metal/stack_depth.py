@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The deepest stack of the odometry's two calls: as GCC's call graphs bound it, and as a painted stack on the board saw it.
-Both against docs/memory.md, the bound against a ceiling.
+Both against docs/developer/memory.md, the bound against a ceiling.
 stack_depth.py GRAPHS PAGE CEILING PROGRAM… runs PROGRAM…; stack_depth.py GRAPHS shows the deepest paths."""
 import pathlib
 import re

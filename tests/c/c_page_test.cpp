@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of docs/c.md, compiled as C11, give the bits of C++.
+// The functions of docs/user/c.md, compiled as C11, give the bits of C++.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -110,7 +110,7 @@ TEST_F(CPage, ALevelWorld) {
   }
 }
 
-// The same samples: the same priors, poses and offset, to the last bit.
+// The same samples: the same poses and offset, to the last bit.
 TEST_F(CPage, TracksWithAGyroAndAnAccelerometer) {
   std::vector<ImuSample> gyro(128), accelerometer(128);
   ImuIntegrator imu;
@@ -125,11 +125,7 @@ TEST_F(CPage, TracksWithAGyroAndAnAccelerometer) {
       on_sample(c_imu, reading.stamp_ns, reading.rate.data(), reading.force.data());
     }
     const RgbdFrame frame = i == 6 ? sequence.render_dark(i) : sequence.render(i);
-    const MotionPrior prior = imu.prior(frame.stamp_ns);
-    EXPECT_EQ(prior.rotation.has_value(), i > 0);
-    EXPECT_TRUE(prior.gravity.has_value());
-    const TrackResult expected = odometry.track(frame, prior);
-    imu.learn(expected);
+    const TrackResult expected = odometry.track(frame, imu);
     const plvo_frame view = c_frame(frame);
     plvo_result result = {};
     result.struct_size = sizeof result;

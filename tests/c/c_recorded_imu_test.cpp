@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a gyro and an accelerometer recorded, for C; and the program of docs/c.md that tracks with it, as C++
-// does.
+// What a gyro and an accelerometer recorded, for C; and the program of docs/user/c.md that tracks with it, as
+// C++ does.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -21,7 +21,7 @@
 namespace plvo {
 namespace {
 
-constexpr int kFrames = 7, kDark = 5;
+constexpr int kWalkFrames = 7, kDark = 5;
 
 class CRecordedImu : public testing::Test {
  protected:
@@ -29,7 +29,7 @@ class CRecordedImu : public testing::Test {
     ProceduralSequence rendered(320, 240);
     TumWriter writer;
     ASSERT_TRUE(writer.open(walk(), rendered.camera(), 1000).ok());
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kWalkFrames; ++i) {
       ASSERT_TRUE(writer.write(i == kDark ? rendered.render_dark(i) : rendered.render(i)).ok());
       for (const ImuReading& reading : imu_readings(i)) {
         recorded_.gyro.push_back({reading.stamp_ns, reading.rate});
@@ -125,8 +125,7 @@ TEST_F(CRecordedImu, TheProgramOfThePageGivesThePosesOfCpp) {
   ASSERT_TRUE(odometry.init(memory, camera.model(), {}, limits).ok());
   std::vector<std::string> expected;
   for (RgbdFrame frame; camera.next(frame).ok();) {
-    const TrackResult result = odometry.track(frame, imu.prior(frame.stamp_ns));
-    imu.learn(result);
+    const TrackResult result = odometry.track(frame, imu.until(frame.stamp_ns));
     EXPECT_EQ(result.state == TrackState::kPredicted, expected.size() == kDark) << expected.size();
     const std::string line = trajectory_line(result.stamp_ns, result.T_world_camera);
     expected.push_back(line.substr(line.find(' ')));
@@ -138,7 +137,7 @@ TEST_F(CRecordedImu, TheProgramOfThePageGivesThePosesOfCpp) {
   std::vector<std::string> poses;
   for (std::string line; std::getline(lines, line);) poses.push_back(line.substr(line.find(' ')));
   EXPECT_EQ(poses, expected);
-  EXPECT_EQ(poses.size(), std::size_t{kFrames});
+  EXPECT_EQ(poses.size(), std::size_t{kWalkFrames});
   EXPECT_EQ(test::run_command(PLVO_C_IMU_EXAMPLE).exit_code, 2);
   std::filesystem::remove(walk() / kGyroFile);
   std::filesystem::remove(walk() / kAccelerometerFile);

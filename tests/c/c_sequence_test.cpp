@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recorded folders for C: the frames of RecordedCamera, and the program of docs/c.md, which tracks them as
-// C++ does.
+// Recorded folders for C: the frames of RecordedCamera, and the program of docs/user/c.md, which tracks them
+// as C++ does.
 #include "plvo/c/sequence.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The functions of docs/c.md, as C11 gives them to C++. */
+/* The functions of docs/user/c.md, as C11 gives them to C++. */
 #ifndef PLVO_TESTS_C_PAGE_FUNCTIONS_H
 #define PLVO_TESTS_C_PAGE_FUNCTIONS_H
 

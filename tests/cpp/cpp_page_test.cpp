@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The programs of docs/cpp.md and README.md give the poses and covariances of `plvo run` on the same images;
-// the functions of docs/cpp.md do what the page says.
+// The programs of docs/user/cpp.md and README.md give the poses and covariances of `plvo run` on the same
+// images; the functions of docs/user/cpp.md do what the page says.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -8,16 +8,18 @@
 #include <cerrno>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <thread>
 
 #include "kinect_command.hpp"
 #include "plvo/host/files/trajectory_reader.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "simulated_motor.hpp"
 
-// The linker's --wrap routes every call of track() through this function.
+// The linker's --wrap routes every call of track() through these functions.
 namespace {
 struct Tracked {
   std::int64_t stamp_ns;
@@ -28,17 +30,26 @@ std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch
 std::vector<Tracked> tracked;
 std::atomic<int> tracks{0};
 }  // namespace
-plvo::TrackResult real_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-plvo::TrackResult wrapped_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
+plvo::TrackResult real_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) {
+  tracked.push_back({frame.stamp_ns, now_ns(), {}});
+  ++tracks;
+  return real_track(odometry, frame);
+}
+// Takes the prior itself, to record it. Without a gyro there is no offset to correct.
+plvo::TrackResult
+wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame, plvo::ImuIntegrator& imu, const std::optional<plvo::TranslationPrior>&) asm(
+    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERNS_"
+    "13ImuIntegratorERKSt8optionalINS_16TranslationPriorEE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-                                const plvo::MotionPrior& prior) {
+                                plvo::ImuIntegrator& imu, const std::optional<plvo::TranslationPrior>&) {
+  const plvo::MotionPrior prior = imu.prior(frame.stamp_ns);
   tracked.push_back({frame.stamp_ns, now_ns(), prior});
   ++tracks;
-  return real_track(odometry, frame, prior);
+  return odometry->track(frame, prior);
 }
 
 namespace plvo_test {

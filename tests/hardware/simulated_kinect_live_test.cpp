@@ -24,16 +24,13 @@
 namespace {
 std::atomic<std::int64_t> tracks{0}, allocations{0};
 }
-plvo::TrackResult real_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-plvo::TrackResult wrapped_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-                                const plvo::MotionPrior& prior) {
+plvo::TrackResult real_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
+    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) {
   const plvo::AllocationGuard guard;
-  plvo::TrackResult result = real_track(odometry, frame, prior);
+  plvo::TrackResult result = real_track(odometry, frame);
   allocations += guard.calls();
   ++tracks;
   return result;

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -14,6 +13,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "loopback.hpp"
 #include "plvo/host/stream/pose_json.hpp"
 #include "plvo/host/stream/tcp_listener.hpp"
 #include "temporary_folder.hpp"
@@ -33,15 +33,6 @@ TrackResult sample(std::int64_t stamp_ns) {
   return result;
 }
 
-int connect_tcp(int port) {
-  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(port));
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(::connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-  return fd;
-}
 int connect_unix(const std::string& path) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un to{};
@@ -130,10 +121,10 @@ TEST(PoseStream, SeveralTcpReadersEachGetEveryLineSinceTheyCame) {
   PoseStream stream;
   ASSERT_TRUE(stream.open("0").ok());
   ASSERT_TRUE(stream.write(sample(1)).ok());  // nobody listens: nothing happens
-  const int first = connect_tcp(stream.port());
+  const int first = test::connect_loopback(stream.port());
   until_readers_are(stream, 1);
   ASSERT_TRUE(stream.write(sample(2)).ok());
-  const int second = connect_tcp(stream.port());
+  const int second = test::connect_loopback(stream.port());
   until_readers_are(stream, 2);
   ASSERT_TRUE(stream.write(sample(3)).ok());
   EXPECT_EQ(next_pose(first), 2);
@@ -174,10 +165,10 @@ TEST(PoseStream, IdleConnectionsLockNobodyOut) {
   ASSERT_TRUE(stream.open("0").ok());
   std::vector<int> idle;
   for (int round = 0; round < 3; ++round) {
-    for (int i = 0; i < 40; ++i) idle.push_back(connect_tcp(stream.port()));
+    for (int i = 0; i < 40; ++i) idle.push_back(test::connect_loopback(stream.port()));
     until_readers_are(stream, PoseReaders::kMaxPerAddress);
-    const int first = connect_tcp(stream.port());
-    const int second = connect_tcp(stream.port());
+    const int first = test::connect_loopback(stream.port());
+    const int second = test::connect_loopback(stream.port());
     // Once each has got a pose it has its place, and gets every one from then on.
     std::int64_t stamp = 0;
     for (const int fd : {first, second}) {
@@ -197,7 +188,7 @@ TEST(PoseStream, IdleConnectionsLockNobodyOut) {
 TEST(PoseStream, AReaderThatReadsOutlastsAnyNumberOfIdleConnections) {
   PoseStream stream;
   ASSERT_TRUE(stream.open("0").ok());
-  const int robot = connect_tcp(stream.port());
+  const int robot = test::connect_loopback(stream.port());
   until_readers_are(stream, 1);
   std::int64_t stamp = 0;
   for (std::size_t bytes = 0; bytes <= PoseReaders::kProvenBytes; bytes += pose_json(sample(stamp)).size()) {
@@ -206,7 +197,7 @@ TEST(PoseStream, AReaderThatReadsOutlastsAnyNumberOfIdleConnections) {
   }
   std::vector<int> idle;
   for (int i = 0; i < 100; ++i) {
-    idle.push_back(connect_tcp(stream.port()));
+    idle.push_back(test::connect_loopback(stream.port()));
     ASSERT_TRUE(stream.write(sample(++stamp)).ok());
     ASSERT_EQ(next_pose(robot), stamp);
   }
@@ -218,7 +209,7 @@ TEST(PoseStream, AReaderThatReadsOutlastsAnyNumberOfIdleConnections) {
 TEST(PoseStream, WhatTheSystemHoldsForAnIdleReaderDoesNotProveIt) {
   PoseStream stream;
   ASSERT_TRUE(stream.open("0").ok());
-  const int idle = connect_tcp(stream.port());
+  const int idle = test::connect_loopback(stream.port());
   until_readers_are(stream, 1);
   std::size_t bytes = 0;
   for (std::int64_t stamp = 0; stream.dropped_lines() == 0; ++stamp) {

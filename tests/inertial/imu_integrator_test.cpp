@@ -142,10 +142,9 @@ TEST(ImuIntegrator, LearnsTheGyroOffsetAndItsVariance) {
     for (int i = 0; i < kFrames; ++i) {
       const double now = 0.1 + i * 0.0333;
       const MotionPrior prior = imu.integrator.prior(stamp(now));
-      TrackResult result;
-      result.state = i == 0 ? TrackState::kInitialising : TrackState::kTracking;
-      result.stamp_ns = stamp(now);
-      result.reference_stamp_ns = i == 0 ? result.stamp_ns : stamp(now - 0.0333);
+      ObservedRotation observed;
+      observed.stamp_ns = stamp(now);
+      observed.reference_stamp_ns = i == 0 ? observed.stamp_ns : stamp(now - 0.0333);
       if (i > 0) {
         // The estimate after the prior is combined with an observation of 1 mrad SD.
         const Matrix3& truth = truths[static_cast<std::size_t>(i)];
@@ -154,10 +153,10 @@ TEST(ImuIntegrator, LearnsTheGyroOffsetAndItsVariance) {
         const Matrix3 V = kSeen_rad * kSeen_rad * Matrix3::Identity();
         const Vector3 apart = rotation_log(seen * prior.rotation->R_now_before.transpose());
         const Vector3 e = C * (C + V).inverse() * apart;
-        result.T_camera_reference.R = rotation_exp(e) * prior.rotation->R_now_before;
-        result.motion_covariance.block<3, 3>(3, 3) = C - C * (C + V).inverse() * C;
+        observed.R_camera_reference = rotation_exp(e) * prior.rotation->R_now_before;
+        observed.covariance = C - C * (C + V).inverse() * C;
       }
-      imu.integrator.learn(result);
+      imu.integrator.correct(observed);
     }
     const Vector3 off = offset - imu.integrator.gyro_offset();
     end += off.squaredNorm() / kTrials;

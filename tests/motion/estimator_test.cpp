@@ -273,7 +273,7 @@ TEST(Estimator, AFullArenaIsSaid) {
   std::vector<std::byte> nothing(64);
   Arena full{std::span<std::byte>(nothing)};
   (void)full.take<std::byte>("test", 64);
-  EXPECT_EQ(estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, full).status,
+  EXPECT_EQ(estimate_motion(bench.sets, {}, MotionReferences{}, {}, {}, 1, nullptr, full).status,
             StatusCode::kOutOfMemory);
 }
 
@@ -292,8 +292,8 @@ TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
   EXPECT_LT(bench.arena.used(), bench.arena.peak());
 }
 
-// A third kind moves in: points of the current frame on known planes of the reference frame (a stand-in for
-// surface samples from depth alone). One degree of freedom each, no landmark, no part in minimal sets;
+// A third kind of features: points of the current frame on known planes of the reference frame (a stand-in
+// for surface samples from depth alone). One degree of freedom each, no landmark, no part in minimal sets;
 // nothing else changes.
 class PlaneSamples final : public ConstraintSet {
  public:
@@ -357,10 +357,10 @@ TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
     bench.load(pair);
     PlaneSamples planes(samples, flags);
     const MotionEstimate without =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, {}, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     bench.sets.push_back(&planes);
     const MotionEstimate with =
-        estimate_motion(bench.sets, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
+        estimate_motion(bench.sets, {}, MotionReferences{}, {}, {}, 1, nullptr, bench.arena);
     ASSERT_EQ(without.status, StatusCode::kOk);
     ASSERT_EQ(with.status, StatusCode::kOk);
     EXPECT_GT(with.inliers[2], 280);

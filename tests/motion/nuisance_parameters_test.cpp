@@ -128,8 +128,9 @@ TEST(NuisanceParameters, AreEliminatedAsADenseSystemIs) {
   bench.load(pair);
   test::flag_all(*bench.sets[0]);
   shared.value.setZero();
-  const auto kernels = MotionProblem::make_kernels(bench.sets, RobustLoss::kNone);
-  MotionProblem problem(bench.sets, MotionReferences{}, shared, kernels, pair.truth);
+  const CostTerms terms(bench.sets);
+  const auto kernels = MotionProblem::make_kernels(terms, RobustLoss::kNone);
+  MotionProblem problem(terms, MotionReferences{}, shared, kernels, pair.truth);
   Matrix6 H;
   Vector6 g;
   const double cost = problem.linearize(Vector6::Zero(), H, g);

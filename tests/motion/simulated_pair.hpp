@@ -153,7 +153,7 @@ struct Bench {
     points.clear();
     lines.clear();
     load(pair);
-    return estimate_motion(sets, MotionReferences{}, config, lm, seed, start, arena);
+    return estimate_motion(sets, {}, MotionReferences{}, config, lm, seed, start, arena);
   }
 
   std::vector<std::byte> memory;
@@ -173,13 +173,13 @@ struct Solution {
   Matrix6 H;
 };
 // Solves with weights held at where the last one ended, until that does not matter.
-inline Solution settle(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                       RobustLoss loss, const Se3& start) {
+inline Solution settle(const CostTerms& terms, const MotionReferences& references, RobustLoss loss,
+                       const Se3& start) {
   LevenbergMarquardt<6> solver;
   Solution solution;
   solution.T = start;
   for (int solve = 0; solve < 4; ++solve) {
-    MotionProblem problem(sets, references, {}, MotionProblem::make_kernels(sets, loss), solution.T);
+    MotionProblem problem(terms, references, {}, MotionProblem::make_kernels(terms, loss), solution.T);
     solution.summary = solver.solve(problem);
     solution.T = problem.T_current_reference();
   }
@@ -194,7 +194,7 @@ inline LmSummary refine_all(Bench& bench, const SimulatedPair& pair, const Se3& 
   bench.lines.clear();
   bench.load(pair);
   for (ConstraintSet* set : bench.sets) flag_all(*set);
-  const Solution solution = settle(bench.sets, MotionReferences{}, loss, start);
+  const Solution solution = settle(CostTerms(bench.sets), MotionReferences{}, loss, start);
   T = solution.T;
   H = solution.H;
   return solution.summary;

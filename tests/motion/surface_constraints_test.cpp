@@ -59,11 +59,11 @@ std::vector<Vector3> room() { return {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 
 
 struct SurfaceSet {
   explicit SurfaceSet(const Walls& walls)
-      : flags(walls.matches.size()), constraints(walls.matches, {flags, {&form, 1}}), sets{&constraints} {}
+      : flags(walls.matches.size()), constraints(walls.matches, {flags, {&form, 1}}), terms{&constraints} {}
   std::vector<std::uint8_t> flags;
   SurfaceForm form;
   SurfaceConstraints constraints;
-  std::vector<ConstraintSet*> sets;
+  std::vector<CostTerm*> terms;
 };
 
 const RobustKernel kKernel(RobustLoss::kHuber, 1);
@@ -153,7 +153,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
     const DenseVector n = match.normal;
     // Weights are those of where the solve began, with none of the shared errors.
     double weight = 1;
-    (void)kKernel(set.constraints.mahalanobis_squared(i, walls.truth, 0), weight);
+    (void)kKernel(set.constraints.mahalanobis_squared(i, walls.truth), weight);
     const Dense M =
         weight *
         ((1 + match.normal_variance) * n * n.transpose() - match.normal_variance * Dense::Identity(3, 3)) /
@@ -185,7 +185,8 @@ TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
     Walls walls(gaussian, room(), 150, 0.004, 0.01, gamma);
     const auto nees_of = [&] {
       SurfaceSet set(walls);
-      const test::Solution solution = test::settle(set.sets, {}, RobustLoss::kNone, walls.truth);
+      const test::Solution solution =
+          test::settle(CostTerms({}, set.terms), {}, RobustLoss::kNone, walls.truth);
       return test::nees(solution.T, walls.truth, solution.H) / kTrials;
     };
     nees += nees_of();
@@ -234,15 +235,12 @@ TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;
   SurfaceSet set(walls);
   set.constraints.begin(walls.truth, {}, kKernel, 1);
-  for (std::size_t i = 0; i < walls.matches.size(); ++i) {
-    EXPECT_EQ(set.flags[i], i == 3 ? 0 : 1) << i;
-    EXPECT_FALSE(set.constraints.usable(i));
-    EXPECT_EQ(set.constraints.primitive(i).shape, Primitive::Shape::kNone);
-  }
+  for (std::size_t i = 0; i < walls.matches.size(); ++i) EXPECT_EQ(set.flags[i], i == 3 ? 0 : 1) << i;
+
   // Surfaces alone fix this motion, but nothing tells that it is the right one.
   std::vector<std::byte> memory(1 << 20);
   Arena arena(memory);
-  const MotionEstimate estimate = estimate_motion(set.sets, {}, {}, {}, 1, {&walls.truth}, arena);
+  const MotionEstimate estimate = estimate_motion({}, set.terms, {}, {}, {}, 1, {&walls.truth}, arena);
   EXPECT_EQ(estimate.status, StatusCode::kTooFewFeatures);
 }
 
@@ -263,9 +261,9 @@ TEST(SurfaceConstraints, JoinPointsAndLines) {
     bench.load(pair);
     SurfaceSet set(walls);
     const auto estimate = [&](bool with) {
-      std::vector<ConstraintSet*> sets = bench.sets;
-      if (with) sets.push_back(&set.constraints);
-      const MotionEstimate result = estimate_motion(sets, {}, {}, {}, 1, {&pair.truth}, bench.arena);
+      const std::span<CostTerm* const> others = with ? set.terms : std::span<CostTerm* const>();
+      const MotionEstimate result =
+          estimate_motion(bench.sets, others, {}, {}, {}, 1, {&pair.truth}, bench.arena);
       EXPECT_EQ(result.status, StatusCode::kOk);
       return result;
     };

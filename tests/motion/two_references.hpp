@@ -90,7 +90,8 @@ inline Linearization linearize(std::span<ConstraintSet* const> sets, const Motio
   MotionReferences judged = references;
   if (!marginalise)
     for (MotionReference& reference : judged) reference.covariance.setZero();
-  MotionProblem problem(sets, judged, {}, MotionProblem::make_kernels(sets, RobustLoss::kNone), T);
+  const CostTerms terms(sets);
+  MotionProblem problem(terms, judged, {}, MotionProblem::make_kernels(terms, RobustLoss::kNone), T);
   Linearization out;
   out.cost = problem.linearize(step, out.H, out.g);
   return out;
@@ -98,7 +99,7 @@ inline Linearization linearize(std::span<ConstraintSet* const> sets, const Motio
 
 inline Solution solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
                       const Se3& start) {
-  return settle(sets, references, RobustLoss::kHuber, start);
+  return settle(CostTerms(sets), references, RobustLoss::kHuber, start);
 }
 
 // |A − B| where metres and radians, known well and known badly, weigh alike: in units of B's own diagonal.

@@ -82,7 +82,7 @@ TEST(ThreeReferences, TwoOfThemWithOnePoseAreOne) {
     EXPECT_GT(symmetric_eigen<6>(more).values.minCoeff(), -1e-9 * more.trace());
     EXPECT_GT(more.trace(), 0.01 * together.H.trace());
     const MotionEstimate estimate =
-        estimate_motion(sets_three, three.references, {}, {}, 5, nullptr, three.arena);
+        estimate_motion(sets_three, {}, three.references, {}, {}, 5, nullptr, three.arena);
     ASSERT_EQ(estimate.status, StatusCode::kOk);
     const Vector6 error = boxminus(estimate.T_current_reference, three.truth);
     EXPECT_LT(error.dot(Vector6(test::solve_positive(estimate.C_H, error))), 30);  // 6 in the mean
@@ -106,8 +106,8 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
     EXPECT_LT(difference(x.H, y.H), 1e-2);
 
     // And so in the whole estimator, consensus included.
-    const MotionEstimate p = estimate_motion(sets_two, two.references, {}, {}, 5, nullptr, two.arena);
-    const MotionEstimate q = estimate_motion(sets_one, MotionReferences{}, {}, {}, 5, nullptr, one.arena);
+    const MotionEstimate p = estimate_motion(sets_two, {}, two.references, {}, {}, 5, nullptr, two.arena);
+    const MotionEstimate q = estimate_motion(sets_one, {}, MotionReferences{}, {}, {}, 5, nullptr, one.arena);
     ASSERT_EQ(p.status, StatusCode::kOk);
     ASSERT_EQ(q.status, StatusCode::kOk);
     EXPECT_EQ(p.inliers, q.inliers);
@@ -149,8 +149,9 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
     const Vector6 wrong = (Vector6() << 8, -6, 7, 8, -7, 6).finished();
     two.references[1].covariance = sd.cwiseAbs2().asDiagonal();
     two.references[1].T_reference_base = boxplus(two.T_1_0, sd.cwiseProduct(wrong));
-    const auto kernels = MotionProblem::make_kernels(sets, RobustLoss::kHuber);
-    MotionProblem problem(sets, two.references, {}, kernels, boxplus(two.truth, kAway));
+    const CostTerms terms(sets);
+    const auto kernels = MotionProblem::make_kernels(terms, RobustLoss::kHuber);
+    MotionProblem problem(terms, two.references, {}, kernels, boxplus(two.truth, kAway));
     LevenbergMarquardt<6> solver;
     const LmSummary summary = solver.solve(problem, {});
     ASSERT_TRUE(converged(summary.status)) << static_cast<int>(summary.status);
@@ -160,7 +161,7 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
     const auto cost = [&](const Vector6& of_motion, const Vector6& of_pose) {
       MotionReferences exact;
       exact[1].T_reference_base = boxplus(found.T_reference_base, sd.cwiseProduct(of_pose));
-      MotionProblem at(sets, exact, {}, kernels, boxplus(problem.T_current_reference(), of_motion));
+      MotionProblem at(terms, exact, {}, kernels, boxplus(problem.T_current_reference(), of_motion));
       Matrix6 H;
       Vector6 g;
       return at.linearize(Vector6::Zero(), H, g) + 0.5 * (found.moved + of_pose).squaredNorm();
@@ -189,8 +190,9 @@ TEST(TwoReferences, APoseAndNuisanceParametersMoveAsADenseSystemSays) {
     two.references[1].covariance = sd.cwiseAbs2().asDiagonal();
     const NuisanceParameters shared(Exposure(camera, Vector6::Zero(), 0), 0.3, 0.004);
     const Se3 T = boxplus(two.truth, kAway);
-    const auto kernels = MotionProblem::make_kernels(sets, RobustLoss::kNone);
-    MotionProblem problem(sets, two.references, shared, kernels, T);
+    const CostTerms terms(sets);
+    const auto kernels = MotionProblem::make_kernels(terms, RobustLoss::kNone);
+    MotionProblem problem(terms, two.references, shared, kernels, T);
     Matrix6 H;
     Vector6 g;
     (void)problem.linearize(Vector6::Zero(), H, g);

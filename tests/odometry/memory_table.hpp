@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes docs/memory.md from the memory records of an Odometry.
+// Writes docs/developer/memory.md from the memory records of an Odometry.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ inline constexpr std::size_t kVgaCeiling = 7 * 512 * 1024, kQvgaCeiling = 704 * 
 // Tracks a few frames of the procedural sequence and reads the records.
 MemoryUse measure_memory(const Limits& limits, const Config& config, int frames);
 
-// docs/memory.md, in Markdown, up to the heading of the part that no test writes.
-inline constexpr const char* kMemoryPageEnd = "\n## Tiny\n";
+// docs/developer/memory.md, in Markdown, up to the heading of the part that no test writes.
+inline constexpr const char* kMemoryPageEnd = "\n## Stack\n";
 std::string memory_page(const std::array<MemoryUse, 3>& vga_qvga_tiny);
 
 }  // namespace plvo

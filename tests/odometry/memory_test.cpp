@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory of the odometry: it lies between a floor and a ceiling, equals required_bytes, and agrees with
-// docs/memory.md.
+// docs/developer/memory.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ TEST(Memory, ThePageIsTrue) {
   if (sizeof(void*) != 8) GTEST_SKIP() << "the page is about 64-bit machines";
   std::stringstream committed;
   committed << std::ifstream(PLVO_MEMORY_DOC).rdbuf();
-  // The rest of the page is about accuracy, stacks and code; other tests check it.
+  // The rest of the page is about stacks and code; other tests check it.
   const std::size_t end = committed.str().find(kMemoryPageEnd);
   ASSERT_NE(end, std::string::npos) << "the page has no heading" << kMemoryPageEnd;
   const std::string page = memory_page({vga(), qvga(), tiny()}) + committed.str().substr(end);

@@ -12,7 +12,8 @@
 namespace plvo {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30;
+constexpr std::int64_t kFrame_ns = 33'333'334;
+constexpr double kFrame_s = 1e-9 * kFrame_ns;
 constexpr double kReadout_s = 0.0261;
 constexpr int kPoints = 200;
 
@@ -67,11 +68,9 @@ class RowTimeCompensationOfAPair : public testing::Test {
 
   PairPrior prior(const Motion& motion) const {
     PairPrior prior;
-    prior.seconds_since_last = kFrame_s;
-    prior.reference_velocity = boxminus(motion.at(0) * motion.at(-kFrame_s).inverse(), Se3{}) / kFrame_s;
-    prior.reference_velocity_known = true;
-    prior.last_velocity = prior.reference_velocity;
-    prior.last_velocity_known = true;
+    prior.since_last_ns = kFrame_ns;
+    prior.reference = {mean_velocity(motion.at(0) * motion.at(-kFrame_s).inverse(), kFrame_s), kFrame_ns};
+    prior.last = prior.reference;
     return prior;
   }
 
@@ -116,7 +115,7 @@ TEST_F(RowTimeCompensationOfAPair, RemovesThreeQuartersOfAnAcceleration) {
 TEST_F(RowTimeCompensationOfAPair, UsesOneVelocityForTheFirstPair) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior first = prior(steady);
-  first.reference_velocity_known = first.last_velocity_known = false;
+  first.reference = first.last = {};
   EXPECT_LT(disagreement(steady, first, camera_), 1e-4);
 }
 
@@ -125,19 +124,19 @@ TEST_F(RowTimeCompensationOfAPair, AKeyframeKeepsItsOwnVelocity) {
   const Motion faster{{0, 0.3, 0}, {0, 9, 0}, Vector3::Zero()};
   PairPrior keyframe = prior(faster);
   keyframe.reference_is_last = false;
-  keyframe.seconds_since_last = kFrame_s / 2;
+  keyframe.since_last_ns = kFrame_ns / 2;
   keyframe.T_reference_last = motion_between(faster, kFrame_s / 2, 0);
-  keyframe.last_velocity = boxminus(motion_between(faster, 0, kFrame_s / 2), Se3{}) / (kFrame_s / 2);
+  keyframe.last.value = mean_velocity(motion_between(faster, 0, kFrame_s / 2), kFrame_s / 2);
   const double h = 1e-4;
-  keyframe.reference_velocity = boxminus(motion_between(faster, -h, h), Se3{}) / (2 * h);
+  keyframe.reference.value = mean_velocity(motion_between(faster, -h, h), 2 * h);
   EXPECT_LT(disagreement(faster, keyframe, camera_), 0.35 * disagreement(faster, keyframe, CameraModel{}));
 }
 
 TEST_F(RowTimeCompensationOfAPair, AssumesNoVelocityAfterALongGap) {
   const Motion steady{{0.1, 0.9, -0.3}, Vector3::Zero(), {0.2, 0, 0.1}};
   PairPrior late = prior(steady);
-  late.seconds_since_last = 1;
-  late.reference_velocity_known = late.last_velocity_known = false;
+  late.since_last_ns = 1'000'000'000;
+  late.reference = late.last = {};
   EXPECT_EQ(disagreement(steady, late, camera_), disagreement(steady, late, CameraModel{}));
 }
 

@@ -92,7 +92,7 @@ TEST(SurfaceTracking, FindsTheSurfacesAtTheTrueMotion) {
   EXPECT_GT(pair.storage.size(), 0.7 * static_cast<double>(pair.features.samples.size()));
   const SurfaceConstraints set = pair.constraints();
   double sum = 0;
-  for (std::size_t i = 0; i < set.size(); ++i) sum += set.mahalanobis_squared(i, pair.truth, 1e9);
+  for (std::size_t i = 0; i < set.size(); ++i) sum += set.mahalanobis_squared(i, pair.truth);
   const double mean = sum / static_cast<double>(set.size());
   // The modelled variance is that of one reading, in both frames. A plane through 49 readings has a 49th of
   // it, which the odometry learns. Tolerance: three standard deviations of the mean of the squares.

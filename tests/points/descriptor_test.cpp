@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the distance with a count bit by bit, tests the invariance to light, and measures the rate of
-// right matches over roll and scale, which docs/maths.md quotes.
+// right matches over roll and scale, which docs/decisions/descriptor_roll.md quotes.
 #include "plvo/points/descriptor.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames per second of processor time: a loop over plvo.run beside `plvo run`, which is C++, and beside the C program of
-docs/c.md; all three do the same with one folder, in turns, whose order goes round. The middle one of the rounds counts.
+docs/user/c.md; all three do the same with one folder, in turns, whose order goes round. The middle one of the rounds counts.
 usage: PYTHONPATH=build/release/python python3 tests/python/throughput.py FOLDER [ROUNDS]"""
 import pathlib
 import resource

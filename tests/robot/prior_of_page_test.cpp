@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of docs/robot.md that track with a gyro and an accelerometer: a covered lens is bridged, and the
-// gyro's offset is learnt.
+// The lines of docs/user/robots.md that track with a gyro and an accelerometer: a covered lens is bridged,
+// and the gyro's offset is learnt.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node of docs/robot.md, compiled against stand-ins for ROS 2, publishes where the robot's base is.
+// The node of docs/user/robots.md, compiled against stand-ins for ROS 2, publishes where the robot's base is.
 #include <gtest/gtest.h>
 
 #include <cmath>

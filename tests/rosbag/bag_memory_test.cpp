@@ -22,7 +22,7 @@ using test::wire_u32;
 using test::write_file;
 
 constexpr const char* kColour = "/camera/rgb/image_color";
-constexpr const char* kDepth = "/camera/depth/image";
+constexpr const char* kDepthTopic = "/camera/depth/image";
 
 // The shortest message with a readable stamp, in the shortest record.
 std::string shortest_record(std::uint32_t connection, std::int64_t stamp_ns) {
@@ -35,7 +35,7 @@ class BagMemory : public ::testing::Test {
   void write_images(std::size_t count) const {
     BagWriter writer;
     writer.connection(0, kColour, kImageType);
-    writer.connection(1, kDepth, kImageType);
+    writer.connection(1, kDepthTopic, kImageType);
     for (std::size_t i = 0; i < count; ++i)
       writer.put(shortest_record(i % 2, static_cast<std::int64_t>(i / 2) * 33'000'000));
     writer.end_chunk("lz4");
@@ -133,7 +133,7 @@ TEST_F(BagMemory, BoundsClaimsOfGigabytes) {
 // Names have a length limit, because a bag may have ten thousand topics.
 TEST_F(BagMemory, RejectsTopicNamesOfKilobytes) {
   BagWriter writer;
-  writer.connection(0, '/' + std::string(1000, 'x'), kImageType);
+  writer.connection(0, std::string("/").append(1000, 'x'), kImageType);
   writer.connection(1, kColour, std::string(1000, 'x'));
   writer.end_chunk("none");
   write_file(path_, writer.file());

@@ -71,6 +71,11 @@ if(TARGET plvo_python_odometry)
     DESTINATION ${PLVO_PYTHON_INSTALL_DIR}/plvo COMPONENT python)
 endif()
 
+# The pages. Messages name them by this path below the prefix; the link makes it right in the build folder, too.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/plvo)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/doc)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/docs ${PROJECT_BINARY_DIR}/share/doc/plvo SYMBOLIC)
+
 if(TARGET plvo)
   install(TARGETS plvo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

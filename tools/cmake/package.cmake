@@ -46,13 +46,16 @@ plvo_package(development libplvo-dev libdevel
   "Headers for C and C++, the static core for C++, files for CMake and pkg-config.")
 plvo_package(tools plvo-tools science
   "The command line tracks recordings and live sensors, evaluates and simulates.
-With a udev rule, a driver of the Kinect v1 for OpenNI2, and a service.")
+With a udev rule, a driver of the Kinect v1 for OpenNI2, a service, and the pages of plvo.")
 # shlibs names the package that a program linked with the library depends on; triggers updates the system's library cache.
 file(WRITE ${PROJECT_BINARY_DIR}/packaging/shlibs "libplvo ${PLVO_ABI_VERSION} libplvo${PLVO_ABI_VERSION} (>= ${PROJECT_VERSION})\n")
 file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
   ${PROJECT_BINARY_DIR}/packaging/shlibs ${PROJECT_BINARY_DIR}/packaging/triggers)
+foreach(component LIBRARY DEVELOPMENT PYTHON)
+  set(CPACK_DEBIAN_${component}_PACKAGE_SUGGESTS plvo-tools)  # it has the pages that messages name
+endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libplvo${PLVO_ABI_VERSION} (= ${PROJECT_VERSION}), libeigen3-dev")
 if(TARGET plvo_python_odometry)
   list(APPEND CPACK_COMPONENTS_ALL python)

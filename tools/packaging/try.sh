@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Run by tools/setup/package.sh in a clean root, in /try: installs the packages, uses them as docs/c.md, docs/python.md and a
+# Run by tools/setup/package.sh in a clean root, in /try: installs the packages, uses them as docs/user/c.md, docs/user/python.md and a
 # stranger's CMake project do, purges them, and compares the files with those before.
 set -euo pipefail
 cd /try
@@ -30,6 +30,9 @@ grep -v '^#' run.txt | cut -d' ' -f2- >run.poses
 echo "no bag" >no.bag
 if plvo run no.bag 2>no.bag.words; then exit 1; fi
 grep -q "is not a ROS 1 bag" no.bag.words  # bags were not left out when the packages were built
+echo "no recording" >no.mcap
+if plvo run no.mcap 2>no.mcap.words; then exit 1; fi
+test -s "/usr/$(grep -o 'share/doc/plvo/[a-z_/]*\.md' no.mcap.words)"  # the page that the message names
 
 step "C, by pkg-config: the same poses"
 # shellcheck disable=SC2046  # a list of words
@@ -60,7 +63,7 @@ programs = re.findall(r"^```python\n(.*?)^```$", pathlib.Path("python.md").read_
 programs = [program for program in programs if "matplotlib" not in program]
 assert len(programs) >= 3
 for program in programs:
-    exec(compile(program, "docs/python.md", "exec"), {})
+    exec(compile(program, "docs/user/python.md", "exec"), {})
 import plvo
 poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("walk") if r.has_pose]
 assert poses == pathlib.Path("run.poses").read_text().splitlines()

@@ -56,7 +56,7 @@ if [ $# -gt 0 ]; then
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --quiet --out "$work/run.txt"
   "${board[@]}" "$work/usr/bin/plvo" run "$work/walk" --imu --quiet --out "$work/imu.txt"
   for program in 1:run 5:imu; do  # the two programs of the page; each must print the poses of the command line
-    tools/setup/page_program.sh docs/c.md c "${program%:*}" >"$work/program.c"
+    tools/setup/page_program.sh docs/user/c.md c "${program%:*}" >"$work/program.c"
     "$triplet-gcc" --sysroot="$sysroot" -std=c11 -I"$work/usr/include" "$work/program.c" -L"$work/usr/lib/$triplet" -lplvo \
       -Wl,-rpath-link,"$sysroot/usr/lib/$triplet" -o "$work/program"
     "${board[@]}" "$work/program" "$work/walk" | cut -d' ' -f2- >"$work/c.poses"
@@ -101,9 +101,9 @@ if [ ! -e "${sources[0]}" ]; then sources=(/etc/apt/sources.list); fi
 mmdebstrap --quiet --variant=apt bookworm "$root" "${sources[@]}" >&2
 mkdir "$root/try"
 cp "${debs[@]}" "$root/try"
-cp -r tests/architecture/consumer docs/python.md tools/packaging/try.sh "$root/try"
-tools/setup/page_program.sh docs/c.md c >"$root/try/track_folder.c"
-tools/setup/page_program.sh docs/c.md c 5 >"$root/try/track_with_imu.c"
+cp -r tests/architecture/consumer docs/user/python.md tools/packaging/try.sh "$root/try"
+tools/setup/page_program.sh docs/user/c.md c >"$root/try/track_folder.c"
+tools/setup/page_program.sh docs/user/c.md c 5 >"$root/try/track_with_imu.c"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" /bin/bash /try/try.sh
 say "installed, used and purged; the packages:"
 printf '%s\n' "${debs[@]}"

@@ -35,9 +35,9 @@ constexpr std::size_t array_bytes(std::size_t count, std::size_t element_bytes) 
 
 class Arena {
  public:
-  // Bytes that each component took before seal(): the source of docs/memory.md. Names are compared as text.
-  // When the records are full, further names share one record named "others". Size-optimised code keeps no
-  // records and no names.
+  // Bytes that each component took before seal(): the source of docs/developer/memory.md. Names are compared
+  // as text. When the records are full, further names share one record named "others". Size-optimised code
+  // keeps no records and no names.
   struct Record {
     const char* who = nullptr;
     std::size_t bytes = 0;

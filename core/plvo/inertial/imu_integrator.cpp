@@ -182,20 +182,17 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
 // The offset's error b contributes Δt b to the prior's error, in the sensor's axes. Given e, b changes by P
 // Δt C⁻¹ e, and its variance P by the square of that gain times C − C'. The estimate has already used the
 // prior, but no information is used twice.
-void ImuIntegrator::learn(const TrackResult& result) {
-  const bool seen = result.state == TrackState::kTracking ||
-                    (result.state == TrackState::kInitialising && result.status.ok());
-  if (!seen) return;
-  const Matrix3& R_now_reference = result.T_camera_reference.R;
+void ImuIntegrator::correct(const ObservedRotation& observed) {
+  const Matrix3& R_now_reference = observed.R_camera_reference;
   Matrix3 R_now_before = R_now_reference;
-  bool known = has_seen_ && seen_ns_ == before_ns_ && result.stamp_ns == last_ns_ && open_ &&
-               result.state == TrackState::kTracking;
-  if (result.reference_stamp_ns == reference_ns_)
+  bool known = has_seen_ && seen_ns_ == before_ns_ && observed.stamp_ns == last_ns_ && open_ &&
+               observed.reference_stamp_ns != observed.stamp_ns;
+  if (observed.reference_stamp_ns == reference_ns_)
     R_now_before = R_now_reference * R_seen_reference_.transpose();
   else
-    known = known && result.reference_stamp_ns == seen_ns_;
-  seen_ns_ = result.stamp_ns;
-  reference_ns_ = result.reference_stamp_ns;
+    known = known && observed.reference_stamp_ns == seen_ns_;
+  seen_ns_ = observed.stamp_ns;
+  reference_ns_ = observed.reference_stamp_ns;
   R_seen_reference_ = R_now_reference;
   has_seen_ = true;
   open_ = false;
@@ -203,7 +200,7 @@ void ImuIntegrator::learn(const TrackResult& result) {
   const Matrix3 R_imu_camera = turn_.transpose();
   const Vector3 e = R_imu_camera * rotation_log(R_now_before * last_rotation_.R_now_before.transpose());
   const Matrix3 prior = R_imu_camera * last_rotation_.covariance * turn_;
-  const Matrix3 left = R_imu_camera * result.motion_covariance.block<3, 3>(3, 3) * turn_;
+  const Matrix3 left = R_imu_camera * observed.covariance * turn_;
   for (int i = 0; i < 3; ++i) {
     const double C = prior(i, i);
     const double gain = variance_[i] * seconds_ / C;

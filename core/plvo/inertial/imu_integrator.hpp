@@ -5,13 +5,11 @@
 //   plvo::ImuIntegrator imu;
 //   plvo::Status status = imu.init(gyro_memory, accelerometer_memory, plvo::ImuConfig{});
 //   … imu.add_gyro({stamp_ns, rate}); imu.add_acceleration({stamp_ns, force}); …
-//   plvo::MotionPrior prior = imu.prior(frame.stamp_ns);       // for each frame, in their order
-//   plvo::TrackResult result = odometry.track(frame, prior);
-//   imu.learn(result);
+//   plvo::TrackResult result = odometry.track(frame, imu);     // for each frame, in their order
 //
 // The gyro's rates are taken as linear between samples and integrated from frame to frame (Forster et al.,
 // "On-Manifold Preintegration for Real-Time Visual–Inertial Odometry", 2017, without the accelerometer's
-// part). The gyro's offset is a separate state that learn() estimates. The accelerometer's mean over the
+// part). The gyro's offset is a separate state that correct() estimates. The accelerometer's mean over the
 // interval gives the direction of gravity.
 #pragma once
 
@@ -22,7 +20,6 @@
 #include "plvo/inertial/imu_config.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/motion_prior.hpp"
-#include "plvo/odometry/track_result.hpp"
 
 namespace plvo {
 
@@ -51,6 +48,14 @@ class SampleRing {
   std::size_t first_ = 0, count_ = 0;
 };
 
+// The rotation of a frame that was tracked, or of one that starts a trajectory: its own stamp is then that of
+// the reference.
+struct ObservedRotation {
+  std::int64_t stamp_ns = 0, reference_stamp_ns = 0;
+  Matrix3 R_camera_reference = Matrix3::Identity();
+  Matrix3 covariance = Matrix3::Zero();  // rad², in the camera's axes
+};
+
 class ImuIntegrator {
  public:
   // The memory holds the samples between two calls of prior(): 0.2 s at 200 Hz is 40 samples. It must hold at
@@ -67,9 +72,8 @@ class ImuIntegrator {
   // call or where samples are missing, and no gravity where the accelerometer gave none.
   MotionPrior prior(std::int64_t stamp_ns);
 
-  // Takes the result of the frame of the last prior: if it was tracked with the prior, the gyro's offset is
-  // learnt.
-  void learn(const TrackResult& result);
+  // Corrects the gyro's offset by the frame of the last prior. Odometry::track(frame, imu) calls it.
+  void correct(const ObservedRotation& observed);
 
   const Vector3& gyro_offset() const { return offset_; }             // rad/s, in the sensor's axes
   const Vector3& gyro_offset_variance() const { return variance_; }  // of each axis
@@ -87,7 +91,7 @@ class ImuIntegrator {
   std::int64_t last_ns_ = 0, before_ns_ = 0;  // of the last call of prior(), and of the one before
   Matrix3 R_now_before_ = Matrix3::Identity();
   Vector3 offset_ = Vector3::Zero(), variance_ = Vector3::Zero();
-  // State of the last prior with a rotation, until learn() has used it.
+  // State of the last prior with a rotation, until correct() has used it.
   bool open_ = false;
   double seconds_ = 0;
   RotationPrior last_rotation_;

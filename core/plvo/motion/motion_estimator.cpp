@@ -69,24 +69,26 @@ void forget_motion(MotionEstimate& estimate) {
   if (estimate.lm.status == LmStatus::kNotFinite) estimate.lm.initial_cost = estimate.lm.final_cost = 0;
 }
 
-void count(std::span<ConstraintSet* const> sets, MotionEstimate& estimate) {
-  for (std::size_t kind = 0; kind < sets.size(); ++kind) {
-    const ConstraintSet& set = *sets[kind];
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      estimate.inliers[kind] += set.inliers()[i];
-      estimate.usable[kind] += set.usable(i) ? 1 : 0;
-    }
-  }
+void count(std::span<ConstraintSet* const> sets, const CostTerms& terms, MotionEstimate& estimate) {
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    for (const std::uint8_t flag : terms[i].inliers()) estimate.inliers[i] += flag;
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    for (std::size_t i = 0; i < sets[s]->size(); ++i) estimate.usable[s] += sets[s]->usable(i) ? 1 : 0;
 }
 
-StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                 const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                 const MotionStart& start, std::span<RansacCandidate> scratch, MotionSolver& solving,
-                 MotionEstimate& estimate) {
+void clear_flags(const CostTerms& terms) {
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    for (std::uint8_t& flag : terms[i].inliers()) flag = 0;
+}
+
+StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
+                 const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,
+                 std::uint64_t seed, const MotionStart& start, std::span<RansacCandidate> scratch,
+                 MotionSolver& solving, MotionEstimate& estimate) {
   const MotionProblem::Kernels kernels =
-      MotionProblem::make_kernels(sets, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
+      MotionProblem::make_kernels(terms, config.robust ? RobustLoss::kHuber : RobustLoss::kNone);
   solving.references = references;
-  Ransac ransac(sets, solving.references, config, kernels, scratch, solving);
+  Ransac ransac(sets, terms, solving.references, config, kernels, scratch, solving);
   if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
   const double least_share = kMinInlierShare * static_cast<double>(ransac.usable());
@@ -101,7 +103,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   // Refines T over the flagged inliers.
   const auto refine = [&](const LmOptions& options) {
     if (!consensus()) return StatusCode::kNoConsensus;
-    problem.start(sets, solving.references, shared, kernels, T);
+    problem.start(terms, solving.references, shared, kernels, T);
     estimate.lm = solving.solve(options);
     if (estimate.lm.status == LmStatus::kNotFinite || estimate.lm.status == LmStatus::kSingular)
       return StatusCode::kDegenerate;
@@ -140,8 +142,8 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const MotionReferences& r
   }
   status = refine(lm);
   if (status != StatusCode::kOk) return status;
-  for (std::size_t kind = 0; kind < sets.size() && kind < kInformedKinds; ++kind)
-    estimate.information[kind] = problem.information(kind);
+  for (std::size_t i = 0; i < terms.size() && i < kInformedTerms; ++i)
+    estimate.information[i] = problem.information(i);
   estimate.references = problem.references();
   // An undetermined motion does not converge either. kDegenerate is tested first because it is the cause.
   if (!T.is_finite() || !ransac.consensus_fixes_motion(seed) ||
@@ -164,28 +166,27 @@ LmSummary MotionSolver::solve(const LmOptions& options) {
   return summary;
 }
 
-void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                     const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                     const MotionStart& start, Arena& arena, MotionEstimate& estimate) {
-  if (sets.size() > kMaxConstraintKinds) sets = sets.first(kMaxConstraintKinds);
+void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others,
+                     const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,
+                     std::uint64_t seed, const MotionStart& start, Arena& arena, MotionEstimate& estimate) {
+  if (sets.size() > kMaxConstraintSets) sets = sets.first(kMaxConstraintSets);
+  const CostTerms terms(sets, others);
+  clear_flags(terms);
   std::size_t matches = 0;
-  for (ConstraintSet* set : sets) {
-    matches += set->size();
-    for (std::uint8_t& flag : set->inliers()) flag = 0;
-  }
+  for (const ConstraintSet* set : sets) matches += set->size();
   const ScratchScope scope(arena);
   const std::span<RansacCandidate> scratch = take_ransac_scratch(arena, matches);
   const std::span<MotionSolver> solver = take_solver(arena);
   reset(estimate);
-  estimate.status = scratch.size() < matches || solver.empty()
-                        ? StatusCode::kOutOfMemory
-                        : solve(sets, references, config, lm, seed, start, scratch, solver[0], estimate);
+  estimate.status =
+      scratch.size() < matches || solver.empty()
+          ? StatusCode::kOutOfMemory
+          : solve(sets, terms, references, config, lm, seed, start, scratch, solver[0], estimate);
   if (estimate.status != StatusCode::kOk) {
-    for (ConstraintSet* set : sets)
-      for (std::uint8_t& flag : set->inliers()) flag = 0;
+    clear_flags(terms);
     forget_motion(estimate);
   }
-  count(sets, estimate);
+  count(sets, terms, estimate);
 }
 
 }  // namespace plvo

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boxes 5 and 6 of the paper: estimates the motion between two frames and its covariance from putative
-// matches of any kinds. RANSAC over mixed minimal sets finds the consensus (ransac.hpp); the joint
+// matches of any kind. RANSAC over mixed minimal sets finds the consensus (ransac.hpp); the joint
 // maximum-likelihood estimate refines it.
 #pragma once
 
@@ -31,13 +31,13 @@ struct MotionEstimate {
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad².
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
-  // Information matrices of the first kInformedKinds sets, in the order of the sets: C_P⁻¹ (14), C_L⁻¹ (19),
-  // …; their sum is C_H⁻¹ (26). Zero for an empty set.
-  std::array<Matrix6, kInformedKinds> information = zero_matrices<kInformedKinds>();
-  ReferenceInformation references;                 // information of all kinds, given the nuisance parameters
-  NuisanceEstimate shared;                         // zero unless kOk
-  std::array<int, kMaxConstraintKinds> inliers{};  // the flags are in each set's inliers()
-  std::array<int, kMaxConstraintKinds> usable{};
+  // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19), …; their
+  // sum is C_H⁻¹ (26). Zero for an empty term.
+  std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
+  ReferenceInformation references;       // information of all terms, given the nuisance parameters
+  NuisanceEstimate shared;               // zero unless kOk
+  std::array<int, kMaxTerms> inliers{};  // the flags are in each term's inliers()
+  std::array<int, kMaxConstraintSets> usable{};
   RansacSummary ransac;
   LmSummary lm;
 
@@ -58,25 +58,25 @@ struct MotionStart {
   bool estimated;
 };
 
-// Fills `estimate`. sets: at most kMaxConstraintKinds, in a fixed order; their inlier flags are written (all
-// zero unless kOk). references: the frames that the sets match with; the result is the motion from the base,
-// reference 0. start.prediction, if any, is the first hypothesis, and it decides between rotations that
-// perpendicular lines cannot distinguish. The result is bitwise reproducible. Scratch memory
-// (take_ransac_scratch, take_solver) is taken from the arena and returned; if the arena is too small, the
-// status is kOutOfMemory. The status is also kDegenerate if the information matrix (scaled to a unit
-// diagonal) has an eigenvalue ratio below 1e-10, or if every minimal set drawn from the consensus is
-// degenerate: all lines parallel, all points on a line, …
-void estimate_motion(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                     const MotionConfig& config, const LmOptions& lm, std::uint64_t seed,
-                     const MotionStart& start, Arena& arena, MotionEstimate& estimate);
+// Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not
+// judge, such as a prior. The inlier flags of all are written (all zero unless kOk). references: the frames
+// that the sets match with; the result is the motion from the base, reference 0. start.prediction, if any, is
+// the first hypothesis, and it decides between rotations that perpendicular lines cannot distinguish. The
+// result is bitwise reproducible. Scratch memory (take_ransac_scratch, take_solver) is taken from the arena
+// and returned; if the arena is too small, the status is kOutOfMemory. The status is also kDegenerate if the
+// information matrix (scaled to a unit diagonal) has an eigenvalue ratio below 1e-10, or if every minimal set
+// drawn from the consensus is degenerate: all lines parallel, all points on a line, …
+void estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others,
+                     const MotionReferences& references, const MotionConfig& config, const LmOptions& lm,
+                     std::uint64_t seed, const MotionStart& start, Arena& arena, MotionEstimate& estimate);
 
 // The same, with the result returned on the stack.
-inline MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets,
+inline MotionEstimate estimate_motion(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others,
                                       const MotionReferences& references, const MotionConfig& config,
                                       const LmOptions& lm, std::uint64_t seed, const MotionStart& start,
                                       Arena& arena) {
   MotionEstimate estimate;
-  estimate_motion(sets, references, config, lm, seed, start, arena, estimate);
+  estimate_motion(sets, others, references, config, lm, seed, start, arena, estimate);
   return estimate;
 }
 
@@ -84,7 +84,7 @@ constexpr std::span<MotionSolver> take_solver(Arena& memory) {
   return memory.take<MotionSolver>("motion: solver", 1);
 }
 
-// Allocates what points, lines and surfaces (of each reference), a propagated prior and estimate_motion take
+// Allocates what points, lines and surfaces (of each reference) and estimate_motion take
 // between mark and rewind. Used to compute the size of the arena.
 constexpr void size_motion(Arena& memory, std::size_t references, std::size_t max_points,
                            std::size_t max_lines, std::size_t max_surfaces = 0) {
@@ -94,7 +94,7 @@ constexpr void size_motion(Arena& memory, std::size_t references, std::size_t ma
     (void)LineConstraints::Workspace::take(memory, max_lines);
     (void)SurfaceConstraints::Workspace::take(memory, max_surfaces);
   }
-  (void)take_ransac_scratch(memory, references * (max_points + max_lines + max_surfaces) + 1);
+  (void)take_ransac_scratch(memory, references * (max_points + max_lines));
   (void)take_solver(memory);
 }
 

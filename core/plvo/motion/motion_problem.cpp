@@ -7,10 +7,9 @@
 
 namespace plvo {
 
-MotionProblem::Kernels MotionProblem::make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss) {
+MotionProblem::Kernels MotionProblem::make_kernels(const CostTerms& terms, RobustLoss loss) {
   Kernels kernels;
-  for (std::size_t kind = 0; kind < sets.size() && kind < kMaxConstraintKinds; ++kind)
-    kernels[kind] = RobustKernel(loss, sets[kind]->dof());
+  for (std::size_t i = 0; i < terms.size(); ++i) kernels[i] = RobustKernel(loss, terms[i].dof());
   return kernels;
 }
 
@@ -27,11 +26,11 @@ namespace {
 constexpr int kJointSize = JointInformation::kSize;
 using Joint = Matrix<kJointSize, kJointSize>;
 
-// Weight of a set's n inliers relative to n independent ones (ConstraintSet::set_reference).
-double share_of(const ConstraintSet& set) {
+// Weight of a term's n inliers relative to n independent ones (CostTerm::set_reference).
+double share_of(const CostTerm& term) {
   int n = 0;
-  for (const std::uint8_t flag : set.inliers()) n += flag;
-  return set.weight() * (n > 1 ? 1 / (1 + (n - 1) * set.correlation()) : 1);
+  for (const std::uint8_t flag : term.inliers()) n += flag;
+  return term.weight() * (n > 1 ? 1 / (1 + (n - 1) * term.correlation()) : 1);
 }
 
 // Lower Cholesky factor of a semidefinite matrix. Columns with a pivot of zero are zero.
@@ -53,10 +52,10 @@ Matrix6 root(const Matrix6& S) {
 
 }  // namespace
 
-void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
+void MotionProblem::start(const CostTerms& terms, const MotionReferences& references,
                           const NuisanceParameters& shared, const Kernels& kernels, const Se3& T,
                           std::size_t every, bool exact_poses) {
-  sets_ = sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds);
+  terms_ = terms;
   references_ = references;
   if (exact_poses)
     for (MotionReference& reference : references_) reference.covariance.setZero();
@@ -73,9 +72,9 @@ void MotionProblem::start(std::span<ConstraintSet* const> sets, const MotionRefe
   for (std::size_t r = 0; r < kMaxPoses; ++r) candidate_moved_[r] = references_[r].moved;
   for (PoseGain& gain : pose_gain_) gain.setZero();
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    sets_[kind]->begin(motions[sets_[kind]->reference()], shared, kernels_[kind], every);
-    share_[kind] = share_of(*sets_[kind]);
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    terms_[i].begin(motions[terms_[i].reference()], shared, kernels_[i], every);
+    share_[i] = share_of(terms_[i]);
   }
   for (std::size_t r = 1; r < kMaxPoses; ++r) root_[r] = root(references_[r].covariance);
 }
@@ -102,7 +101,7 @@ double MotionProblem::linearize(const Vector6& step, Matrix6& H, Vector6& g) {
 
 double MotionProblem::add_reference(std::size_t r, const Se3& T) {
   bool any = false;
-  double cost = add_kinds(r, T, any);
+  double cost = add_terms(r, T, any);
   if (!any) return 0;
   if (r > 0) cost += bring_to_base(r, T);
   sum_.H += of_reference_.H;
@@ -110,25 +109,25 @@ double MotionProblem::add_reference(std::size_t r, const Se3& T) {
   return cost;
 }
 
-double MotionProblem::add_kinds(std::size_t r, const Se3& T, bool& any) {
+double MotionProblem::add_terms(std::size_t r, const Se3& T, bool& any) {
   of_reference_.set_zero();
   double cost = 0;
-  for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-    const ConstraintSet& set = *sets_[kind];
-    if (set.reference() != r) continue;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    const CostTerm& term = terms_[i];
+    if (term.reference() != r) continue;
     any = true;
-    of_kind_.set_zero();
-    cost += share_[kind] * set.linearize(T, shared_, kernels_[kind], of_kind_);
-    if (kind < kInformedKinds) candidate_information_[kind] = share_[kind] * of_kind_.H.block<6, 6>(0, 0);
-    of_reference_.H += share_[kind] * of_kind_.H;
-    of_reference_.g += share_[kind] * of_kind_.g;
+    of_term_.set_zero();
+    cost += share_[i] * term.linearize(T, shared_, kernels_[i], of_term_);
+    if (i < kInformedTerms) candidate_information_[i] = share_[i] * of_term_.H.block<6, 6>(0, 0);
+    of_reference_.H += share_[i] * of_term_.H;
+    of_reference_.g += share_[i] * of_term_.g;
   }
   return cost;
 }
 
 // Transforms the information about a reference's own motion into information about the base's motion. A
-// separate function from add_kinds: otherwise its matrices and those of a set's linearisation would be on the
-// stack at the same time.
+// separate function from add_terms: otherwise its matrices and those of a term's linearisation would be on
+// the stack at the same time.
 [[gnu::noinline]] double MotionProblem::bring_to_base(std::size_t r, const Se3& T) {
   const Matrix3 Q = skew(T.R * references_[r].T_reference_base.t);
   Matrix6 B = Matrix6::Zero();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The joint maximum-likelihood problem (21)–(23) in the form that the Levenberg–Marquardt solver needs. It
-// has six parameters; every kind of constraint eliminates its own landmarks. H is C_P⁻¹ + C_L⁻¹ + …, equation
-// (26); the summands are stored per kind.
+// has six parameters; every term eliminates its own landmarks. H is C_P⁻¹ + C_L⁻¹ + …, equation (26); the
+// summands are stored per term.
 #pragma once
 
 #include <array>
@@ -17,11 +17,37 @@ inline constexpr std::size_t kMaxReferences = 3;
 // The poses of the references, followed by the pose of the last good frame, from which the propagated prior
 // starts. That frame need not be one of the references.
 inline constexpr std::size_t kMaxPoses = kMaxReferences + 1;
-// Order of the sets: points and lines of each reference, the propagated prior, then the surfaces of each
-// reference.
-inline constexpr std::size_t kMaxConstraintKinds = 3 * kMaxReferences + 1;
-// The information is stored for the first sets only: all but the surfaces.
-inline constexpr std::size_t kInformedKinds = 2 * kMaxReferences + 1;
+// Points and lines of each reference.
+inline constexpr std::size_t kMaxConstraintSets = 2 * kMaxReferences;
+// These, the propagated prior, then the surfaces of each reference.
+inline constexpr std::size_t kMaxTerms = kMaxConstraintSets + 1 + kMaxReferences;
+// The information is stored for the first terms only: all but the surfaces.
+inline constexpr std::size_t kInformedTerms = kMaxConstraintSets + 1;
+
+// The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. What does not
+// fit is left out.
+class CostTerms {
+ public:
+  CostTerms() = default;
+  explicit CostTerms(std::span<ConstraintSet* const> sets, std::span<CostTerm* const> others = {}) {
+    for (ConstraintSet* set : sets) add(set);
+    for (CostTerm* term : others) add(term);
+  }
+  std::size_t size() const { return count_; }
+  CostTerm& operator[](std::size_t i) const { return *terms_[i]; }
+  bool fix_motion() const {
+    bool fix = false;
+    for (std::size_t i = 0; i < count_; ++i) fix = fix || terms_[i]->fixes_motion();
+    return fix;
+  }
+
+ private:
+  void add(CostTerm* term) {
+    if (count_ < kMaxTerms) terms_[count_++] = term;
+  }
+  std::array<CostTerm*, kMaxTerms> terms_{};
+  std::size_t count_ = 0;
+};
 
 // A frame that the current frame is matched with. The motion is estimated relative to the base, reference 0.
 // The pose of any other reference relative to the base is known with a covariance C (of the ⊞-perturbation of
@@ -42,22 +68,21 @@ MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionRefer
 
 class MotionProblem {
  public:
-  using Kernels = std::array<RobustKernel, kMaxConstraintKinds>;
-  // One kernel per set. They are made once because computing the quantile takes longer than a residual.
-  static Kernels make_kernels(std::span<ConstraintSet* const> sets, RobustLoss loss);
+  using Kernels = std::array<RobustKernel, kMaxTerms>;
+  // One kernel per term. They are made once because computing the quantile takes longer than a residual.
+  static Kernels make_kernels(const CostTerms& terms, RobustLoss loss);
 
   // To be followed by start(). The object takes 16 kB, so the core keeps one in the arena and reuses it.
   MotionProblem() = default;
-  MotionProblem(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-                const NuisanceParameters& shared, const Kernels& kernels, const Se3& T) {
-    start(sets, references, shared, kernels, T);
+  MotionProblem(const CostTerms& terms, const MotionReferences& references, const NuisanceParameters& shared,
+                const Kernels& kernels, const Se3& T) {
+    start(terms, references, shared, kernels, T);
   }
-  // Sets up the problem over the inliers flagged in each set (at most kMaxConstraintKinds sets), starting at
-  // T and at the value of the nuisance parameters. every: see ConstraintSet::begin(). exact_poses: the
+  // Sets up the problem over the inliers flagged in each term, starting at T and at the value of the nuisance
+  // parameters. every: see CostTerm::begin(). exact_poses: the
   // references' covariances are treated as zero.
-  void start(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-             const NuisanceParameters& shared, const Kernels& kernels, const Se3& T, std::size_t every = 1,
-             bool exact_poses = false);
+  void start(const CostTerms& terms, const MotionReferences& references, const NuisanceParameters& shared,
+             const Kernels& kernels, const Se3& T, std::size_t every = 1, bool exact_poses = false);
 
   // Eliminates the nuisance parameters and the references' poses like landmarks: it moves them to their
   // optimum for the candidate; H and g are the Schur complement. All weights are those of the state that the
@@ -75,10 +100,10 @@ class MotionProblem {
   const MotionReferences& poses() const { return references_; }
   // The nuisance parameters at the accepted state, given the covariance of the motion.
   NuisanceEstimate shared(const Matrix6& covariance) const;
-  // The Schur complement of one kind at the accepted state, given the nuisance parameters: C_P⁻¹ (14), C_L⁻¹
-  // (19). kind < kInformedKinds.
-  const Matrix6& information(std::size_t kind) const { return information_[kind]; }
-  // The information of all sets at the accepted state, given the nuisance parameters.
+  // The Schur complement of one term at the accepted state, given the nuisance parameters: C_P⁻¹ (14), C_L⁻¹
+  // (19). term < kInformedTerms.
+  const Matrix6& information(std::size_t term) const { return information_[term]; }
+  // The information of all terms at the accepted state, given the nuisance parameters.
   const ReferenceInformation& references() const { return of_references_; }
 
  private:
@@ -87,30 +112,30 @@ class MotionProblem {
   using PoseGain = Matrix<6, NuisanceParameters::kCount>;
 
   double add_reference(std::size_t r, const Se3& T);
-  double add_kinds(std::size_t r, const Se3& T, bool& any);
+  double add_terms(std::size_t r, const Se3& T, bool& any);
   double bring_to_base(std::size_t r, const Se3& T);
   double eliminate_pose(std::size_t r, const Matrix6& root);
   double eliminate_shared();
 
-  std::span<ConstraintSet* const> sets_;
+  CostTerms terms_;
   MotionReferences references_;
   std::array<Matrix6, kMaxPoses> root_;  // L of the references' covariances
   // MotionReference::moved of the candidate, and its derivative with respect to the nuisance parameters.
   std::array<Vector6, kMaxPoses> candidate_moved_;
   std::array<PoseGain, kMaxPoses> pose_gain_;
   Kernels kernels_;
-  // Weight of a kind's inliers relative to the same number of independent ones.
-  std::array<double, kMaxConstraintKinds> share_{};
+  // Weight of a term's inliers relative to the same number of independent ones.
+  std::array<double, kMaxTerms> share_{};
   Se3 T_, candidate_;
   NuisanceParameters shared_;
   NuisanceParameters::Vector candidate_shared_;
   // Covariance of the nuisance parameters given the motion, and their derivative with respect to the motion.
   SharedMatrix inverse_, candidate_inverse_;
   SharedGain gain_, candidate_gain_;
-  std::array<Matrix6, kInformedKinds> information_, candidate_information_;
+  std::array<Matrix6, kInformedTerms> information_, candidate_information_;
   ReferenceInformation of_references_, candidate_of_references_;
-  // Sums of a linearisation: over all references, over one reference, over one kind of it.
-  JointInformation sum_, of_reference_, of_kind_;
+  // Sums of a linearisation: over all references, over one reference, over one term of it.
+  JointInformation sum_, of_reference_, of_term_;
 };
 
 // The solver that RANSAC's refinements and the final estimate share, and the current estimate of the

@@ -3,9 +3,8 @@
 
 namespace plvo {
 
-PriorConstraint::PriorConstraint(const Se3& T_propagated, const Matrix6& covariance,
-                                 std::span<std::uint8_t> flag)
-    : ConstraintSet(flag), T_propagated_(T_propagated) {
+PriorConstraint::PriorConstraint(const Se3& T_propagated, const Matrix6& covariance)
+    : CostTerm({}), T_propagated_(T_propagated) {
   Cholesky<6> cholesky;
   usable_ = T_propagated.is_finite() && covariance.allFinite() && cholesky.factor(covariance);
   if (usable_) information_ = cholesky.inverse();
@@ -13,7 +12,7 @@ PriorConstraint::PriorConstraint(const Se3& T_propagated, const Matrix6& covaria
 
 double PriorConstraint::linearize(const Se3& T, const NuisanceParameters&, const RobustKernel& kernel,
                                   JointInformation& sum) const {
-  if (inliers_[0] == 0) return 0;
+  if (!usable_) return 0;
   const Vector6 r = boxminus(T, T_propagated_);
   // ∂ log(Exp(ω) Exp(φ)) / ∂ω at 0, to the fourth order in φ.
   const Matrix3 Phi = skew(r.tail<3>());

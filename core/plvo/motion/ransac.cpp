@@ -30,21 +30,23 @@ bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
 
 }  // namespace
 
-Ransac::Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references,
-               const MotionConfig& config, const MotionProblem::Kernels& kernels,
-               std::span<RansacCandidate> scratch, MotionSolver& solver)
-    : sets_(sets.first(sets.size() < kMaxConstraintKinds ? sets.size() : kMaxConstraintKinds)),
+Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
+               const MotionReferences& references, const MotionConfig& config,
+               const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch,
+               MotionSolver& solver)
+    : sets_(sets),
+      terms_(terms),
       references_(references),
       config_(config),
       kernels_(kernels),
       solver_(solver) {
   for (const bool samplable : {true, false})
-    for (std::size_t kind = 0; kind < sets_.size(); ++kind) {
-      const ConstraintSet& set = *sets_[kind];
-      threshold_[kind] = chi_square_quantile(set.dof(), kInlierProbability);
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const ConstraintSet& set = *sets_[s];
+      threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
       for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
         if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
-        scratch[usable_++] = {static_cast<std::uint8_t>(kind), static_cast<std::uint16_t>(i)};
+        scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i)};
         if (samplable) ++samplable_;
       }
     }
@@ -88,7 +90,7 @@ std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
   if (c >= low) ++c;
   if (c >= high) ++c;
   const auto primitive = [&](std::uint32_t k) {
-    const ConstraintSet& set = *sets_[candidates_[k].kind];
+    const ConstraintSet& set = *sets_[candidates_[k].set];
     Primitive match = set.primitive(candidates_[k].index);
     if (set.reference() == 0) return match;
     const Se3 T_base_reference = references_[set.reference()].T_reference_base.inverse();
@@ -100,9 +102,10 @@ std::array<Primitive, 3> Ransac::draw(Random& random, std::uint32_t n) const {
 }
 
 bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
+  if (terms_.fix_motion()) return true;
   std::uint32_t n = 0;
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
-    if (sets_[candidates_[k].kind]->inliers()[candidates_[k].index] == 0) continue;
+    if (sets_[candidates_[k].set]->inliers()[candidates_[k].index] == 0) continue;
     if (k >= samplable_) return true;  // a kind without minimal sets: its covariance decides
     const RansacCandidate inlier = candidates_[k];
     candidates_[k] = candidates_[n];
@@ -130,8 +133,8 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   int inliers = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_) {
-    const double threshold = threshold_[candidate.kind];
-    const ConstraintSet& set = *sets_[candidate.kind];
+    const double threshold = threshold_[candidate.set];
+    const ConstraintSet& set = *sets_[candidate.set];
     const double s =
         set.mahalanobis_squared(candidate.index, motions[set.reference()], kFreshScale * threshold);
     if (s <= kFreshScale * threshold) refined_score_as_fresh += kFreshScale * threshold - s;
@@ -152,10 +155,10 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.kind];
+  for (const RansacCandidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : candidates_) {
-    const double threshold = kFreshScale * threshold_[candidate.kind];
-    const ConstraintSet& set = *sets_[candidate.kind];
+    const double threshold = kFreshScale * threshold_[candidate.set];
+    const ConstraintSet& set = *sets_[candidate.set];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
     // The match gains threshold − s instead of threshold, so the upper bound shrinks by s.
     possible -= s < threshold ? s : threshold;
@@ -171,7 +174,7 @@ void Ransac::refine(Se3& T) {
     judge(T, scale, stride);
     if (inliers_ < 3) break;
     // A hypothesis does not need exact weights, so the references' poses are treated as exact.
-    solver_.problem.start(sets_, references_, {}, kernels_, T, stride, true);
+    solver_.problem.start(terms_, references_, {}, kernels_, T, stride, true);
     (void)solver_.solve(LmOptions::one_step());
     T = solver_.problem.T_current_reference();
   }
@@ -183,8 +186,8 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     const RansacCandidate& candidate = candidates_[k];
-    ConstraintSet& set = *sets_[candidate.kind];
-    const double threshold = scale * threshold_[candidate.kind];
+    ConstraintSet& set = *sets_[candidate.set];
+    const double threshold = scale * threshold_[candidate.set];
     const std::uint8_t flag =
         k % stride == 0 &&
                 set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RANSAC over mixed minimal sets (section 5.1 of the paper) for any kinds of constraints.
+// RANSAC over mixed minimal sets (section 5.1 of the paper) for any kinds of features.
 //
 // Sampling: three different matches, uniformly over all usable matches of all kinds. The kinds drawn decide
 // which of the four solvers runs. Before the first test all matches are equally likely to be good, so each
@@ -32,7 +32,7 @@ struct RansacSummary {
 
 // A match that may be an inlier.
 struct RansacCandidate {
-  std::uint8_t kind = 0;
+  std::uint8_t set = 0;
   std::uint16_t index = 0;
 };
 
@@ -42,10 +42,12 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::siz
 
 class Ransac {
  public:
-  // scratch: one RansacCandidate for every match of all sets; matches that do not fit are ignored. solver:
-  // used by the refinements; the caller may use it between them. references must outlive this object.
-  Ransac(std::span<ConstraintSet* const> sets, const MotionReferences& references, const MotionConfig& config,
-         const MotionProblem::Kernels& kernels, std::span<RansacCandidate> scratch, MotionSolver& solver);
+  // terms: what the refinements minimise, first the sets. scratch: one RansacCandidate for every match of all
+  // sets; matches that do not fit are ignored. solver: used by the refinements; the caller may use it between
+  // them. references and terms must outlive this object.
+  Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms, const MotionReferences& references,
+         const MotionConfig& config, const MotionProblem::Kernels& kernels,
+         std::span<RansacCandidate> scratch, MotionSolver& solver);
 
   // Number of all usable matches, and of those that may form minimal sets.
   std::size_t usable() const { return usable_; }
@@ -58,9 +60,9 @@ class Ransac {
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
   int inliers() const { return inliers_; }
 
-  // Returns false if no minimal set drawn from the flagged inliers determines the motion: all lines parallel,
-  // all points on a line. The covariance does not reveal this, since noise in the directions of parallel
-  // lines looks like information. Reorders the scratch.
+  // Returns false if no minimal set drawn from the flagged inliers determines the motion, and no other term
+  // does: all lines parallel, all points on a line. The covariance does not reveal this, since noise in the
+  // directions of parallel lines looks like information. Reorders the scratch.
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
@@ -74,6 +76,7 @@ class Ransac {
   int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
+  const CostTerms& terms_;
   const MotionReferences& references_;
   MotionConfig config_;
   MotionProblem::Kernels kernels_;
@@ -83,7 +86,7 @@ class Ransac {
   std::size_t samplable_ = 0;
   int inliers_ = 0;
   double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
-  std::array<double, kMaxConstraintKinds> threshold_{};
+  std::array<double, kMaxConstraintSets> threshold_{};
 };
 
 }  // namespace plvo

@@ -147,13 +147,13 @@ double eliminate_common(const Sums& sums, int size, JointInformation& sum) {
 }  // namespace
 
 SurfaceConstraints::SurfaceConstraints(std::span<const SurfaceMatch> matches, const Workspace& workspace)
-    : ConstraintSet(workspace.inliers.first(std::min(matches.size(), workspace.inliers.size()))),
+    : CostTerm(workspace.inliers.first(std::min(matches.size(), workspace.inliers.size()))),
       matches_(matches.first(inliers_.size())),
       form_(workspace.form.data()) {
   std::fill(inliers_.begin(), inliers_.end(), std::uint8_t{0});
 }
 
-double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double) const {
+double SurfaceConstraints::mahalanobis_squared(std::size_t i, const Se3& T) const {
   const SurfaceMatch& match = matches_[i];
   return normalised(match, T * match.p_reference - match.p_current);
 }

@@ -20,7 +20,7 @@
 #pragma once
 
 #include "plvo/base/arena.hpp"
-#include "plvo/motion/constraint_set.hpp"
+#include "plvo/motion/cost_term.hpp"
 
 namespace plvo {
 
@@ -40,7 +40,7 @@ struct SurfaceForm {
   double Q[kSize][kSize];
 };
 
-class SurfaceConstraints final : public ConstraintSet {
+class SurfaceConstraints final : public CostTerm {
  public:
   struct Workspace {
     std::span<std::uint8_t> inliers;
@@ -55,14 +55,12 @@ class SurfaceConstraints final : public ConstraintSet {
   // Matches beyond the workspace's capacity are ignored; the spans must outlive the set.
   SurfaceConstraints(std::span<const SurfaceMatch> matches, const Workspace& workspace);
 
-  std::size_t size() const override { return matches_.size(); }
+  std::size_t size() const { return matches_.size(); }
   int dof() const override { return 1; }
-  bool usable(std::size_t) const override { return false; }  // not used by RANSAC
-  Primitive primitive(std::size_t) const override { return {}; }
   // r² / σ². σ² does not contain the errors that the matches share. Where these are visible, the matches
   // weigh less (gate, robust loss, the learning of σ²); on real sensors this works better than a model of the
-  // shared errors (docs/sensors.md).
-  double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;
+  // shared errors (docs/theory/noise.md).
+  double mahalanobis_squared(std::size_t i, const Se3& T) const;
   void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
              std::size_t every) override;
   double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,

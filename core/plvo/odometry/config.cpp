@@ -5,7 +5,7 @@
 
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/motion/motion_problem.hpp"
-#include "plvo/odometry/kept_keyframes.hpp"
+#include "plvo/odometry/window/kept_keyframes.hpp"
 
 namespace plvo {
 namespace {

@@ -14,6 +14,7 @@
 #include "plvo/lines/line3d.hpp"
 #include "plvo/motion/motion_config.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/noise_scales.hpp"
 
 namespace plvo {
 
@@ -44,7 +45,8 @@ struct Limits {
   int surfaces = 200;
   static constexpr Limits vga() { return {}; }
   // A quarter of VGA's pixels and features. More features make a frame's estimate better; but on a processor
-  // that cannot keep up with the camera, a higher frame rate improves the motion more (docs/performance.md).
+  // that cannot keep up with the camera, a higher frame rate improves the motion more
+  // (docs/decisions/qvga_capacities.md).
   static constexpr Limits qvga() { return {320, 240, 100, 64, 2, 1, 0, 1, 0}; }
   // Fits within 512 KiB, with Config::tiny().
   static constexpr Limits tiny() { return {320, 240, 200, 64, 1, 3, 0, 1, 0}; }
@@ -62,7 +64,7 @@ enum class ReferencePolicy : std::uint8_t {
   // keyframe keeps the drift small; the recent frame shares most features with the current one.
   kKeyframeAndPrevious,
   // Matches with these and the previous keyframe. The drift is smaller where the camera walks, but not where
-  // it rotates fast; time and memory grow (docs/sensors.md).
+  // it rotates fast; time and memory grow (docs/decisions/window.md).
   kWindow,
 };
 constexpr int references_of(ReferencePolicy policy) {

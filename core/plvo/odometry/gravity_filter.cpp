@@ -14,13 +14,6 @@ constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
 // cancel that of a pose with a very uncertain rotation (kMostRotationVariance) beyond the digits of a double.
 constexpr double kLeastReadingVariance = 1e-12;
 
-// ∂δ_current / ∂δ_from of advance().
-Matrix6 carry(const PoseWithCovariance& from, const PoseWithCovariance& current) {
-  Matrix6 A = Matrix6::Identity();
-  A.block<3, 3>(0, 3) = -skew(current.T_world_camera.t - from.T_world_camera.t);
-  return A;
-}
-
 template <int N>
 [[gnu::noinline]] Matrix<N, N> symmetric(const Matrix<N, N>& M) {
   return 0.5 * (M + Matrix<N, N>(M.transpose()));
@@ -31,28 +24,6 @@ Matrix3 turned(const Matrix3& J, const Matrix3& C) {
 }
 
 }  // namespace
-
-PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
-                           const Matrix6& motion_covariance) {
-  const Se3 T_from_current = T_current_from.inverse();
-  PoseWithCovariance current;
-  current.T_world_camera = from.T_world_camera * T_from_current;
-  current.T_world_camera.R = renormalise(current.T_world_camera.R);
-  current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
-                                          inverse_covariance(T_current_from, motion_covariance));
-  current.covariance_with_gravity = carry(from, current).lazyProduct(from.covariance_with_gravity);
-  return current;
-}
-
-bool settle(PoseWithCovariance& pose) {
-  Vector6 scale;
-  if (!pose.T_world_camera.is_finite() || !pose.covariance_with_gravity.allFinite() ||
-      !make_bounded_covariance(pose.covariance, &scale))
-    return false;
-  for (int i = 0; i < 6; ++i)
-    if (scale[i] < 1) pose.covariance_with_gravity.row(i) *= scale[i];
-  return true;
-}
 
 // g = R (z − β − noise), R being off by ω: ε = −[g]× ω − R (β + noise).
 void GravityFilter::start(const Vector3& z, const GravityPrior& reading, const Matrix<6, 3>& from_omega,
@@ -102,7 +73,7 @@ void GravityFilter::read(const GravityPrior& reading, PoseWithCovariance& from, 
   const Vector3 z = reading.down / sqrt(reading.down.squaredNorm());
   // Covariances of the errors of `from` and `current` with the orientation error of `current`.
   const Matrix<6, 3> from_omega =
-      from.covariance.lazyProduct(carry(from, current).transpose()).eval().block<6, 3>(0, 3);
+      from.covariance.lazyProduct(derivative_of_advance(from, current).transpose()).eval().block<6, 3>(0, 3);
   const Matrix<6, 3> current_omega = current.covariance.block<6, 3>(0, 3);
   if (!known_) return start(z, reading, from_omega, from, current);
 

@@ -14,23 +14,9 @@
 
 #include "plvo/math/se3.hpp"
 #include "plvo/motion/motion_prior.hpp"
+#include "plvo/odometry/window/pose_with_covariance.hpp"
 
 namespace plvo {
-
-// A pose with its covariance, and with the covariance of its error with those of gravity.
-struct PoseWithCovariance {
-  Se3 T_world_camera;
-  Matrix6 covariance = Matrix6::Zero();               // of the ⊞-perturbation
-  Matrix6 covariance_with_gravity = Matrix6::Zero();  // rows as in covariance; columns (ε, β)
-};
-
-// Moves `from` by T_current_from, which has this covariance (of its ⊞-perturbation).
-PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
-                           const Matrix6& motion_covariance);
-
-// Brings the covariance within the bound and makes it valid again (covariance.hpp); a valid one stays the
-// same bit by bit. Returns false where the pose or the covariance is not finite.
-bool settle(PoseWithCovariance& pose);
 
 class GravityFilter {
  public:

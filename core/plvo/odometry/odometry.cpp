@@ -2,9 +2,9 @@
 // The public API itself: which input is refused, and the order in which a frame passes through the modules.
 #include "plvo/odometry/odometry.hpp"
 
-#include <algorithm>
 #include <new>
-#include <utility>
+
+#include "plvo/odometry/tracking/motion_search.hpp"
 
 namespace plvo {
 
@@ -40,32 +40,12 @@ Odometry::Odometry() = default;
   Window::allocate(arena_, limits, features);
   memory_.allocate(arena_, limits);
   arena_.seal();
-  memory_.extraction.init(camera, config);
+  camera_ = camera;
+  config_ = config;
+  memory_.extraction.init(camera_);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
   window_.init(features, limits.kept_keyframes);
-  ready_ = true;
-  return {};
-}
-
-Status Odometry::check(const RgbdFrame& input) const {
-  if (!ready_) return {StatusCode::kInvalidArgument, "track() before a successful init()"};
-  if (input.colour.data == nullptr || input.depth.data == nullptr)
-    return {StatusCode::kInvalidArgument, "the frame has no colour or no depth image"};
-  if (input.colour.width != camera().width || input.colour.height != camera().height ||
-      input.depth.width != camera().width || input.depth.height != camera().height)
-    return Status(StatusCode::kInvalidArgument, "colour and depth must have the calibration's size, ")
-        .append(camera().width)
-        .append("x")
-        .append(camera().height);
-  const int bytes_per_pixel = input.colour.format == PixelFormat::kGray8 ? 1 : 3;
-  if (input.colour.stride_bytes < camera().width * bytes_per_pixel || input.depth.stride < camera().width)
-    return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
-  // Within this range the squares of depths and of inverse depths are far from the limits of a double.
-  if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
-    return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
-  if (has_stamp_ && input.stamp_ns <= last_stamp_ns_)
-    return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
   return {};
 }
 
@@ -73,9 +53,7 @@ Status Odometry::check(const RgbdFrame& input) const {
 
 // All results leave the library here, so every invalid one is found, whatever its cause.
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
-  TrackResult result;
-  result.stamp_ns = input.stamp_ns;
-  process(input, prior, result);
+  TrackResult result = process(input, prior);
   if (make_sound(result)) return result;
   forget_world();
   result.T_world_camera = result.T_camera_reference = Se3();
@@ -90,81 +68,111 @@ Status Odometry::check(const RgbdFrame& input) const {
   return result;
 }
 
-void Odometry::process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result) {
+TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
+                            const std::optional<TranslationPrior>& wheels) {
+  MotionPrior prior;
+  prior.translation = wheels;
+  if (check(input, prior).ok()) prior = imu.prior(input.stamp_ns);
+  prior.translation = wheels;
+  const TrackResult result = track(input, prior);
+  if (const std::optional<ObservedRotation> observed = observed_rotation(result)) imu.correct(*observed);
+  return result;
+}
+
+TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
+  // Check.
+  memory_.views.clear();
+  const Status refusal = check(input, prior);
+  if (!refusal.ok()) return refuse(input, refusal);
+
+  // Image: grey, without distortion, as a pyramid.
+  StageTimes times{};
+  const StageContext context{camera_, *config_, noise_, arena_, times};
+  FeatureExtraction& extraction = memory_.extraction;
+  const double brightness = extraction.prepare_image(context, input.colour);
+
+  // Predict: the motion since each reference, and that during the exposure.
+  const PredictedMotion predicted = predict(input, prior);
+
+  // Associate and estimate: for one first motion after the other, until one is accepted.
+  const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
+  const CurrentFrame frame{context, extraction, depth, predicted, window_.begin_frame()};
+  frame.features.clear(budget_.capacity());
+  frame.features.stamp_ns = input.stamp_ns;
+  extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
+  TrackedMotion tracked = window_.has_keyframe() ? search_motion(frame, memory_.tracking) : resume(frame);
+
+  // Decide: what the frame is, and which references stay.
+  const Decision decision = decide(frame, tracked, prior);
+
+  // Update: the window, the world, the learnt noise.
+  TrackResult result = update(frame, decision, prior, tracked);
+  result.mean_brightness = brightness;
+  result.stage_ns = times;
+  return result;
+}
+
+Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
+  if (!config_) return {StatusCode::kInvalidArgument, "track() before a successful init()"};
+  if (input.colour.data == nullptr || input.depth.data == nullptr)
+    return {StatusCode::kInvalidArgument, "the frame has no colour or no depth image"};
+  if (input.colour.width != camera_.width || input.colour.height != camera_.height ||
+      input.depth.width != camera_.width || input.depth.height != camera_.height)
+    return Status(StatusCode::kInvalidArgument, "colour and depth must have the calibration's size, ")
+        .append(camera_.width)
+        .append("x")
+        .append(camera_.height);
+  const int bytes_per_pixel = input.colour.format == PixelFormat::kGray8 ? 1 : 3;
+  if (input.colour.stride_bytes < camera_.width * bytes_per_pixel || input.depth.stride < camera_.width)
+    return {StatusCode::kInvalidArgument, "an image's stride is shorter than its row"};
+  // Within this range the squares of depths and of inverse depths are far from the limits of a double.
+  if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
+    return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
+  if (has_stamp_ && input.stamp_ns <= last_stamp_ns_)
+    return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
+  return prior.validate();
+}
+
+// The pose stays that of the last good frame.
+TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
+  TrackResult result;
+  result.stamp_ns = input.stamp_ns;
+  result.state = TrackState::kLost;
+  result.status = refusal;
   const bool has_pose = window_.has_last();
   report(window_[has_pose ? window_.last() : window_.current()].pose,
-         has_pose ? window_.last_frame().velocity : Vector6::Zero(), result);
-  point_track_count_ = line_track_count_ = segment_count_ = reference_segment_count_ = 0;
-  Status status = check(input);
-  if (status.ok()) status = prior.validate();
-  if (!status.ok()) {
-    result.state = TrackState::kLost;
-    result.status = status;
-    return;
-  }
-  sense(prior, input.stamp_ns);
-  last_stamp_ns_ = input.stamp_ns;
-  view_slot_ = window_.current();
-  has_stamp_ = true;
-  depth_after_colour_s_ = depth_after_colour_s(input);
-  const DepthSampler depth = memory_.extraction.depth_sampler(input);
-  const Exposure predicted = predict_exposure(input.stamp_ns);
-  FrameFeatures& features = window_.begin_frame();
-  features.clear(budget_.capacity());
-  result.feature_step = budget_.step();
-  result.points = points_found_;
-  memory_.extraction.extract(input, depth.with(predicted), wants_points(), arena_, features, result);
-  TrackedMotion tracked;
-  if (window_.has_keyframe()) {
-    estimate_motion(depth, tracked, result);
-    fill_track_views(tracked.motion);
-    if (tracked.motion.status == StatusCode::kOk) {
-      accept(depth, tracked, prior, result);
-      relocalise(depth, tracked, result);
-    } else {
-      lose(tracked.motion, prior, result);
-    }
-  } else if (!resume(depth, prior, tracked, result)) {
-    memory_.extraction.lift(depth.with(predicted), noise_, arena_, features);
-    memory_.extraction.lift_lines(depth, predicted, noise_, arena_, features.lines, result);
-    if (!window_.has_last())
-      start_first(prior, result);
-    else
-      start_again(prior, result);
-  }
-  segment_count_ = fill_segment_views(features.lines, memory_.segment_views);
-  points_found_ = result.points;
-  points_found_.matched = points_found_.inliers = 0;
+         has_pose ? window_.last_frame().velocity.value : Vector6::Zero(), result);
+  return result;
 }
 
 // Whether the current frame needs points: always where only descriptors find them again, otherwise if the
 // frame will be matched later.
 bool Odometry::wants_points() const {
-  if (!window_.has_keyframe() || !config().points.registered || relocalisation_is_due()) return true;
-  const ReferenceConfig& references = config().references;
+  if (!window_.has_keyframe() || !config_->points.registered || relocalisation_is_due()) return true;
+  const ReferenceConfig& references = config_->references;
   if (references.policy == ReferencePolicy::kPreviousFrame) return true;
   return references_of(references.policy) > 1 && !recent_is_young();
 }
 
-// Finds the points of the current frame if they are needed after all. Works only before the frame becomes the
-// last one. Not inlined: the sampler would otherwise stay on the stack while the motion is solved for.
-[[gnu::noinline]] void Odometry::find_points(const DepthSampler& depth, TrackResult& result) {
-  memory_.extraction.find_points(depth.with(predict_exposure(result.stamp_ns)), arena_,
-                                 window_.current_frame().features.points, result);
+void Odometry::reset() {
+  if (!config_) return;
+  forget_world();
+  world_is_lost_ = false;
+  points_found_ = {};
+  window_.reset();
+  view_slot_ = window_.current();
+  noise_ = config_->noise.initial;
+  last_stamp_ns_ = 0;
+  has_stamp_ = false;
+  memory_.views.clear();
 }
 
-// Describes the points of the current frame when it becomes a keyframe or is searched by descriptors; a
-// recent frame is found again by its image. Not inlined, for the same reason as find_points.
-[[gnu::noinline]] void Odometry::describe_points(TrackResult& result) {
-  memory_.extraction.describe_points(arena_, window_.current_frame().features.points, result);
-}
-
-double Odometry::depth_after_colour_s(const RgbdFrame& input) const {
-  if (!camera().depth_timing.known) return 0;
-  // Stamps farther apart than this do not belong to one frame.
-  constexpr double kMost_s = 0.1;
-  const double apart = static_cast<double>(input.depth_stamp_ns) - static_cast<double>(input.stamp_ns);
-  return std::clamp(apart * 1e-9, -kMost_s, kMost_s) + camera().depth_timing.delay_s;
+FeatureView Odometry::features() const {
+  if (!has_stamp_) return {};
+  FeatureView view = memory_.views.view();
+  view.image = memory_.extraction.pyramid().level(0);
+  view.keypoints = window_[view_slot_].features.points.keypoints.span();
+  return view;
 }
 
 std::span<const Arena::Record> Odometry::memory_records() const { return arena_.records(); }

@@ -5,73 +5,45 @@
 //   alignas(plvo::kArenaAlignment) static std::byte memory[plvo::required_bytes(plvo::Limits::vga())];
 //   plvo::Odometry odometry;
 //   plvo::Status status = odometry.init(memory, camera, plvo::Config{}, plvo::Limits::vga());
-//   plvo::TrackResult result = odometry.track(frame);  // or track(frame, prior), with a gyro's help
+//   plvo::TrackResult result = odometry.track(frame);  // or track(frame, imu), or track(frame, prior)
 //
 // Memory: init divides the caller's block once; nothing is allocated or freed afterwards. Threads: one thread
 // at a time may use an Odometry. Determinism: the same frames and config give the same bits on every
 // supported machine.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "plvo/base/arena.hpp"
-#include "plvo/base/match.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/feature_views.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
-#include "plvo/odometry/features/frame_features.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
-#include "plvo/odometry/window.hpp"
+#include "plvo/odometry/window/window.hpp"
 
 namespace plvo {
 
-// The features of the last frame, for drawing: pixels of the undistorted image. Valid until the next call of
-// track(). A track pairs a position in the reference with the position in this frame where it was found.
-struct PointTrackView {
-  float u_reference = 0, v_reference = 0, u = 0, v = 0;  // px
-  bool inlier = false;
-};
-struct LineTrackView {
-  std::uint16_t reference = 0, current = 0;  // indices into reference_segments and segments
-  bool inlier = false;
-};
-struct SegmentView {
-  float a_u = 0, a_v = 0, b_u = 0, b_v = 0;  // px
-  bool has_3d = false;
-};
-struct FeatureView {
-  GrayView image;                       // undistorted, grey
-  std::span<const Keypoint> keypoints;  // empty if none were searched (recent_frames)
-  std::span<const SegmentView> segments, reference_segments;
-  std::span<const PointTrackView> point_tracks;
-  std::span<const LineTrackView> line_tracks;
-};
-
 // What init allocates, in order; an arena without memory counts the bytes.
 struct OdometryMemory {
+  FeatureViews views;
   FeatureExtraction extraction;
   ReferenceTracking tracking;
-  std::span<PointTrackView> point_track_views;
-  std::span<LineTrackView> line_track_views;
-  std::span<SegmentView> segment_views, reference_segment_views;
 
   constexpr void allocate(Arena& memory, const Limits& limits) {
-    point_track_views =
-        memory.take<PointTrackView>("feature view", static_cast<std::size_t>(limits.keypoints));
-    const auto segments = static_cast<std::size_t>(limits.segments);
-    line_track_views = memory.take<LineTrackView>("feature view", segments);
-    segment_views = memory.take<SegmentView>("feature view", segments);
-    reference_segment_views = memory.take<SegmentView>("feature view", segments);
+    views.allocate(memory, limits);
     extraction.allocate(memory, limits);
     tracking.allocate(memory, limits);
   }
@@ -113,6 +85,11 @@ class Odometry {
   // pose. An empty prior changes nothing; one that does not pass MotionPrior::validate() is refused with the
   // frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
+  // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
+  // by what was seen. Every frame must be tracked so, as the samples of the others are missing. A refused
+  // frame uses up no samples. wheels: a translation measured beside it.
+  TrackResult track(const RgbdFrame& input, ImuIntegrator& imu,
+                    const std::optional<TranslationPrior>& wheels = std::nullopt);
 
   // Restores the state after init: the next usable frame defines the world, and the learnt noise is
   // forgotten. The time budget stays, because it depends on the machine.
@@ -137,89 +114,97 @@ class Odometry {
   FeatureView features() const;
 
  private:
-  using References = std::array<Reference, kMaxReferences>;
+  // How a frame ends, and what follows from it.
+  struct Decision {
+    enum class Outcome : std::uint8_t {
+      kTrack,  // the motion was found
+      kStart,  // the frame starts a trajectory: the first one, or another one after a loss
+      kWait,   // there is no trajectory, and the frame cannot start one
+      kLose,   // the motion was not found
+    };
+    enum class Gravity : std::uint8_t { kRead, kLevel, kTaken };  // how kStart takes in gravity
+    Outcome outcome = Outcome::kTrack;
+    Status status;
+    Window::Kept kept;        // kTrack: the references that stay
+    PoseWithCovariance pose;  // kStart
+    Gravity gravity = Gravity::kRead;
+    bool new_world = false;  // the position in the old world is not known any more
+  };
+  // The pose by the priors alone.
+  struct SensedPose {
+    Se3 T_camera_reference;
+    Matrix6 motion_covariance;
+    PoseWithCovariance pose;
+  };
 
-  // odometry.cpp: checks of the input, and the processing of a frame.
-  Status check(const RgbdFrame& input) const;
-  void process(const RgbdFrame& input, const MotionPrior& prior, TrackResult& result);
+  // odometry.cpp: the pipeline.
+  TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
+  Status check(const RgbdFrame& input, const MotionPrior& prior) const;
+  TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
   bool wants_points() const;
-  void find_points(const DepthSampler& depth, TrackResult& result);
-  void describe_points(TrackResult& result);
-  double depth_after_colour_s(const RgbdFrame& input) const;
 
-  // odometry_motion.cpp: where the camera is expected, and the search for the motion from there.
-  Exposure predict_exposure(std::int64_t stamp_ns) const;
-  Se3 predict_motion(int reference, std::int64_t stamp_ns) const;
-  PairPrior prior_of(int reference, std::int64_t stamp_ns) const;
-  std::size_t list_references(std::int64_t stamp_ns, References& references) const;
-  // Whether there is a recent frame that may be matched once more.
-  bool recent_is_young() const {
-    return window_.has_recent() && window_.recent_age() + 1 < config().references.recent_frames;
-  }
-  void estimate_motion(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
+  // odometry_predict.cpp: where the camera is expected, and from where it is looked for.
+  PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
+  Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
+  PoseWithCovariance unobserved_pose(std::int64_t stamp_ns) const;
+  SensedPose sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const;
 
-  // odometry_outcome.cpp: the outcome of a frame, and which frames the next ones are matched with.
-  void start_first(const MotionPrior& prior, TrackResult& result);
-  void start_again(const MotionPrior& prior, TrackResult& result);
-  void start_at(const PoseWithCovariance& pose, TrackResult& result);
-  void forget_world();
-  void read_gravity(const MotionPrior& prior, PoseWithCovariance& pose);
-  void add_process_noise(std::int64_t stamp_ns, Matrix6& covariance) const;
-  void accept(const DepthSampler& depth, const TrackedMotion& tracked, const MotionPrior& prior,
-              TrackResult& result);
+  // odometry_decide.cpp: the outcome of a frame, and which references are still matched.
+  Decision decide(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior) const;
+  void decide_start(const CurrentFrame& frame, const MotionPrior& prior, Decision& decision) const;
   Window::Kept still_good() const;
-  void keep_image();
   bool still_seen(int slot, std::size_t reference, double share) const;
   bool affordable(int slot) const;
-  void lose(const MotionEstimate& motion, const MotionPrior& prior, TrackResult& result);
-  const char* first_word_of_loss() const;
+  // Whether there is a recent frame that may be matched once more.
+  bool recent_is_young() const {
+    return window_.has_recent() && window_.recent_age() + 1 < config_->references.recent_frames;
+  }
 
-  // odometry_pose.cpp: poses of the kept frames, and poses from other sensors alone.
+  // odometry_update.cpp: the state after the frame, and its result. tracked: overwritten by a relocalisation.
+  TrackResult update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
+                     TrackedMotion& tracked);
+  TrackResult accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
+                     TrackedMotion& tracked);
+  TrackResult start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
+                    const TrackedMotion& tracked);
+  TrackResult lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
+                   const TrackedMotion& tracked);
+  void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool keyframe);
+  void show_tracks();
+  TrackResult begin_result(const CurrentFrame& frame, const TrackedMotion& tracked);
   void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
-  void sense(const MotionPrior& prior, std::int64_t stamp_ns);
-  PoseWithCovariance predicted_pose(const MotionPrior& prior, TrackResult& result) const;
+  void forget_world();
 
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
-  bool recognise(int slot, FrameFeatures& features, const Vector6& velocity, const DepthSampler& depth,
-                 const PoseWithCovariance& believed, TrackedMotion& tracked, TrackResult& result);
-  bool resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
-              TrackResult& result);
+  TrackedMotion resume(const CurrentFrame& frame);
+  bool relocalise(const CurrentFrame& frame, TrackedMotion& tracked);
+  bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
+                 const PoseWithCovariance& believed, TrackedMotion& tracked);
+  void move_to_relocalised_pose(int slot, const MotionEstimate& motion);
   bool relocalisation_is_due() const {
     return !window_.kept().empty() &&
-           frames_since_relocalisation_ + 1 >= config().references.relocalisation_interval_frames;
+           frames_since_relocalisation_ + 1 >= config_->references.relocalisation_interval_frames;
   }
-  void relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result);
-  void move_to_relocalised_pose(int slot, const MotionEstimate& motion);
-
-  // odometry_views.cpp: what features() shows.
-  static std::size_t fill_segment_views(const LineFeatures& lines, std::span<SegmentView> views);
-  void fill_track_views(const MotionEstimate& motion);
-
-  const CameraModel& camera() const { return memory_.extraction.camera(); }
-  const Config& config() const { return memory_.extraction.config(); }
 
   Arena arena_;
+  CameraModel camera_;
+  // Empty until init: the code that constructs a Config stays in the user's program
+  std::optional<Config> config_;
   OdometryMemory memory_;
   FeatureBudget budget_;
-  bool ready_ = false;
 
   Window window_;
   int frames_since_relocalisation_ = 0;
   PropagatedPrior propagated_prior_;  // since the last good frame
   GravityFilter gravity_;
-  NoiseScales noise_;                // learnt so far
-  double depth_after_colour_s_ = 0;  // of the current frame
-  std::int64_t last_stamp_ns_ = 0;   // of the last frame that was processed, good or not
+  NoiseScales noise_;               // learnt so far
+  std::int64_t last_stamp_ns_ = 0;  // of the last frame that was processed, good or not
   bool has_stamp_ = false;
   bool start_is_set_ = false;   // by set_pose()
   bool world_is_lost_ = false;  // and the next one has not started
   int lost_frames_ = 0;
   FeatureCounts points_found_;  // of the latest frame in which points were searched
   int view_slot_ = 0;           // whose keypoints features() shows
-  std::size_t point_track_count_ = 0;
-  std::size_t line_track_count_ = 0;
-  std::size_t segment_count_ = 0;
-  std::size_t reference_segment_count_ = 0;
 };
 
 }  // namespace plvo

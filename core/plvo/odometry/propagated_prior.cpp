@@ -2,15 +2,14 @@
 #include "plvo/odometry/propagated_prior.hpp"
 
 #include "plvo/math/covariance.hpp"
+#include "plvo/odometry/motion_model.hpp"
 
 namespace plvo {
 namespace {
 
-// The error of an assumed rate hardly changes from one frame to the next, so its standard deviation grows
-// with time, not its variance.
-Matrix3 process_noise_variance(double per_second, double before_s, double now_s) {
+Matrix3 covariance_of_unobserved(double per_second, double before_s, double now_s) {
   constexpr double kLeast = 1e-12;
-  const double variance = per_second * per_second * (now_s * now_s - before_s * before_s);
+  const double variance = process_noise_variance(per_second, before_s, now_s);
   return Matrix3::Identity() * (variance > kLeast ? variance : kLeast);
 }
 
@@ -30,7 +29,8 @@ void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, 
     covariance.block<3, 3>(3, 3) = prior.rotation->covariance;
   } else {
     T_now_before.R = rotation_exp(seconds * velocity.tail<3>());
-    covariance.block<3, 3>(3, 3) = process_noise_variance(config.process_noise_rad_per_s, before_s, seconds_);
+    covariance.block<3, 3>(3, 3) =
+        covariance_of_unobserved(config.process_noise_rad_per_s, before_s, seconds_);
   }
   if (prior.translation) {
     T_now_before.t = prior.translation->t_now_before;
@@ -38,7 +38,7 @@ void PropagatedPrior::extend(const MotionPrior& prior, const Vector6& velocity, 
   } else {
     // The translation goes straight on, whatever the camera's rotation.
     T_now_before.t = seconds * (T_now_before.R * (T_current_last_.R * velocity.head<3>()));
-    covariance.block<3, 3>(0, 0) = process_noise_variance(config.process_noise_m_per_s, before_s, seconds_);
+    covariance.block<3, 3>(0, 0) = covariance_of_unobserved(config.process_noise_m_per_s, before_s, seconds_);
   }
   covariance_ = compose_covariance(T_now_before, covariance, T_current_last_, covariance_);
   T_current_last_ = T_now_before * T_current_last_;

@@ -28,77 +28,62 @@ constexpr double kPlausible = 0.9999;
 
 }  // namespace
 
-// Matches the current frame with a kept keyframe. features: of the current frame, which moves at this
-// velocity; believed: its pose without the relocalisation.
-bool Odometry::recognise(int slot, FrameFeatures& features, const Vector6& velocity,
-                         const DepthSampler& depth, const PoseWithCovariance& believed,
-                         TrackedMotion& tracked, TrackResult& result) {
-  PairPrior prior;
-  prior.velocity = velocity;
-  prior.velocity_known = true;
-  prior.reference_velocity = window_[slot].velocity;
-  prior.reference_velocity_known = window_[slot].motion_ns > 0;
-  prior.reference_is_last = false;
-  prior.depth_after_colour_s = depth_after_colour_s_;
-  const PropagatedPrior no_prior;
-  const MotionReference no_last_frame;
-  const CurrentFrame current{features, memory_.extraction, depth, noise_, no_prior, no_last_frame};
-  const Reference reference{&window_[slot].features, prior, {}};
-  memory_.extraction.describe_points(arena_, features.points, result);
-  const double anywhere_px = std::max(camera().width, camera().height);
-  memory_.tracking.find(reference, current, anywhere_px, arena_, tracked, result);
-  if (tracked.motion.status == StatusCode::kOk && config().points.registered) {
+// Matches the current frame, which moves at this velocity, with a kept keyframe. believed: its pose without
+// the relocalisation.
+bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
+                         const PoseWithCovariance& believed, TrackedMotion& tracked) {
+  Reference kept;
+  kept.features = &window_[slot].features;
+  kept.prior.recent = velocity;
+  kept.prior.reference = window_[slot].velocity;
+  kept.prior.reference_is_last = false;
+  kept.prior.depth_after_colour_s = frame.predicted.depth_after_colour_s;
+  kept.chained = false;
+  frame.describe_points();
+  const double anywhere_px = std::max(camera_.width, camera_.height);
+  memory_.tracking.find(kept, frame, Se3{}, anywhere_px, tracked);
+  if (tracked.ok() && config_->points.registered) {
     const Se3 T_current_reference = tracked.motion.T_current_reference;
-    memory_.tracking.refine({&reference, 1}, current, T_current_reference, arena_, tracked, result);
+    memory_.tracking.refine({&kept, 1}, frame, T_current_reference, tracked);
   }
-  return tracked.motion.status == StatusCode::kOk &&
-         still_seen(slot, 0, config().references.keyframe_inlier_ratio) &&
+  return tracked.ok() && still_seen(slot, 0, config_->references.keyframe_inlier_ratio) &&
          agree(window_[slot].pose, tracked.motion, believed);
 }
 
-// Called before tracking starts anew: takes up the kept keyframe again if its view is back.
-bool Odometry::resume(const DepthSampler& depth, const MotionPrior& prior, TrackedMotion& tracked,
-                      TrackResult& result) {
-  if (window_.kept().empty()) return false;
-  const int slot = window_.kept().latest();
-  PoseWithCovariance believed = window_.last_frame().pose;
-  add_process_noise(result.stamp_ns, believed.covariance);
-  TrackResult trial = result;
-  // The camera is taken to stand still: its velocity before the loss is out of date.
-  const bool found =
-      recognise(slot, window_.current_frame().features, Vector6::Zero(), depth, believed, tracked, trial);
-  result.stage_ns = trial.stage_ns;
-  if (!found) return false;
-  result = trial;
-  window_.resume(slot);
-  result.reference_stamp_ns = window_[slot].features.stamp_ns;
-  accept(depth, tracked, prior, result);
-  result.returned = true;
-  return true;
+// Called before tracking starts anew: takes up the kept keyframe again if its view is back. Otherwise there
+// is no motion, and the lines are lifted without one.
+TrackedMotion Odometry::resume(const CurrentFrame& frame) {
+  TrackedMotion tracked;
+  if (!window_.kept().empty()) {
+    const int slot = window_.kept().latest();
+    // The camera is taken to stand still: its velocity before the loss is out of date.
+    tracked.returned = recognise(slot, frame, Vector6::Zero(), unobserved_pose(frame.stamp_ns()), tracked);
+    if (tracked.returned) window_.resume(slot);
+  }
+  if (tracked.returned) return tracked;
+  tracked.motion.status = StatusCode::kNoConsensus;
+  tracked.points = tracked.lines = {};
+  tracked.ransac_iterations = tracked.lm_iterations = 0;
+  memory_.extraction.lift_lines(frame.context, frame.depth, frame.predicted.exposure, frame.features.lines);
+  return tracked;
 }
 
 // Tracking has resumed with a new start, whose pose was not observed. If the view of a kept keyframe is back,
-// all poses are moved so that the pose of this frame is the one that follows from that keyframe.
-// tracked: holds the frame's own motion, which is accepted and no longer needed; it is overwritten.
-void Odometry::relocalise(const DepthSampler& depth, TrackedMotion& tracked, TrackResult& result) {
-  if (window_.kept().empty()) return;
+// all poses are moved so that the pose of this frame is the one that follows from that keyframe. Returns
+// whether it was. tracked: holds the frame's own motion, which is accepted and no longer needed; it is
+// overwritten.
+bool Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked) {
+  if (window_.kept().empty()) return false;
   if (!relocalisation_is_due()) {
     ++frames_since_relocalisation_;
-    return;
+    return false;
   }
   frames_since_relocalisation_ = 0;
   const int slot = window_.kept().next();
-  Window::Frame& last = window_.last_frame();  // the frame just tracked
-  // Separate: the counts of the frame are those of its own tracking
-  TrackResult trial;
-  trial.stage_ns = result.stage_ns;
-  const bool found =
-      recognise(slot, last.features, last.velocity, depth, window_.last_frame().pose, tracked, trial);
-  result.stage_ns = trial.stage_ns;
-  if (!found) return;
+  const Window::Frame& last = window_.last_frame();  // the frame just tracked
+  if (!recognise(slot, frame, last.velocity.value, last.pose, tracked)) return false;
   move_to_relocalised_pose(slot, tracked.motion);
-  report(window_.last_frame().pose, last.velocity, result);
-  result.returned = true;
+  return true;
 }
 
 // Moves all poses so that the last frame is where `motion` leads from the kept keyframe. Not inlined: its

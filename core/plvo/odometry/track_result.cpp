@@ -24,6 +24,13 @@ const char* to_string(Stage stage) {
   return "unknown";
 }
 
+std::optional<ObservedRotation> observed_rotation(const TrackResult& result) {
+  const bool starts = result.state == TrackState::kInitialising && result.status.ok();
+  if (result.state != TrackState::kTracking && !starts) return std::nullopt;
+  return ObservedRotation{result.stamp_ns, result.reference_stamp_ns, result.T_camera_reference.R,
+                          result.motion_covariance.block<3, 3>(3, 3)};
+}
+
 bool make_sound(TrackResult& result) {
   for (const Se3* T : {&result.T_world_camera, &result.T_camera_reference})
     if (!T->is_finite() || !is_rotation(T->R)) return false;

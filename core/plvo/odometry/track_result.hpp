@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "plvo/base/status.hpp"
+#include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/math/covariance.hpp"
 #include "plvo/math/se3.hpp"
 
@@ -25,6 +27,7 @@ const char* to_string(TrackState state);
 
 enum class Stage : std::uint8_t { kImage, kPoints, kLines, kMatching, kMotion };
 inline constexpr int kStageCount = 5;
+using StageTimes = std::array<std::int64_t, kStageCount>;  // ns
 const char* to_string(Stage stage);
 
 // Feature counts of this frame. If no points were searched in it (ReferenceConfig::recent_frames), the first
@@ -63,10 +66,14 @@ struct TrackResult {
   bool returned = false;
   int ransac_iterations = 0;
   int lm_iterations = 0;
-  int feature_step = 0;                              // of Config::budget; 0: all the features that fit
-  double mean_brightness = 0;                        // of the grey image, 0 … 255
-  std::array<std::int64_t, kStageCount> stage_ns{};  // zero without Config::stage_clock
+  int feature_step = 0;        // of Config::budget; 0: all the features that fit
+  double mean_brightness = 0;  // of the grey image, 0 … 255
+  StageTimes stage_ns{};       // zero without Config::stage_clock
 };
+
+// What a result tells ImuIntegrator::correct(); nothing where the frame was neither tracked nor starts a
+// trajectory.
+std::optional<ObservedRotation> observed_rotation(const TrackResult& result);
 
 // Called where a result leaves the library. Makes its covariances valid as described above; valid ones stay
 // the same bit by bit. Returns false where a number is not finite or a rotation is invalid: the caller must

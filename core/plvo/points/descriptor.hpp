@@ -3,8 +3,8 @@
 // Fua, ECCV 2010). It consists of 256 comparisons of two pixels of a smoothed 31×31 patch, at positions drawn
 // once from a Gaussian around its centre. Comparisons are invariant to any increasing map of the grey levels,
 // and hence to gain and offset of the illumination. The descriptor is not rotated with the image, because the
-// roll between two frames is small; docs/maths.md gives the measured matching rate over roll and scale. The
-// pyramid level determines the scale.
+// roll between two frames is small; docs/decisions/descriptor_roll.md gives the measured matching rate over
+// roll and scale. The pyramid level determines the scale.
 #pragma once
 
 #include <array>

@@ -45,10 +45,12 @@ struct PointFeatures {
   std::span<Point3d> points;  // camera frame
   bool looked_for = false;
   bool described = false;
+  int candidates = 0;  // found, before the selection of the keypoints
 
   // Resets to "not detected yet": no keypoints, and at most the given capacity.
   void clear(std::size_t capacity) {
     looked_for = described = false;
+    candidates = 0;
     keypoints =
         FixedVector<Keypoint>({keypoints.begin(), capacity < points.size() ? capacity : points.size()});
   }

@@ -3,6 +3,7 @@
 // block; the samples that wait follow.
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -11,6 +12,7 @@
 #include "plvo/c/imu.h"
 #include "plvo/c/matrices.hpp"
 #include "plvo/inertial/imu_integrator.hpp"
+#include "plvo/odometry/track_result.hpp"
 
 struct plvo_imu {
   plvo::ImuIntegrator integrator;
@@ -105,13 +107,13 @@ void give_prior(const MotionPrior& prior, plvo_prior* caller) {
   give_struct(whole, caller);
 }
 
-// As much of it as is learnt from.
-Status take_result(std::int32_t code, const plvo_result* given, TrackResult& result) {
+Status take_result(std::int32_t code, const plvo_result* given, std::optional<ObservedRotation>& observed) {
   plvo_result whole;
   std::memset(&whole, 0, sizeof whole);
   if (Status status = take_struct(given, whole, "result"); !status.ok()) return status;
   if (whole.state < PLVO_INITIALISING || whole.state > PLVO_PREDICTED)
     return refuse("result: state must be one of PLVO_TRACKING …");
+  TrackResult result;
   result.state = static_cast<TrackState>(whole.state);
   if (code != PLVO_OK) result.status = refuse("not tracked");
   result.stamp_ns = whole.stamp_ns;
@@ -120,6 +122,7 @@ Status take_result(std::int32_t code, const plvo_result* given, TrackResult& res
   result.motion_covariance = matrix<6>(whole.motion_covariance);
   if (!result.T_camera_reference.R.allFinite() || !result.motion_covariance.allFinite())
     return refuse("result: a number is not finite");
+  observed = observed_rotation(result);
   return {};
 }
 
@@ -181,9 +184,9 @@ plvo_status plvo_imu_prior(plvo_imu* imu, std::int64_t stamp_ns, plvo_prior* pri
 
 plvo_status plvo_imu_learn(plvo_imu* imu, std::int32_t code, const plvo_result* result) {
   if (imu == nullptr) return to_c(refuse(plvo::c::kNoImu));
-  plvo::TrackResult tracked;
-  if (plvo::Status status = plvo::c::take_result(code, result, tracked); !status.ok()) return to_c(status);
-  imu->integrator.learn(tracked);
+  std::optional<plvo::ObservedRotation> observed;
+  if (plvo::Status status = plvo::c::take_result(code, result, observed); !status.ok()) return to_c(status);
+  if (observed) imu->integrator.correct(*observed);
   return to_c(plvo::Status());
 }
 

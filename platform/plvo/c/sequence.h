@@ -20,7 +20,7 @@ typedef struct plvo_sequence plvo_sequence;
 
 /* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second, or a ROS 1 bag, FILE.bag.
  * `calibration`: a file, or a name as above, or NULL: the calibration in the folder (calibration.txt and the
- * other names of docs/formats.md), or TUM's camera where the folder has the name of a recording of TUM's; of a
+ * other names of docs/user/calibration.md), or TUM's camera where the folder has the name of a recording of TUM's; of a
  * bag its camera_info. On failure *sequence is NULL. What is opened is closed
  * by plvo_sequence_close. PLVO_UNSUPPORTED for a bag if the library was built without them. */
 PLVO_API plvo_status plvo_sequence_open(const char* path, const char* calibration, plvo_sequence** sequence);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of what plvo writes, by name. docs/robot.md describes them.
+// The frames of what plvo writes, by name. docs/user/robots.md describes them.
 #pragma once
 
 namespace plvo {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo._plvo: cameras, recorded sequences and the odometry for Python. What a user sees is described in
-// plvo/__init__.pyi and docs/python.md.
+// plvo/__init__.pyi and docs/user/python.md.
 #include <pybind11/numpy.h>
 
 #include "plvo/python/bindings.hpp"

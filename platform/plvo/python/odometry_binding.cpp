@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The odometry for Python, in a block of its own; other threads run while it tracks. The second of two cores
-// never meets the interpreter. There is no stage hook: see docs/python.md.
+// never meets the interpreter. There is no stage hook: see docs/user/python.md.
 #include <cstddef>
 #include <memory>
 #include <optional>

@@ -43,6 +43,10 @@ MotionPrior make_prior(const py::object& rotation, const py::object& translation
   return prior;
 }
 
+void learn(ImuIntegrator& imu, const TrackResult& result) {
+  if (const std::optional<ObservedRotation> observed = observed_rotation(result)) imu.correct(*observed);
+}
+
 class Imu {
  public:
   explicit Imu(const ImuConfig& config) : gyro_(kWaiting), accelerometer_(kWaiting) {
@@ -144,14 +148,23 @@ void bind_prior(py::module_& module) {
           "prior", [](Imu& imu, std::int64_t stamp_ns) { return imu.integrator().prior(stamp_ns); },
           "stamp_ns"_a)
       .def(
-          "learn", [](Imu& imu, const TrackResult& result) { imu.integrator().learn(result); }, "result"_a)
+          "learn", [](Imu& imu, const TrackResult& result) { learn(imu.integrator(), result); }, "result"_a)
       .def_property_readonly("gyro_offset", [](Imu& imu) { return copy_of(imu.integrator().gyro_offset()); })
       .def_property_readonly("gyro_offset_variance",
                              [](Imu& imu) { return copy_of(imu.integrator().gyro_offset_variance()); });
 
   bind_class<RecordedImu>(module, "RecordedImu")
-      .def("prior", &RecordedImu::prior, "stamp_ns"_a)
-      .def("learn", &RecordedImu::learn, "result"_a);
+      .def(
+          "prior",
+          [](RecordedImu& imu, std::int64_t stamp_ns) {
+            ImuIntegrator& integrator = imu.until(stamp_ns);
+            return integrator.prior(stamp_ns);
+          },
+          "stamp_ns"_a)
+      .def(
+          "learn",
+          [](RecordedImu& imu, const TrackResult& result) { learn(imu.until(result.stamp_ns), result); },
+          "result"_a);
 }
 
 }  // namespace plvo::python

@@ -32,7 +32,7 @@ constexpr std::size_t kLongestMagic = 16;
 
 Status refusal(const fs::path& path, const char* what, const char* advice) {
   return {StatusCode::kUnsupported,
-          fmt::format("{} is {}, {}; see docs/formats.md", path.string(), what, advice)};
+          fmt::format("{} is {}, {}; see share/doc/plvo/user/recordings.md", path.string(), what, advice)};
 }
 
 // The metadata identify the folder; the other files in it may be of any kind.

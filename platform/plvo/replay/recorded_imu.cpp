@@ -21,7 +21,7 @@ Status RecordedImu::init(ImuRecording recording, const ImuConfig& config) {
 
 // Adds the samples up to the first one after the frame: the rate is interpolated between it and the one
 // before.
-MotionPrior RecordedImu::prior(std::int64_t stamp_ns) {
+ImuIntegrator& RecordedImu::until(std::int64_t stamp_ns) {
   const auto until_after = [&](const std::vector<ImuSample>& samples, std::size_t& next, auto add) {
     while (next < samples.size()) {
       const bool after = samples[next].stamp_ns > stamp_ns;
@@ -33,7 +33,7 @@ MotionPrior RecordedImu::prior(std::int64_t stamp_ns) {
   until_after(recording_.gyro, next_gyro_, [&](const ImuSample& s) { (void)integrator_.add_gyro(s); });
   until_after(recording_.accelerometer, next_acceleration_,
               [&](const ImuSample& s) { (void)integrator_.add_acceleration(s); });
-  return integrator_.prior(stamp_ns);
+  return integrator_;
 }
 
 }  // namespace plvo

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the samples of a recording into the priors of its frames. The integrator of core/plvo/inertial gets
-// only the samples that a live sensor would have sent until the frame.
+// Hands the samples of a recording to the integrator of core/plvo/inertial, frame by frame. It gets only the
+// samples that a live sensor would have sent until the frame.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,9 @@ namespace plvo {
 class RecordedImu {
  public:
   Status init(ImuRecording recording, const ImuConfig& config);
-  // The same as in ImuIntegrator.
-  MotionPrior prior(std::int64_t stamp_ns);
-  void learn(const TrackResult& result) { integrator_.learn(result); }
-  const ImuIntegrator& integrator() const { return integrator_; }
+  // The integrator with the samples that are there when a frame of this stamp is tracked. Frames come in
+  // their order.
+  ImuIntegrator& until(std::int64_t stamp_ns);
 
  private:
   ImuRecording recording_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for what the node of docs/robot.md uses of ROS 2: members and signatures as it calls them, and no
-// more. A test puts frames in by hand and takes the messages out.
+// Stand-ins for what the node of docs/user/robots.md uses of ROS 2: members and signatures as it calls them,
+// and no more. A test puts frames in by hand and takes the messages out.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench: plvo and its peers side by side. docs/bench.md.
+// plvo_bench: plvo and its peers side by side. docs/developer/bench.md.
 #include <fmt/core.h>
 
 #include <exception>

@@ -14,7 +14,8 @@
 namespace plvo::calibrate {
 namespace {
 
-// Typical residuals of real and simulated sensors (docs/sensors.md); they only weigh image against depth.
+// Typical residuals of real and simulated sensors (docs/theory/noise.md); they only weigh image against
+// depth.
 constexpr double kReference_px = 0.05, kCurrent_px = 0.15;
 constexpr double kShareOfSigma = 0.5;
 // Mahalanobis distances above which a match is an outlier: the tail of χ²(3) and χ²(4) beyond is about 1e-6.
@@ -115,7 +116,7 @@ class PairJudge {
     const Se3 T_predicted = current_frame.T_world_camera.inverse() * reference_frame.T_world_camera;
     constexpr LmOptions kSolve{.max_iterations = 20, .step_tolerance = 1e-6, .decrease_tolerance = 1e-9};
     const MotionEstimate motion =
-        estimate_motion(sets, MotionReferences{}, MotionConfig{}, kSolve, 1, &T_predicted, scratch_);
+        estimate_motion(sets, {}, MotionReferences{}, MotionConfig{}, kSolve, 1, &T_predicted, scratch_);
     if (motion.status != StatusCode::kOk)
       return kFarthestPoint * static_cast<double>(pair.points.size()) +
              kFarthestLine * static_cast<double>(pair.lines.size());

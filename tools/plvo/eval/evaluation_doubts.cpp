@@ -37,7 +37,8 @@ std::string advice_for_large_nees(const Evaluation& e, double ratio) {
   if (!e.truth_fit) text += fit;
   if (!e.truth_fit && !sigma) text += "; ";
   if (!sigma) text += noise;
-  return text + ". Where the truth is exact, as a simulator's is, " + widen + " (docs/evaluation.md)";
+  return text + ". Where the truth is exact, as a simulator's is, " + widen +
+         " (share/doc/plvo/user/accuracy.md)";
 }
 
 }  // namespace

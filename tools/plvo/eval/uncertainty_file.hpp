@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the files of `plvo run --covariance` and `--motions` (docs/formats.md), or those of another system: a
-// covariance is 36 numbers, row-major, or the 21 of its upper triangle.
+// Reads the files of `plvo run --covariance` and `--motions` (docs/user/outputs.md), or those of another
+// system: a covariance is 36 numbers, row-major, or the 21 of its upper triangle.
 #pragma once
 
 #include <cstdint>

@@ -26,11 +26,51 @@ ImageView<std::uint8_t> rows(const ImageView<std::uint8_t>& image, int begin, in
   return {image.row(begin), image.width, end - begin, image.stride};
 }
 
+bool has_points(const Config& config) { return config.features != Features::kLines; }
+bool has_lines(const Config& config) { return config.features != Features::kPoints; }
+
+void lift_points(const StageContext& context, const DepthSampler& depth_sampler, PointFeatures& points) {
+  // A registered patch is a landmark by definition, whatever its centre: only its depth is uncertain. The
+  // small variance across the ray keeps its covariance invertible.
+  constexpr double kPatchCentre_px = 0.02;
+  const PointConfig& config = context.config.points;
+  const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
+  const double depth_scale = sqrt(context.noise.depth);
+  context.config.executor.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Keypoint& keypoint = points.keypoints[i];
+      const auto u = static_cast<double>(keypoint.u);
+      const auto v = static_cast<double>(keypoint.v);
+      const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
+      // A keypoint whose window has no usable depth is placed at the camera's centre: "no 3D point".
+      points.points[i] = observe_point(context.camera.pinhole, u, v, depth.depth_m,
+                                       sigma_px * (1 << keypoint.level), depth_scale * depth.sigma_m);
+      points.masks[i] = depth.depth_m > 0
+                            ? depth_mask(depth_sampler, depth.located, depth.depth_m, keypoint.level)
+                            : WindowMask{};
+    }
+  });
+}
+
+bool lift_line(const StageContext& context, const DepthSampler& depth, const Segment& segment, Line3d& line) {
+  const Config& config = context.config;
+  const Line3dReport report = observe_line(segment, depth, context.camera.pinhole, config.depth_noise,
+                                           config.lines, config.seed, line);
+  if (report.outcome != Line3dOutcome::kOk) return false;
+  line.Sigma *= context.noise.lines;
+  return true;
+}
+
+void lift_segments_again(const StageContext& context, const DepthSampler& depth, LineFeatures& lines) {
+  context.config.executor.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      (void)lift_line(context, depth, lines.segments[i], lines.lines[i]);
+  });
+}
+
 }  // namespace
 
-void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
-  camera_ = camera;
-  config_ = config;
+void FeatureExtraction::init(const CameraModel& camera) {
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
   segment_search_.width = pyramid_.level(kLineLevel).width;
@@ -38,34 +78,40 @@ void FeatureExtraction::init(const CameraModel& camera, const Config& config) {
   segment_detector_[0] = SegmentDetector(segment_search_);
 }
 
-void FeatureExtraction::make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const {
-  config_->executor.halves(
-      camera_.height, [&](int begin, int end) { to_gray(rows(colour, begin, end), rows(gray, begin, end)); });
+void FeatureExtraction::make_gray(const StageContext& context, const ColourView& colour,
+                                  const ImageView<std::uint8_t>& gray) {
+  context.config.executor.halves(context.camera.height, [&](int begin, int end) {
+    to_gray(rows(colour, begin, end), rows(gray, begin, end));
+  });
 }
 
-void FeatureExtraction::prepare_image(const ColourView& colour, Arena& scratch) {
+double FeatureExtraction::prepare_image(const StageContext& context, const ColourView& colour) {
+  const StageTimer timer(context, Stage::kImage);
+  const CameraModel& camera = context.camera;
   if (map_.active()) {
-    const ScratchScope scope(scratch);
-    const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-    const std::span<std::uint8_t> raw = scratch.take<std::uint8_t>("raw grey image", pixels);
-    const ImageView<std::uint8_t> raw_view{raw.data(), camera_.width, camera_.height, camera_.width};
-    make_gray(colour, raw_view);
-    config_->executor.halves(
-        camera_.height, [&](int begin, int end) { map_.undistort(raw_view, pyramid_.base(), begin, end); });
+    const ScratchScope scope(context.scratch);
+    const std::span<std::uint8_t> raw =
+        context.scratch.take<std::uint8_t>("raw grey image", pixels_of(camera.width, camera.height));
+    const ImageView<std::uint8_t> raw_view{raw.data(), camera.width, camera.height, camera.width};
+    make_gray(context, colour, raw_view);
+    context.config.executor.halves(
+        camera.height, [&](int begin, int end) { map_.undistort(raw_view, pyramid_.base(), begin, end); });
   } else {
-    make_gray(colour, pyramid_.base());
+    make_gray(context, colour, pyramid_.base());
   }
   pyramid_.build();
+  return mean_brightness(pyramid_.level(0));
 }
 
-void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points, TrackResult& result) const {
-  if (!has_points() || points.described) return;
-  const StageTimer timer(*config_, result, Stage::kPoints);
+void FeatureExtraction::describe_points(const StageContext& context, PointFeatures& points) const {
+  if (!has_points(context.config) || points.described) return;
+  const StageTimer timer(context, Stage::kPoints);
   points.described = true;
-  const ScratchScope scope(scratch);
-  const auto pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-  const std::span<std::uint8_t> storage = scratch.take<std::uint8_t>("smoothed image", pixels);
-  const std::span<std::uint16_t> row = take_smoothing_row(scratch, camera_.width);
+  const CameraModel& camera = context.camera;
+  const ScratchScope scope(context.scratch);
+  const std::span<std::uint8_t> storage =
+      context.scratch.take<std::uint8_t>("smoothed image", pixels_of(camera.width, camera.height));
+  const std::span<std::uint16_t> row = take_smoothing_row(context.scratch, camera.width);
   for (int level = 0; level < DetectorConfig().levels; ++level) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
@@ -78,134 +124,79 @@ void FeatureExtraction::describe_points(Arena& scratch, PointFeatures& points, T
   }
 }
 
-void FeatureExtraction::extract(const RgbdFrame& frame, const DepthSampler& depth, bool points,
-                                Arena& scratch, FrameFeatures& features, TrackResult& result) {
-  features.stamp_ns = frame.stamp_ns;
-  {
-    const StageTimer timer(*config_, result, Stage::kImage);
-    prepare_image(frame.colour, scratch);
-    result.mean_brightness = mean_brightness(pyramid_.level(0));
-  }
-  const bool lines = config_->features != Features::kPoints;
-  const bool at_once = has_points() && points && lines && config_->executor;
-  if (at_once) {
-    const StageTimer timer(*config_, result, Stage::kPoints);
+void FeatureExtraction::detect(const StageContext& context, const DepthSampler& depth, bool with_points,
+                               FrameFeatures& features) {
+  const Config& config = context.config;
+  Arena& scratch = context.scratch;
+  if (with_points && has_points(config) && has_lines(config) && config.executor) {
+    const StageTimer timer(context, Stage::kPoints);
     const ScratchScope scope(scratch);
-    Arena own(
-        scratch.take<std::byte>("points beside segments", point_scratch(camera_.width, camera_.height)));
-    config_->executor.both([&] { find_segments(scratch, features.lines, result); },
-                           [&] { detect_points(depth, own, features.points, result); });
-  } else if (points) {
-    find_points(depth, scratch, features.points, result);
+    Arena own(scratch.take<std::byte>("points beside segments",
+                                      point_scratch(context.camera.width, context.camera.height)));
+    config.executor.both([&] { detect_segments(scratch, features.lines); },
+                         [&] { detect_points(depth, own, features.points); });
+    return;
   }
-  if (lines && !at_once) {
-    const StageTimer timer(*config_, result, Stage::kLines);
-    find_segments(scratch, features.lines, result);
-  }
+  if (with_points) find_points(context, depth, features.points);
+  if (!has_lines(config)) return;
+  const StageTimer timer(context, Stage::kLines);
+  detect_segments(scratch, features.lines);
 }
 
-void FeatureExtraction::find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                                    TrackResult& result) const {
-  if (!has_points() || points.looked_for) return;
-  const StageTimer timer(*config_, result, Stage::kPoints);
-  detect_points(depth, scratch, points, result);
+void FeatureExtraction::find_points(const StageContext& context, const DepthSampler& depth,
+                                    PointFeatures& points) const {
+  if (!has_points(context.config) || points.looked_for) return;
+  const StageTimer timer(context, Stage::kPoints);
+  detect_points(depth, context.scratch, points);
 }
 
-void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                                      TrackResult& result) const {
+void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
+                                      PointFeatures& points) const {
   points.looked_for = true;
-  const DetectionSummary summary =
-      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints);
+  points.candidates =
+      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints).candidates;
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
     points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
   }
-  result.points.with_depth =
-      static_cast<int>(points.keypoints.size());  // the detector skips pixels without depth
-  result.points.detected = summary.candidates;
-  result.points.dropped = static_cast<int>(points.keypoints.dropped());
 }
 
-void FeatureExtraction::lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
-                             FrameFeatures& features) const {
-  lift_points(depth, noise, features.points);
-  if (config_->surfaces)
-    sample_surfaces(depth, camera_.pinhole, camera_.width, camera_.height, noise.surfaces, scratch,
-                    features.surfaces);
-}
-
-void FeatureExtraction::lift_points(const DepthSampler& depth_sampler, const NoiseScales& noise,
-                                    PointFeatures& points) const {
-  // A registered patch is a landmark by definition, whatever its centre: only its depth is uncertain. The
-  // small variance across the ray keeps its covariance invertible.
-  constexpr double kPatchCentre_px = 0.02;
-  const PointConfig& config = config_->points;
-  const double sigma_px = config.registered ? kPatchCentre_px : config.sigma_px;
-  const double depth_scale = sqrt(noise.depth);
-  config_->executor.halves(points.keypoints.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Keypoint& keypoint = points.keypoints[i];
-      const auto u = static_cast<double>(keypoint.u);
-      const auto v = static_cast<double>(keypoint.v);
-      const DepthSample depth = depth_sampler.sample(u, v, config.depth_reach_px);
-      // A keypoint whose window has no usable depth is placed at the camera's centre: "no 3D point".
-      points.points[i] = observe_point(camera_.pinhole, u, v, depth.depth_m, sigma_px * (1 << keypoint.level),
-                                       depth_scale * depth.sigma_m);
-      points.masks[i] = depth.depth_m > 0
-                            ? depth_mask(depth_sampler, depth.located, depth.depth_m, keypoint.level)
-                            : WindowMask{};
-    }
-  });
-}
-
-bool FeatureExtraction::lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
-                                  Line3d& line) const {
-  const Line3dReport report = observe_line(segment, depth, camera_.pinhole, config_->depth_noise,
-                                           config_->lines, config_->seed, line);
-  if (report.outcome != Line3dOutcome::kOk) return false;
-  line.Sigma *= noise.lines;
-  return true;
-}
-
-void FeatureExtraction::lift_lines(const DepthSampler& depth, const Exposure& exposure,
-                                   const NoiseScales& noise, Arena& scratch, LineFeatures& lines,
-                                   TrackResult& result) const {
-  const StageTimer timer(*config_, result, Stage::kLines);
-  if (!lines.lifted) {
-    depth.fetch();
-    lift_segments(depth.with(exposure), noise, scratch, lines);
-    lines.lifted = true;
-  } else if (exposure.depth_apart()) {
-    lift_segments_again(depth.with(exposure), noise, lines);
-  }
-  result.lines.with_depth = static_cast<int>(lines.count_3d);
-}
-
-void FeatureExtraction::lift_segments_again(const DepthSampler& depth, const NoiseScales& noise,
-                                            LineFeatures& lines) const {
-  config_->executor.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      (void)lift_line(depth, noise, lines.segments[i], lines.lines[i]);
-  });
-}
-
-void FeatureExtraction::find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result) {
+void FeatureExtraction::detect_segments(Arena& scratch, LineFeatures& lines) {
   const Status status = segment_detector_[0].detect(pyramid_.level(kLineLevel), 1 << kLineLevel,
                                                     pyramid_.level(0), scratch, lines.segments);
   if (!status.ok()) lines.segments.clear();
-  result.lines.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped());
-  result.lines.dropped = static_cast<int>(lines.segments.dropped());
 }
 
-void FeatureExtraction::lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
+void FeatureExtraction::lift(const StageContext& context, const DepthSampler& depth,
+                             FrameFeatures& features) const {
+  lift_points(context, depth, features.points);
+  const CameraModel& camera = context.camera;
+  if (context.config.surfaces)
+    sample_surfaces(depth, camera.pinhole, camera.width, camera.height, context.noise.surfaces,
+                    context.scratch, features.surfaces);
+}
+
+void FeatureExtraction::lift_lines(const StageContext& context, const DepthSampler& depth,
+                                   const Exposure& exposure, LineFeatures& lines) const {
+  const StageTimer timer(context, Stage::kLines);
+  if (!lines.lifted) {
+    depth.fetch();
+    lift_segments(context, depth.with(exposure), lines);
+    lines.lifted = true;
+  } else if (exposure.depth_apart()) {
+    lift_segments_again(context, depth.with(exposure), lines);
+  }
+}
+
+void FeatureExtraction::lift_segments(const StageContext& context, const DepthSampler& depth,
                                       LineFeatures& lines) const {
-  const ScratchScope scope(scratch);
+  const ScratchScope scope(context.scratch);
   const std::size_t n = lines.segments.size();
-  const std::span<std::uint8_t> lifted = scratch.take<std::uint8_t>("segments with 3D", n);
-  config_->executor.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
+  const std::span<std::uint8_t> lifted = context.scratch.take<std::uint8_t>("segments with 3D", n);
+  context.config.executor.halves(lifted.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Segment& segment = lines.segments[i];
-      lifted[i] = lift_line(depth, noise, segment, lines.lines[i]) ? 1 : 0;
+      lifted[i] = lift_line(context, depth, segment, lines.lines[i]) ? 1 : 0;
       if (lifted[i] != 0)
         lines.descriptors[i] = describe_segment(pyramid_.level(kLineLevel), 1.0 / (1 << kLineLevel), segment);
     }

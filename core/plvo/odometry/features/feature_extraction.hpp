@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "plvo/base/arena.hpp"
@@ -13,10 +12,8 @@
 #include "plvo/image/pyramid.hpp"
 #include "plvo/image/undistortion.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
-#include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
-#include "plvo/odometry/stage_timer.hpp"
-#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/stage_context.hpp"
 #include "plvo/points/detector.hpp"
 #include "plvo/surfaces/surface_sampling.hpp"
 
@@ -56,34 +53,32 @@ class FeatureExtraction {
     }
   }
 
-  void init(const CameraModel& camera, const Config& config);
-
-  const CameraModel& camera() const { return camera_; }
-  const Config& config() const { return *config_; }  // after init
+  // Builds the tables of this camera.
+  void init(const CameraModel& camera);
 
   // Returns a sampler of the frame's own depth; it is valid as long as the frame's views.
-  DepthSampler depth_sampler(const RgbdFrame& frame) const {
-    return {frame.depth, map_, config_->depth_noise};
+  DepthSampler depth_sampler(const RgbdFrame& frame, const DepthNoise& noise) const {
+    return {frame.depth, map_, noise};
   }
 
-  // Extracts the features of `frame`, whose sizes were checked; counts and times go to `result`. Points and
-  // lines have no 3D yet. If `points` is false, find_points can find them later.
-  void extract(const RgbdFrame& frame, const DepthSampler& depth, bool points, Arena& scratch,
-               FrameFeatures& features, TrackResult& result);
-  // P1 for the last frame, unless its points were searched before.
-  void find_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                   TrackResult& result) const;
-  // P4 for the last frame, whose points were found, unless they were described before.
-  void describe_points(Arena& scratch, PointFeatures& points, TrackResult& result) const;
-  // Computes what a reference needs besides lines: lift_points, and samples of surfaces. Call it when the
-  // best estimate of the motion during the exposure is known.
-  void lift(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
-            FrameFeatures& features) const;
+  // Makes the grey, undistorted pyramid of a colour image, whose size was checked. All functions below work
+  // on it. Returns the mean brightness.
+  double prepare_image(const StageContext& context, const ColourView& colour);
+  // L1, and P1 where `with_points`. Points and lines have no 3D yet.
+  void detect(const StageContext& context, const DepthSampler& depth, bool with_points,
+              FrameFeatures& features);
+  // P1, unless the points were searched before.
+  void find_points(const StageContext& context, const DepthSampler& depth, PointFeatures& points) const;
+  // P4 for points that were found, unless they were described before.
+  void describe_points(const StageContext& context, PointFeatures& points) const;
+  // Computes what a reference needs besides lines: P2 and P3 with the depth mask of each keypoint, and
+  // samples of surfaces. Call it when the best estimate of the motion during the exposure is known.
+  void lift(const StageContext& context, const DepthSampler& depth, FrameFeatures& features) const;
   // L2 and L3, for the motion during the exposure. The segments that get 3D move to the front and are
   // described. A second call, with a better motion, lifts these again if depth and colour have different
   // exposures; a segment that cannot be lifted again keeps its old line.
-  void lift_lines(const DepthSampler& depth, const Exposure& exposure, const NoiseScales& noise,
-                  Arena& scratch, LineFeatures& lines, TrackResult& result) const;
+  void lift_lines(const StageContext& context, const DepthSampler& depth, const Exposure& exposure,
+                  LineFeatures& lines) const;
 
   // Image of the last frame, which matching registers against.
   const Pyramid& pyramid() const { return pyramid_; }
@@ -105,24 +100,12 @@ class FeatureExtraction {
     reserve_detection(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
-  bool has_points() const { return config_->features != Features::kLines; }
-  void make_gray(const ColourView& colour, const ImageView<std::uint8_t>& gray) const;
-  void prepare_image(const ColourView& colour, Arena& scratch);
-  void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points,
-                     TrackResult& result) const;
-  void find_segments(Arena& scratch, LineFeatures& lines, TrackResult& result);
-  // Moves the segments that have 3D to the front, with their lines and descriptors.
-  void lift_segments(const DepthSampler& depth, const NoiseScales& noise, Arena& scratch,
-                     LineFeatures& lines) const;
-  void lift_segments_again(const DepthSampler& depth, const NoiseScales& noise, LineFeatures& lines) const;
-  bool lift_line(const DepthSampler& depth, const NoiseScales& noise, const Segment& segment,
-                 Line3d& line) const;
-  // P2 and P3, and the depth mask of each keypoint.
-  void lift_points(const DepthSampler& depth, const NoiseScales& noise, PointFeatures& points) const;
+  static void make_gray(const StageContext& context, const ColourView& colour,
+                        const ImageView<std::uint8_t>& gray);
+  void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points) const;
+  void detect_segments(Arena& scratch, LineFeatures& lines);
+  void lift_segments(const StageContext& context, const DepthSampler& depth, LineFeatures& lines) const;
 
-  CameraModel camera_;
-  // Empty until init: the code that constructs a Config stays in the user's program
-  std::optional<Config> config_;
   UndistortionMap map_;
   Pyramid pyramid_;
   SegmentSearch segment_search_;

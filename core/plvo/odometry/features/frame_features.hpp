@@ -9,6 +9,7 @@
 #include "plvo/lines/line_features.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
+#include "plvo/odometry/track_result.hpp"
 #include "plvo/points/keypoint.hpp"
 #include "plvo/surfaces/surface_features.hpp"
 
@@ -27,11 +28,26 @@ struct FrameFeatures {
     surfaces.samples.clear();
   }
 
+  // The number of points and lines with 3D.
+  int count_3d() const { return static_cast<int>(points.keypoints.size() + lines.count_3d); }
+
   constexpr void allocate(Arena& memory, const Limits& limits) {
     points.allocate(memory, limits.keypoints);
     lines.allocate(memory, limits.segments);
     surfaces.allocate(memory, limits.surfaces);
   }
 };
+
+// Counts of a frame's features, without matches. Every keypoint has depth: the detector skips the others.
+inline FeatureCounts count(const PointFeatures& points) {
+  return {.detected = points.candidates,
+          .dropped = static_cast<int>(points.keypoints.dropped()),
+          .with_depth = static_cast<int>(points.keypoints.size())};
+}
+inline FeatureCounts count(const LineFeatures& lines) {
+  return {.detected = static_cast<int>(lines.segments.size() + lines.segments.dropped()),
+          .dropped = static_cast<int>(lines.segments.dropped()),
+          .with_depth = static_cast<int>(lines.count_3d)};
+}
 
 }  // namespace plvo

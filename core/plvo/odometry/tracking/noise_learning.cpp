@@ -107,7 +107,7 @@ double surface_scale(const SurfaceConstraints& surfaces, const Se3& T_current_re
   const ScratchScope scope(scratch);
   FixedVector<double> residuals(scratch.take<double>("residuals", surfaces.size()));
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const double s = surfaces.mahalanobis_squared(i, T_current_reference, kFarthestSurface);
+    const double s = surfaces.mahalanobis_squared(i, T_current_reference);
     if (s < kFarthestSurface) residuals.push_back(s);
   }
   return median_over(residuals, kMedian1);

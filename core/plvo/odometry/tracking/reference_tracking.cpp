@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "plvo/motion/prior_constraint.hpp"
-#include "plvo/odometry/stage_timer.hpp"
 
 namespace plvo {
 namespace {
@@ -33,27 +32,26 @@ double weight_of_one(std::size_t references) { return 2 / (1 + static_cast<doubl
 // The bounds on the SDs are then this large, so that no estimate fails by them.
 constexpr double kUnboundedSigma = 1e6;
 
-// Order of the constraint sets of an estimate: points and lines of each reference, then the propagated prior,
-// then surfaces. Inliers of points and lines are counted by this index; surfaces are never looked up by
-// index.
+// Order of the constraint sets of an estimate: points and lines of each reference.
 constexpr std::size_t points_set(std::size_t reference) { return 2 * reference; }
 constexpr std::size_t lines_set(std::size_t reference) { return 2 * reference + 1; }
 constexpr std::size_t matched_sets(std::size_t references) { return 2 * references; }
-static_assert(matched_sets(kMaxReferences) < kInformedKinds, "and the sensed motion");
+static_assert(matched_sets(kMaxReferences) == kMaxConstraintSets);
 
-void count(const MotionEstimate& estimate, std::span<ReferenceTracks> tracks, TrackResult& result) {
-  result.points.matched = result.points.inliers = result.lines.matched = result.lines.inliers = 0;
+void count_matches(std::span<ReferenceTracks> tracks, TrackedMotion& tracked) {
+  const MotionEstimate& estimate = tracked.motion;
+  tracked.points = tracked.lines = {};
   for (std::size_t r = 0; r < tracks.size(); ++r) {
     const int points = estimate.inliers[points_set(r)];
     const int lines = estimate.inliers[lines_set(r)];
     tracks[r].inliers = points + lines;
-    result.points.matched += static_cast<int>(tracks[r].points.matches.size());
-    result.lines.matched += static_cast<int>(tracks[r].lines.size());
-    result.points.inliers += points;
-    result.lines.inliers += lines;
+    tracked.points.matched += static_cast<int>(tracks[r].points.matches.size());
+    tracked.lines.matched += static_cast<int>(tracks[r].lines.size());
+    tracked.points.inliers += points;
+    tracked.lines.inliers += lines;
   }
-  result.ransac_iterations += estimate.ransac.iterations;
-  result.lm_iterations += estimate.lm.iterations;
+  tracked.ransac_iterations += estimate.ransac.iterations;
+  tracked.lm_iterations += estimate.lm.iterations;
 }
 
 // Constraints from the matches with each reference; empty for a missing reference.
@@ -107,14 +105,9 @@ NuisanceParameters nuisance_parameters(const NoiseConfig& config, const Exposure
 }
 
 TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, const Exposure& exposure) {
-  const Config& config = current.extraction.config();
-  return {current.extraction.camera().pinhole,
-          config.points,
-          current.extraction.pyramid(),
-          depth,
-          exposure,
-          current.noise,
-          config.executor};
+  const StageContext& context = current.context;
+  return {context.camera.pinhole, context.config.points,  current.extraction.pyramid(), depth, exposure,
+          context.noise,          context.config.executor};
 }
 
 }  // namespace
@@ -126,90 +119,65 @@ std::size_t latest_of(std::span<const Reference> references) {
   return latest;
 }
 
-bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
-                      const CameraModel& camera, const Se3& T_current_base) {
-  // Nearly always the inliers are that share of all features, in view or not.
-  std::size_t all = 0;
-  for (const Reference& reference : references)
-    all += reference.features->points.keypoints.size() + reference.features->lines.count_3d;
-  if (inliers >= share * static_cast<double>(all)) return true;
-  int in_view = 0;
-  for (const Reference& reference : references) {
-    const Se3 T_current_reference = T_current_base * reference.pose.T_reference_base.inverse();
-    const auto is_seen = [&](const Vector3& p) {
-      const Vector3 here = T_current_reference * p;
-      if (!(here.z() > kNearestSeen_m)) return false;
-      const Vector2 at = project(camera.pinhole, here);
-      return at.x() >= 0 && at.y() >= 0 && at.x() <= camera.width - 1 && at.y() <= camera.height - 1;
-    };
-    const PointFeatures& points = reference.features->points;
-    for (const Point3d& point : points.points.first(points.keypoints.size()))
-      in_view += point.p.z() > 0 && is_seen(point.p) ? 1 : 0;
-    for (const Line3d& line : reference.features->lines.lines_3d())
-      in_view += is_seen(0.5 * (line.a + line.b)) ? 1 : 0;
-  }
-  return inliers >= share * in_view;
-}
-
 // Sets the poses relative to the first reference, and that of the last good frame, which may not be a
 // reference.
-ReferenceTracking::Indices ReferenceTracking::set_poses(std::span<const Reference> references,
-                                                        const MotionReference& last,
-                                                        MotionReferences& poses) {
-  Indices at{latest_of(references), kMaxReferences};
+void ReferenceTracking::set_poses(std::span<const Reference> references, const MotionReference& last,
+                                  Association& association) {
+  association.references = references.size();
+  association.chained = references[0].chained;
+  association.latest = latest_of(references);
   const Se3 T_base_first = references[0].pose.T_reference_base.inverse();
-  poses[kMaxReferences] = {last.T_reference_base * T_base_first, last.covariance};
+  association.poses[kMaxReferences] = {last.T_reference_base * T_base_first, last.covariance};
   for (std::size_t r = 0; r < references.size(); ++r) {
-    if (r > 0) poses[r] = references[r].pose;
-    if (references[r].prior.reference_is_last) at.last_frame = r;
+    if (r > 0) association.poses[r] = references[r].pose;
+    if (references[r].prior.reference_is_last) association.last_frame = r;
   }
-  return at;
 }
 
-void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, const MotionReferences& poses,
-                              const CurrentFrame& current, const Indices& at, const MotionStart& start,
-                              const LmOptions& lm, Arena& scratch, TrackedMotion& tracked,
-                              TrackResult& result) {
-  const Config& config = current.extraction.config();
-  const StageTimer timer(config, result, Stage::kMotion);
+void ReferenceTracking::estimate(const Association& association, const CurrentFrame& current,
+                                 const MotionStart& start, const LmOptions& lm, TrackedMotion& tracked) {
+  const Config& config = current.context.config;
+  Arena& scratch = current.context.scratch;
+  const StageTimer timer(current.context, Stage::kMotion);
   const ScratchScope scope(scratch);
+  const auto features = std::span(association.features).first(association.references);
   FeatureConstraints constraints = constraints_of(features, tracks_, config.noise, scratch);
-  std::array<ConstraintSet*, kMaxConstraintKinds> sets{};
+  std::array<ConstraintSet*, kMaxConstraintSets> sets{};
   for (std::size_t r = 0; r < features.size(); ++r) {
     sets[points_set(r)] = &constraints.points[r];
     sets[lines_set(r)] = &constraints.lines[r];
   }
-  std::size_t set_count = matched_sets(features.size());
-  const PropagatedPrior& sensed = current.sensed;
+  std::array<CostTerm*, kMaxTerms - kMaxConstraintSets> others{};
+  std::size_t other_count = 0;
+  const PropagatedPrior& sensed = current.predicted.sensed;
   MotionConfig motion_config = config.motion;
-  std::uint8_t prior_flag = 0;
-  PriorConstraint prior(sensed.T_current_last(), sensed.covariance(), {&prior_flag, 1});
-  if (sensed.known()) {
-    prior.set_reference(at.last_frame, 0);
-    sets[set_count++] = &prior;
+  PriorConstraint prior(sensed.T_current_last(), sensed.covariance());
+  if (sensed.known() && association.chained) {
+    prior.set_reference(association.last_frame, 0);
+    others[other_count++] = &prior;
     motion_config.max_sigma_m = motion_config.max_sigma_rad = kUnboundedSigma;
   }
   for (SurfaceConstraints& set : constraints.surfaces)
-    if (set.size() > 0) sets[set_count++] = &set;
+    if (set.size() > 0) others[other_count++] = &set;
 
   tracked.exposure = {};
   tracked.observed = {};
-  estimate_motion(std::span(sets).first(set_count), poses, motion_config, lm, config.seed, start, scratch,
-                  tracked.motion);
+  estimate_motion(std::span(sets).first(matched_sets(features.size())), std::span(others).first(other_count),
+                  association.poses, motion_config, lm, config.seed, start, scratch, tracked.motion);
   for (std::size_t r = 0; r < features.size(); ++r) {
     const std::span<const std::uint8_t> points = constraints.points[r].inliers();
     const std::span<const std::uint8_t> lines = constraints.lines[r].inliers();
     std::copy(points.begin(), points.end(), tracks_[r].point_inliers.begin());
     std::copy(lines.begin(), lines.end(), tracks_[r].line_inliers.begin());
   }
-  count(tracked.motion, std::span(tracks_).first(features.size()), result);
-  if (tracked.motion.status == StatusCode::kOk && config.noise.learning_rate > 0) {
-    const std::size_t latest = at.latest;
+  count_matches(std::span(tracks_).first(features.size()), tracked);
+  if (tracked.ok() && config.noise.learning_rate > 0) {
+    const std::size_t latest = association.latest;
     // The residuals use the poses as known before: with adjusted poses they would be smaller than the noise.
-    const Se3 T_current_latest = motions_to_current(tracked.motion.T_current_reference, poses)[latest];
-    const Pinhole& pinhole = current.extraction.camera().pinhole;
-    tracked.observed = residual_scales(pinhole, constraints.points[latest], constraints.lines[latest],
-                                       T_current_latest, scratch);
+    const Se3 T_current_latest =
+        motions_to_current(tracked.motion.T_current_reference, association.poses)[latest];
+    tracked.observed = residual_scales(current.context.camera.pinhole, constraints.points[latest],
+                                       constraints.lines[latest], T_current_latest, scratch);
     tracked.observed.surfaces = surface_scale(constraints.surfaces[latest], T_current_latest, scratch);
     note_nuisance(start.shared, tracked.motion.shared, tracked.observed);
   }
@@ -217,17 +185,16 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
 
 // Not inlined: its variables are off the stack when the motion is solved for.
 [[gnu::noinline]] bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current,
-                                                Arena& scratch, Se3& T_current_reference,
-                                                TrackResult& result) const {
-  const Config& config = current.extraction.config();
-  const CameraModel& camera = current.extraction.camera();
+                                                Se3& T_current_reference) const {
+  const CameraModel& camera = current.context.camera;
+  Arena& scratch = current.context.scratch;
   if (!alignment_.holds(reference.features->stamp_ns)) return false;
-  const StageTimer timer(config, result, Stage::kMatching);
+  const StageTimer timer(current.context, Stage::kMatching);
   const ScratchScope scope(scratch);
   const PointFeatures& features = reference.features->points;
   const std::span<AlignmentWindow> storage = SparseAlignment::take_windows(scratch);
   const Pyramid& pyramid = current.extraction.pyramid();
-  Se3 T = reference.prior.T_current_reference;
+  Se3 T = reference.T_current_predicted;
   AlignmentStep step;
   const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
     for (int round = 0; round < rounds; ++round) {
@@ -249,77 +216,89 @@ void ReferenceTracking::solve(std::span<const RowTimeCompensation> features, con
   return true;
 }
 
-void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, double radius_px,
-                             Arena& scratch, TrackedMotion& tracked, TrackResult& result) {
-  const Config& config = current.extraction.config();
-  const CameraModel& camera = current.extraction.camera();
-  const ScratchScope scope(scratch);
-  const Se3& T_predicted = reference.prior.T_current_reference;
-  current.extraction.lift_lines(current.depth, current_exposure(camera, reference.prior, T_predicted),
-                                current.noise, scratch, current.features.lines, result);
-  const RowTimeCompensation features = compensate_row_times(camera, reference.prior, T_predicted,
-                                                            *reference.features, current.features, scratch);
-  {
-    const StageTimer timer(config, result, Stage::kMatching);
-    const DepthSampler depth = current.depth.with(features.current_exposure);
-    track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
-                        features.reference_points, current.features.points, T_predicted, radius_px, scratch,
-                        tracks_[0].points);
-    LineMatchConfig gates;
-    gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
-    match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
-                          features.reference_lines, current.features.lines, T_predicted, gates, scratch,
-                          tracks_[0].lines);
-    tracks_[0].surfaces.clear();  // projecting them needs a good estimate of the motion
-  }
-  // Without registration this is the whole estimate, otherwise only its start.
-  const bool whole = !config.points.registered;
-  const NuisanceParameters shared =
-      whole ? nuisance_parameters(config.noise, features.current_exposure, current.noise)
-            : NuisanceParameters{};
-  MotionReferences poses;
-  const Indices at = set_poses({&reference, 1}, current.last, poses);
-  solve({&features, 1}, poses, current, at, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, scratch,
-        tracked, result);
-  if (tracked.motion.status == StatusCode::kOk)
-    tracked.exposure = current_exposure(camera, reference.prior, tracked.motion.T_current_reference);
+void ReferenceTracking::associate_by_descriptor(const Reference& reference, const CurrentFrame& current,
+                                                const Se3& T_predicted, double radius_px,
+                                                Association& association) {
+  const StageContext& context = current.context;
+  const CameraModel& camera = context.camera;
+  set_poses({&reference, 1}, current.predicted.last, association);
+  current.extraction.lift_lines(
+      context, current.depth, current_exposure(camera, reference.prior, T_predicted), current.features.lines);
+  RowTimeCompensation& features = association.features[0];
+  features = compensate_row_times(camera, reference.prior, T_predicted, *reference.features, current.features,
+                                  context.scratch);
+  const StageTimer timer(context, Stage::kMatching);
+  const DepthSampler depth = current.depth.with(features.current_exposure);
+  track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
+                      features.reference_points, current.features.points, T_predicted, radius_px,
+                      context.scratch, tracks_[0].points);
+  LineMatchConfig gates;
+  gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
+  match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
+                        features.reference_lines, current.features.lines, T_predicted, gates, context.scratch,
+                        tracks_[0].lines);
+  tracks_[0].surfaces.clear();  // projecting them needs a good estimate of the motion
 }
 
-void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
-                               const Se3& T_current_base, Arena& scratch, TrackedMotion& tracked,
-                               TrackResult& result) {
-  const Config& config = current.extraction.config();
-  const CameraModel& camera = current.extraction.camera();
-  const ScratchScope scope(scratch);
-  MotionReferences poses;
-  const Indices at = set_poses(references, current.last, poses);
-  const MotionsToCurrent motions = motions_to_current(T_current_base, poses);
-  const Exposure exposure = current_exposure(camera, references[at.latest].prior, motions[at.latest]);
+void ReferenceTracking::associate_by_motion(std::span<const Reference> references,
+                                            const CurrentFrame& current, const Se3& T_current_base,
+                                            Association& association) {
+  const StageContext& context = current.context;
+  const CameraModel& camera = context.camera;
+  set_poses(references, current.predicted.last, association);
+  const MotionsToCurrent motions = motions_to_current(T_current_base, association.poses);
+  const Exposure exposure =
+      current_exposure(camera, references[association.latest].prior, motions[association.latest]);
   const DepthSampler depth = current.depth.with(exposure);
-  current.extraction.lift_lines(current.depth, exposure, current.noise, scratch, current.features.lines,
-                                result);
-  std::array<RowTimeCompensation, kMaxReferences> features;
+  current.extraction.lift_lines(context, current.depth, exposure, current.features.lines);
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
-    features[r] = compensate_row_times(camera, reference.prior, motions[r], *reference.features,
-                                       current.features, scratch);
-    const StageTimer timer(config, result, Stage::kMatching);
-    track_by_motion(view_of(current, depth, exposure), reference.features->points,
-                    features[r].reference_points, motions[r], tracks_[r].points);
+    RowTimeCompensation& features = association.features[r];
+    features = compensate_row_times(camera, reference.prior, motions[r], *reference.features,
+                                    current.features, context.scratch);
+    const StageTimer timer(context, Stage::kMatching);
+    track_by_motion(view_of(current, depth, exposure), reference.features->points, features.reference_points,
+                    motions[r], tracks_[r].points);
     LineMatchConfig gates;
     gates.max_offset_px = kGuidedOffset_px;
     gates.max_angle_rad = kGuidedAngle_rad;
-    match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features[r].reference_lines,
-                          current.features.lines, motions[r], gates, scratch, tracks_[r].lines);
-    track_surfaces(depth, camera.pinhole, current.noise.surfaces, features[r].reference_surfaces, motions[r],
+    match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features.reference_lines,
+                          current.features.lines, motions[r], gates, context.scratch, tracks_[r].lines);
+    track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
                    tracks_[r].surfaces);
   }
-  solve(std::span(features).first(references.size()), poses, current, at,
-        {&T_current_base, nuisance_parameters(config.noise, exposure, current.noise), true}, kFineSolve,
-        scratch, tracked, result);
-  if (tracked.motion.status == StatusCode::kOk)
+}
+
+void ReferenceTracking::find(const Reference& reference, const CurrentFrame& current, const Se3& T_predicted,
+                             double radius_px, TrackedMotion& tracked) {
+  const StageContext& context = current.context;
+  const ScratchScope scope(context.scratch);
+  Association association;
+  associate_by_descriptor(reference, current, T_predicted, radius_px, association);
+  // Without registration this is the whole estimate, otherwise only its start.
+  const bool whole = !context.config.points.registered;
+  const NuisanceParameters shared =
+      whole
+          ? nuisance_parameters(context.config.noise, association.features[0].current_exposure, context.noise)
+          : NuisanceParameters{};
+  estimate(association, current, {&T_predicted, shared}, whole ? kFineSolve : kRoughSolve, tracked);
+  if (tracked.ok())
+    tracked.exposure = current_exposure(context.camera, reference.prior, tracked.motion.T_current_reference);
+}
+
+void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
+                               const Se3& T_current_base, TrackedMotion& tracked) {
+  const StageContext& context = current.context;
+  const ScratchScope scope(context.scratch);
+  Association association;
+  associate_by_motion(references, current, T_current_base, association);
+  const std::size_t latest = association.latest;
+  const NuisanceParameters shared =
+      nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);
+  estimate(association, current, {&T_current_base, shared, true}, kFineSolve, tracked);
+  if (tracked.ok())
     tracked.exposure =
-        current_exposure(camera, references[at.latest].prior, tracked.motion.motions[at.latest]);
+        current_exposure(context.camera, references[latest].prior, tracked.motion.motions[latest]);
 }
 
 }  // namespace plvo

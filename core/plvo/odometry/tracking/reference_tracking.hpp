@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figure 1, boxes P4, L4, 5 and 6: the motion from the references to the current frame. A first motion, from
 // one reference, comes from align(), by the images, or if that fails from find(), by descriptors. Then
-// refine() registers the features of all references with it and solves for one motion over all of them.
+// refine() registers the features of all references with it and solves for one motion over all of them. Both
+// find() and refine() associate features and estimate a motion from them; motion_search.hpp calls them.
 #pragma once
 
 #include <array>
@@ -11,10 +12,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/motion/motion_estimator.hpp"
 #include "plvo/odometry/config.hpp"
-#include "plvo/odometry/features/feature_extraction.hpp"
-#include "plvo/odometry/features/frame_features.hpp"
-#include "plvo/odometry/propagated_prior.hpp"
-#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/line_tracking.hpp"
 #include "plvo/odometry/tracking/noise_learning.hpp"
 #include "plvo/odometry/tracking/point_tracking.hpp"
@@ -24,21 +22,8 @@
 
 namespace plvo {
 
-// A frame to match with, and what is known beforehand. pose: relative to the base, the first of the
-// references.
-struct Reference {
-  const FrameFeatures* features = nullptr;
-  PairPrior prior;
-  MotionReference pose;
-};
-
 // Index of the reference with the latest stamp.
 std::size_t latest_of(std::span<const Reference> references);
-
-// Whether the number of inliers is at least this share of the features that the motion from the base puts
-// into the image: points, and lines by their midpoints, of all references.
-bool is_share_of_view(int inliers, double share, std::span<const Reference> references,
-                      const CameraModel& camera, const Se3& T_current_base);
 
 // Tracks of one reference in the current frame.
 struct ReferenceTracks {
@@ -61,20 +46,21 @@ struct ReferenceTracks {
   }
 };
 
-// The frame that is being tracked.
-struct CurrentFrame {
-  FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
-  const FeatureExtraction& extraction;  // of its image; holds camera and configuration
-  const DepthSampler& depth;
-  const NoiseScales& noise;
-  const PropagatedPrior& sensed;  // motion since the last good frame
-  const MotionReference& last;    // pose of the last good frame, relative to the base
+struct MatchCounts {
+  int matched = 0;
+  int inliers = 0;
 };
 
 struct TrackedMotion {
   MotionEstimate motion;  // from the base
   Exposure exposure;      // motion of the camera during the exposure of the current frame
   NoiseScales observed;   // observed scales of the noise
+  MatchCounts points, lines;
+  int ransac_iterations = 0, lm_iterations = 0;  // of all estimates that were tried
+  bool returned = false;                         // the base is a keyframe from before a loss
+
+  bool ok() const { return motion.status == StatusCode::kOk; }
+  int inliers() const { return points.inliers + lines.inliers; }
 };
 
 class ReferenceTracking {
@@ -105,31 +91,40 @@ class ReferenceTracking {
   void keep_image(const Pyramid& pyramid, std::int64_t stamp_ns) { alignment_.keep(pyramid, stamp_ns); }
 
   // Finds T_current_reference of the reference whose image was kept, by sparse image alignment, from its
-  // prior. Returns false for any other reference, and where the alignment cannot be trusted.
-  bool align(const Reference& reference, const CurrentFrame& current, Arena& scratch,
-             Se3& T_current_reference, TrackResult& result) const;
+  // prediction. Returns false for any other reference, and where the alignment cannot be trusted.
+  bool align(const Reference& reference, const CurrentFrame& current, Se3& T_current_reference) const;
   // Finds T_current_reference of one reference; features are searched within radius_px of the positions that
-  // its prior predicts. Without registration this is the whole estimate.
-  void find(const Reference& reference, const CurrentFrame& current, double radius_px, Arena& scratch,
-            TrackedMotion& tracked, TrackResult& result);
+  // T_predicted puts them at. Without registration this is the whole estimate.
+  void find(const Reference& reference, const CurrentFrame& current, const Se3& T_predicted, double radius_px,
+            TrackedMotion& tracked);
   // Estimates the motion from the base with all references at once (1 … Limits::references), registered from
   // T_current_base.
   void refine(std::span<const Reference> references, const CurrentFrame& current, const Se3& T_current_base,
-              Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+              TrackedMotion& tracked);
 
   // Tracks of the last call, in the order of its references.
   const ReferenceTracks& tracks(std::size_t reference) const { return tracks_[reference]; }
 
  private:
-  // Indices into the poses: the latest reference, and the last good frame.
-  struct Indices {
-    std::size_t latest, last_frame;
+  // The references as their matches see them (tracks_), ready for an estimate. The features lie in the
+  // scratch.
+  struct Association {
+    std::array<RowTimeCompensation, kMaxReferences> features;
+    std::size_t references = 0;
+    MotionReferences poses;
+    bool chained = true;
+    // Indices into the poses: the latest reference, and the last good frame.
+    std::size_t latest = 0, last_frame = kMaxReferences;
   };
-  static Indices set_poses(std::span<const Reference> references, const MotionReference& last,
-                           MotionReferences& poses);
-  void solve(std::span<const RowTimeCompensation> features, const MotionReferences& poses,
-             const CurrentFrame& current, const Indices& at, const MotionStart& start, const LmOptions& lm,
-             Arena& scratch, TrackedMotion& tracked, TrackResult& result);
+  static void set_poses(std::span<const Reference> references, const MotionReference& last,
+                        Association& association);
+  void associate_by_descriptor(const Reference& reference, const CurrentFrame& current,
+                               const Se3& T_predicted, double radius_px, Association& association);
+  void associate_by_motion(std::span<const Reference> references, const CurrentFrame& current,
+                           const Se3& T_current_base, Association& association);
+  void estimate(const Association& association, const CurrentFrame& current, const MotionStart& start,
+                const LmOptions& lm, TrackedMotion& tracked);
+
   std::array<ReferenceTracks, kMaxReferences> tracks_;
   SparseAlignment alignment_;
 };

@@ -4,27 +4,19 @@
 namespace plvo {
 namespace {
 
-// A mean velocity over a longer interval does not predict that during the exposure.
-constexpr double kLongestInterval_s = 0.2;
-
-// Velocity since the last good frame, given this motion from the reference.
+// Mean velocity since the last good frame, given this motion from the reference.
 Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
-  if (prior.velocity_known) return prior.velocity;
-  if (!(prior.seconds_since_last > 0 && prior.seconds_since_last <= kLongestInterval_s))
-    return Vector6::Zero();
-  return boxminus(T_current_reference * prior.T_reference_last, Se3{}) / prior.seconds_since_last;
+  if (prior.recent) return *prior.recent;
+  if (!describes_exposure(prior.since_last_ns)) return Vector6::Zero();
+  return mean_velocity(T_current_reference * prior.T_reference_last,
+                       static_cast<double>(prior.since_last_ns) * 1e-9);
 }
 
+// At the reference the mean of the intervals before and after it counts.
 Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
-  if (!prior.reference_velocity_known) return recent;
-  if (!prior.reference_is_last) return prior.reference_velocity;
-  return 0.5 * (prior.reference_velocity + recent);
-}
-
-Vector6 current_velocity(const PairPrior& prior, const Vector6& recent) {
-  if (!prior.last_velocity_known) return recent;
-  constexpr double kExtrapolated = 0.5;
-  return recent + 0.5 * kExtrapolated * (recent - prior.last_velocity);
+  if (!prior.reference.known()) return recent;
+  if (!prior.reference_is_last) return prior.reference.value;
+  return 0.5 * (prior.reference.value + recent);
 }
 
 Exposure reference_exposure(const CameraModel& camera, const PairPrior& prior,
@@ -57,7 +49,7 @@ std::span<const SurfaceSample> carried(const Exposure& exposure, std::span<const
 
 Exposure current_exposure(const CameraModel& camera, const PairPrior& prior, const Se3& T_current_reference) {
   const Vector6 recent = recent_velocity(prior, T_current_reference);
-  return {camera, current_velocity(prior, recent), prior.depth_after_colour_s};
+  return {camera, velocity_at_exposure(recent, prior.last), prior.depth_after_colour_s};
 }
 
 RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, const PairPrior& prior,

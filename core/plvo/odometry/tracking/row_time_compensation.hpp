@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Removes the effect of a rolling shutter from the features of a pair of frames. This needs the camera's
 // velocity during each exposure, which follows from the motion between them. So the compensation is repeated
-// for every estimate of the motion. The reference has the mean velocity of the intervals before and after it.
-// The current frame has the velocity since the last good frame plus half of the extrapolated change; the full
-// change would add its noise too. Only the difference of the two matters: a common velocity shifts the rows
-// of both images alike.
+// for every estimate of the motion (motion_model.hpp). Only the difference of the two velocities matters: a
+// common one shifts the rows of both images alike.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 
 #include "plvo/base/arena.hpp"
@@ -14,23 +14,19 @@
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
+#include "plvo/odometry/motion_model.hpp"
 
 namespace plvo {
 
 // What is known of a pair before its features are matched.
 struct PairPrior {
-  Se3 T_current_reference;                       // the predicted motion
-  Se3 T_reference_last;                          // of the last good frame, which may be the reference itself
-  double seconds_since_last = 0;                 // from the last good frame to the current one
-  Vector6 reference_velocity = Vector6::Zero();  // per second, as in exposure.hpp
-  bool reference_velocity_known = false;
+  Se3 T_reference_last;            // of the last good frame, which may be the reference itself
+  std::int64_t since_last_ns = 0;  // from the last good frame to the current one
+  Velocity reference, last;        // of the reference, and of the last good frame
   bool reference_is_last = true;
-  Vector6 last_velocity = Vector6::Zero();  // of the last good frame
-  bool last_velocity_known = false;
+  // Mean velocity since the last good frame, if it is known without the motion from the reference.
+  std::optional<Vector6> recent;
   double depth_after_colour_s = 0;  // of the current frame, as in exposure.hpp
-  // Velocity of the current frame, if it is known without the motion from the reference.
-  Vector6 velocity = Vector6::Zero();
-  bool velocity_known = false;
 };
 
 struct RowTimeCompensation {

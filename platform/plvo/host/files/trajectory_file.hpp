@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of the files that plvo writes; docs/formats.md describes them to the user. The first is a comment:
-// what the columns are, and in which frames (frame_names.hpp).
+// Lines of the files that plvo writes; docs/user/outputs.md describes them to the user. The first is a
+// comment: what the columns are, and in which frames (frame_names.hpp).
 //   trajectory  stamp tx ty tz qx qy qz qw                        TUM; T_world_camera
 //   covariance  stamp c00 c01 … c55                               36 numbers, row-major, of the pose
 //   motions     stamp reference_stamp tx ty tz qx qy qz qw c00 …  T_camera_reference with its covariance

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""RGB-D visual odometry from points and lines. docs/python.md has examples."""
+"""RGB-D visual odometry from points and lines. share/doc/plvo/user/python.md has examples."""
 import json as _json
 import os as _os
 import time as _time

@@ -155,7 +155,8 @@ Status builtin_calibration(std::string_view name, Calibration& calibration) {
   if (name == "tum-fr1") {
     camera.pinhole = {517.306408, 516.469215, 318.643040, 255.313989};
     camera.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
-    // In these recordings, the stamp of depth is some 15 ms later than its exposure (docs/sensors.md).
+    // In these recordings, the stamp of depth is some 15 ms later than its exposure
+    // (docs/decisions/tum_fr1_delay.md).
     camera.depth_timing = {.known = true, .delay_s = -0.015, .readout_s = kKinectReadout_s};
   } else if (name == "tum-fr2") {
     camera.pinhole = {520.908620, 521.007327, 325.141442, 249.701764};

@@ -51,7 +51,7 @@ Status FrameFit::choose_registration(const ImageSize& colour, const ImageSize& d
   if (camera.known)
     return {StatusCode::kInvalidArgument,
             fmt::format("colour is {}x{} but depth is {}x{}; where they differ, say depth's own camera: "
-                        "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
+                        "depth_fx depth_fy depth_cx depth_cy (share/doc/plvo/user/recordings.md)",
                         colour.width, colour.height, depth.width, depth.height)};
   // Only with a size is the calibration known to be that of colour: one for a smaller depth image would pass
   // unnoticed.
@@ -60,8 +60,8 @@ Status FrameFit::choose_registration(const ImageSize& colour, const ImageSize& d
     return {};
   return {StatusCode::kInvalidArgument,
           fmt::format("colour is {}x{} but depth is {}x{}; export colour at the size of depth, or say in the "
-                      "calibration width and height of colour, where both have one view, or depth's camera: "
-                      "depth_fx depth_fy depth_cx depth_cy (docs/formats.md)",
+                      "calibration its width and height, if both have one view, or depth's camera: "
+                      "depth_fx depth_fy depth_cx depth_cy (share/doc/plvo/user/recordings.md)",
                       colour.width, colour.height, depth.width, depth.height)};
 }
 

@@ -93,9 +93,9 @@ Status read_lists(const fs::path& list, int columns, std::vector<StampedFile>* l
     if (status.code() != StatusCode::kNotFound) return status;
     return {
         StatusCode::kNotFound,
-        fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt ('stamp file' per line), "
+        fmt::format("cannot read {}; a sequence needs rgb.txt and depth.txt, "
                     "associations.txt, or numbered images, as rgb/0.png and depth/0.png, or rgb_0.png and "
-                    "depth_0.png (docs/formats.md)",
+                    "depth_0.png (share/doc/plvo/user/recordings.md)",
                     list.string())};
   }
   std::vector<int> lines;

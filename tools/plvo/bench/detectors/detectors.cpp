@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo_bench detectors: compares our segments and keypoints with those of OpenCV's detectors. See
-// docs/bench.md.
+// docs/results/README.md.
 #include <fmt/core.h>
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo_bench growth: measures how the cost of a frame grows with the image size, with the capacities for
 // points and segments and on images that are hard for a detector, and how far the slowest frames of a
-// sequence are from its median. See docs/performance.md.
+// sequence are from its median. See docs/developer/performance.md.
 #include <fmt/core.h>
 
 #include <memory>

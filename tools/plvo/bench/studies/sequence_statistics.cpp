@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the data of sequences, recorded or simulated, with the same estimator for both: the residual of
 // each frame warped into the next one by the true pose, the noise of depth relative to planes, holes, the
-// noise of grey values, and the drift of brightness. docs/simulator.md shows the results.
+// noise of grey values, and the drift of brightness. docs/decisions/simulator_realism.md shows the results.
 //   sequence_statistics DIR…        TUM folders with calibration.txt and groundtruth.txt; a Markdown table on
 //   standard output
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates the noise of a recording's ground truth from estimates with mutually independent errors.
-// docs/evaluation.md shows the results.
+// docs/decisions/truth_noise.md shows the results.
 //   truth_noise GROUNDTRUTH TRAJECTORY TRAJECTORY…
 // for every pair of trajectories, from frame to frame;
 //   truth_noise --returns SEQUENCE CAMERA_MODEL [TRAJECTORY]

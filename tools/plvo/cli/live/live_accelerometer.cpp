@@ -60,8 +60,8 @@ void LiveAccelerometer::stop() {
   if (sensor_) sensor_->stop();
 }
 
-MotionPrior LiveAccelerometer::prior(std::int64_t stamp_ns, std::int64_t arrival_ns) {
-  if (!sensor_) return {};
+ImuIntegrator* LiveAccelerometer::until(std::int64_t stamp_ns, std::int64_t arrival_ns) {
+  if (!sensor_) return nullptr;
   clock_.frame_arrived(stamp_ns, arrival_ns);
   std::vector<KinectReading> readings;
   sensor_->take(readings);
@@ -69,7 +69,7 @@ MotionPrior LiveAccelerometer::prior(std::int64_t stamp_ns, std::int64_t arrival
     const ImuSample sample = {*clock_.stamp_of(reading.host_ns), reading.force};
     if (integrator_.add_acceleration(sample)) keep(sample);
   }
-  return integrator_.prior(stamp_ns);
+  return &integrator_;
 }
 
 AccelerometerSummary LiveAccelerometer::summary() const {
@@ -93,7 +93,7 @@ Status LiveAccelerometer::start(const LiveCamera&, bool) {
           "build again"};
 }
 void LiveAccelerometer::stop() {}
-MotionPrior LiveAccelerometer::prior(std::int64_t, std::int64_t) { return {}; }
+ImuIntegrator* LiveAccelerometer::until(std::int64_t, std::int64_t) { return nullptr; }
 AccelerometerSummary LiveAccelerometer::summary() const { return {}; }
 
 #endif

@@ -35,9 +35,9 @@ class LiveAccelerometer {
   Status start(const LiveCamera& camera, bool level);
   void stop();
 
-  // Of each frame that is tracked or kept, in their order; arrival_ns by posix_monotonic_ns(). What the
-  // sensor says of it: gravity, or nothing.
-  MotionPrior prior(std::int64_t stamp_ns, std::int64_t arrival_ns);
+  // Called for each frame that is tracked or kept, in their order; arrival_ns by posix_monotonic_ns().
+  // Returns the integrator with the readings that are there, or nullptr without a sensor.
+  ImuIntegrator* until(std::int64_t stamp_ns, std::int64_t arrival_ns);
 
   // From here on readings go into accelerometer.txt in this folder as well, from the next frame on, when the
   // folder is there. A full disk ends the file alone, in words; failure() then says that it did.

@@ -31,7 +31,7 @@ void add_calibration_options(CLI::App& command, CalibrationOptions& options, Dep
   group.path(
       "--calibration", options.file,
       "Calibration file: 'fx fy cx cy depth_scale ...', a matrix, or YAML or JSON of ROS, Kalibr, EuRoC, "
-      "ORB-SLAM or Open3D (docs/formats.md). Without it and the options below: " +
+      "ORB-SLAM or Open3D (share/doc/plvo/user/calibration.md). Without it and the options below: " +
           fallback);
   Choices<std::string> models;
   for (const std::string& name : builtin_names()) models.emplace_back(name, name);

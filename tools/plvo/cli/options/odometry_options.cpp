@@ -13,8 +13,9 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.choice(
       "--preset", options.preset,
       Choices<Preset>{{"default", Preset::kDefault}, {"paper", Preset::kPaper}, {"tiny", Preset::kTiny}},
-      "paper: the settings of Lu & Song (2015); docs/maths.md has the differences. tiny: as in half a "
-      "MiB, with the last keyframe alone as a reference; docs/memory.md");
+      "paper: the settings of Lu & Song (2015); the differences are in share/doc/plvo/theory/estimator.md. "
+      "tiny: as in half a MiB, with the last keyframe alone as a reference; "
+      "share/doc/plvo/user/small_board.md");
   group.choice("--features", options.features,
                Choices<Features>{
                    {"points", Features::kPoints}, {"lines", Features::kLines}, {"both", Features::kBoth}},
@@ -27,7 +28,7 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
                                {"window", ReferencePolicy::kWindow}},
       "What a frame is matched against: the frame before it, the last keyframe, both: the keyframe and "
       "a recent frame (default), or window: both and the keyframe before, which drifts less where the "
-      "camera walks and takes more time and memory; docs/sensors.md");
+      "camera walks and takes more time and memory; share/doc/plvo/decisions/window.md");
   group.number("--frame-budget", options.budget_ms, positive(1e6), "MS",
                "Fewer features after a frame that took more processor time than this, and more again when "
                "there is time to spare; results then depend on the machine");
@@ -97,10 +98,10 @@ std::int64_t OdometryBlock::cpu_ns() const {
   return posix_thread_cpu_ns() + (pair_ != nullptr ? pair_->cpu_ns() : 0);
 }
 
-void OdometryBlock::track(const RgbdFrame& frame, const MotionPrior& prior, FrameRecord& record) {
+void OdometryBlock::track(const RgbdFrame& frame, ImuIntegrator* imu, FrameRecord& record) {
   const std::int64_t start_ns = posix_monotonic_ns();
   const std::int64_t cpu_before_ns = cpu_ns();
-  record.result = odometry_.track(frame, prior);
+  record.result = imu != nullptr ? odometry_.track(frame, *imu) : odometry_.track(frame);
   record.cpu_ns = cpu_ns() - cpu_before_ns;
   record.elapsed_ns = posix_monotonic_ns() - start_ns;
   odometry_.frame_took(record.cpu_ns);

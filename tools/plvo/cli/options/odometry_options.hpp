@@ -37,7 +37,8 @@ class OdometryBlock {
  public:
   Status init(const CameraModel& camera, const OdometryOptions& options);
   // Tracks, notes what came of it and what it took, and tells the budget.
-  void track(const RgbdFrame& frame, const MotionPrior& prior, FrameRecord& record);
+  // imu: nullptr without one.
+  void track(const RgbdFrame& frame, ImuIntegrator* imu, FrameRecord& record);
   Odometry& odometry() { return odometry_; }
 
  private:

@@ -113,7 +113,7 @@ int record_command(const RecordOptions& options) {
   while (!interrupted() && seconds() < options.seconds) {
     const FrameRing::Take take = ring.take(frame, arrival_ns, kRingPatience_ms);
     if (take == FrameRing::Take::kClosed) break;
-    if (take == FrameRing::Take::kFrame) accelerometer.prior(frame.stamp_ns, arrival_ns);
+    if (take == FrameRing::Take::kFrame) (void)accelerometer.until(frame.stamp_ns, arrival_ns);
     const LiveCapture::State state = capture.state();
     if (state.frames >= options.frames || !state.recorder.ok()) break;
     if (console.wants_line()) show_line(console, state, recording);

@@ -130,9 +130,7 @@ class Run {
                          fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
         tell(check_.add(frame));
-        const MotionPrior prior = imu_ ? imu_->prior(frame.stamp_ns) : MotionPrior();
-        block_.track(frame, prior, record);
-        if (imu_) imu_->learn(record.result);
+        block_.track(frame, imu_ ? &imu_->until(frame.stamp_ns) : nullptr, record);
       }
       summary_->add(record);
       history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/motion_model.hpp"
+
+#include <algorithm>
+
+#include "plvo/math/covariance.hpp"
+
+namespace plvo {
+
+Vector6 mean_velocity(const Se3& T_now_before, double seconds) {
+  return boxminus(T_now_before, Se3{}) / seconds;
+}
+
+Se3 motion_at(const Vector6& velocity, double seconds) { return boxplus(Se3{}, seconds * velocity); }
+
+Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before) {
+  if (!before.known()) return recent;
+  constexpr double kExtrapolated = 0.5;
+  return recent + 0.5 * kExtrapolated * (recent - before.value);
+}
+
+double process_noise_variance(double per_second, double from_s, double to_s) {
+  const double from = per_second * from_s;
+  const double to = per_second * to_s;
+  return to * to - from * from;
+}
+
+void add_process_noise(const ReferenceConfig& config, double seconds, Matrix6& covariance) {
+  const double position = process_noise_variance(config.process_noise_m_per_s, 0, seconds);
+  const double rotation = process_noise_variance(config.process_noise_rad_per_s, 0, seconds);
+  for (int i = 0; i < 3; ++i) {
+    covariance(i, i) += position;
+    double& turned = covariance(3 + i, 3 + i);
+    turned += std::clamp(kMostRotationVariance - turned, 0.0, rotation);
+  }
+}
+
+}  // namespace plvo

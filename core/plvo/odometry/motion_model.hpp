@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motion model of the camera: constant velocity, and process noise where the motion is not observed. The
+// state of a frame is its pose and this velocity. It predicts the next motion, completes the priors, gives
+// each exposure its velocity, and says how fast a pose becomes uncertain.
+#pragma once
+
+#include <cstdint>
+
+#include "plvo/math/se3.hpp"
+#include "plvo/odometry/config.hpp"
+
+namespace plvo {
+
+// (v, ω) per second of the scene in the camera's axes (exposure.hpp), a mean over measured_ns.
+struct Velocity {
+  Vector6 value = Vector6::Zero();
+  std::int64_t measured_ns = 0;  // 0: the velocity is not known
+
+  bool known() const { return measured_ns > 0; }
+  // Whether the search for the next motion starts from it, elapsed_ns after it was measured: over more than
+  // this multiple of its own interval a prediction is worse than none.
+  bool predicts(std::int64_t elapsed_ns) const {
+    constexpr int kLongestPrediction = 3;
+    return static_cast<double>(elapsed_ns) < kLongestPrediction * static_cast<double>(measured_ns);
+  }
+  // Whether it completes the priors of other sensors, elapsed_ns after it was measured; after that the camera
+  // is taken to stand still. Nothing corrects such a motion, and its process noise covers it.
+  bool continues(std::int64_t elapsed_ns) const {
+    constexpr std::int64_t kLongest_ns = 300'000'000;
+    return known() && measured_ns <= kLongest_ns && elapsed_ns <= kLongest_ns;
+  }
+};
+
+// Whether the mean velocity of an interval describes the exposure at its end: over a longer one it does not.
+inline bool describes_exposure(std::int64_t interval_ns) {
+  constexpr std::int64_t kLongest_ns = 200'000'000;
+  return interval_ns > 0 && interval_ns <= kLongest_ns;
+}
+
+// Mean velocity of a motion that took this long.
+Vector6 mean_velocity(const Se3& T_now_before, double seconds);
+// The motion at a constant velocity: T_now_before.
+Se3 motion_at(const Vector6& velocity, double seconds);
+
+// Velocity during the exposure of the current frame. recent: mean since the last good frame. before: that of
+// the last good frame, over the interval before it. The change goes on by half: all of it would add its noise
+// too. Its value at the end of the interval is half of the change away from the mean.
+Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before);
+
+// Variance of an unobserved motion from from_s to to_s after the last observation, with this SD per second.
+// The error of an assumed rate hardly changes from one frame to the next, so its standard deviation grows
+// with time, not its variance.
+double process_noise_variance(double per_second, double from_s, double to_s);
+// Adds it to the covariance of a pose that was observed `seconds` ago. No rotation becomes more uncertain
+// than the bound of covariance.hpp.
+void add_process_noise(const ReferenceConfig& config, double seconds, Matrix6& covariance);
+
+}  // namespace plvo

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frame that is being tracked, the frames that it is matched with, and what is known of its motion before
+// its features are associated.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "plvo/motion/motion_problem.hpp"
+#include "plvo/odometry/features/feature_extraction.hpp"
+#include "plvo/odometry/features/frame_features.hpp"
+#include "plvo/odometry/propagated_prior.hpp"
+#include "plvo/odometry/stage_context.hpp"
+#include "plvo/odometry/tracking/row_time_compensation.hpp"
+
+namespace plvo {
+
+// A frame to match with.
+struct Reference {
+  const FrameFeatures* features = nullptr;
+  Se3 T_current_predicted;  // T_current_reference as predicted
+  PairPrior prior;
+  MotionReference pose;  // relative to the base, the first of the references
+  // Whether its pose relative to the last good frame is known, from which the propagated prior starts.
+  bool chained = true;
+};
+
+struct PredictedMotion {
+  PropagatedPrior sensed;  // motion since the last good frame by other sensors, that of this frame included
+  MotionReference last;    // pose of the last good frame, relative to the base
+  Exposure exposure;       // motion of the camera during the exposure, if it goes on as before
+  double depth_after_colour_s = 0;  // as in exposure.hpp
+  std::array<Reference, kMaxReferences> all_references;
+  std::size_t reference_count = 0;
+
+  std::span<const Reference> references() const { return std::span(all_references).first(reference_count); }
+};
+
+struct CurrentFrame {
+  const StageContext& context;
+  const FeatureExtraction& extraction;  // of its image
+  const DepthSampler& depth;
+  const PredictedMotion& predicted;
+  FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
+
+  std::int64_t stamp_ns() const { return features.stamp_ns; }
+  // P1 and P4, unless they were done before; points are found with the predicted exposure.
+  void find_points() const;
+  void describe_points() const;
+};
+
+}  // namespace plvo

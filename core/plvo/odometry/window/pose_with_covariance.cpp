@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/window/pose_with_covariance.hpp"
+
+#include "plvo/math/covariance.hpp"
+
+namespace plvo {
+
+Matrix6 derivative_of_advance(const PoseWithCovariance& from, const PoseWithCovariance& current) {
+  Matrix6 A = Matrix6::Identity();
+  A.block<3, 3>(0, 3) = -skew(current.T_world_camera.t - from.T_world_camera.t);
+  return A;
+}
+
+PoseWithCovariance advance(const PoseWithCovariance& from, const Se3& T_current_from,
+                           const Matrix6& motion_covariance) {
+  const Se3 T_from_current = T_current_from.inverse();
+  PoseWithCovariance current;
+  current.T_world_camera = from.T_world_camera * T_from_current;
+  current.T_world_camera.R = renormalise(current.T_world_camera.R);
+  current.covariance = compose_covariance(from.T_world_camera, from.covariance, T_from_current,
+                                          inverse_covariance(T_current_from, motion_covariance));
+  current.covariance_with_gravity =
+      derivative_of_advance(from, current).lazyProduct(from.covariance_with_gravity);
+  return current;
+}
+
+bool settle(PoseWithCovariance& pose) {
+  Vector6 scale;
+  if (!pose.T_world_camera.is_finite() || !pose.covariance_with_gravity.allFinite() ||
+      !make_bounded_covariance(pose.covariance, &scale))
+    return false;
+  for (int i = 0; i < 6; ++i)
+    if (scale[i] < 1) pose.covariance_with_gravity.row(i) *= scale[i];
+  return true;
+}
+
+}  // namespace plvo
