@@ -16,7 +16,7 @@ INDIRECT = [
     (re.compile(r"Executor5start"), None),  # Config::executor: the second core has a stack of its own
     (re.compile(r"LevenbergMarquardt.*@lines"), re.compile(r"LmAnyProblem.*EndDepths.*_FUN")),
     (re.compile(r"LevenbergMarquardt"), re.compile(r"LmAnyProblem.*MotionProblem.*_FUN")),
-    (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
+    (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count|8estimate"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
 ]
 
 # (caller, callee, mark): what it calls from there is not what it calls from elsewhere, so it counts as a function of its own.

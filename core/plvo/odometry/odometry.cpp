@@ -53,7 +53,9 @@ Odometry::Odometry() = default;
 
 // All results leave the library here, so every invalid one is found, whatever its cause.
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
-  TrackResult result = process(input, prior);
+  memory_.views.clear();
+  const Status refusal = check(input, prior);
+  TrackResult result = refusal.ok() ? process(input, prior) : refuse(input, refusal);
   if (make_sound(result)) return result;
   forget_world();
   result.T_world_camera = result.T_camera_reference = Se3();
@@ -79,12 +81,8 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
   return result;
 }
 
+// A frame that passed check(), step by step.
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
-  // Check.
-  memory_.views.clear();
-  const Status refusal = check(input, prior);
-  if (!refusal.ok()) return refuse(input, refusal);
-
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
   const StageContext context{camera_, *config_, noise_, arena_, times};
@@ -102,14 +100,21 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
   TrackedMotion tracked = window_.has_keyframe() ? search_motion(frame, memory_.tracking) : resume(frame);
 
-  // Decide: what the frame is, and which references stay.
-  const Decision decision = decide(frame, tracked, prior);
+  // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.
+  TrackResult result = conclude(frame, tracked, prior);
 
-  // Update: the window, the world, the learnt noise.
-  TrackResult result = update(frame, decision, prior, tracked);
+  // Relocalise: where the view of an earlier keyframe is back.
+  if (result.state == TrackState::kTracking && !result.returned) relocalise(frame, tracked, result);
   result.mean_brightness = brightness;
   result.stage_ns = times;
   return result;
+}
+
+// Not inlined, as the steps that it calls: what a step needs on the stack is there during it alone.
+[[gnu::noinline]] TrackResult Odometry::conclude(const CurrentFrame& frame, const TrackedMotion& tracked,
+                                                 const MotionPrior& prior) {
+  const Decision decision = decide(frame, tracked, prior);
+  return update(frame, decision, prior, tracked);
 }
 
 Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
@@ -134,7 +139,7 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
 }
 
 // The pose stays that of the last good frame.
-TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
+[[gnu::noinline]] TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
   result.state = TrackState::kLost;

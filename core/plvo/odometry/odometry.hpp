@@ -140,6 +140,7 @@ class Odometry {
   // odometry.cpp: the pipeline.
   TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
+  TrackResult conclude(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior);
   TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
   bool wants_points() const;
 
@@ -160,11 +161,11 @@ class Odometry {
     return window_.has_recent() && window_.recent_age() + 1 < config_->references.recent_frames;
   }
 
-  // odometry_update.cpp: the state after the frame, and its result. tracked: overwritten by a relocalisation.
+  // odometry_update.cpp: the state after the frame, and its result.
   TrackResult update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     TrackedMotion& tracked);
+                     const TrackedMotion& tracked);
   TrackResult accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     TrackedMotion& tracked);
+                     const TrackedMotion& tracked);
   TrackResult start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
                     const TrackedMotion& tracked);
   TrackResult lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
@@ -177,7 +178,7 @@ class Odometry {
 
   // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
   TrackedMotion resume(const CurrentFrame& frame);
-  bool relocalise(const CurrentFrame& frame, TrackedMotion& tracked);
+  void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
   bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
                  const PoseWithCovariance& believed, TrackedMotion& tracked);
   void move_to_relocalised_pose(int slot, const MotionEstimate& motion);

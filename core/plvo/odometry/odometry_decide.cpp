@@ -39,8 +39,8 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
 
 }  // namespace
 
-Odometry::Decision Odometry::decide(const CurrentFrame& frame, const TrackedMotion& tracked,
-                                    const MotionPrior& prior) const {
+[[gnu::noinline]] Odometry::Decision Odometry::decide(const CurrentFrame& frame, const TrackedMotion& tracked,
+                                                      const MotionPrior& prior) const {
   Decision decision;
   const char* const first_word = frame.predicted.sensed.known() ? "predicted: " : "lost: ";
   if (tracked.ok()) {

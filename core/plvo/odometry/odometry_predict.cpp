@@ -22,7 +22,7 @@ double depth_after_colour(const CameraModel& camera, const RgbdFrame& input) {
 
 // The references are the keyframe, which is the base, a recent frame, and the previous keyframe, as far as
 // the window holds them.
-PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
+[[gnu::noinline]] PredictedMotion Odometry::predict(const RgbdFrame& input, const MotionPrior& prior) const {
   PredictedMotion predicted;
   predicted.depth_after_colour_s = depth_after_colour(camera_, input);
   if (!window_.has_last()) return predicted;
@@ -83,7 +83,8 @@ PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
 
 // Chained to the keyframe or, without one, to the last good frame. The correction by gravity applies to this
 // frame only: the kept frames were observed, this one was not.
-Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const {
+[[gnu::noinline]] Odometry::SensedPose Odometry::sensed_pose(const CurrentFrame& frame,
+                                                             const MotionPrior& prior) const {
   const PropagatedPrior& sensed = frame.predicted.sensed;
   const MotionReference& last = frame.predicted.last;
   SensedPose result;

@@ -26,8 +26,8 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
 
 }  // namespace
 
-TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                             TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision,
+                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   view_slot_ = window_.current();
   memory_.views.show(frame.features.lines);
   last_stamp_ns_ = frame.stamp_ns();
@@ -40,8 +40,8 @@ TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision
   }
 }
 
-TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                             TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision,
+                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
   if (!tracked.returned) show_tracks();
@@ -71,15 +71,15 @@ TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision
   propagated_prior_.restart();
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
-  result.returned = tracked.returned || relocalise(frame, tracked);
+  result.returned = tracked.returned;
   report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
 }
 
 // Makes the current frame the keyframe and the last good one, without a motion before it; or waits for one
 // that can be that.
-TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                            const TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
+                                              const MotionPrior& prior, const TrackedMotion& tracked) {
   if (decision.new_world) forget_world();
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kInitialising;
@@ -108,8 +108,8 @@ TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
   return result;
 }
 
-TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                           const TrackedMotion& tracked) {
+[[gnu::noinline]] TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision,
+                                             const MotionPrior& prior, const TrackedMotion& tracked) {
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kLost;
   result.status = decision.status;

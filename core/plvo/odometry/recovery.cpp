@@ -52,7 +52,7 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
 
 // Called before tracking starts anew: takes up the kept keyframe again if its view is back. Otherwise there
 // is no motion, and the lines are lifted without one.
-TrackedMotion Odometry::resume(const CurrentFrame& frame) {
+[[gnu::noinline]] TrackedMotion Odometry::resume(const CurrentFrame& frame) {
   TrackedMotion tracked;
   if (!window_.kept().empty()) {
     const int slot = window_.kept().latest();
@@ -69,21 +69,23 @@ TrackedMotion Odometry::resume(const CurrentFrame& frame) {
 }
 
 // Tracking has resumed with a new start, whose pose was not observed. If the view of a kept keyframe is back,
-// all poses are moved so that the pose of this frame is the one that follows from that keyframe. Returns
-// whether it was. tracked: holds the frame's own motion, which is accepted and no longer needed; it is
+// all poses are moved so that the pose of this frame is the one that follows from that keyframe, and the
+// result states it. tracked: holds the frame's own motion, which is accepted and no longer needed; it is
 // overwritten.
-bool Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked) {
-  if (window_.kept().empty()) return false;
+[[gnu::noinline]] void Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked,
+                                            TrackResult& result) {
+  if (window_.kept().empty()) return;
   if (!relocalisation_is_due()) {
     ++frames_since_relocalisation_;
-    return false;
+    return;
   }
   frames_since_relocalisation_ = 0;
   const int slot = window_.kept().next();
   const Window::Frame& last = window_.last_frame();  // the frame just tracked
-  if (!recognise(slot, frame, last.velocity.value, last.pose, tracked)) return false;
+  if (!recognise(slot, frame, last.velocity.value, last.pose, tracked)) return;
   move_to_relocalised_pose(slot, tracked.motion);
-  return true;
+  result.returned = true;
+  report(last.pose, last.velocity.value, result);
 }
 
 // Moves all poses so that the last frame is where `motion` leads from the kept keyframe. Not inlined: its
