@@ -71,10 +71,9 @@ TEST_F(CliBagCommands, FindsGroundTruthBesideTheBag) {
   const std::string bag = path("walk.bag"), run = " --readout 0 --quiet --out " + path("t") + " --json ";
   ASSERT_EQ(plvo("run " + bag + run + path("without")).exit_code, 0);
   EXPECT_FALSE(nlohmann::json::parse(read_file(folder_ / "without")).contains("evaluation"));
-  expect_refused(
-      "eval --gt " + bag + " --est " + path("t"), 1,
-      "the poses in walk.bag are not read: put the true ones beside it, as walk-groundtruth.txt, or "
-      "name a trajectory");
+  expect_refused("eval --gt " + bag + " --est " + path("t"), 1,
+                 "walk.bag has no poses: put the true ones beside it, as walk-groundtruth.txt, or "
+                 "name a trajectory");
   fs::copy_file(walk() / "groundtruth.txt", folder_ / "walk-groundtruth.txt");
   ASSERT_EQ(plvo("run " + bag + run + path("with")).exit_code, 0);
   ASSERT_EQ(plvo("run " + walk().string() + run + path("folder")).exit_code, 0);

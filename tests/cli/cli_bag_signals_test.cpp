@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bag_writer.hpp"
-#include "plvo/rosbag/bag_file.hpp"
+#include "plvo/rosbag/containers/bag_file.hpp"
 #include "plvo_binary.hpp"
 #include "temporary_folder.hpp"
 

@@ -16,8 +16,8 @@ using test::run_command;
 using test::TemporaryFolder;
 using test::write_file;
 
-const std::vector<std::string> kCommands = {"run",  "live",     "record", "calibrate",
-                                            "eval", "simulate", "doctor", "tilt"};
+const std::vector<std::string> kCommands = {"run",       "live", "record",   "convert", "info",
+                                            "calibrate", "eval", "simulate", "doctor",  "tilt"};
 
 std::string printed(const std::string& arguments) {
   const CommandResult r = run_command(PLVO_BINARY " " + arguments);

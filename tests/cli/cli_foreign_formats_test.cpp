@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unsupported recordings are recognised by their names and first bytes, in every command that takes one.
+// Recordings that are not read are recognised by their names and first bytes, in every command that takes
+// one; those that are read, too.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,7 +26,7 @@ class CliForeignFormats : public test::PlvoCommand {
       const CommandResult r = plvo(command);
       EXPECT_EQ(r.exit_code, 1) << command << r.err;
       EXPECT_NE(r.err.find(recording + " is " + what), std::string::npos) << command << '\n' << r.err;
-      EXPECT_NE(r.err.find("share/doc/plvo/user/recordings.md"), std::string::npos)
+      EXPECT_NE(r.err.find("share/doc/plvo/user/ros_recordings.md"), std::string::npos)
           << "it says what to do: " << r.err;
     }
     EXPECT_FALSE(fs::exists(path("made")));
@@ -34,24 +35,36 @@ class CliForeignFormats : public test::PlvoCommand {
 
 TEST_F(CliForeignFormats, RecognisesNameOrFirstBytes) {
   write_file(path("t.txt"), "1 0 0 0 0 0 0 1\n");
-  const std::string mcap("\x89MCAP0\r\n and so on");
-  const std::string sqlite("SQLite format 3\0 and so on", 26);
   const std::string matroska("\x1a\x45\xdf\xa3 and so on");
   for (const auto& [file, content, what] :
-       {std::tuple<const char*, std::string, const char*>{"a.mcap", "", "an MCAP file"},
-        {"b.data", mcap, "an MCAP file"},
-        {"b.bag", mcap, "an MCAP file"},
-        {"a.db3", "", "an SQLite file"},
-        {"c.data", sqlite, "an SQLite file"},
-        {"a.mkv", "", "a Matroska video"},
-        {"d.data", matroska, "a Matroska video"},
-        {"walk.bag.active", "#ROSBAG V2.0\n", "a ROS 1 bag, which is read under a name that ends in .bag"}}) {
+       {std::tuple<const char*, std::string, const char*>{"a.mkv", "", "a Matroska video"},
+        {"d.data", matroska, "a Matroska video"}}) {
     write_file(path(file), content);
     expect_told(file, what);
   }
+}
+
+// A recording of ROS is told by its first bytes, whatever its name, or else by its name.
+TEST_F(CliForeignFormats, RecordingsOfRosAreToldByContentAndName) {
+  const std::string mcap("\x89MCAP0\r\n\x06 and so on");
+  const std::string sqlite("SQLite format 3\0 and so on", 26);
+  for (const auto& [file, content, words] :
+       {std::tuple<const char*, std::string, const char*>{"a.mcap", "", "is not an MCAP file"},
+        {"b.data", mcap, "b.data is cut short"},
+        {"b.bag", mcap, "b.bag is cut short"},
+        {"a.db3", "", "is not a database of rosbag2"},
+        {"c.data", sqlite, "is not a database of SQLite"},
+        {"walk.bag.active", "#ROSBAG V2.0\n", "walk.bag.active is cut short"},
+        {"walk.bag", "", "is not a ROS 1 bag"}}) {
+    write_file(path(file), content);
+    const CommandResult r = plvo("run " + path(file));
+    EXPECT_EQ(r.exit_code, 1) << file << r.err;
+    EXPECT_NE(r.err.find(words), std::string::npos) << file << r.err;
+  }
   fs::create_directory(path("ros2"));
   write_file(path("ros2/metadata.yaml"), "rosbag2_bagfile_information:\n  version: 5\n");
-  expect_told("ros2", "a folder of rosbag2 (ROS 2)");
+  const CommandResult r = plvo("run " + path("ros2"));
+  EXPECT_NE(r.err.find("but no .db3 and no .mcap file"), std::string::npos) << r.err;
 }
 
 TEST_F(CliForeignFormats, AcceptsOtherFiles) {

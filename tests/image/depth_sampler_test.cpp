@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "depth_holes.hpp"
 #include "plvo/base/arena.hpp"
 #include "plvo/base/random.hpp"
 
@@ -133,20 +134,54 @@ TEST(DepthSampler, MarksAnEdgeOnlyAboveTheStepThreshold) {
   EXPECT_TRUE(step(0.041).sampler().sample(23, 18, kReach).on_edge);
 }
 
-TEST(DepthSampler, AHalfEmptyWindowHasNoDepth) {
-  Scene scene([](int, int) { return 1.2; });
-  const auto clear = [&](int count) {
-    // The first `count` pixels of the 5×5 window around (20, 15).
-    for (int i = 0; i < count; ++i)
-      scene.units[static_cast<std::size_t>((13 + i / 5) * kWidth + 18 + i % 5)] = 0;
+TEST(DepthSampler, AHalfEmptyWindowHasDepthOnlyAmongReadings) {
+  // The first `count` columns of the 5×5 window around (20, 15), and all columns before them, are empty.
+  const auto seen = [](int columns) {
+    return Scene([=](int x, int) { return x < 18 + columns ? 0.0 : 1.2; }).sampler().sample(20, 15, kReach);
   };
-  clear(12);
-  EXPECT_NEAR(scene.sampler().sample(20, 15, kReach).depth_m, 1.2, 1e-9) << "13 of 25 are left";
-  clear(13);
-  EXPECT_EQ(scene.sampler().sample(20, 15, kReach).depth_m, 0) << "12 of 25 are left";
-  EXPECT_EQ(scene.sampler().sample(20, 15, kReach).sigma_m, 0);
+  EXPECT_NEAR(seen(2).depth_m, 1.2, 1e-9) << "15 of 25 are left";
+  EXPECT_EQ(seen(3).depth_m, 0) << "10 of 25 are left, all on one side";
+  EXPECT_EQ(seen(3).sigma_m, 0);
+  // The same number of empty columns, but with readings on both sides.
+  const Scene gap([](int x, int) { return x >= 19 && x < 22 ? 0.0 : 1.2; });
+  EXPECT_NEAR(gap.sampler().sample(20, 15, kReach).depth_m, 1.2, 1e-9);
+  EXPECT_EQ(gap.sampler().sample(20, 15, 0).depth_m, 0) << "a single reading";
   const Scene empty([](int, int) { return 0.0; });
   EXPECT_EQ(empty.sampler().sample(20, 15, kReach).depth_m, 0);
+}
+
+TEST(DepthSampler, RecoversAPlaneThroughHoles) {
+  const Plane plane{0.7, 0.002, 0.001};
+  for (const test::HolePattern& pattern : test::kHolePatterns) {
+    const Scene scene([&](int x, int y) { return pattern.missing(x, y) ? 0.0 : plane(x, y); });
+    const DepthSampler sampler = scene.sampler();
+    int found = 0, asked = 0;
+    for (double v = 4; v < kHeight - 4; v += 1.37)
+      for (double u = 4; u < kWidth - 4; u += 1.19) {
+        ++asked;
+        const DepthSample sample = sampler.sample(u, v, kReach);
+        const double near_m = sampler.near(static_cast<int>(u), static_cast<int>(v));
+        if (near_m > 0) {
+          ASSERT_NEAR(near_m, plane(static_cast<int>(u), static_cast<int>(v)), 2 * kUnit);
+        }
+        if (!(sample.depth_m > 0)) continue;
+        ++found;
+        ASSERT_NEAR(sample.depth_m, plane(u, v), 2 * kUnit) << pattern.name << " " << u << " " << v;
+        ASSERT_FALSE(sample.on_edge);
+      }
+    EXPECT_GT(found, 0.97 * asked) << pattern.name;
+  }
+}
+
+// A hole between two surfaces has no depth: neither of them surrounds it.
+TEST(DepthSampler, AShadowHasNoDepth) {
+  const Scene scene([](int x, int) { return x <= 20 ? 1.0 : x <= 25 ? 0.0 : 1.5; });
+  const DepthSampler sampler = scene.sampler();
+  for (int x = 21; x <= 25; ++x) EXPECT_EQ(sampler.near(x, 18), 0) << x;
+  EXPECT_NEAR(sampler.near(20, 18), 1.0, 1e-9);
+  EXPECT_NEAR(sampler.near(26, 18), 1.5, 1e-9);
+  EXPECT_EQ(sampler.near(-1, 18), 0);
+  EXPECT_EQ(sampler.near(18, kHeight), 0);
 }
 
 TEST(DepthSampler, ClipsTheWindowAtTheBorder) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "depth_holes.hpp"
+#include "depth_picture.hpp"
 #include "line_scene.hpp"
 
 namespace plvo {
@@ -71,6 +73,25 @@ TEST(LineSamples, SigmaGrowsWithTheSlopeAcrossTheSegment) {
   EXPECT_NEAR(samples.sample[10].sigma_d_m, std::sqrt(noise.sigma(2) * noise.sigma(2) + 0.02 * 0.02), 1e-6);
   sample_segment(segment(0, 0, 0, 50), noise, {1, 3}, slope, samples);
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
+}
+
+// Every sample of a segment on a holed wall has its depth, whatever its direction.
+TEST(LineSamples, HolesHaveTheDepthAroundThem) {
+  constexpr int kSide = 80;
+  for (const test::HolePattern& pattern : test::kHolePatterns) {
+    const auto wall_m = [](double x, double y) { return 1 / (0.5 + 0.001 * x - 0.0005 * y); };
+    const test::DepthPicture wall(kSide, kSide,
+                                  [&](int x, int y) { return pattern.missing(x, y) ? 0.0 : wall_m(x, y); });
+    for (const Segment& s : {segment(10, 40, 70, 40), segment(40, 10, 40, 70), segment(11, 12, 66, 70)}) {
+      LineSamples samples;
+      sample_segment(s, DepthNoise{}, {3, 3}, wall.sampler(), samples);
+      EXPECT_GE(samples.count, 0.95 * samples.asked) << pattern.name;
+      for (const LineSample& sample : samples.with_depth()) {
+        const Vector2 p = 0.5 * (s.a + s.b) + sample.t_px * s.direction();
+        ASSERT_NEAR(sample.depth_m, wall_m(p.x(), p.y()), 0.02) << pattern.name;
+      }
+    }
+  }
 }
 
 SurfaceReading read(std::array<float, 7> profile) { return nearer_surface(profile, DepthNoise{}); }

@@ -51,6 +51,7 @@ struct DepthFunction {
       return depth_.function(static_cast<int>(std::floor(p.x() + 0.5)),
                              static_cast<int>(std::floor(p.y() + 0.5)));
     }
+    DepthSample between() const { return {}; }
     double at_colour_time(double depth_m) const { return depth_m; }
 
    private:

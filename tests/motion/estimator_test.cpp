@@ -56,6 +56,54 @@ INSTANTIATE_TEST_SUITE_P(Shares, Outliers,
                                            Share{0, 40, 0.3}, Share{0, 40, 0.5}, Share{0, 40, 0.7},
                                            Share{60, 20, 0.3}, Share{60, 20, 0.5}, Share{60, 20, 0.7}));
 
+// A room of 24 points, and a near object with `crowd` points in the middle of the image that moves otherwise.
+struct TwoMotions {
+  TwoMotions(Gaussian& gaussian, int crowd) {
+    room.truth = boxplus(Se3(), 0.02 * gaussian.vector<6>());
+    object = boxplus(room.truth, Vector6(0.12, -0.08, 0.05, 0.05, 0.06, -0.05));
+    for (int i = 0; i < 24; ++i) {
+      const double z = gaussian.uniform(2, 4);
+      room.add_point(gaussian, {z * gaussian.uniform(-0.5, 0.5), z * gaussian.uniform(-0.4, 0.4), z});
+    }
+    const Se3 T_room = room.truth;
+    room.truth = object;
+    for (int i = 0; i < crowd; ++i)
+      room.add_point(gaussian, {gaussian.uniform(-0.08, 0.08), gaussian.uniform(-0.08, 0.08),
+                                gaussian.uniform(0.55, 0.65)});
+    room.truth = T_room;
+  }
+  SimulatedPair room;
+  Se3 object;
+};
+
+TEST(Estimator, TheMotionOfTheLargerPartOfTheSceneWins) {
+  Gaussian gaussian(23);
+  Bench bench;
+  for (std::uint64_t trial = 0; trial < 20; ++trial) {
+    const TwoMotions scene(gaussian, 60);
+    // Found with the object's motion as the start, and found without any.
+    for (const MotionStart& start : {MotionStart(&scene.object, {}, true), MotionStart(nullptr)}) {
+      const MotionEstimate estimate = bench.estimate(scene.room, {}, trial, start);
+      ASSERT_EQ(estimate.status, StatusCode::kOk) << "trial " << trial;
+      EXPECT_LT(test::nees(estimate.T_current_reference, scene.room.truth, test::inverse(estimate.C_H)), 30)
+          << "trial " << trial;
+    }
+  }
+}
+
+// Without the room the object is all there is.
+TEST(Estimator, ALonelyObjectIsTheScene) {
+  Gaussian gaussian(24);
+  Bench bench;
+  TwoMotions scene(gaussian, 60);
+  SimulatedPair& pair = scene.room;
+  pair.point_matches.erase(pair.point_matches.begin(), pair.point_matches.begin() + 24);
+  const MotionEstimate estimate = bench.estimate(pair, {}, 1, {&scene.object, {}, true});
+  ASSERT_EQ(estimate.status, StatusCode::kOk);
+  EXPECT_EQ(estimate.ransac.draws, 0);
+  EXPECT_LT(test::nees(estimate.T_current_reference, scene.object, test::inverse(estimate.C_H)), 30);
+}
+
 TEST(Estimator, NothingToWorkWith) {
   Bench bench;
   const SimulatedPair pair;
@@ -307,6 +355,7 @@ class PlaneSamples final : public ConstraintSet {
   int dof() const override { return 1; }
   bool usable(std::size_t) const override { return true; }
   Primitive primitive(std::size_t) const override { return {}; }
+  Extent extent(std::size_t i) const override { return {samples_[i].measured}; }
   double mahalanobis_squared(std::size_t i, const Se3& T, double) const override {
     const double r = residual(samples_[i], T) / samples_[i].sigma;
     return r * r;

@@ -123,7 +123,7 @@ std::vector<Place> reference_candidates(const DetectorFrame& frame, const Detect
             if (score(image, x, y) <= threshold || !is_maximum(image, x, y)) continue;
             const auto strength = static_cast<float>(corner_strength(image, x, y));
             if (static_cast<double>(strength) < options.min_strength) continue;
-            if (depth.at(x << level, y << level) <= 0) continue;
+            if (depth.near(x << level, y << level) <= 0) continue;
             cell.emplace_back(0, -strength, level, y, x);
           }
         std::sort(cell.begin(), cell.end());

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The container: complete, compressed, truncated at any byte, damaged, and of another format.
-#include "plvo/rosbag/bag_file.hpp"
+#include "plvo/rosbag/containers/bag_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include "bag_writer.hpp"
+#include "plvo/rosbag/messages/messages.hpp"
 #include "says.hpp"
 #include "temporary_folder.hpp"
 
@@ -38,7 +39,8 @@ BagWriter small_bag(const std::string& compression) {
 std::vector<BagMessage> images_of(const BagFile& bag) {
   std::vector<BagMessage> messages;
   for (std::size_t i = 0; i < bag.topics().size(); ++i)
-    messages.insert(messages.end(), bag.messages(i).begin(), bag.messages(i).end());
+    if (is_image_type(bag.topics()[i].type))
+      messages.insert(messages.end(), bag.messages(i).begin(), bag.messages(i).end());
   return messages;
 }
 
@@ -56,7 +58,6 @@ TEST(BagFile, ReadsMessagesWithEveryCompression) {
     EXPECT_EQ(bag.topics()[0].messages, 6u);
     EXPECT_EQ(bag.topics()[1].messages, 6u);
     ASSERT_EQ(bag.messages(0).size(), 6u);
-    EXPECT_TRUE(bag.messages(1).empty()) << "the places of images alone";
     std::vector<unsigned char> bytes;
     // Backwards, so that chunks are unpacked again.
     for (int i = 5; i >= 0; --i) {
@@ -212,16 +213,15 @@ TEST(BagFile, LosesOnlyAChunkThatOverrunsTheNext) {
 
 TEST(BagFile, RejectsFilesThatAreNotBags) {
   const TemporaryFolder folder;
-  BagFile bag;
-  EXPECT_EQ(bag.open(folder / "none.bag").code(), StatusCode::kNotFound);
-  EXPECT_TRUE(says(bag.open(folder.path()), "is not a regular file"));
-  EXPECT_TRUE(says(bag.open("/dev/zero"), "is not a regular file"));
+  EXPECT_EQ(BagFile().open(folder / "none.bag").code(), StatusCode::kNotFound);
+  EXPECT_TRUE(says(BagFile().open(folder.path()), "is not a regular file"));
+  EXPECT_TRUE(says(BagFile().open("/dev/zero"), "is not a regular file"));
   write_file(folder / "a.bag", "");
-  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "is not a ROS 1 bag"));
+  EXPECT_TRUE(says(BagFile().open(folder / "a.bag"), "is not a ROS 1 bag"));
   write_file(folder / "a.bag", "SQLite format 3 and so on");
-  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "is not a ROS 1 bag"));
+  EXPECT_TRUE(says(BagFile().open(folder / "a.bag"), "is not a ROS 1 bag"));
   write_file(folder / "a.bag", "#ROSRECORD V1.2\n and so on");
-  EXPECT_TRUE(says(bag.open(folder / "a.bag"), "of another version than 2.0; rosbag migrate"));
+  EXPECT_TRUE(says(BagFile().open(folder / "a.bag"), "of another version than 2.0; rosbag migrate"));
 }
 
 }  // namespace

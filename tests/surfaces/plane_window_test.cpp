@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "depth_holes.hpp"
 #include "depth_picture.hpp"
 #include "simulated_pair.hpp"
 
@@ -73,6 +74,27 @@ TEST(PlaneWindow, IsUnbiasedByMissingReadings) {
   EXPECT_NEAR(wall.n.dot(holed.p), -wall.d, 2 * DepthPicture::kUnit);
   EXPECT_GT(wall.n.dot(holed.normal), 0.9999);
   EXPECT_GT(holed.normal_variance, whole.normal_variance) << "it is known less well";
+}
+
+// Readings from beside a hole count where they were read, so a slope does not bias the plane.
+TEST(PlaneWindow, RecoversThePlaneThroughHoles) {
+  const Wall wall{Vector3(0.5, 0.1, -0.8).normalized(), 1.7};
+  for (const test::HolePattern& pattern : test::kHolePatterns) {
+    const DepthPicture picture(kWidth, kHeight, [&](int x, int y) {
+      return pattern.missing(x, y) ? 0.0 : depth_of_plane(kPinhole, x, y, wall.n, -wall.d);
+    });
+    int found = 0, asked = 0;
+    for (int v = 12; v < kHeight - 12; v += 3)
+      for (int u = 12; u < kWidth - 12; u += 4) {
+        ++asked;
+        SurfaceSample sample;
+        if (!observe_surface(picture.sampler(), kPinhole, u, v, 1, sample)) continue;
+        ++found;
+        EXPECT_NEAR(wall.n.dot(sample.p), -wall.d, 2 * DepthPicture::kUnit) << pattern.name;
+        EXPECT_GT(wall.n.dot(sample.normal), 0.9999) << pattern.name;
+      }
+    EXPECT_GT(found, 0.95 * asked) << pattern.name;
+  }
 }
 
 TEST(PlaneWindow, VarianceOfTheNormalMatchesItsSpread) {

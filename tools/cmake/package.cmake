@@ -16,8 +16,8 @@ set(CPACK_COMPONENTS_ALL library development tools)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 # The output of dpkg-shlibdeps on this machine, which cannot analyse packages of another architecture. package.sh compares
 # the two.
-set(needed_by_library "libbz2-1.0, libc6 (>= 2.36), libfmt9, libgcc-s1, liblz4-1, libspng0, libstdc++6 (>= 12), libturbojpeg0,
-  libyaml-cpp0.7")
+set(needed_by_library "libbz2-1.0, libc6 (>= 2.36), libfmt9, libgcc-s1, liblz4-1, libspng0, libsqlite3-0,
+  libstdc++6 (>= 12), libturbojpeg0, libyaml-cpp0.7, libzstd1")
 set(needed_by_tools "${needed_by_library}, libfreenect0.5, libmicrohttpd12, libopenni2-0, libusb-1.0-0")
 foreach(component library tools)
   string(REGEX REPLACE "\n *" " " needed_by_${component} "${needed_by_${component}}")

@@ -42,4 +42,4 @@ if [ "$(wc -l <"$work/live.txt")" -lt 13 ]; then
   exit 1
 fi
 say "12 live frames and the same from files: one trajectory, $(sha256sum <"$work/live.txt" | cut -c1-16)"
-say "copy $plvo to the board; there: sudo apt install libopenni2-0 libusb-1.0-0 libfreenect0.5 libfmt9 libspng0 libturbojpeg0 libyaml-cpp0.7 libmicrohttpd12 libbz2-1.0 liblz4-1"
+say "copy $plvo to the board; there: sudo apt install libopenni2-0 libusb-1.0-0 libfreenect0.5 libfmt9 libspng0 libturbojpeg0 libyaml-cpp0.7 libmicrohttpd12 libbz2-1.0 liblz4-1 libzstd1 libsqlite3-0"

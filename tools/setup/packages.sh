@@ -5,16 +5,16 @@
 # The library, the cameras and the command line.
 PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev
   libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev
-  liblz4-dev"
+  liblz4-dev libzstd-dev libsqlite3-dev"
 
 # The Python package is built if these are installed.
 PLVO_PACKAGES_PYTHON="pybind11-dev python3-dev python3-numpy"
 
 # The tests: GoogleTest, a second compiler, tools that check the sources, simulated USB devices, a browser for the pages, a counter of
-# instructions, ROS's own writer of bags, Slurm.
+# instructions, ROS's own writers of bags, compressors, Slurm.
 PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON python3-pytest python3-matplotlib googletest libgtest-dev clang
   libclang-rt-dev clang-format clang-tidy umockdev libumockdev-dev chromium fonts-liberation valgrind
-  librosbag-storage-dev slurm-wlm"
+  librosbag-storage-dev python3-rosbag python3-pil zstd lz4 slurm-wlm"
 
 # The boards: cross compilers and emulators.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi

@@ -5,7 +5,7 @@
 
 # The libraries that plvo links on a board, and the packages to build and test its Python package.
 PLVO_PACKAGES_BOARD="pybind11-dev python3-dev python3-numpy libc6-dev libstdc++-12-dev libeigen3-dev libfmt-dev libcli11-dev libspng-dev libturbojpeg0-dev libyaml-cpp-dev
-  nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev liblz4-dev"
+  nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev"
 
 # make_sysroot ARCHITECTURE FOLDER: does nothing if the folder is complete.
 make_sysroot() {

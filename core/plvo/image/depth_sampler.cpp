@@ -40,15 +40,28 @@ std::int32_t farthest(std::int32_t nearest, double metres_per_unit, const DepthN
 struct WindowReadings {
   std::array<std::uint16_t, (2 * DepthSampler::kMaxRadius + 1) * (2 * DepthSampler::kMaxRadius + 1)> units;
   int radius = 0;
+  std::size_t count = 0;  // readings with depth
   std::size_t side() const { return static_cast<std::size_t>(2 * radius + 1); }
   std::span<const std::uint16_t> all() const { return {units.data(), side() * side()}; }
 };
 
+// x, y: the window's centre in the raw image.
+void read_window(const DepthSampler& depth, int x, int y, int radius, WindowReadings& readings) {
+  readings.radius = radius;
+  readings.count = 0;
+  std::size_t i = 0;
+  for (int row = y - radius; row <= y + radius; ++row)
+    for (int column = x - radius; column <= x + radius; ++column) {
+      readings.units[i] = depth.raw_units(column, row);
+      readings.count += readings.units[i++] > 0 ? 1 : 0;
+    }
+}
+
 // Finds the nearest depth, supported by at least three readings, and the end of its surface. One or two
 // readings may be flying pixels in front of the surface. Returns false if there is no such depth.
-bool nearest_surface(const WindowReadings& readings, std::size_t count, double metres_per_unit,
-                     const DepthNoise& noise, SurfaceSums& surface) {
-  const std::size_t least = count < 3 ? count : 3;
+bool nearest_surface(const WindowReadings& readings, double metres_per_unit, const DepthNoise& noise,
+                     SurfaceSums& surface) {
+  const std::size_t least = readings.count < 3 ? readings.count : 3;
   for (int tries = 0; tries < 3; ++tries) {
     std::int32_t next = 65536;
     for (const std::uint16_t reading : readings.all())
@@ -82,6 +95,20 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
       sums.dy += d * y;
       sums.dd += d * d;
     }
+}
+
+// Returns whether readings of the surface surround the window's centre. The window without its centre
+// consists of four quarters, each from one half-axis to before the next; each of them must have a reading.
+bool surrounds_centre(const SurfaceSums& surface, const WindowReadings& readings) {
+  unsigned quarters = 0;
+  std::size_t i = 0;
+  for (int y = -readings.radius; y <= readings.radius; ++y)
+    for (int x = -readings.radius; x <= readings.radius; ++x) {
+      const std::int32_t reading = readings.units[i++];
+      if (reading < surface.least || reading > surface.most || (x == 0 && y == 0)) continue;
+      quarters |= x > 0 && y >= 0 ? 1U : x <= 0 && y > 0 ? 2U : x < 0 && y <= 0 ? 4U : 8U;
+    }
+  return quarters == 15;
 }
 
 #ifndef PLVO_SIMD_LOOPS
@@ -177,6 +204,21 @@ double plane_depth(const SurfaceSums& s, double x, double y, double& slope) {
   return depth;
 }
 
+// beside: position in px from the window's centre.
+DepthSample sample_surface(const SurfaceSums& surface, const Vector2& beside, bool on_edge,
+                           double metres_per_unit, const DepthNoise& noise) {
+  DepthSample result;
+  double slope = 0;
+  result.on_edge = on_edge;
+  result.depth_m = plane_depth(surface, beside.x(), beside.y(), slope) * metres_per_unit;
+  const double sigma_d = noise.sigma(result.depth_m);
+  const double sigma_registration = slope * metres_per_unit * noise.registration_px;
+  result.sigma_m = sqrt(sigma_d * sigma_d + sigma_registration * sigma_registration);
+  // In a mixed window, the depth of the nearer surface is less certain.
+  if (on_edge) result.sigma_m *= 2;
+  return result;
+}
+
 }  // namespace
 
 DepthSampler::Place::Place(const DepthSampler& sampler, const Vector2& located)
@@ -204,13 +246,22 @@ void DepthSampler::fetch() const {
   }
 }
 
+double DepthSampler::near(int x, int y) const {
+  int raw_x = 0;
+  int raw_y = 0;
+  if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
+  const std::uint16_t reading = *raw(raw_x, raw_y);
+  if (reading > 0) return reading * depth_.metres_per_unit;
+  return sample_between(raw_x, raw_y).depth_m;
+}
+
 bool DepthSampler::follow(const Vector2& pixel, int guesses, Vector2& located, double& depth_m) const {
   // Fixed-point iteration: the position depends on the depth, and the depth is read at the position. Most of
   // the displacement comes from the rotation and is the same for every depth.
   const Pinhole& pinhole = exposure_.pinhole();
   const Vector3 ray = back_project(pinhole, pixel.x(), pixel.y(), 1);
   for (int i = 0; i < guesses; ++i) {
-    const double read = at(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
+    const double read = near(static_cast<int>(located.x() + 0.5), static_cast<int>(located.y() + 0.5));
     if (read > 0) depth_m = read;
     const Vector3 p = exposure_.at_depth_time(depth_m * ray, pixel.y(), located.y());
     if (!(p.z() > kNearestSeen_m)) return false;
@@ -254,42 +305,34 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
   const Place place(*this, located);
   if (!place.inside) return {};
   radius = std::min(radius, kMaxRadius);
+  SurfaceSums sums;
+#ifndef PLVO_SIMD_LOOPS
   const int left = place.x - radius;
   const int top = place.y - radius;
-  SurfaceSums sums;
-  DepthSample result;
-#ifndef PLVO_SIMD_LOOPS
-  const bool whole =
-      holds_raw(left, top) && holds_raw(left + 7, place.y + radius) &&
-      sum_up_whole(raw(left, top), depth_.stride, radius, depth_.metres_per_unit, noise_, sums);
-#else
-  constexpr bool whole = false;
+  if (holds_raw(left, top) && holds_raw(left + 7, place.y + radius) &&
+      sum_up_whole(raw(left, top), depth_.stride, radius, depth_.metres_per_unit, noise_, sums))
+    return sample_surface(sums, place.beside, false, depth_.metres_per_unit, noise_);
 #endif
-  if (!whole) {
-    WindowReadings readings;
-    readings.radius = radius;
-    std::size_t count = 0;
-    std::size_t i = 0;
-    for (int y = top; y <= place.y + radius; ++y)
-      for (int x = left; x <= place.x + radius; ++x) {
-        readings.units[i] = raw_units(x, y);
-        count += readings.units[i++] > 0 ? 1 : 0;
-      }
-    // If more than half of the window has no depth, the rest is an unreliable border.
-    if (2 * count < i) return {};
-    sums = {};
-    if (!nearest_surface(readings, count, depth_.metres_per_unit, noise_, sums)) return {};
-    sum_up(readings, sums);
-    result.on_edge = static_cast<std::size_t>(sums.n) < count;
-  }
-  double slope = 0;
-  result.depth_m = plane_depth(sums, place.beside.x(), place.beside.y(), slope) * depth_.metres_per_unit;
-  const double sigma_d = noise_.sigma(result.depth_m);
-  const double sigma_registration = slope * depth_.metres_per_unit * noise_.registration_px;
-  result.sigma_m = sqrt(sigma_d * sigma_d + sigma_registration * sigma_registration);
-  // In a mixed window, the depth of the nearer surface is less certain.
-  if (result.on_edge) result.sigma_m *= 2;
-  return result;
+  WindowReadings readings;
+  read_window(*this, place.x, place.y, radius, readings);
+  if (2 * readings.count < readings.all().size())
+    return radius > 0 ? sample_between(place.x, place.y, place.beside) : DepthSample{};
+  sums = {};
+  if (!nearest_surface(readings, depth_.metres_per_unit, noise_, sums)) return {};
+  sum_up(readings, sums);
+  const bool on_edge = static_cast<std::size_t>(sums.n) < readings.count;
+  return sample_surface(sums, place.beside, on_edge, depth_.metres_per_unit, noise_);
+}
+
+DepthSample DepthSampler::sample_between(int x, int y, const Vector2& beside) const {
+  WindowReadings readings;
+  read_window(*this, x, y, kMaxRadius, readings);
+  SurfaceSums sums;
+  if (!nearest_surface(readings, depth_.metres_per_unit, noise_, sums)) return {};
+  if (!surrounds_centre(sums, readings)) return {};
+  sum_up(readings, sums);
+  const bool on_edge = static_cast<std::size_t>(sums.n) < readings.count;
+  return sample_surface(sums, beside, on_edge, depth_.metres_per_unit, noise_);
 }
 
 }  // namespace plvo

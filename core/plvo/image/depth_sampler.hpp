@@ -68,6 +68,8 @@ class DepthSampler {
     if (!inside(x, y) || !map_.raw_pixel(x, y, raw_x, raw_y)) return 0;
     return depth_.data[raw_y * depth_.stride + raw_x] * depth_.metres_per_unit;
   }
+  // The same; a missing reading is replaced by sample_between().
+  double near(int x, int y) const;
   // Address that at() reads, for prefetching; nullptr if at() reads nothing.
   const std::uint16_t* place_of(int x, int y) const {
     int raw_x = 0;
@@ -100,9 +102,14 @@ class DepthSampler {
 
   static constexpr int kMaxRadius = 3;
   // Depth at colour pixel (u, v), which must be inside the image. A plane is fitted to the nearer surface in
-  // the window of (2·radius+1)² pixels around it; with radius 0 the single reading is used. expected_m as in
-  // locate().
+  // the window of (2·radius+1)² pixels around it; with radius 0 the single reading is used. If more than half
+  // of the window has no depth, the result is sample_between(). expected_m as in locate().
   DepthSample sample(double u, double v, int radius, double expected_m = kUnknown) const;
+
+  // Depth at a pixel of the raw image, plus an offset in px, where readings are missing: a plane fitted to
+  // the nearer surface in the largest window. Readings of this surface must surround the pixel; otherwise the
+  // result is no depth. Beside an edge, in the Kinect's shadow, they do not.
+  DepthSample sample_between(int x, int y, const Vector2& beside = Vector2::Zero()) const;
 
   const DepthNoise& noise() const { return noise_; }
   const Exposure& exposure() const { return exposure_; }

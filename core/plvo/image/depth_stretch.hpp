@@ -36,6 +36,8 @@ class DepthStretch {
     if (!inside_ && !is_inside(x, y)) return 0;
     return depth_.data[y * depth_.stride + x] * depth_.metres_per_unit;
   }
+  // DepthSampler::sample_between() at the current position; it may lie outside of the image.
+  DepthSample between() const { return sampler_.sample_between(x_ >> kFractionBits, y_ >> kFractionBits); }
   // Transforms such a depth to the exposure time of the colour row of the current position.
   double at_colour_time(double depth_m) const {
     return (start_.depth_scale + n_ * along_.depth_scale) * depth_m + start_.depth_offset;

@@ -76,9 +76,10 @@ inline constexpr double kMixedInflation = 2;
 // Returns n_s, or 0 for a segment shorter than 2 px.
 int sample_count(const Segment& segment, const SampleOptions& options);
 
-// Samples the depths of a segment. On a slope across the segment, the registration error between colour and
-// depth causes a depth error of slope · noise.registration_px, which is added to σ_d in quadrature.
-// depth: a DepthSampler, or in tests a type with its own Stretch.
+// Samples the depths of a segment. Where the pixel on the segment has no reading but readings of one surface
+// surround it, their plane counts (DepthSampler::sample_between). On a slope across the segment, the
+// registration error between colour and depth causes a depth error of slope · noise.registration_px, which is
+// added to σ_d in quadrature. depth: a DepthSampler, or in tests a type with its own Stretch.
 template <typename Depth>
 void sample_segment(const Segment& segment, const DepthNoise& noise, const SampleOptions& options,
                     const Depth& depth, LineSamples& out) {
@@ -105,6 +106,9 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
     if (one_surface(left, here, right, sigma_here)) {
       const double misread = (right - left) * per_px * noise.registration_px;
       sample = {t, stretch.at_colour_time(here), sqrt(sigma_here * sigma_here + misread * misread)};
+    } else if (const DepthSample between = here > 0 ? DepthSample{} : stretch.between();
+               between.depth_m > 0) {
+      sample = {t, stretch.at_colour_time(between.depth_m), between.sigma_m};
     } else {
       for (int o = -side_reach_px; o <= side_reach_px; ++o)
         profile[static_cast<std::size_t>(o + side_reach_px)] = static_cast<float>(stretch.at(o));

@@ -31,6 +31,13 @@ struct Primitive {
   double sigma_d_rad = 0;  // approximate SD of the angle between the directions
 };
 
+// The part of the scene that a match stands for: its place in current coordinates, and the length of its
+// image in the plane z = 1 (0 for a point).
+struct Extent {
+  Vector3 middle;
+  double length = 0;
+};
+
 class ConstraintSet : public CostTerm {
  public:
   virtual std::size_t size() const = 0;
@@ -38,6 +45,7 @@ class ConstraintSet : public CostTerm {
   // match is never sampled and never an inlier.
   virtual bool usable(std::size_t i) const = 0;
   virtual Primitive primitive(std::size_t i) const = 0;
+  virtual Extent extent(std::size_t i) const = 0;
 
   // Squared Mahalanobis distance between the two measurements of match i under T, χ²(dof()) for a true match.
   // If the distance exceeds `cutoff`, any value above `cutoff` may be returned.

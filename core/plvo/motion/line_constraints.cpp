@@ -216,6 +216,12 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
   }
 }
 
+Extent LineConstraints::extent(std::size_t i) const {
+  const Line3d& line = current_[matches_[i].current];
+  const Vector3 image = line.b / line.b.z() - line.a / line.a.z();
+  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm())};
+}
+
 Primitive LineConstraints::primitive(std::size_t i) const {
   Primitive primitive;
   const Reference& reference = references_[i];

@@ -74,6 +74,7 @@ class LineConstraints final : public ConstraintSet {
   int dof() const override { return 4; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;
+  Extent extent(std::size_t i) const override;
   // Takes the reference measurement as the landmark. The result equals that of the eliminated residual to
   // first order in the noise.
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;

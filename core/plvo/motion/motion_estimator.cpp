@@ -126,19 +126,36 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     ransac.judge(T, 1);
     return StatusCode::kOk;
   };
-  StatusCode status = StatusCode::kOk;
-  if (start.estimated) {
-    T = *start.prediction;
-    status = approach(kWiderThanEstimated);
-    if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
-  }
-  if (!start.estimated || !consensus()) {
-    // The matches do not support the caller's estimate; its references and nuisance parameters are discarded.
+  // Approaches the motion anew; what was estimated with another one is discarded.
+  const auto approach_from = [&](const Se3& from, double scale) {
     solving.references = references;
     shared = start.shared;
-    if (!ransac.run(seed, start.prediction, T, estimate.ransac)) return StatusCode::kNoConsensus;
-    status = approach(kWiderThanRefined);
+    T = from;
+    return approach(scale);
+  };
+  Se3 first;
+  double scale = kWiderThanEstimated;
+  StatusCode status = StatusCode::kNoConsensus;
+  if (start.estimated) {
+    first = *start.prediction;
+    status = approach_from(first, scale);
+    if (status != StatusCode::kOk && status != StatusCode::kNoConsensus) return status;
+  }
+  if (status != StatusCode::kOk || !consensus()) {
+    scale = kWiderThanRefined;
+    if (!ransac.run(seed, start.prediction, Ransac::Gain::kMatch, first, estimate.ransac))
+      return StatusCode::kNoConsensus;
+    status = approach_from(first, scale);
     if (status != StatusCode::kOk) return status;
+  }
+  if (const double covered = ransac.covered(); covered < Ransac::kMajority) {
+    Se3 other;
+    if (!ransac.run(seed, start.prediction, Ransac::Gain::kEvidence, other, estimate.ransac) ||
+        approach_from(other, kWiderThanRefined) != StatusCode::kOk || !consensus() ||
+        !(ransac.covered() > covered)) {
+      status = approach_from(first, scale);
+      if (status != StatusCode::kOk) return status;
+    }
   }
   status = refine(lm);
   if (status != StatusCode::kOk) return status;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/motion/ransac.hpp"
 
+#include <algorithm>
+
 #include "plvo/math/chi_square.hpp"
 #include "plvo/motion/minimal_set.hpp"
 #include "plvo/motion/motion_problem.hpp"
@@ -24,6 +26,21 @@ constexpr int kDegeneracyDraws = 200;
 constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
 constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
+// Cells of the image, in the plane z = 1: 40 pixels of a Kinect. The grid is wider than any lens without
+// fisheye; what lies beyond counts to its border.
+constexpr double kCellSide = 0.075;
+constexpr int kCells = 32;
+// A line that spans more cells counts as this many.
+constexpr double kMostCellsOfALine = 4;
+
+std::size_t cell_of(const Vector3& p) {
+  const auto along = [](double x) {
+    return static_cast<std::size_t>(std::clamp(x / kCellSide + kCells / 2, 0.0, kCells - 1.0));
+  };
+  const double inverse = 1 / p.z();
+  return along(p.y() * inverse) * kCells + along(p.x() * inverse);
+}
+
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
 }
@@ -46,16 +63,50 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
       threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
       for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
         if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
-        scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i)};
+        scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
         if (samplable) ++samplable_;
       }
     }
   candidates_ = scratch.first(usable_);
+  weigh();
 }
 
-bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
+// Not inlined: the grid would otherwise stay on the stack while the motion is solved for.
+[[gnu::noinline]] void Ransac::weigh() {
+  std::array<std::uint8_t, kCells * kCells> crowd;
+  for (std::size_t reference = 0; reference < kMaxReferences; ++reference) {
+    const auto each = [&](const auto& visit) {
+      for (RansacCandidate& candidate : candidates_)
+        if (const ConstraintSet& set = *sets_[candidate.set]; set.reference() == reference)
+          visit(candidate, set.extent(candidate.index));
+    };
+    crowd.fill(0);
+    each([&](const RansacCandidate&, const Extent& extent) {
+      std::uint8_t& matches = crowd[cell_of(extent.middle)];
+      if (matches < 255) ++matches;
+    });
+    each([&](RansacCandidate& candidate, const Extent& extent) {
+      const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
+      candidate.evidence = static_cast<float>(extent.middle.z() * cells / crowd[cell_of(extent.middle)]);
+      evidence_ += static_cast<double>(candidate.evidence);
+    });
+  }
+}
+
+double Ransac::covered() const {
+  double inliers = 0;
+  for (const RansacCandidate& candidate : candidates_)
+    if (sets_[candidate.set]->inliers()[candidate.index] != 0)
+      inliers += static_cast<double>(candidate.evidence);
+  return inliers / evidence_;
+}
+
+bool Ransac::run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary) {
   summary = {};
+  gain_ = gain;
   fresh_to_beat_ = 0;
+  is_majority_ = false;
+  inliers_ = 0;
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
   if (samplable_ >= 3) {
@@ -131,21 +182,25 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   double refined_score = 0;
   double refined_score_as_fresh = 0;
   int inliers = 0;
+  double covered = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_) {
     const double threshold = threshold_[candidate.set];
+    const double gained = gain(candidate);
     const ConstraintSet& set = *sets_[candidate.set];
     const double s =
         set.mahalanobis_squared(candidate.index, motions[set.reference()], kFreshScale * threshold);
-    if (s <= kFreshScale * threshold) refined_score_as_fresh += kFreshScale * threshold - s;
+    if (s <= kFreshScale * threshold) refined_score_as_fresh += gained * (kFreshScale * threshold - s);
     if (s > threshold) continue;
-    refined_score += threshold - s;
+    refined_score += gained * (threshold - s);
+    covered += static_cast<double>(candidate.evidence);
     ++inliers;
   }
   if (!(refined_score > summary.score)) return false;
   summary.score = refined_score;
   best = T;
   inliers_ = inliers;
+  is_majority_ = covered > kMajority * evidence_;
   const double share = kFreshShare * refined_score_as_fresh;
   if (share > fresh_to_beat_) fresh_to_beat_ = share;
   return true;
@@ -155,13 +210,14 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 double Ransac::score(const Se3& T, double to_beat) const {
   double possible = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
-  for (const RansacCandidate& candidate : candidates_) possible += kFreshScale * threshold_[candidate.set];
+  for (const RansacCandidate& candidate : candidates_)
+    possible += gain(candidate) * kFreshScale * threshold_[candidate.set];
   for (const RansacCandidate& candidate : candidates_) {
     const double threshold = kFreshScale * threshold_[candidate.set];
     const ConstraintSet& set = *sets_[candidate.set];
     const double s = set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold);
     // The match gains threshold − s instead of threshold, so the upper bound shrinks by s.
-    possible -= s < threshold ? s : threshold;
+    possible -= gain(candidate) * (s < threshold ? s : threshold);
     if (possible <= to_beat) return 0;
   }
   return possible;
@@ -199,7 +255,8 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
 }
 
 int Ransac::iterations_needed() const {
-  if (inliers_ < 3) return config_.max_ransac_iterations;
+  // A consensus with few inliers may have the most evidence.
+  if (inliers_ < 3 || (gain_ == Gain::kEvidence && !is_majority_)) return config_.max_ransac_iterations;
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;

@@ -9,6 +9,13 @@
 // χ²(dof) at one probability for all kinds. A hypothesis is dropped as soon as its remaining matches together
 // cannot raise it to the best score; this does not change the result. A new best hypothesis is refined on its
 // inliers by a few steps of the maximum-likelihood problem (LO-RANSAC, Chum, Matas & Kittler 2003).
+//
+// Evidence: a scene may hold more than one motion, and the camera's is that of the larger part of the scene,
+// not that of the most features: an object or a part of the robot may have most of the texture, but it is
+// smaller than the room. The evidence of a match is the size of what it stands for. The image is divided into
+// square cells, and the matches of a cell with one reference share its evidence: its width in metres, which
+// is in proportion to the depth. A line has that of all the cells that it spans. If the consensus of the most
+// matches has less than half of the evidence, the estimator searches for the one that has the most.
 #pragma once
 
 #include <array>
@@ -34,6 +41,7 @@ struct RansacSummary {
 struct RansacCandidate {
   std::uint8_t set = 0;
   std::uint16_t index = 0;
+  float evidence = 0;
 };
 
 constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::size_t max_matches) {
@@ -42,6 +50,9 @@ constexpr std::span<RansacCandidate> take_ransac_scratch(Arena& memory, std::siz
 
 class Ransac {
  public:
+  // A consensus that covers more than this share of the evidence is beyond dispute: no other covers more.
+  static constexpr double kMajority = 0.5;
+
   // terms: what the refinements minimise, first the sets. scratch: one RansacCandidate for every match of all
   // sets; matches that do not fit are ignored. solver: used by the refinements; the caller may use it between
   // them. references and terms must outlive this object.
@@ -53,12 +64,19 @@ class Ransac {
   std::size_t usable() const { return usable_; }
   std::size_t samplable() const { return samplable_; }
 
+  // What an inlier adds to the score is in proportion to this.
+  enum class Gain : std::uint8_t {
+    kMatch,     // every match counts the same
+    kEvidence,  // the part of the scene that it stands for
+  };
   // Writes the best motion to T. Returns false if no hypothesis has a score above zero.
-  bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
+  bool run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary);
 
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
   int inliers() const { return inliers_; }
+  // Share of the evidence of all usable matches that the flagged inliers have.
+  double covered() const;
 
   // Returns false if no minimal set drawn from the flagged inliers determines the motion, and no other term
   // does: all lines parallel, all points on a line. The covariance does not reveal this, since noise in the
@@ -66,6 +84,10 @@ class Ransac {
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
+  void weigh();
+  double gain(const RansacCandidate& candidate) const {
+    return gain_ == Gain::kMatch ? 1 : static_cast<double>(candidate.evidence);
+  }
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
@@ -85,6 +107,9 @@ class Ransac {
   std::size_t usable_ = 0;
   std::size_t samplable_ = 0;
   int inliers_ = 0;
+  double evidence_ = 0;  // of all candidates
+  Gain gain_ = Gain::kMatch;
+  bool is_majority_ = false;  // the best hypothesis
   double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
   std::array<double, kMaxConstraintSets> threshold_{};
 };

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <span>
 
 #include "plvo/base/simd.hpp"
 
@@ -17,11 +18,22 @@ constexpr int kRim = 2;
 // Relative depth tolerance. A steep surface changes its depth by this much over a window; pixels that differ
 // more belong to another surface.
 constexpr double kSameSurface = 0.06;
+// Pixels without depth belong to the keypoint's surface where its readings surround them: where every square
+// of 2 · kHole + 1 pixels around them contains one. Beside an edge there is such a square without one, on the
+// other surface, whatever the width of the shadow between the two.
+constexpr int kHole = 1;
 
 constexpr int kSurfaceReach = kWindowReach + kRim;
 constexpr int kSurfaceColumns = kWindowColumns + 2 * kRim;
 constexpr int kSurfaceRows = kWindowRows + 2 * kRim;
 using Row = std::uint16_t;  // one bit per column, kRim columns to either side of the window
+using SurfaceBits = std::array<Row, kSurfaceRows>;
+// The readings that decide about the holes in these rows and columns.
+constexpr int kHoleReach = kSurfaceReach + 2 * kHole;
+constexpr int kHoleColumns = kSurfaceColumns + 4 * kHole;
+constexpr int kHoleRows = kSurfaceRows + 4 * kHole;
+using WideRow = std::uint32_t;
+static_assert(kHoleColumns <= 32);
 
 // The depths that belong to the keypoint's surface, in units of the image. 0 means no depth.
 struct Range {
@@ -36,12 +48,14 @@ Range range_around(double units) {
 #ifndef PLVO_SIMD_LOOPS
 
 // Returns one bit for each of eight readings, `step` apart. A bit is set if the reading is in the range.
-std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range) {
+// missing: its lanes become −1 where a reading is 0.
+std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range, Int16x8& missing) {
   Int16x8 units;
   if (step == 1)
     std::memcpy(&units, readings, sizeof units);
   else
     for (int i = 0; i < 8; ++i) units[i] = static_cast<std::int16_t>(readings[i * step]);
+  missing |= units == 0;
   // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
   const auto first = static_cast<std::int16_t>(range.first - 32768);
   const auto last = static_cast<std::int16_t>(range.last - 32768);
@@ -57,20 +71,106 @@ std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range&
 
 #endif
 
+// Reads pixels of the keypoint's level around its centre.
+class LevelReadings {
+ public:
+  LevelReadings(const DepthSampler& depth, const DepthSampler::Place& place, int level)
+      : depth_(depth),
+        place_(place),
+        step_(1 << level),
+        straight_(place.map.is_straight(1.0 / kSurfaceReach)) {}
+
+  bool straight() const { return straight_; }
+  int step() const { return step_; }
+  // The reading of a pixel, by its offset from the centre in pixels of the level. 0: no depth; kOutside: the
+  // image does not contain the pixel.
+  static constexpr std::int32_t kOutside = -1;
+  std::int32_t at(int column, int row) const { return offset(column * step_, row * step_); }
+  // The same; on levels above 0, a missing reading is replaced by one of the adjacent pixels that the level's
+  // pixel covers too.
+  std::int32_t covered(int column, int row) const {
+    std::int32_t units = at(column, row);
+    for (int i = 1; i < 4 && units == 0 && step_ > 1; ++i) {
+      const std::int32_t beside = offset(column * step_ + (i & 1), row * step_ + (i >> 1));
+      if (beside > 0) units = beside;
+    }
+    return units;
+  }
+
+ private:
+  std::int32_t offset(int right, int down) const {
+    int x = place_.x + right;
+    int y = place_.y + down;
+    if (!straight_ && !place_.map.raw_pixel(right, down, x, y)) return kOutside;
+    return depth_.holds_raw(x, y) ? *depth_.raw(x, y) : kOutside;
+  }
+
+  const DepthSampler& depth_;
+  const DepthSampler::Place& place_;
+  int step_;
+  bool straight_;
+};
+
+// Shrinks (shrink) or grows a region by `reach` pixels in both directions. Row r and bit c of the result are
+// row r + reach and bit c + reach of the region. The last 2 · reach rows become invalid.
+template <typename Bits>
+void grow(std::span<Bits> rows, int reach) {
+  const auto side = static_cast<std::size_t>(2 * reach);
+  for (Bits& row : rows) {
+    Bits grown = row;
+    for (int i = 1; i <= 2 * reach; ++i) grown |= static_cast<Bits>(row >> i);
+    row = grown;
+  }
+  for (std::size_t r = 0; r + side < rows.size(); ++r)
+    for (std::size_t i = 1; i <= side; ++i) rows[r] |= rows[r + i];
+}
+template <typename Bits>
+void shrink(std::span<Bits> rows, int reach) {
+  const auto side = static_cast<std::size_t>(2 * reach);
+  for (Bits& row : rows) {
+    Bits shrunk = row;
+    for (int i = 1; i <= 2 * reach; ++i) shrunk &= static_cast<Bits>(row >> i);
+    row = shrunk;
+  }
+  for (std::size_t r = 0; r + side < rows.size(); ++r)
+    for (std::size_t i = 1; i <= side; ++i) rows[r] &= rows[r + i];
+}
+
+// Returns the pixels of the keypoint's surface and those without depth that it surrounds.
+SurfaceBits fill_holes(const LevelReadings& readings, const Range& range) {
+  std::array<WideRow, kHoleRows> own{}, other{};
+  for (int r = 0; r < kHoleRows; ++r)
+    for (int c = 0; c < kHoleColumns; ++c) {
+      const std::int32_t units = readings.covered(c - kHoleReach, r - kHoleReach);
+      if (units <= 0) continue;
+      const bool is_own = units >= range.first && units <= range.last;
+      (is_own ? own : other)[static_cast<std::size_t>(r)] |= WideRow{1} << c;
+    }
+  // Growing and shrinking by the same amount closes the holes that the surface surrounds.
+  grow(std::span<WideRow>(own), kHole);
+  shrink(std::span<WideRow>(own).first(kHoleRows - 2 * kHole), kHole);
+  SurfaceBits filled;
+  for (std::size_t r = 0; r < filled.size(); ++r)
+    filled[r] = static_cast<Row>(own[r] & ~(other[r + 2 * kHole] >> (2 * kHole)));
+  return filled;
+}
+
 }  // namespace
 
 WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double depth_m, int level) {
   WindowMask mask{};
   const DepthSampler::Place place(depth, centre);
   if (!place.inside) return mask;
-  const int step = 1 << level;
+  const LevelReadings readings(depth, place, level);
+  const Range range = range_around(depth_m / depth.metres_per_unit());
+  SurfaceBits own{};
+  bool holes = false;
+#ifndef PLVO_SIMD_LOOPS
+  const int step = readings.step();
   const int left = place.x - kSurfaceReach * step;
   const int top = place.y - kSurfaceReach * step;
-  const Range range = range_around(depth_m / depth.metres_per_unit());
-  std::array<Row, kSurfaceRows> own{};
-  const bool straight = place.map.is_straight(1.0 / kSurfaceReach);
-#ifndef PLVO_SIMD_LOOPS
-  const bool whole = straight && depth.holds_raw(left, top) &&
+  Int16x8 missing{};
+  const bool whole = readings.straight() && depth.holds_raw(left, top) &&
                      depth.holds_raw(left + (kSurfaceColumns - 1) * step, top + (kSurfaceRows - 1) * step);
 #else
   constexpr bool whole = false;
@@ -80,31 +180,25 @@ WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double d
 #ifndef PLVO_SIMD_LOOPS
     if (whole) {
       const std::uint16_t* const row = depth.raw(left, top + r * step);
-      bits = own_of_eight(row, step, range) | own_of_eight(row + (kSurfaceColumns - 8) * step, step, range)
-                                                  << (kSurfaceColumns - 8);
+      bits = own_of_eight(row, step, range, missing) |
+             own_of_eight(row + (kSurfaceColumns - 8) * step, step, range, missing) << (kSurfaceColumns - 8);
     }
 #endif
     for (int c = kSurfaceColumns; !whole && c-- > 0;) {
-      int x = left + c * step;
-      int y = top + r * step;
-      bool seen = true;
-      if (!straight) seen = place.map.raw_pixel((c - kSurfaceReach) * step, (r - kSurfaceReach) * step, x, y);
-      const std::int32_t units = seen ? depth.raw_units(x, y) : 0;
+      const std::int32_t units = readings.at(c - kSurfaceReach, r - kSurfaceReach);
+      holes = holes || units == 0;
       bits = bits << 1 | static_cast<std::uint32_t>(units >= range.first && units <= range.last);
     }
     own[static_cast<std::size_t>(r)] = static_cast<Row>(bits);
   }
-  // Erosion by kRim in both directions: along the rows by shifts, then over adjacent rows.
-  for (Row& row : own) {
-    Row shrunk = row;
-    for (int i = 1; i <= 2 * kRim; ++i) shrunk &= static_cast<Row>(row >> i);
-    row = shrunk;
-  }
-  for (std::size_t r = 0; r < mask.size(); ++r) {
-    Row bits = own[r];
-    for (std::size_t i = 1; i <= 2 * kRim; ++i) bits &= own[r + i];
-    mask[r] = static_cast<std::uint8_t>(bits);
-  }
+#ifndef PLVO_SIMD_LOOPS
+  std::uint64_t halves[2];
+  std::memcpy(halves, &missing, sizeof halves);
+  holes = holes || (halves[0] | halves[1]) != 0;
+#endif
+  if (holes) own = fill_holes(readings, range);
+  shrink(std::span<Row>(own), kRim);
+  for (std::size_t r = 0; r < mask.size(); ++r) mask[r] = static_cast<std::uint8_t>(own[r]);
   return mask;
 }
 

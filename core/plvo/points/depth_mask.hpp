@@ -12,8 +12,9 @@
 namespace plvo {
 
 // centre: position of the keypoint in the depth image (DepthSample::located). depth_m: its sampled depth.
-// level: pyramid level of the window's pixels. A pixel without depth counts as another surface; next to an
-// edge, it lies in the Kinect's shadow.
+// level: pyramid level of the window's pixels. A pixel without depth is unknown: it counts as the keypoint's
+// surface only where readings of this surface surround it. In the Kinect's shadow beside an edge, they do
+// not.
 WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double depth_m, int level);
 
 }  // namespace plvo

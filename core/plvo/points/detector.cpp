@@ -230,7 +230,7 @@ class DepthQueue {
   DepthQueue(const DepthSampler& depth, BestOfCell& best) : depth_(depth), best_(best) {}
   void push(const Candidate& candidate, int x, int y) {
     if constexpr (kSizeOptimised) {
-      if (depth_.at(x, y) > 0) best_.insert(candidate);
+      if (depth_.near(x, y) > 0) best_.insert(candidate);
       return;
     }
     const std::uint16_t* const place = depth_.place_of(x, y);
@@ -241,8 +241,12 @@ class DepthQueue {
   }
   // Processes the candidates in the order in which they came.
   void settle() {
-    for (std::size_t i = 0; i < size_; ++i)
-      if (*waiting_[i].place * depth_.metres_per_unit() > 0) best_.insert(waiting_[i].candidate);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Candidate& candidate = waiting_[i].candidate;
+      if (*waiting_[i].place > 0 ||
+          depth_.near(candidate.x << candidate.level, candidate.y << candidate.level) > 0)
+        best_.insert(candidate);
+    }
     size_ = 0;
   }
 

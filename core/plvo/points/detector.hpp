@@ -76,8 +76,9 @@ struct DetectionSummary {
 double corner_strength(GrayView image, int x, int y);
 
 // Fills `out` up to its capacity: first the best keypoint of every cell, then the second best, and so on. Of
-// a rank that does not fit completely, the strongest are kept. Pixels without depth are skipped, because only
-// 3D points are of use. out.dropped() counts the candidates that did not fit. Scratch: see reserve_detection.
+// a rank that does not fit completely, the strongest are kept. Pixels without depth (DepthSampler::near) are
+// skipped, because only 3D points are of use. out.dropped() counts the candidates that did not fit. Scratch:
+// see reserve_detection.
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
                                   const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out);
 

@@ -2,6 +2,7 @@
 #include "plvo/surfaces/plane_window.hpp"
 
 #include <array>
+#include <span>
 
 #include "plvo/base/build.hpp"
 #include "plvo/math/pair.hpp"
@@ -18,6 +19,7 @@ constexpr int kSumOfSquares =
     kPlaneReach * (kPlaneReach + 1) * kPlaneSide / 3;  // of −kPlaneReach … kPlaneReach
 // With fewer readings, the window contains an edge or a hole.
 constexpr int kLeastReadings = 45;
+constexpr int kMostMissing = kReadings - kLeastReadings;
 // Limit of the readings' standard deviation from the plane, in σ_d. Real and rendered noise is half of it.
 constexpr double kMaxRms = 1;
 // Limit of the ray (with z = 1) times the normal.
@@ -30,6 +32,36 @@ struct PlaneReadings {
   std::array<std::array<std::uint16_t, 2 * kPlanePairs>, kPlaneSide> units;
   int missing = 0;
 };
+
+// A reading from beside its place in the window, by this number of pixels.
+struct DisplacedReading {
+  int column, row, right, down;
+};
+
+// Replaces the missing readings of a window by others from the 3×3 pixels around their places. Gives up, with
+// too many of them left missing, as soon as the window cannot have enough. Returns the number of those
+// replaced.
+int replace_missing(const DepthSampler& depth, const DepthSampler::Place& place, PlaneReadings& window,
+                    std::array<DisplacedReading, kReadings>& displaced) {
+  // The nearest pixels come first.
+  constexpr std::array<std::array<int, 2>, 8> kBeside = {
+      {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}}};
+  static_assert(kStride == 3);  // the pixels around two places do not overlap
+  window.missing = 0;
+  int replaced = 0;
+  for (int j = -kPlaneReach; j <= kPlaneReach && window.missing <= kMostMissing; ++j)
+    for (int i = -kPlaneReach; i <= kPlaneReach; ++i) {
+      std::uint16_t& units =
+          window.units[static_cast<std::size_t>(j + kPlaneReach)][static_cast<std::size_t>(i + kPlaneReach)];
+      for (std::size_t k = 0; k < kBeside.size() && units == 0; ++k) {
+        const auto [right, down] = kBeside[k];
+        units = depth.raw_units(place.x + kStride * i + right, place.y + kStride * j + down);
+        if (units > 0) displaced[static_cast<std::size_t>(replaced++)] = {i, j, right, down};
+      }
+      window.missing += units == 0 ? 1 : 0;
+    }
+  return replaced;
+}
 
 void read_plane(const DepthSampler& depth, const DepthSampler::Place& place, PlaneReadings& window) {
   constexpr int kFar = kPlaneReach * kStride;
@@ -51,7 +83,7 @@ void read_plane(const DepthSampler& depth, const DepthSampler::Place& place, Pla
 // Sums for the plane fit. x and y are in strides from the middle. Inverse depths are relative to `from`, that
 // of the first reading.
 struct PlaneSums {
-  int n, x, y, xx, xy, yy;
+  double n, x, y, xx, xy, yy;
   double from, q, qx, qy, qq;
 };
 
@@ -98,6 +130,24 @@ PlaneSums add_up(const PlaneReadings& window) {
   return s;
 }
 
+// Moves the displaced readings in the sums from their places in the window to where they were read.
+void displace(const PlaneReadings& window, std::span<const DisplacedReading> displaced, PlaneSums& s) {
+  constexpr double kStrides = 1.0 / kStride;
+  for (const DisplacedReading& reading : displaced) {
+    const double x = reading.column + reading.right * kStrides;
+    const double y = reading.row + reading.down * kStrides;
+    s.x += x - reading.column;
+    s.y += y - reading.row;
+    s.xx += x * x - reading.column * reading.column;
+    s.xy += x * y - reading.column * reading.row;
+    s.yy += y * y - reading.row * reading.row;
+    const auto& row = window.units[static_cast<std::size_t>(reading.row + kPlaneReach)];
+    const double dq = 1.0 / row[static_cast<std::size_t>(reading.column + kPlaneReach)] - s.from;
+    s.qx += dq * (x - reading.column);
+    s.qy += dq * (y - reading.row);
+  }
+}
+
 // q(x, y) = q0 + slope_x x + slope_y y, by least squares.
 struct InversePlane {
   double q0, slope_x, slope_y;
@@ -138,8 +188,14 @@ bool observe_surface(const DepthSampler& depth, const Pinhole& pinhole, double u
   if (!place.inside) return false;
   PlaneReadings window;
   read_plane(depth, place, window);
+  std::array<DisplacedReading, kReadings> displaced;
+  int replaced = 0;
+  if (window.missing > 0) replaced = replace_missing(depth, place, window, displaced);
+  if (window.missing > kMostMissing) return false;
+  PlaneSums sums = add_up(window);
+  if (replaced > 0) displace(window, std::span(displaced).first(static_cast<std::size_t>(replaced)), sums);
   InversePlane plane;
-  if (kReadings - window.missing < kLeastReadings || !fit(add_up(window), plane)) return false;
+  if (!fit(sums, plane)) return false;
 
   // Slope in 1/m per pixel of the raw image.
   const double per_m = 1 / depth.metres_per_unit();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A surface sample: a plane fitted to 7×7 readings of the depth image, every third pixel. In inverse depth, a
 // plane in the world is a plane over the image: 1/Z = m · (x, y, 1), where m is its normal divided by its
-// distance.
+// distance. A missing reading is replaced by one of the eight pixels around its place, at that pixel's
+// position.
 #pragma once
 
 #include "plvo/image/depth_sampler.hpp"

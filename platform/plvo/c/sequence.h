@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recorded sequences and calibrations for C: a folder or a ROS 1 bag as a camera. Unlike the odometry, these
+/* Recorded sequences and calibrations for C: a folder or a ROS bag as a camera. Unlike the odometry, these
  * read files and take memory from the heap. C99. */
 #ifndef PLVO_C_SEQUENCE_H
 #define PLVO_C_SEQUENCE_H
@@ -18,11 +18,11 @@ PLVO_API plvo_status plvo_camera_read(const char* file, plvo_camera* camera, dou
 
 typedef struct plvo_sequence plvo_sequence;
 
-/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second, or a ROS 1 bag, FILE.bag.
+/* Opens a folder with rgb.txt and depth.txt, or with numbered frames, 30 a second, or a recording of ROS.
  * `calibration`: a file, or a name as above, or NULL: the calibration in the folder (calibration.txt and the
- * other names of docs/user/calibration.md), or TUM's camera where the folder has the name of a recording of TUM's; of a
- * bag its camera_info. On failure *sequence is NULL. What is opened is closed
- * by plvo_sequence_close. PLVO_UNSUPPORTED for a bag if the library was built without them. */
+ * other names of docs/user/calibration.md), or TUM's camera where the folder has the name of a recording of
+ * TUM's; of a bag its camera_info. On failure *sequence is NULL. What is opened is closed by
+ * plvo_sequence_close. PLVO_UNSUPPORTED for a recording of ROS if the library was built without them. */
 PLVO_API plvo_status plvo_sequence_open(const char* path, const char* calibration, plvo_sequence** sequence);
 
 /* Of a bag. NULL: TUM's topics (/camera/rgb/image_color, /camera/depth/image), else the only one with such

@@ -103,7 +103,8 @@ plvo_status plvo_sequence_open_bag(const char* file, const char* calibration, co
     if (sequence == nullptr) return missing("sequence");
     *sequence = nullptr;
     if (file == nullptr) return missing("file");
-    if (!plvo::is_bag_file(file)) return plvo::c::refuse("file: the name of a ROS 1 bag ends in .bag");
+    if (!plvo::is_bag(file))
+      return plvo::c::refuse("file: the name of a ROS 1 bag ends in .bag, that of ROS 2 in .mcap or .db3");
     plvo_bag_topics known = {};
     if (topics != nullptr)
       if (Status status = plvo::c::take_struct(topics, known, "bag_topics"); !status.ok()) return status;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plvo/inertial/imu_integrator.hpp"
+#include "plvo/odometry/track_result.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
 #include "plvo/replay/recorded_imu.hpp"

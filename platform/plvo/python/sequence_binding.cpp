@@ -45,8 +45,8 @@ class Sequence {
     const std::filesystem::path recording = path_bytes(path);
     RecordingOptions options;
     options.topics = bag_topics(topics);
-    if (!topics.is_none() && !is_bag_file(recording))
-      throw py::value_error("topics: they are for a ROS bag (FILE.bag)");
+    if (!topics.is_none() && !is_bag(recording))
+      throw py::value_error("topics: they are for a ROS bag (.bag, .mcap, .db3, a folder of rosbag2)");
     throw_unless_ok(recording_.open(recording, choice_of(camera), options));
     warn(recording_.remarks());
     if (!py::isinstance<Calibration>(camera)) warn(calibration().assumptions());

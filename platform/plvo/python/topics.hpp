@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Topics of a ROS 1 bag as Python names them.
+// Topics of a recording of ROS as Python names them.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detects recordings in containers that plvo does not read, by their names and the first bytes of the files.
+// Detects recordings in containers that plvo does not read, by their names and their first bytes.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,7 @@
 
 namespace plvo {
 
-// Returns kUnsupported, with the format and the remedy, for MCAP and SQLite files and folders of rosbag2, for
-// Matroska videos, and for ROS 1 bags with another name than FILE.bag. Returns ok for everything else.
+// Returns kUnsupported, with the format and the remedy, for Matroska videos. Returns ok for everything else.
 Status refuse_foreign_format(const std::filesystem::path& path);
 
 }  // namespace plvo

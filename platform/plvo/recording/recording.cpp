@@ -9,45 +9,71 @@
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
 #include "plvo/replay/recorded_camera.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
+#include "plvo/rosbag/bag_poses.hpp"
+#include "plvo/rosbag/containers/open_container.hpp"
 #endif
 
 namespace plvo {
 
 namespace fs = std::filesystem;
 
-bool is_bag_file(const fs::path& path) { return path.extension() == ".bag"; }
+namespace {
+
+#ifdef PLVO_HAVE_ROSBAG
+Status read_poses_in_bag(const fs::path& bag, const std::string& topic, Trajectory& trajectory) {
+  std::unique_ptr<MessageFile> messages;
+  const Status status = open_messages(bag, messages);
+  return status.ok() ? read_bag_poses(*messages, topic, trajectory) : status;
+}
+#else
+Status without_bags() {
+  return {StatusCode::kUnsupported,
+          "this plvo was built without recordings of ROS: sudo apt install libbz2-dev liblz4-dev libzstd-dev "
+          "libsqlite3-dev, then configure and build again"};
+}
+
+Status read_poses_in_bag(const fs::path&, const std::string&, Trajectory&) { return without_bags(); }
+#endif
+
+}  // namespace
+
+bool is_bag(const fs::path& path) { return container_of(path) != Container::kNone; }
 
 bool is_recording(const fs::path& path) {
   std::error_code error;
-  return fs::is_directory(path, error) || is_bag_file(path) || !refuse_foreign_format(path).ok();
+  return fs::is_directory(path, error) || is_bag(path) || !refuse_foreign_format(path).ok();
 }
 
 fs::path bag_ground_truth_file(const fs::path& bag) {
-  fs::path file = bag;
-  file.replace_filename(bag.stem().string() + "-groundtruth.txt");
+  const fs::path normal = bag.lexically_normal();
+  fs::path file = normal.has_filename() ? normal : normal.parent_path();
+  file.replace_filename(file.stem().string() + "-groundtruth.txt");
   return file;
 }
 
-Status read_true_poses(const fs::path& recording, const SequenceOptions& options, Trajectory& trajectory) {
+Status read_true_poses(const fs::path& recording, const SequenceOptions& options, Trajectory& trajectory,
+                       const std::string& topic) {
   if (Status status = refuse_foreign_format(recording); !status.ok()) return status;
-  if (!is_bag_file(recording)) return read_ground_truth(recording, options, trajectory);
+  if (!is_bag(recording)) return read_ground_truth(recording, options, trajectory);
   const fs::path file = bag_ground_truth_file(recording);
   std::error_code error;
-  if (fs::exists(file, error)) return read_trajectory({file, {}, {}}, trajectory);
+  if (topic.empty() && fs::exists(file, error)) return read_trajectory({file, {}, {}}, trajectory);
   trajectory = {};
-  return {
-      StatusCode::kNotFound,
-      fmt::format("the poses in {} are not read: put the true ones beside it, as {}, or name a trajectory",
-                  recording.filename().string(), file.filename().string())};
+  Status status = read_poses_in_bag(recording, topic, trajectory);
+  if (status.code() != StatusCode::kNotFound || !topic.empty()) return status;
+  return {StatusCode::kNotFound,
+          fmt::format("{} has no poses: put the true ones beside it, as {}, or name a trajectory",
+                      recording.filename().string(), file.filename().string())};
 }
 
 Status Recording::open(const fs::path& path, const CalibrationChoice& choose,
                        const RecordingOptions& options) {
   *this = Recording();
   if (Status status = refuse_foreign_format(path); !status.ok()) return status;
-  return is_bag_file(path) ? open_bag(path, choose, options) : open_folder(path, choose, options);
+  return is_bag(path) ? open_bag(path, choose, options) : open_folder(path, choose, options);
 }
 
 Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& choose,
@@ -108,7 +134,18 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
     remarks_.push_back(std::move(missing));
   add_doubts_about(calibration);
   std::error_code error;
-  has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error);
+  has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error) && options.topics.truth.empty();
+  if (!has_ground_truth_) {
+    std::size_t topic = 0;
+    const Status found = choose_bag_poses(camera->messages(), options.topics.truth, topic);
+    if (!found.ok() && !options.topics.truth.empty()) return found;
+    has_ground_truth_ = found.ok();
+    if (found.ok())
+      remarks_.push_back(fmt::format("the poses on {} are taken as the true poses of the camera",
+                                     camera->messages().topics()[topic].name));
+    else if (found.code() != StatusCode::kNotFound)
+      remarks_.push_back(found.message());
+  }
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {
     return camera->read_imu(topics, recording);
   };
@@ -119,9 +156,7 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
 #else
 
 Status Recording::open_bag(const fs::path&, const CalibrationChoice&, const RecordingOptions&) {
-  return {StatusCode::kUnsupported,
-          "this plvo was built without ROS bags: sudo apt install libbz2-dev liblz4-dev, then configure and "
-          "build again"};
+  return without_bags();
 }
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded sequence of any format: a folder (RecordedCamera) or a ROS 1 bag (BagCamera), which is
-// recognised by its name. Bags are supported if plvo was built with libbz2 and liblz4.
+// A recorded sequence of any format: a folder of images (RecordedCamera) or a bag (BagCamera). A bag is any
+// recording of messages: a ROS 1 bag, an MCAP file, or rosbag2's FILE.db3 or folder; all are recognised by
+// their content and their name. They are supported if plvo was built with the libraries that they need.
 #pragma once
 
 #include <filesystem>
@@ -19,18 +20,19 @@
 
 namespace plvo {
 
-bool is_bag_file(const std::filesystem::path& path);  // by its name, .bag
+bool is_bag(const std::filesystem::path& path);
 // True for a folder, a bag, or a recording that is not read (foreign_format.hpp); false for files of other
 // kinds.
 bool is_recording(const std::filesystem::path& path);
 
-// File of the true poses of a bag, which are not read from the bag itself: FILE-groundtruth.txt beside
-// FILE.bag, as TUM publishes the two.
+// File of the true poses of a bag, which come before those in the bag: FILE-groundtruth.txt beside FILE.bag,
+// as TUM publishes the two.
 std::filesystem::path bag_ground_truth_file(const std::filesystem::path& bag);
-// Reads the true poses of a folder or a bag, like read_ground_truth. The message of kNotFound names the
-// expected file.
+// Reads the true poses of a folder or a bag, like read_ground_truth. For a bag they are those of the file
+// beside it, or those on a topic of the bag (bag_poses.hpp); topic: its name, may be empty. The message of
+// kNotFound names the expected file.
 Status read_true_poses(const std::filesystem::path& recording, const SequenceOptions& options,
-                       Trajectory& trajectory);
+                       Trajectory& trajectory, const std::string& topic = {});
 
 struct RecordingOptions {
   SequenceOptions sequence;  // for a bag: the tolerance, the scale and the range

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ROS 1 bag as a camera: sensor_msgs/Image of colour and of depth, paired by the stamps in their headers as
-// in TUM folders, and sensor_msgs/CameraInfo as the calibration.
+// A recording of messages (containers/open_container.hpp) as a camera: images of colour and of depth, paired
+// by the stamps in their headers as in TUM folders, and sensor_msgs/CameraInfo as the calibration.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/replay/images/frame_fit.hpp"
 #include "plvo/replay/index/sequence_index.hpp"
-#include "plvo/rosbag/bag_file.hpp"
 #include "plvo/rosbag/bag_imu.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
-#include "plvo/rosbag/messages.hpp"
+#include "plvo/rosbag/containers/message_file.hpp"
+#include "plvo/rosbag/depth_setup.hpp"
+#include "plvo/rosbag/messages/image_conversion.hpp"
+#include "plvo/rosbag/topic_choice.hpp"
 
 namespace plvo {
 
 class BagCamera final : public RgbdCamera {
  public:
-  // Reads the bag once and chooses its topics. Returns the errors of BagFile::open; kNotFound for a missing
-  // topic (listing the existing ones), kInvalidArgument if there are several candidates, kUnsupported for
-  // compressed images.
+  // Reads the recording once and chooses its topics. Returns the errors of open_messages and
+  // TopicChoice::choose.
   Status index(const std::filesystem::path& path, const BagTopicNames& names);
 
   // Calibration from the first camera_info. Returns kNotFound if there is none, kInvalidArgument if there are
@@ -33,12 +34,13 @@ class BagCamera final : public RgbdCamera {
 
   // See read_bag_imu; its topics are in `names`.
   Status read_imu(const BagTopicNames& names, ImuRecording& recording) {
-    return read_bag_imu(bag_, names, recording);
+    return read_bag_imu(*bag_, names, recording);
   }
 
-  // Call after index(). calibration: of the colour images as recorded. Its unit of depth is ignored, because
-  // the encoding determines it: metres, or whole units, which are millimetres unless units_per_metre is
-  // given. Returns the errors of RecordedCamera::open.
+  // Call after index(). calibration: of the colour images as recorded; if it has no camera of depth, that of
+  // the recording is taken (depth_setup.hpp). Its unit of depth is ignored, because the encoding determines
+  // it: metres, or whole units, which are units_per_metre, else what the recording states, else millimetres.
+  // Returns the errors of RecordedCamera::open.
   Status open(const Calibration& calibration, const std::optional<double>& units_per_metre,
               const SequenceOptions& options);
 
@@ -51,25 +53,16 @@ class BagCamera final : public RgbdCamera {
   std::size_t unpaired_colour() const { return unpaired_colour_; }
   const Calibration& calibration() const { return fit_.calibration(); }
   const WholeImage& whole_image() const { return fit_.whole_image(); }
+  const MessageFile& messages() const { return *bag_; }
+  const TopicChoice& topics() const { return topics_; }
   // Hints for the user, in sentences. After a failure they may list the topics of the bag.
   std::vector<std::string> remarks() const;
 
  private:
   using Messages = std::vector<BagMessage>;
 
-  void find_encodings();
-  // The topics whose images have a fitting encoding.
-  std::vector<std::size_t> candidates(bool depth) const;
-  Status choose_images(const std::string& wanted, bool depth, std::size_t& topic);
-  std::string info_beside_colour() const;
-  Status choose_info(const std::string& wanted);
-  Status read_image(const BagMessage& message, ImageMessage& image);
-  // Appends as many names to the sentence as a status holds. If some do not fit, all of them become a remark.
-  Status refused(StatusCode code, const std::string& sentence, const std::vector<std::string>& names);
+  Status read_image(std::size_t topic, const BagMessage& message, ImageMessage& image);
   Status of_topic(std::size_t topic, const Status& status) const;
-  std::vector<std::string> names_of(std::string_view type) const;
-  std::vector<std::string> image_topics() const;
-  std::string with_encoding(std::size_t topic) const;
   // Sorts messages by stamp; of equal stamps it keeps the first.
   Status in_order(std::size_t topic, Messages& messages);
   Status check_clock(std::size_t topic) const;
@@ -78,11 +71,10 @@ class BagCamera final : public RgbdCamera {
   Status read_colour(const BagMessage& message);
   Status read_depth(const BagMessage& message);
 
-  BagFile bag_;
-  std::size_t colour_topic_ = 0, depth_topic_ = 0;
-  std::optional<std::size_t> info_topic_;
-  std::vector<std::string> encodings_;  // of each topic's images
-  std::string topics_in_words_;
+  std::unique_ptr<MessageFile> bag_;
+  TopicChoice topics_;
+  DepthSetup depth_setup_;
+  ImageConversion conversion_;
   std::vector<std::pair<BagMessage, BagMessage>> pairs_;
   std::size_t unpaired_colour_ = 0, repeated_ = 0;
   FrameFit fit_;

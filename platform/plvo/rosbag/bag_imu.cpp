@@ -10,7 +10,7 @@
 
 #include "plvo/host/files/reader_limits.hpp"
 #include "plvo/rosbag/listing.hpp"
-#include "plvo/rosbag/messages.hpp"
+#include "plvo/rosbag/messages/messages.hpp"
 
 namespace plvo {
 namespace {
@@ -38,7 +38,7 @@ void drop_if_zero(Samples& samples) {
 }
 
 // Reads all IMU topics of the bag.
-Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
+Status read_topics(MessageFile& bag, std::vector<ImuTopic>& topics) {
   for (std::size_t i = 0; i < bag.topics().size(); ++i)
     if (bag.topics()[i].type == kImuType) topics.push_back({i, {}, {}, 0});
   std::size_t readings = 0;
@@ -46,12 +46,12 @@ Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
     const auto topic =
         std::find_if(topics.begin(), topics.end(), [number](const ImuTopic& t) { return t.topic == number; });
     ImuMessage imu;
-    if (!parse_imu(bytes, imu).ok()) ++topic->damaged;
+    if (!parse_imu(bag.topics()[number].wire, bytes, imu).ok()) ++topic->damaged;
     readings += (imu.rate ? 1 : 0) + (imu.force ? 1 : 0);
     if (readings > kMostReadings)
       return Status(StatusCode::kInvalidArgument,
                     fmt::format("the bag has more than {} readings of gyros and accelerometers, of which "
-                                "plvo takes no more; make a shorter one of it with rosbag filter",
+                                "plvo takes no more; make a shorter one of it",
                                 kMostReadings));
     if (imu.rate) topic->gyro.push_back({imu.stamp_ns, *imu.rate});
     if (imu.force) topic->accelerometer.push_back({imu.stamp_ns, *imu.force});
@@ -65,7 +65,7 @@ Status read_topics(BagFile& bag, std::vector<ImuTopic>& topics) {
   return {};
 }
 
-std::string in_words(const BagFile& bag, const std::vector<ImuTopic*>& topics) {
+std::string in_words(const MessageFile& bag, const std::vector<ImuTopic*>& topics) {
   constexpr std::size_t kMostLetters = 120;
   std::vector<std::string> names;
   for (const ImuTopic* topic : topics) names.push_back(bag.topics()[topic->topic].name);
@@ -73,7 +73,7 @@ std::string in_words(const BagFile& bag, const std::vector<ImuTopic*>& topics) {
 }
 
 // chosen is nullptr if the bag has no such sensor and none was named.
-Status choose(const BagFile& bag, std::vector<ImuTopic>& topics, const Sensor& sensor,
+Status choose(const MessageFile& bag, std::vector<ImuTopic>& topics, const Sensor& sensor,
               const std::string& wanted, ImuTopic*& chosen) {
   std::vector<ImuTopic*> candidates;
   for (ImuTopic& topic : topics)
@@ -112,7 +112,7 @@ Status take_in_order(Samples& from, const std::string& topic, Samples& samples, 
 
 }  // namespace
 
-Status read_bag_imu(BagFile& bag, const BagTopicNames& names, ImuRecording& recording) {
+Status read_bag_imu(MessageFile& bag, const BagTopicNames& names, ImuRecording& recording) {
   recording = {};
   std::vector<ImuTopic> topics;
   if (Status status = read_topics(bag, topics); !status.ok()) return status;

@@ -32,7 +32,7 @@ inline Status not_stamped(const char* what, std::size_t count, const std::string
                           std::int64_t stamp_ns) {
   return {StatusCode::kInvalidArgument,
           fmt::format("all {} {} on {} have the stamp {} in their headers: the driver does not stamp them; "
-                      "give each its time of receipt (share/doc/plvo/user/recordings.md)",
+                      "give each its time of receipt (share/doc/plvo/user/ros_recordings.md)",
                       count, what, topic, stamp_ns == 0 ? "0" : format_stamp(stamp_ns))};
 }
 

@@ -37,6 +37,8 @@ int run_command_line(int argc, const char* const* argv) {
   add_run(app, exit_code);
   add_live(app, exit_code);
   add_record(app, exit_code);
+  add_convert(app, exit_code);
+  add_info(app, exit_code);
   add_calibrate(app, exit_code);
   add_eval(app, exit_code);
   add_simulate(app, exit_code);

@@ -14,7 +14,7 @@ __all__ = [
 
 
 def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, cores=1, topics=None):
-    """Tracks a recorded folder or ROS 1 bag: a Result for each frame. imu: with the folder's gyroscope.txt and
+    """Tracks a recorded folder or recording of ROS: a Result for each frame. imu: with the folder's gyroscope.txt and
     accelerometer.txt, or the bag's sensor_msgs/Imu, turned into the camera's axes by R_camera_imu. topics: of a bag, where
     plvo cannot choose by itself; a dictionary with colour, depth, camera_info, gyro or accelerometer. cores: 2 for a second
     thread; the same bits. A budget of config's is held against the processor time of this thread; results then depend on
@@ -34,9 +34,9 @@ def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, co
 def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02, offset_s=0.0, rpe_deltas=("1f", "1s"),
              truth_sigma=(0.0, 0.0), fit_truth=False):
     """Errors of an estimate, which is a file or an iterable of Result, against the true poses, which are a file, or those of
-    a recorded folder or ROS 1 bag (FILE-groundtruth.txt beside FILE.bag): what `plvo eval --json` says, as a dictionary. truth_sigma: how far
-    a true pose is off, in each axis (m, rad); joins the covariances in the NEES. fit_truth: compare with the truth turned and
-    its clock shifted as explains the estimate best."""
+    a recorded folder or recording of ROS (FILE-groundtruth.txt beside FILE.bag, or its topic of poses): what `plvo eval
+    --json` says, as a dictionary. truth_sigma: how far a true pose is off, in each axis (m, rad); joins the covariances in
+    the NEES. fit_truth: compare with the truth turned and its clock shifted as explains the estimate best."""
     if isinstance(estimate, (str, bytes, _os.PathLike)):
         estimate = _os.fsencode(estimate)
     text = _evaluation.evaluate(truth, estimate, sampling, max_difference_s, offset_s, list(rpe_deltas),

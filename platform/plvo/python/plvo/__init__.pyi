@@ -259,7 +259,7 @@ class Frame(NamedTuple):
     depth_stamp_ns: int
 
 class Sequence:
-    """A recorded folder or ROS 1 bag, frame by frame, once."""
+    """A recorded folder or recording of ROS, frame by frame, once."""
 
     def __init__(
         self, recording: _Path, camera: Camera | _Path | None = None, *, topics: dict[_Topic, str] | None = None

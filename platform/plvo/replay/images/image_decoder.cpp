@@ -23,21 +23,24 @@ Status image_error(StatusCode code, const fs::path& path, std::string_view what)
   return {code, fmt::format("{}: {}", (path.parent_path().filename() / path.filename()).string(), what)};
 }
 
-Status wrong_size(const fs::path& path, int has_width, int has_height, int width, int height) {
-  return image_error(
-      StatusCode::kInvalidArgument, path,
-      fmt::format("is {}x{} where {}x{} is expected; colour and depth must have one size throughout",
-                  has_width, has_height, width, height));
+// Messages of the functions below do not name the file.
+Status with_name(const fs::path& path, const Status& status) {
+  return status.ok() ? status : image_error(status.code(), path, status.message());
 }
 
-Status check_size(const fs::path& path, const ImageInfo& info) {
+Status wrong_size(const ImageInfo& info, int width, int height) {
+  return {StatusCode::kInvalidArgument,
+          fmt::format("is {}x{} where {}x{} is expected; colour and depth must have one size throughout",
+                      info.width, info.height, width, height)};
+}
+
+Status check_size(const ImageInfo& info) {
   if (info.width >= 1 && info.height >= 1 && info.width <= kMaxImageSide && info.height <= kMaxImageSide)
     return {};
-  return image_error(
-      StatusCode::kInvalidArgument, path,
-      fmt::format("says that it is {}x{}; images of at most {}x{} are read (make the images smaller, "
-                  "and the calibration with them)",
-                  info.width, info.height, kMaxImageSide, kMaxImageSide));
+  return {StatusCode::kInvalidArgument,
+          fmt::format("says that it is {}x{}; images of at most {}x{} are read (make the images smaller, "
+                      "and the calibration with them)",
+                      info.width, info.height, kMaxImageSide, kMaxImageSide)};
 }
 
 PngContext open_png(std::span<const unsigned char> file) {
@@ -50,41 +53,46 @@ PngContext open_png(std::span<const unsigned char> file) {
   return png;
 }
 
-Status png_header(spng_ctx* png, const fs::path& path, ImageInfo& info) {
+Status png_header(spng_ctx* png, ImageInfo& info) {
   spng_ihdr header{};
-  if (const int error = spng_get_ihdr(png, &header); error != 0) {
-    return image_error(StatusCode::kDamaged, path,
-                       fmt::format("not a readable PNG, JPEG, PGM or PPM image ({})", spng_strerror(error)));
-  }
+  if (const int error = spng_get_ihdr(png, &header); error != 0)
+    return {StatusCode::kDamaged,
+            fmt::format("not a readable PNG, JPEG, PGM or PPM image ({})", spng_strerror(error))};
   info = {static_cast<int>(header.width), static_cast<int>(header.height), header.bit_depth,
           header.color_type == SPNG_COLOR_TYPE_GRAYSCALE};
-  return check_size(path, info);
+  return check_size(info);
 }
 
-Status png_pixels(spng_ctx* png, const fs::path& path, void* pixels, std::size_t bytes, int format) {
+Status png_pixels(spng_ctx* png, void* pixels, std::size_t bytes, int format) {
   int error = spng_decode_image(png, pixels, bytes, format, 0);
   // Reads to the end: only then is the checksum of the last part of the image compared.
   if (error == 0) error = spng_decode_chunks(png);
-  if (error != 0)
-    return image_error(StatusCode::kDamaged, path,
-                       fmt::format("damaged or cut off ({})", spng_strerror(error)));
-  return {};
+  if (error == 0) return {};
+  return {StatusCode::kDamaged, fmt::format("damaged or cut off ({})", spng_strerror(error))};
 }
 
-Status with_name(const fs::path& path, const Status& status) {
-  return status.ok() ? status : image_error(status.code(), path, status.message());
+Status netpbm_size(std::span<const unsigned char> file, NetpbmHeader& header, ImageInfo& info) {
+  if (Status status = read_netpbm_header(file, header); !status.ok()) return status;
+  info = {header.width, header.height, header.most > 255 ? 16 : 8, header.grey};
+  return check_size(info);
+}
+
+bool is_jpeg(std::span<const unsigned char> file) {
+  return file.size() > 2 && file[0] == 0xff && file[1] == 0xd8;
 }
 
 }  // namespace
 
-Status ImageInfo::check_is_depth(const fs::path& path) const {
+Status ImageInfo::check_is_depth() const {
   if (bits == 16 && grey) return {};
-  return image_error(
-      StatusCode::kInvalidArgument, path,
+  return {
+      StatusCode::kInvalidArgument,
       fmt::format("depth has {} bits per channel{}; depth must be a 16-bit grey PNG or PGM (export it again "
                   "without converting to 8 bits or to colour)",
-                  bits, grey ? "" : " and colour"));
+                  bits, grey ? "" : " and colour")};
 }
+
+Status ImageInfo::check_is_depth(const fs::path& path) const { return with_name(path, check_is_depth()); }
 
 ImageDecoder::~ImageDecoder() {
   if (jpeg_ != nullptr) tjDestroy(jpeg_);
@@ -96,72 +104,75 @@ Status ImageDecoder::load(const fs::path& path) {
   return status;
 }
 
-bool ImageDecoder::is_jpeg() const { return file_.size() > 2 && file_[0] == 0xff && file_[1] == 0xd8; }
-
-Status ImageDecoder::jpeg_header(const fs::path& path, ImageInfo& info) {
+Status ImageDecoder::jpeg_header(std::span<const unsigned char> file, ImageInfo& info) {
   if (jpeg_ == nullptr) jpeg_ = tjInitDecompress();
   int subsampling = 0;
   int colour_space = 0;
-  if (tjDecompressHeader3(jpeg_, file_.data(), file_.size(), &info.width, &info.height, &subsampling,
+  if (tjDecompressHeader3(jpeg_, file.data(), file.size(), &info.width, &info.height, &subsampling,
                           &colour_space) != 0)
-    return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
+    return {StatusCode::kDamaged, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_))};
   info.bits = 8;
   info.grey = colour_space == TJCS_GRAY;
-  return check_size(path, info);
+  return check_size(info);
 }
 
-Status ImageDecoder::netpbm_header(const fs::path& path, NetpbmHeader& header, ImageInfo& info) const {
-  if (Status status = read_netpbm_header(file_, header); !status.ok()) return with_name(path, status);
-  info = {header.width, header.height, header.most > 255 ? 16 : 8, header.grey};
-  return check_size(path, info);
+Status ImageDecoder::read_header(std::span<const unsigned char> file, ImageInfo& info) {
+  if (NetpbmHeader header; is_netpbm(file)) return netpbm_size(file, header, info);
+  if (is_jpeg(file)) return jpeg_header(file, info);
+  return png_header(open_png(file).get(), info);
+}
+
+Status ImageDecoder::decode_rgb(std::span<const unsigned char> file, int width, int height,
+                                std::span<std::uint8_t> rgb) {
+  ImageInfo info;
+  NetpbmHeader header;
+  const bool jpeg = is_jpeg(file);
+  const bool netpbm = is_netpbm(file);
+  const PngContext png = open_png(file);
+  if (Status status = jpeg     ? jpeg_header(file, info)
+                      : netpbm ? netpbm_size(file, header, info)
+                               : png_header(png.get(), info);
+      !status.ok())
+    return status;
+  if (info.width != width || info.height != height) return wrong_size(info, width, height);
+  if (netpbm) return read_netpbm_rgb(file, header, rgb);
+  if (!jpeg) return png_pixels(png.get(), rgb.data(), rgb.size(), SPNG_FMT_RGB8);
+  // TurboJPEG decodes a JPEG that ends early to grey bars with a mere warning: here it counts as damaged. A
+  // progressive JPEG may contain any number of scans: here at most 500.
+  if (tjDecompress2(jpeg_, file.data(), file.size(), rgb.data(), width, 0, height, TJPF_RGB,
+                    TJFLAG_LIMITSCANS) != 0)
+    return {StatusCode::kDamaged, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_))};
+  return {};
+}
+
+Status ImageDecoder::decode_depth(std::span<const unsigned char> file, int width, int height,
+                                  std::span<std::uint16_t> depth) {
+  ImageInfo info;
+  NetpbmHeader header;
+  const bool netpbm = is_netpbm(file);
+  const PngContext png = open_png(file);
+  Status status = netpbm ? netpbm_size(file, header, info) : png_header(png.get(), info);
+  if (status.ok()) status = info.check_is_depth();
+  if (!status.ok()) return status;
+  if (info.width != width || info.height != height) return wrong_size(info, width, height);
+  if (netpbm) return read_netpbm_depth(file, header, depth);
+  return png_pixels(png.get(), depth.data(), depth.size_bytes(), SPNG_FMT_PNG);  // 16 bits in host order
 }
 
 Status ImageDecoder::read_header(const fs::path& path, ImageInfo& info) {
-  if (Status status = load(path); !status.ok()) return status;
-  if (NetpbmHeader header; is_netpbm(file_)) return netpbm_header(path, header, info);
-  if (is_jpeg()) return jpeg_header(path, info);
-  return png_header(open_png(file_).get(), path, info);
+  const Status status = load(path);
+  return status.ok() ? with_name(path, read_header(file_, info)) : status;
 }
 
 Status ImageDecoder::decode_rgb(const fs::path& path, int width, int height, std::span<std::uint8_t> rgb) {
-  if (Status status = load(path); !status.ok()) return status;
-  ImageInfo info;
-  NetpbmHeader header;
-  const bool jpeg = is_jpeg();
-  const bool netpbm = is_netpbm(file_);
-  const PngContext png = open_png(file_);
-  if (Status status = jpeg     ? jpeg_header(path, info)
-                      : netpbm ? netpbm_header(path, header, info)
-                               : png_header(png.get(), path, info);
-      !status.ok())
-    return status;
-  if (info.width != width || info.height != height)
-    return wrong_size(path, info.width, info.height, width, height);
-  if (netpbm) return with_name(path, read_netpbm_rgb(file_, header, rgb));
-  if (!jpeg) return png_pixels(png.get(), path, rgb.data(), rgb.size(), SPNG_FMT_RGB8);
-  // TurboJPEG decodes a JPEG that ends early to grey bars with a mere warning: here it counts as damaged. A
-  // progressive JPEG may contain any number of scans: here at most 500.
-  if (tjDecompress2(jpeg_, file_.data(), file_.size(), rgb.data(), width, 0, height, TJPF_RGB,
-                    TJFLAG_LIMITSCANS) != 0)
-    return image_error(StatusCode::kDamaged, path, fmt::format("damaged JPEG ({})", tjGetErrorStr2(jpeg_)));
-  return {};
+  const Status status = load(path);
+  return status.ok() ? with_name(path, decode_rgb(file_, width, height, rgb)) : status;
 }
 
 Status ImageDecoder::decode_depth(const fs::path& path, int width, int height,
                                   std::span<std::uint16_t> depth) {
-  if (Status status = load(path); !status.ok()) return status;
-  ImageInfo info;
-  NetpbmHeader header;
-  const bool netpbm = is_netpbm(file_);
-  const PngContext png = open_png(file_);
-  Status status = netpbm ? netpbm_header(path, header, info) : png_header(png.get(), path, info);
-  if (status.ok()) status = info.check_is_depth(path);
-  if (!status.ok()) return status;
-  if (info.width != width || info.height != height)
-    return wrong_size(path, info.width, info.height, width, height);
-  if (netpbm) return with_name(path, read_netpbm_depth(file_, header, depth));
-  return png_pixels(png.get(), path, depth.data(), depth.size_bytes(),
-                    SPNG_FMT_PNG);  // 16 bits in host order
+  const Status status = load(path);
+  return status.ok() ? with_name(path, decode_depth(file_, width, height, depth)) : status;
 }
 
 }  // namespace plvo

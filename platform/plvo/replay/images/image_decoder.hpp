@@ -29,6 +29,7 @@ struct ImageInfo {
   // Returns kInvalidArgument, with the remedy, for an image that cannot be depth. path: names the file in the
   // message.
   Status check_is_depth(const std::filesystem::path& path) const;
+  Status check_is_depth() const;
 };
 
 class ImageDecoder {
@@ -52,11 +53,15 @@ class ImageDecoder {
   Status decode_depth(const std::filesystem::path& path, int width, int height,
                       std::span<std::uint16_t> depth);
 
+  // The same for the bytes of a file; messages name none.
+  Status read_header(std::span<const unsigned char> file, ImageInfo& info);
+  Status decode_rgb(std::span<const unsigned char> file, int width, int height, std::span<std::uint8_t> rgb);
+  Status decode_depth(std::span<const unsigned char> file, int width, int height,
+                      std::span<std::uint16_t> depth);
+
  private:
   Status load(const std::filesystem::path& path);
-  Status jpeg_header(const std::filesystem::path& path, ImageInfo& info);
-  Status netpbm_header(const std::filesystem::path& path, NetpbmHeader& header, ImageInfo& info) const;
-  bool is_jpeg() const;
+  Status jpeg_header(std::span<const unsigned char> file, ImageInfo& info);
 
   std::vector<unsigned char> file_;
   void* jpeg_ = nullptr;  // TurboJPEG's handle, created for the first JPEG

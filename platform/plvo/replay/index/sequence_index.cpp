@@ -34,8 +34,11 @@ Status read_sequence_index(const fs::path& folder, const SequenceOptions& option
                 folder.string())};
   }
   if (!fs::is_directory(folder, error)) {
-    return {StatusCode::kNotFound,
-            fmt::format("{} is not a folder; name the folder of a recorded sequence", folder.string())};
+    return {
+        StatusCode::kNotFound,
+        fmt::format(
+            "{} is not a folder; name the folder of a recorded sequence, or a file .bag, .mcap, .db3 or .oni",
+            folder.string())};
   }
   if (options.associations.empty() && is_numbered_folder(folder))
     return read_numbered_index(folder, options.frames_per_s, index);

@@ -275,7 +275,7 @@ void check(const CLI::App& command, const CalibrateOptions& options) {
     add_inputs(camera_options(options, recording), files);
   }
   if (std::none_of(options.recordings.begin(), options.recordings.end(),
-                   [](const std::string& recording) { return is_bag_file(recording); }))
+                   [](const std::string& recording) { return is_bag(recording); }))
     refuse_bag_options(command);
   files.check();
 }
@@ -286,9 +286,9 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App& command = add_command(app, "calibrate", "Find when a sensor exposes depth and colour", kHelp);
   OptionGroup group(command);
-  CLI::Option* recordings = group.add("recordings", "DIR|FILE.oni|FILE.bag",
+  CLI::Option* recordings = group.add("recordings", "DIR|FILE",
                                       "Recordings of one sensor: folders in the TUM layout, .oni files, or "
-                                      "ROS 1 bags",
+                                      "recordings of ROS",
                                       [options](const std::string& text) -> std::string {
                                         options->recordings.push_back(text);
                                         return text.empty() ? "expected a path, not an empty word" : "";
@@ -306,7 +306,8 @@ void add_calibrate(CLI::App& app, int& exit_code) {
               "Threads; the result does not depend on them (default 2)");
   group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
   add_bag_options(command, options->topics, BagImu::kPassedOver);
-  add_calibration_options(command, options->calibration, DepthScale::kAsked, "the calibration in the folder");
+  add_calibration_options(command, options->calibration, DepthScale::kAsked,
+                          "the calibration in the recording");
   add_json_option(command, options->json);
   on_command(command, exit_code, [&command, options] {
     check(command, *options);

@@ -88,7 +88,7 @@ int doctor_command(const DoctorOptions&) {
 
 void check(const CLI::App& command, const DoctorOptions& options) {
   check_live_camera_options(command, options.camera);
-  if (is_bag_file(options.camera.device))
+  if (is_bag(options.camera.device))
     refuse("--device", "a ROS bag is no sensor: plvo run FILE.bag tracks it");
   if (options.no_capture) {
     const char* why = "is for the capture, which --no-capture leaves out";

@@ -22,6 +22,7 @@
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
 #include "plvo/report/report.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -134,13 +135,14 @@ void check(const CLI::App& command, const EvalOptions& options) {
   const std::filesystem::path& truth = options.ground_truth.path;
   if (is_recording(truth))
     refuse_options(command, {"--gt-format"}, "is for a trajectory, and --gt names a recording");
-  if (is_bag_file(options.estimate.path))
+  if (is_bag(options.estimate.path))
     refuse("--est", "a ROS bag is a recording; name the trajectory that plvo run --out made of it");
   if (!is_numbered_folder(truth)) refuse_options(command, {"--rate"}, "is for a folder of numbered frames");
   FileRoles files;
   files.writes("--report", options.report);
   files.writes("--json", options.json);
-  files.reads(is_bag_file(truth) ? bag_ground_truth_file(truth) : truth / "groundtruth.txt");
+  files.reads(is_bag(truth) ? bag_ground_truth_file(truth) : truth / "groundtruth.txt");
+  for (const std::filesystem::path& file : bag_files_in(truth)) files.reads(file);
   SequenceIndex index;
   if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
     for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);

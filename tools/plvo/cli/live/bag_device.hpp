@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ROS 1 bag in the place of a sensor: for the live view, the pose stream, and to make a folder of it.
+// A recording of ROS in the place of a sensor: for the live view, the pose stream, and to make a folder of
+// it.
 #pragma once
 
 #include <memory>

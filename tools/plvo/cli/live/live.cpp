@@ -86,7 +86,7 @@ void check(const CLI::App& command, LiveOptions& options) {
     refuse_options(command, {"--imu"},
                    "is for a live Kinect; plvo run FILE.bag --imu takes a bag's readings");
   }
-  if (is_bag_file(options.camera.device) && is_oni_file(options.record))
+  if (is_bag(options.camera.device) && is_oni_file(options.record))
     refuse("--record", "a ROS bag is kept as a folder, not as an .oni file");
   if (options.outputs.view.empty())
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");

@@ -10,6 +10,7 @@
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
 #include "plvo/openni2/openni2_recorder.hpp"
@@ -32,8 +33,8 @@ void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, Play
       "--device", options.device,
       fmt::format("A sensor by its OpenNI2 URI (plvo doctor lists them){} an .oni file{} (default: the "
                   "first sensor)",
-                  bags ? "," : ", or", bags ? " or a ROS 1 bag" : ""),
-      bags ? "URI|FILE.oni|FILE.bag" : "URI|FILE.oni");
+                  bags ? "," : ", or", bags ? " or a recording of ROS" : ""),
+      bags ? "URI|FILE" : "URI|FILE.oni");
   group.add("--mode", "WIDTHxHEIGHT@FPS",
             "Size and rate of colour and depth, such as 640x480@30 (default), 320x240@30 or 320x240@60",
             [&options](const std::string& text) -> std::string {
@@ -51,12 +52,13 @@ void check_live_camera_options(const CLI::App& command, const LiveCameraOptions&
   if (is_recorded_device(options.device))
     refuse_options(command, {"--mode"},
                    "does not apply to a recording, which has a size and a rate of its own");
-  if (!is_bag_file(options.device)) refuse_bag_options(command);
+  if (!is_bag(options.device)) refuse_bag_options(command);
 }
 
 void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
   files.reads(options.calibration.file);
   if (is_recorded_device(options.device)) files.reads(options.device);
+  for (const std::filesystem::path& file : bag_files_in(options.device)) files.reads(file);
 }
 
 void add_limit_options(CLI::App& command, std::uint64_t& frames, double& seconds) {
@@ -81,7 +83,7 @@ bool parse_video_mode(const std::string& text, VideoMode& mode) {
 }
 
 bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
-bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag_file(path); }
+bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag(path); }
 
 int exit_code_of_camera(const Status& status, const std::string& device) {
   switch (status.code()) {
@@ -217,8 +219,7 @@ Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); 
 
 Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
   if (Status status = refuse_foreign_format(options.device); !status.ok()) return status;
-  return is_bag_file(options.device) ? open_bag_device(options, log, camera)
-                                     : open_sensor(options, log, camera);
+  return is_bag(options.device) ? open_bag_device(options, log, camera) : open_sensor(options, log, camera);
 }
 
 }  // namespace plvo::cli

@@ -15,7 +15,7 @@
 namespace plvo::cli {
 
 struct LiveCameraOptions {
-  std::string device;  // an OpenNI2 URI, an .oni file or a .bag file; empty: the first sensor
+  std::string device;  // an OpenNI2 URI, an .oni file or a recording of ROS; empty: the first sensor
   std::string mode = "640x480@30";
   BagTopicNames topics;
   CalibrationOptions calibration;

@@ -121,6 +121,9 @@ void refuse_group(const CLI::App& command, const std::string& group, const std::
     if (option->get_group() == group && option->count() > 0) refuse(option->get_name(), why);
 }
 
-bool given(const CLI::App& command, const char* option) { return command.count(option) > 0; }
+bool given(const CLI::App& command, const char* option) {
+  const CLI::Option* found = command.get_option_no_throw(option);
+  return found != nullptr && found->count() > 0;
+}
 
 }  // namespace plvo::cli

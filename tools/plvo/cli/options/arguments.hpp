@@ -125,6 +125,7 @@ void takes_words(CLI::Option* words, int most);  // of an option without a name:
 void refuse_options(const CLI::App& command, std::initializer_list<const char*> options,
                     const std::string& why);
 void refuse_group(const CLI::App& command, const std::string& group, const std::string& why);
+// False for an option that the command does not have, too.
 bool given(const CLI::App& command, const char* option);
 
 }  // namespace plvo::cli

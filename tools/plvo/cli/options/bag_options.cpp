@@ -17,9 +17,10 @@ OptionGroup::Reader read_topic(std::string& topic) {
 void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu) {
   OptionGroup bag(command, kBagGroup);
   bag.add("--colour-topic", "TOPIC",
-          "Of sensor_msgs/Image (default /camera/rgb/image_color, or the only one)",
+          "With images of colour (default /camera/rgb/image_color, or the only one)",
           read_topic(topics.colour));
-  bag.add("--depth-topic", "TOPIC", "Of sensor_msgs/Image (default /camera/depth/image, or the only one)",
+  bag.add("--depth-topic", "TOPIC",
+          "With images of depth (default /camera/depth/image, or the only one in colour's view)",
           read_topic(topics.depth));
   bag.add("--info-topic", "TOPIC", "Of sensor_msgs/CameraInfo (default camera_info beside colour)",
           read_topic(topics.camera_info));
@@ -29,10 +30,14 @@ void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu) {
   bag.add("--accelerometer-topic", "TOPIC",
           "Of sensor_msgs/Imu, for --imu (default the only one with accelerations)",
           read_topic(topics.accelerometer));
+  if (imu == BagImu::kKept) return;
+  bag.add("--truth-topic", "TOPIC",
+          "Of nav_msgs/Odometry or geometry_msgs/PoseStamped, the true poses (default the only one)",
+          read_topic(topics.truth));
 }
 
 void refuse_bag_options(const CLI::App& command) {
-  refuse_group(command, kBagGroup, "is for a ROS bag (FILE.bag)");
+  refuse_group(command, kBagGroup, "is for a ROS bag (.bag, .mcap, .db3, a folder of rosbag2)");
 }
 
 }  // namespace plvo::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which topics of a ROS 1 bag are read: options of every command that reads bags.
+// Which topics of a recording of ROS are read: options of every command that reads bags.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 namespace plvo::cli {
 
 inline constexpr const char* kBagGroup = "ROS bag";
-// kKept: the topics of gyro and accelerometer can be chosen too, for --imu.
-enum class BagImu : std::uint8_t { kPassedOver, kKept };
+// kKept: the topics of gyro and accelerometer can be chosen too, for --imu. kWithTruth: that of the true
+// poses, too.
+enum class BagImu : std::uint8_t { kPassedOver, kKept, kWithTruth };
 void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu);
 // Where no recording is a bag.
 void refuse_bag_options(const CLI::App& command);

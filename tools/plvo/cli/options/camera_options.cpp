@@ -12,6 +12,7 @@
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
+#include "plvo/rosbag/containers/container_kind.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
 namespace plvo::cli {
@@ -68,9 +69,9 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
   opened.scaled_down_by = recording->whole_image().factor;
   opened.name = sequence_name(options.sequence);
   if (recording->has_ground_truth())
-    opened.ground_truth = [path = options.sequence, sequence = how.sequence](const std::vector<std::int64_t>&,
-                                                                             eval::Trajectory& truth) {
-      return read_true_poses(path, sequence, truth);
+    opened.ground_truth = [path = options.sequence, sequence = how.sequence, topic = options.topics.truth](
+                              const std::vector<std::int64_t>&, eval::Trajectory& truth) {
+      return read_true_poses(path, sequence, truth, topic);
     };
   opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
   opened.camera = recording;
@@ -156,10 +157,12 @@ CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz) {
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   OptionGroup group(command);
-  group.path("sequence", options.sequence,
-             "What was recorded: a folder with rgb.txt and depth.txt (TUM layout) or with numbered frames "
-             "(7-Scenes, ScanNet), an .oni file, or a ROS 1 bag",
-             "DIR|FILE.oni|FILE.bag");
+  group.path(
+      "sequence", options.sequence,
+      "What was recorded: a folder with rgb.txt and depth.txt (TUM layout) or with numbered frames "
+      "(7-Scenes, ScanNet), an .oni file, or a recording of ROS: a .bag, an .mcap, a .db3, or a folder of "
+      "rosbag2",
+      "DIR|FILE");
   group.choice("--camera", options.simulated, Choices<bool>{{"sim", true}},
                "The simulated camera, instead of a recorded sequence");
   group.add("--frames", "N|FIRST:END",
@@ -180,8 +183,9 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
           "with them: for less time a frame (default 1; images above {} pixels a side: as little as they "
           "need)",
           Limits::kMostSide));
-  add_bag_options(command, options.topics, BagImu::kKept);
-  add_calibration_options(command, options.calibration, DepthScale::kAsked, "the calibration in the folder");
+  add_bag_options(command, options.topics, BagImu::kWithTruth);
+  add_calibration_options(command, options.calibration, DepthScale::kAsked,
+                          "the calibration in the recording");
   add_simulator_options(command, options.simulator);
 }
 
@@ -203,7 +207,7 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
   if (options.sequence.empty())
     refuse_command("a sequence is needed: plvo run DIR, plvo run FILE.oni or plvo run --camera sim");
   refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
-  if (is_bag_file(options.sequence))
+  if (is_bag(options.sequence))
     return refuse_options(command, {"--associations", "--rate"},
                           "does not apply to a ROS bag, which has pairs and stamps of its own");
   refuse_bag_options(command);
@@ -223,8 +227,9 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   files.reads(options.associations);
   files.reads(options.simulator.trajectory);
   if (options.simulated) return;
-  if (is_bag_file(options.sequence)) files.reads(bag_ground_truth_file(options.sequence));
-  if (is_oni_file(options.sequence) || is_bag_file(options.sequence)) return files.reads(options.sequence);
+  if (is_bag(options.sequence)) files.reads(bag_ground_truth_file(options.sequence));
+  for (const fs::path& file : bag_files_in(options.sequence)) files.reads(file);
+  if (is_oni_file(options.sequence) || is_bag(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
   for (const char* name :
        {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})

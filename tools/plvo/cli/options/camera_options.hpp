@@ -58,7 +58,7 @@ CLI::Option* add_rate_option(OptionGroup& group, double& rate_hz);
 
 struct CameraOptions {
   bool simulated = false;
-  std::string sequence;  // a folder, an .oni file or a .bag file, where it is not simulated
+  std::string sequence;  // a folder, an .oni file or a recording of ROS, where it is not simulated
   FrameRange frames;
   std::string associations;
   double tolerance_s = 0.02;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo record: what a sensor sees, kept for later.
+// plvo record: what a sensor sees, kept for later. plvo convert: the same of a recording.
 #include <fmt/format.h>
 
 #include <limits>
@@ -27,10 +27,21 @@ constexpr const char* kRecordHelp =
     "Examples:\n"
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
     "  plvo record walk.oni --seconds 60     one file of OpenNI2; then: plvo run walk.oni\n"
-    "  plvo record walk --device walk.oni    the one from the other\n"
-    "  plvo record walk --device walk.bag    a folder of a ROS 1 bag; --imu: with gyro, accelerometer\n"
+    "  plvo record walk --device walk.oni    the one from the other; plvo convert does the same\n"
     "\n"
     "Ctrl-C ends, and so does a full disk: what was written is whole and can be read.\n";
+
+constexpr const char* kConvertHelp =
+    "Examples:\n"
+    "  plvo convert walk.mcap --out walk     a new folder with PNG images; then: plvo run walk\n"
+    "  plvo convert walk.bag --out walk --imu    with gyro and accelerometer\n"
+    "\n"
+    "plvo run reads recordings of ROS as they are: convert makes folders for other programs.\n";
+
+constexpr const char* kImuText =
+    "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the recording of "
+    "ROS";
+constexpr const char* kQuietText = "Warnings and errors only: no progress, no summary";
 
 struct RecordOptions {
   LiveCameraOptions camera;
@@ -71,13 +82,13 @@ Status check_outputs(const RecordOptions& options) {
 
 // All that a bag has, before anything is made.
 Status read_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
-  return options.imu && is_bag_file(options.camera.device) ? camera.read_imu(readings) : Status();
+  return options.imu && is_bag(options.camera.device) ? camera.read_imu(readings) : Status();
 }
 
 Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
                  LiveAccelerometer& accelerometer) {
   if (!options.imu) return {};
-  if (is_bag_file(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
+  if (is_bag(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
   accelerometer.keep_in(options.path);
   return accelerometer.start(camera, false);
 }
@@ -146,12 +157,11 @@ void check(const CLI::App& command, const RecordOptions& options) {
         command, kCalibrationGroup,
         "would be lost, for an .oni file keeps no calibration: give it to plvo run FILE.oni instead");
     refuse_options(command, {"--imu"}, "an .oni file keeps no readings of it; record a folder instead");
-    if (is_bag_file(options.camera.device))
-      refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
+    if (is_bag(options.camera.device)) refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
     for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
-      files.writes("path", std::filesystem::path(options.path) / name);
+      files.writes(given(command, "--out") ? "--out" : "path", std::filesystem::path(options.path) / name);
   }
   if (is_oni_file(options.camera.device))
     refuse_options(command, {"--imu"}, "does not apply to an .oni file, which holds no such readings");
@@ -172,13 +182,34 @@ void add_record(CLI::App& app, int& exit_code) {
   require(group.path("path", options->path, "A new folder (rgb.txt, depth.txt, PNG), or a new .oni file",
                      "DIR|FILE.oni"));
   add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
-  group.flag(
-      "--imu", options->imu,
-      "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the ROS bag");
+  group.flag("--imu", options->imu, kImuText);
   add_limit_options(command, options->frames, options->seconds);
   add_bag_options(command, options->camera.topics, BagImu::kKept);
-  group.flag("--quiet", options->quiet, "Warnings and errors only: no progress, no summary");
+  group.flag("--quiet", options->quiet, kQuietText);
   on_command(command, exit_code, [&command, options] {
+    check(command, *options);
+    return record_command(*options);
+  });
+}
+
+void add_convert(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App& command = add_command(app, "convert", "Make a folder of images of a recording", kConvertHelp);
+  OptionGroup group(command);
+  require(group.path("recording", options->camera.device,
+                     "A recording of ROS (a .bag, an .mcap, a .db3, or a folder of rosbag2), or an .oni file",
+                     "DIR|FILE"));
+  require(group.path("--out", options->path, "A new folder for the sequence", "DIR"));
+  group.flag("--imu", options->imu, kImuText);
+  add_limit_options(command, options->frames, options->seconds);
+  add_calibration_options(command, options->camera.calibration, DepthScale::kFromCamera,
+                          "the calibration in the recording");
+  add_bag_options(command, options->camera.topics, BagImu::kKept);
+  group.flag("--quiet", options->quiet, kQuietText);
+  on_command(command, exit_code, [&command, options] {
+    if (!is_recorded_device(options->camera.device))
+      refuse("recording", "is no recording of ROS and no .oni file; a folder of images needs no conversion");
+    if (is_oni_file(options->path)) refuse("--out", "is a folder, not an .oni file");
     check(command, *options);
     return record_command(*options);
   });
