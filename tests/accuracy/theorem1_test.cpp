@@ -63,7 +63,7 @@ class Pairs {
     if (has_reference_) {
       Reference reference;
       reference.features = &modules_.frames[1 - slot_];
-      modules_.tracking.find(reference, current, T_predicted_, config_.points.match.radius_px, tracked);
+      modules_.tracking.find(reference, current, T_predicted_, PointMatchConfig().radius_px, tracked);
       const Se3 T_found = motion.T_current_reference;
       if (tracked.ok()) modules_.tracking.refine({&reference, 1}, current, T_found, tracked);
     } else {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the rules of plvo that need only the text: licence lines; the headers and functions that core and hal may use; no path of
-a developer's machine. Also prints a report of file sizes."""
+"""Checks the rules of plvo that need only the text: licence lines; the headers and functions that core and hal may use; no
+internal names of Eigen; no path of a developer's machine. Also prints a report of file sizes."""
 import pathlib
 import re
 import statistics
@@ -36,6 +36,12 @@ FORBIDDEN = {
     r"\b(?:noexcept\s*\(\s*false)": "exceptions",
 }
 
+# Names of a library that it may change in any release. A specialisation of them in some files alone would be undefined.
+INTERNALS = {
+    r"\bEigen\s*::\s*internal\b": "Eigen's own names: use what its documentation describes",
+    r"\bnamespace\s+Eigen\b": "specialises or adds to Eigen: use what its documentation describes",
+}
+
 # Split so that this file does not match itself.
 TRACES = re.compile("/" + r"(?:home|root|Users|tmp/(?:wt|bash|hub)|work)/")
 
@@ -63,6 +69,14 @@ def check_core(root):
                     yield f"{name}:{number}: {match.group(0).strip()}: {why}"
 
 
+def check_internals(root):
+    for path in sources.files(root):
+        for number, line in enumerate(sources.code_only(path.read_text(encoding="utf-8")).splitlines(), 1):
+            for pattern, why in INTERNALS.items():
+                if re.search(pattern, line):
+                    yield f"{path.relative_to(root)}:{number}: {why}"
+
+
 def check_traces(root):
     for path in sources.files(root, suffixes=sources.CODE + sources.SCRIPTS + ("CMakeLists.txt", ".md", ".html", ".js")):
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -72,7 +86,7 @@ def check_traces(root):
 
 def check(root):
     root = pathlib.Path(root)
-    return [*check_licences(root), *check_core(root), *check_traces(root)]
+    return [*check_licences(root), *check_core(root), *check_internals(root), *check_traces(root)]
 
 
 def sizes(root):

@@ -123,6 +123,16 @@ class Rules(unittest.TestCase):
     def test_other_layers_may_use_them(self):
         self.assertEqual(self.found("platform/plvo/host/a.cpp", LICENCE + "#include <vector>\nauto p = new int;\n"), [])
 
+    def test_internals_of_eigen_are_named_in_every_layer(self):
+        for line in ("Eigen::internal::traits<T> t;", "namespace Eigen::internal {", "namespace Eigen { namespace internal {",
+                     "namespace Eigen {", "using namespace Eigen::internal;", "Eigen :: internal::evaluator<T> e;"):
+            for name in ("core/plvo/math/a.hpp", "hal/plvo/hal/a.hpp", "platform/plvo/c/a.cpp", "tools/plvo/eval/a.cpp", "tests/math/a.cpp"):
+                self.assertTrue(self.found(name, LICENCE + line + "\n"), (name, line))
+
+    def test_public_names_of_eigen_pass(self):
+        text = LICENCE + "// Eigen::internal in prose\nEigen::Matrix<double, 3, 3> M;\nnamespace plvo {}\n"
+        self.assertEqual(self.found("core/plvo/math/a.hpp", text), [])
+
     def test_a_path_of_one_machine_is_named(self):
         self.assertTrue(self.found("tools/plvo/cli/a.cpp", LICENCE + 'auto p = "/' + 'home/somebody/data";\n'))
 

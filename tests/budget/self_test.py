@@ -7,7 +7,6 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "bare_metal"))
 import budget
 import instructions
-import mixed_levels
 from call_graph import CallGraph
 
 PAGE = "| what | bytes |\n|---|---:|\n| text | 1,000 |\n"
@@ -38,17 +37,6 @@ class Instructions(unittest.TestCase):
 
     def test_what_a_program_counted_itself(self):
         self.assertEqual(instructions.of_words(["qvga 7", "qvga, tiny 5"]), [("qvga", 7), ("qvga, tiny", 5)])
-
-
-class MixedLevels(unittest.TestCase):
-    def test_a_function_of_both_kinds_is_found(self):
-        lines = ["core.a:cold.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W both(int)", "core.a:hot.cpp.o:0000 W hot()",
-                 "core.a:cold.cpp.o:0000 T cold()", "core.a:hot.cpp.o:     U cold()"]
-        self.assertEqual(mixed_levels.shared(lines, "cold"), ["both(int)"])
-        self.assertEqual(mixed_levels.shared(lines, ("cold", "hot")), [])
-        self.assertTrue(mixed_levels.is_there(lines, "cold"))
-        self.assertFalse(mixed_levels.is_there(lines, "tepid"))
-        self.assertFalse(mixed_levels.is_there([], "cold"))
 
 
 class Stack(unittest.TestCase):

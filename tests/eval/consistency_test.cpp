@@ -69,6 +69,31 @@ TEST(Consistency, SingularCovariancesAreCountedNotUsed) {
   EXPECT_EQ(c.singular, 1u);
 }
 
+// Values from published tables: χ²(6) and χ²(3) for one sample; χ²(120) and χ²(60) for 20 samples.
+TEST(Consistency, BandOfTheMeanIsThatOfTheTables) {
+  PairedPoses poses;
+  std::vector<StampedCovariance> covariances;
+  const auto bands_of = [&](int samples) {
+    for (int i = static_cast<int>(poses.truth.size()); i <= samples; ++i) {
+      poses.stamps_ns.push_back(i);
+      poses.truth.push_back({});
+      poses.estimate.push_back({});
+      covariances.push_back({i, Matrix6::Identity()});
+    }
+    return pose_consistency(poses, covariances, {});
+  };
+  const auto expect = [](const Nees& nees, double low, double high) {
+    EXPECT_NEAR(nees.mean_band.low, low, 3e-4 * low);
+    EXPECT_NEAR(nees.mean_band.high, high, 3e-4 * high);
+  };
+  const Consistency one = bands_of(1);
+  expect(one.all, 1.2373, 14.4494);
+  expect(one.translation, 0.2158, 9.3484);
+  const Consistency twenty = bands_of(20);
+  expect(twenty.all, 91.5726 / 20, 152.2114 / 20);
+  expect(twenty.rotation, 40.4817 / 20, 83.2977 / 20);
+}
+
 TEST(Consistency, PoseErrorsStartAtZero) {
   PairedPoses poses;
   for (int i = 0; i < 3; ++i) {

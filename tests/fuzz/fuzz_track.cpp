@@ -92,11 +92,6 @@ Config read_config(Bytes& bytes) {
   config.points.registered = !bytes.one_in(4);
   config.points.depth_reach_px = (bytes.below(4) + 2) % 4;
   tune(config.points.sigma_px, 0.01, 2);
-  config.points.detector.levels = 1 + bytes.below(4);
-  config.points.detector.noise_floor = 1 + bytes.below(64);
-  tune(config.points.detector.min_strength, 0, 20);
-  tune(config.points.match.radius_px, 0, 100);
-  tune(config.motion.inlier_probability, 0.5, 1);
   config.motion.max_ransac_iterations = 1 + bytes.below(256) * 4;
   config.motion.min_inliers = 3 + bytes.below(16);
   config.motion.robust = bytes.below(2) == 0;

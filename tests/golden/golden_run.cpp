@@ -108,7 +108,7 @@ bool print_input(const GoldenMemory& memory, ProceduralRenderer& sequence, void 
 
 }  // namespace
 
-bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std::string_view only) {
+bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view)) {
   print("run frame state x_um y_um z_um image points lines matching motion result");
   ProceduralRenderer sequence;
   if (!print_input(memory, sequence, print)) return false;
@@ -143,7 +143,7 @@ bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view), std
       {.name = "vga", .config = {}, .limits = Limits::vga(), .frames = 20, .dark_from = 8},
   };
   for (const GoldenCase& golden : cases)
-    if ((only.empty() || only == golden.name) && !run(golden, memory, sequence, print)) return false;
+    if (!run(golden, memory, sequence, print)) return false;
   return true;
 }
 

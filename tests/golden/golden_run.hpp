@@ -23,7 +23,6 @@ struct GoldenMemory {
 };
 
 // Hands every line, without its end, to `print`. False, after a line that says why, when a run cannot start.
-// only: the name of one run, or empty for all of them.
-bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view line), std::string_view only = {});
+bool golden_run(const GoldenMemory& memory, void (*print)(std::string_view line));
 
 }  // namespace plvo

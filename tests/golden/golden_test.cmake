@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs the golden program and compares its output with the committed one, byte for byte.
-# cmake -DPROGRAM="<emulator;…;>program" -DGOLDEN=<file> [-DUPDATE=ON] [-DEIGEN=<version>] [-DONLY=<name of one run>] -P golden_test.cmake
+# cmake -DPROGRAM="<emulator;…;>program" -DGOLDEN=<file> [-DUPDATE=ON] [-DEIGEN=<version>] -P golden_test.cmake
 cmake_minimum_required(VERSION 3.22)
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE output RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
@@ -11,11 +11,6 @@ if(UPDATE)
   return()
 endif()
 file(READ ${GOLDEN} golden)
-if(ONLY)
-  file(STRINGS ${GOLDEN} golden REGEX "^(run|input|${ONLY}) ")
-  list(JOIN golden "\n" golden)
-  string(APPEND golden "\n")
-endif()
 if(output STREQUAL golden)
   return()
 endif()

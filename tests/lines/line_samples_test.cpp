@@ -20,22 +20,21 @@ Segment segment(double ax, double ay, double bx, double by) {
   return s;
 }
 
-constexpr SampleOptions kPaper{100, 1, 0};
+constexpr SampleOptions kPaper{1, 0};
 
 TEST(LineSamples, SpacingOfOnePixelGivesTheCountOfThePaper) {
   EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), kPaper), 0);
   EXPECT_EQ(sample_count(segment(0, 0, 20.7, 0), kPaper), 20);
   EXPECT_EQ(sample_count(segment(0, 0, 60, 80), kPaper), 100);
   EXPECT_EQ(sample_count(segment(0, 0, 600, 80), kPaper), 100);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {50, 1, 0}), 50);
 }
 
 TEST(LineSamples, WiderSpacingTakesFewerSamplesDownToTheMinimum) {
-  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {100, 3, 0}), 0);
-  EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {100, 3, 0}), 12);
-  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {100, 3, 0}), kEnoughSamples);
-  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {100, 3, 0}), 33);
-  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {100, 3, 0}), 100);
+  EXPECT_EQ(sample_count(segment(0, 0, 1.9, 0), {3, 0}), 0);
+  EXPECT_EQ(sample_count(segment(0, 0, 12.7, 0), {3, 0}), 12);
+  EXPECT_EQ(sample_count(segment(0, 0, 30, 40), {3, 0}), kEnoughSamples);
+  EXPECT_EQ(sample_count(segment(0, 0, 60, 80), {3, 0}), 33);
+  EXPECT_EQ(sample_count(segment(0, 0, 600, 80), {3, 0}), 100);
 }
 
 TEST(LineSamples, AreEvenlySpacedFromEndToEnd) {
@@ -70,9 +69,9 @@ TEST(LineSamples, SigmaGrowsWithTheSlopeAcrossTheSegment) {
   noise.registration_px = 2;
   LineSamples samples;
   const test::DepthFunction slope{[](int, int y) { return 2 + 0.01 * y; }};
-  sample_segment(segment(0, 0, 50, 0), noise, {100, 1, 3}, slope, samples);
+  sample_segment(segment(0, 0, 50, 0), noise, {1, 3}, slope, samples);
   EXPECT_NEAR(samples.sample[10].sigma_d_m, std::sqrt(noise.sigma(2) * noise.sigma(2) + 0.02 * 0.02), 1e-6);
-  sample_segment(segment(0, 0, 0, 50), noise, {100, 1, 3}, slope, samples);
+  sample_segment(segment(0, 0, 0, 50), noise, {1, 3}, slope, samples);
   EXPECT_DOUBLE_EQ(samples.sample[0].sigma_d_m, noise.sigma(2));
 }
 
@@ -85,7 +84,7 @@ TEST(LineSamples, HolesHaveTheDepthAroundThem) {
                                   [&](int x, int y) { return pattern.missing(x, y) ? 0.0 : wall_m(x, y); });
     for (const Segment& s : {segment(10, 40, 70, 40), segment(40, 10, 40, 70), segment(11, 12, 66, 70)}) {
       LineSamples samples;
-      sample_segment(s, DepthNoise{}, {100, 3, 3}, wall.sampler(), samples);
+      sample_segment(s, DepthNoise{}, {3, 3}, wall.sampler(), samples);
       EXPECT_GE(samples.count, 0.95 * samples.asked) << pattern.name;
       for (const LineSample& sample : samples.with_depth()) {
         const Vector2 p = 0.5 * (s.a + s.b) + sample.t_px * s.direction();

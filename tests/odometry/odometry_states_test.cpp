@@ -145,8 +145,8 @@ TEST(OdometryInit, RefusesInvalidArgumentsByName) {
   config.motion.min_inliers = 2;
   EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "motion.min_inliers"));
   config = {};
-  config.points.detector.cell_px = 65;
-  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "points.detector.cell_px"));
+  config.points.depth_reach_px = 4;
+  EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "points.depth_reach_px"));
   config = {};
   config.depth_noise.c1 = nan;
   EXPECT_TRUE(contains(init(camera(), config, kStateLimits), "depth_noise"));

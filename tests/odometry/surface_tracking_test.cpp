@@ -61,8 +61,8 @@ struct Pair {
     const DepthPicture after = picture(planes, motion, gaussian);
     sample_surfaces(before.sampler(), kPinhole, kWidth, kHeight, kNoiseShare * kNoiseShare, arena, features);
     FixedVector<SurfaceMatch> found(storage);
-    track_surfaces(after.sampler(), kPinhole, NoiseConfig{}, kNoiseShare * kNoiseShare,
-                   features.samples.span(), motion, found);
+    track_surfaces(after.sampler(), kPinhole, kNoiseShare * kNoiseShare, features.samples.span(), motion,
+                   found);
     storage.resize(found.size());
     flags.resize(found.size());
   }
@@ -125,8 +125,8 @@ TEST(SurfaceTracking, RejectsAnotherSurface) {
   nearer.push_back({{0, 0, 1}, 3.0});
   std::vector<SurfaceMatch> storage(200);
   FixedVector<SurfaceMatch> found(storage);
-  track_surfaces(picture(nearer, none, gaussian).sampler(), kPinhole, NoiseConfig{}, 0.25,
-                 pair.features.samples.span(), none, found);
+  track_surfaces(picture(nearer, none, gaussian).sampler(), kPinhole, 0.25, pair.features.samples.span(),
+                 none, found);
   EXPECT_GT(found.size(), 20U);
   for (const SurfaceMatch& match : found) EXPECT_LT(std::abs(match.normal.z()), 0.5);
 }

@@ -7,11 +7,14 @@ target_compile_options(plvo_warnings INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor $<$<BOOL:${PLVO_WERROR}>:-Werror>)
 
 # Without fused multiply-add and sums that depend on the vector width, x86-64, aarch64 and armhf give the same bits.
-# PLVO_ROLLED_LOOPS replaces code that Eigen unrolls by loops (math/rolled_loops.hpp). PLVO_SIZE_OPTIMISED prefers code size
-# to speed in build types that ask for it (base/build.hpp). Both apply to all files, since a template must be identical in
-# all files that are linked together.
+# The definitions of the build for size apply to all files, since a template must be identical in all files that are linked
+# together: PLVO_SIZE_OPTIMISED prefers code size to speed (base/build.hpp); EIGEN_UNROLLING_LIMIT, which Eigen's documentation
+# describes, keeps it from unrolling assignments of more than a few entries. Eigen adds in another order in a loop, so the limit is
+# above the cost of every sum in the core: the longest one, of seven products, costs 27. A costlier one is written as a sum of
+# shorter ones, or of values that are evaluated first.
+set(PLVO_SIZE_DEFINITIONS PLVO_SIZE_OPTIMISED EIGEN_UNROLLING_LIMIT=28)
 add_compile_options(-ffp-contract=off)
-add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY PLVO_ROLLED_LOOPS $<$<CONFIG:MinSizeRel>:PLVO_SIZE_OPTIMISED>)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY "$<$<CONFIG:MinSizeRel>:${PLVO_SIZE_DEFINITIONS}>")
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 # The order of the sums inside Eigen's functions affects the bits: tests/golden/golden.txt was written with this version.
@@ -21,7 +24,7 @@ if(NOT Eigen3_VERSION VERSION_EQUAL PLVO_GOLDEN_EIGEN)
     "golden_test says whether the bits are the same")
 endif()
 
-# Compiler options of the core. Loops over pixels are vectorised (PLVO_PIXEL_SOURCES). Loops over the three coordinates of a
+# Compiler options of the core. Loops over pixels are vectorised (plvo_vectorise in core/CMakeLists.txt). Loops over the three coordinates of a
 # point are not: GCC 12 loads two of them together immediately after it has stored them one by one, and every such load waits
 # for both stores. GCC 12's SLP vectoriser also turns a product next to a sum and a difference into vfmaddsub if the
 # processor has it (-march=native, -mfma), in spite of -ffp-contract=off; this fuses the operations and changes the last
@@ -60,17 +63,6 @@ function(plvo_seal target)
   add_custom_command(TARGET ${target} POST_BUILD VERBATIM COMMAND ${CMAKE_COMMAND} -DARCHIVE=$<TARGET_FILE:${target}>
     -DCXX=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}" -DNM=${CMAKE_NM} -DOBJCOPY=${CMAKE_OBJCOPY} -DAR=${CMAKE_AR}
     -P ${PROJECT_SOURCE_DIR}/tools/cmake/seal_archive.cmake)
-endfunction()
-
-# plvo_core_features(<core target> both|points|lines): selects the kinds of features in the core.
-function(plvo_core_features target features)
-  if(features STREQUAL points)
-    target_compile_definitions(${target} PRIVATE PLVO_WITHOUT_LINES)
-  elseif(features STREQUAL lines)
-    target_compile_definitions(${target} PRIVATE PLVO_WITHOUT_POINTS)
-  elseif(NOT features STREQUAL both)
-    message(FATAL_ERROR "PLVO_FEATURES is '${features}': both, points or lines?")
-  endif()
 endfunction()
 
 # plvo_core_variant(<name> <options…>): a second build of the core with other options, for tests that compare or instrument

@@ -18,6 +18,10 @@ namespace plvo {
 
 namespace {
 
+constexpr double kMinConsensus = 0.6;  // τ of the paper: smallest n_con / n_s
+// Limit of two-sample lines; 16 find a consensus of 60 % with a probability of 99.9 %.
+constexpr int kMaxRansacIterations = 20;
+
 struct Samples {
   std::array<Whitened, kMaxLineSamples> all;
   std::array<bool, kMaxLineSamples> consensus{};
@@ -84,7 +88,7 @@ bool confident(int tries, double w) {
   return miss < 1e-3;
 }
 
-// Finds the line with the least MSAC cost among the regression line and at most max_ransac_iterations lines
+// Finds the line with the least MSAC cost among the regression line and at most kMaxRansacIterations lines
 // through two samples. The two samples are at least a quarter of the set apart.
 bool ransac(const Samples& samples, const Line3dConfig& config, std::uint64_t seed, PlaneLine& best) {
   const auto n = static_cast<std::uint32_t>(samples.count);
@@ -98,7 +102,7 @@ bool ransac(const Samples& samples, const Line3dConfig& config, std::uint64_t se
     if (best_inliers * 20 >= samples.count * 19) return true;
   }
   Random random(seed);
-  for (int i = 0; i < config.max_ransac_iterations; ++i) {
+  for (int i = 0; i < kMaxRansacIterations; ++i) {
     if (confident(i, static_cast<double>(best_inliers) / static_cast<double>(n))) break;
     const std::uint32_t first = random.below(n);
     const std::uint32_t second = (first + n / 4 + random.below(n / 2)) % n;
@@ -320,11 +324,8 @@ Line3dOutcome fit_in_plane(Samples& samples, int needed, const Line3dConfig& con
                                           const Pinhole& pinhole, const Line3dConfig& config,
                                           std::uint64_t seed, Line3d& out) {
   Line3dReport report;
-  report.asked = taken.asked;
-  report.with_depth = taken.count;
-  report.mixed = taken.mixed;
   int needed = 2;  // the smallest integer that reaches τ n_s
-  while (needed < config.min_consensus * taken.asked) ++needed;
+  while (needed < kMinConsensus * taken.asked) ++needed;
   if (taken.count < needed) return report;
   while (needed < config.min_agreement * taken.count) ++needed;
 

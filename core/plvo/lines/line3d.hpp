@@ -21,17 +21,14 @@
 
 namespace plvo {
 
-// The defaults are calibrated on rendered sequences with exact ground truth
-// (tools/plvo/bench/line_match_precision). paper() returns the settings of Lu & Song.
+// The defaults are calibrated on rendered sequences with exact ground truth. paper() returns the settings of
+// Lu & Song.
 struct Line3dConfig {
-  int max_samples = 100;  // limit of n_s
   // Distance between samples. Closer depths share most of their error (see depth_correlation_px).
   double sample_spacing_px = 3;
-  double min_consensus = 0.6;  // τ: smallest n_con / n_s
   double min_agreement = 0.8;  // smallest n_con / samples with depth; below it, a second surface is involved
   double sigma_p_px = 0.5;     // σ_p of (3), for one sample
   double inlier_chi_square = 6.63;  // limit of r², one degree of freedom: 99 %
-  int max_ransac_iterations = 20;   // limit of two-sample lines; 16 find a 60 % consensus with 99.9 %
   int side_reach_px = 3;            // see sample_segment
   // Length along the segment within which depth errors are fully correlated, because of quantisation and the
   // sensor's correlation window. The in-plane information is divided by (this / sample spacing) if that
@@ -70,11 +67,8 @@ enum class Line3dOutcome : std::uint8_t {
 
 struct Line3dReport {
   Line3dOutcome outcome = Line3dOutcome::kTooFewDepths;
-  int asked = 0;       // n_s
-  int with_depth = 0;  // samples with depth
-  int mixed = 0;       // samples with depth that saw two surfaces
-  int consensus = 0;   // n_con
-  double cost = 0;     // Σ r² over the consensus set
+  int consensus = 0;  // n_con
+  double cost = 0;    // Σ r² over the consensus set
 };
 
 // Fits a 3D line to the samples, in the camera frame, metres; a and b are ordered as in the segment. `line`
@@ -88,7 +82,7 @@ Line3dReport observe_line(const Segment& segment, const Depth& depth, const Pinh
                           const DepthNoise& noise, const Line3dConfig& config, std::uint64_t seed,
                           Line3d& line) {
   LineSamples samples;
-  const SampleOptions options{config.max_samples, config.sample_spacing_px, config.side_reach_px};
+  const SampleOptions options{config.sample_spacing_px, config.side_reach_px};
   sample_segment(segment, noise, options, depth, samples);
   return fit_line3d(segment, samples, pinhole, config, seed, line);
 }

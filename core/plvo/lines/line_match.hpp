@@ -15,6 +15,7 @@
 
 namespace plvo {
 
+// The defaults are for a motion that is only predicted. The odometry narrows or widens the first two.
 struct LineMatchConfig {
   double max_angle_rad = 0.2;  // between predicted and current direction
   // Limit of the distance across the predicted segment, at the middle of the current one. The same slack

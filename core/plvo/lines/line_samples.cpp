@@ -65,8 +65,7 @@ int sample_count(const Segment& segment, const SampleOptions& options) {
   const double length = segment.length_px();
   if (!(length >= 2)) return 0;
   const double spaced = std::max(length / options.spacing_px, std::min<double>(length, kEnoughSamples));
-  const int most = std::clamp(options.max_samples, 2, kMaxLineSamples);
-  return spaced >= most ? most : static_cast<int>(spaced);
+  return spaced >= kMaxLineSamples ? kMaxLineSamples : static_cast<int>(spaced);
 }
 
 }  // namespace plvo

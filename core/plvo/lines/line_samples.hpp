@@ -21,15 +21,14 @@
 
 namespace plvo {
 
-inline constexpr int kMaxLineSamples = 100;
-inline constexpr int kMaxSideReach = 5;  // px
+inline constexpr int kMaxLineSamples = 100;  // limit of n_s
+inline constexpr int kMaxSideReach = 5;      // px
 
 // A short segment gets at least this number of samples, whatever the spacing, but never more than one per
 // pixel.
 inline constexpr int kEnoughSamples = 20;
 
 struct SampleOptions {
-  int max_samples = kMaxLineSamples;
   double spacing_px = 1;
   int side_reach_px = 0;  // 0 … kMaxSideReach: reach of the profile to either side; 0: as in the paper
 };
@@ -45,7 +44,6 @@ struct LineSamples {
   std::array<LineSample, kMaxLineSamples> sample;  // by increasing t; only those with depth
   int count = 0;                                   // samples with depth
   int asked = 0;                                   // n_s
-  int mixed = 0;                                   // samples with depth that saw two surfaces
   std::span<const LineSample> with_depth() const { return {sample.data(), static_cast<std::size_t>(count)}; }
 };
 
@@ -87,7 +85,6 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
                     const Depth& depth, LineSamples& out) {
   const int side_reach_px = options.side_reach_px;
   out.count = 0;
-  out.mixed = 0;
   out.asked = sample_count(segment, options);
   if (out.asked == 0) return;
   const double length = segment.length_px();
@@ -112,7 +109,6 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
     } else if (const DepthSample between = here > 0 ? DepthSample{} : stretch.between();
                between.depth_m > 0) {
       sample = {t, stretch.at_colour_time(between.depth_m), between.sigma_m};
-      out.mixed += between.on_edge ? 1 : 0;
     } else {
       for (int o = -side_reach_px; o <= side_reach_px; ++o)
         profile[static_cast<std::size_t>(o + side_reach_px)] = static_cast<float>(stretch.at(o));
@@ -120,7 +116,6 @@ void sample_segment(const Segment& segment, const DepthNoise& noise, const Sampl
       if (!(reading.depth_m > 0)) continue;
       const double sigma = noise.sigma(reading.depth_m);
       sample = {t, stretch.at_colour_time(reading.depth_m), reading.mixed ? kMixedInflation * sigma : sigma};
-      out.mixed += reading.mixed ? 1 : 0;
     }
     ++out.count;
   }

@@ -119,7 +119,9 @@ class LevenbergMarquardt {
     double growth = 2;
     while (true) {
       const bool solved = solve_damped(mu);
-      predicted_ = solved ? 0.5 * step_.dot(mu * diagonal_.cwiseProduct(step_) - g_) : 0;
+      // Evaluated first, because Eigen sums a costly expression in a loop (PLVO_SIZE_DEFINITIONS).
+      const Vector<N> slope = mu * diagonal_.cwiseProduct(step_) - g_;
+      predicted_ = solved ? 0.5 * step_.dot(slope) : 0;
       if (g_.cwiseAbs().maxCoeff() <= options.gradient_tolerance)
         return finish(summary, LmStatus::kGradientTolerance);
       if (solved && step_.cwiseAbs().maxCoeff() <= options.step_tolerance)

@@ -56,7 +56,11 @@ SymmetricEigen<N> symmetric_eigen(const Matrix<N, N>& matrix) {
   SymmetricEigen<N> result;
   Matrix<N, N> A = matrix.template selfadjointView<Eigen::Lower>();
   result.vectors.setIdentity();
-  diagonalise(A.data(), result.vectors.data(), matrix_size<N>(), 1e-32 * A.squaredNorm());
+  // By columns, because Eigen sums a large matrix in a loop in the size-optimised build
+  // (PLVO_SIZE_DEFINITIONS).
+  double squared_norm = 0;
+  for (int j = 0; j < N; ++j) squared_norm += A.col(j).squaredNorm();
+  diagonalise(A.data(), result.vectors.data(), matrix_size<N>(), 1e-32 * squared_norm);
   result.values = A.diagonal();
   return result;
 }

@@ -7,15 +7,6 @@
 #include <array>
 #include <cstddef>
 
-// Applies only to plvo's own files (tools/cmake/plvo.cmake); the user's Eigen stays unchanged.
-#ifdef PLVO_ROLLED_LOOPS
-#include "plvo/math/rolled_loops.hpp"
-#endif
-#ifdef PLVO_SIZE_OPTIMISED
-#include "plvo/math/one_product.hpp"
-#include "plvo/math/written_entries.hpp"
-#endif
-
 namespace plvo {
 
 template <int Rows, int Cols>

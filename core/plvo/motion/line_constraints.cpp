@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/pair.hpp"
 
@@ -200,7 +199,6 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
       usable_(workspace.usable.first(inliers_.size())),
       references_(workspace.references.first(inliers_.size())),
       held_(workspace.held.first(inliers_.size())) {
-  if constexpr (!kLinesBuilt) return;  // there are no matches
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const Match& match = matches_[i];
     inliers_[i] = 0;
@@ -220,7 +218,6 @@ LineConstraints::LineConstraints(std::span<const Line3d> reference, std::span<co
 
 Primitive LineConstraints::primitive(std::size_t i) const {
   Primitive primitive;
-  if constexpr (!kLinesBuilt) return primitive;
   const Reference& reference = references_[i];
   const Line3d& current = current_[matches_[i].current];
   const Vector3 d_current = current.b - current.a;
@@ -250,7 +247,6 @@ Primitive LineConstraints::primitive(std::size_t i) const {
 }
 
 double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const {
-  if constexpr (!kLinesBuilt) return cutoff;
   const Reference& reference = references_[i];
   const Line3d& current = current_[matches_[i].current];
   const Matrix3 G = T.R.lazyProduct(reference.frame);
@@ -273,7 +269,6 @@ double LineConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double 
 
 void LineConstraints::begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel&,
                             std::size_t) {
-  if constexpr (!kLinesBuilt) return;
   for (std::size_t i = 0; i < matches_.size(); ++i)
     if (inliers_[i] != 0 && !hold(i, T, shared)) inliers_[i] = 0;
 }
@@ -309,7 +304,6 @@ bool LineConstraints::hold(std::size_t i, const Se3& T, const NuisanceParameters
 
 double LineConstraints::linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                                   JointInformation& sum) const {
-  if constexpr (!kLinesBuilt) return 0;
   const int size = shared.any() ? JointInformation::kSize : 6;
   const int pairs = size / 2 + 1;
   double cost = 0;

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 
-#include "plvo/base/build.hpp"
 #include "plvo/math/absolute_orientation.hpp"
 #include "plvo/math/cholesky.hpp"
 
@@ -151,7 +150,8 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
       aligned =
           aligned && (s[i] * lines[i].d_current - R * lines[i].d_reference).squaredNorm() <= limit * limit;
     }
-    const double trace = (R_expected.transpose() * R).trace();
+    const Matrix3 turn = R_expected.transpose() * R;
+    const double trace = turn.trace();
     Vector3 t;
     if (!aligned || trace <= best_trace ||
         !translation_of_lines(lines, R, sigma / sqrt(largest_sine_squared), t))
@@ -165,8 +165,6 @@ MinimalSetStatus solve_lines(const Primitives& lines, const Matrix3& R_expected,
 }  // namespace
 
 MinimalSetStatus solve_minimal_set(const Primitives& set, const Matrix3& R_expected, Se3& T) {
-  if constexpr (!kLinesBuilt) return solve_points({pair_of(set[0]), pair_of(set[1]), pair_of(set[2])}, T);
-  if constexpr (!kPointsBuilt) return solve_lines(set, R_expected, T);
   // Sorts points first, so that only four cases remain.
   std::size_t order[3];
   std::size_t points = 0;

@@ -6,15 +6,11 @@
 namespace plvo {
 
 struct MotionConfig {
-  double inlier_probability = 0.99;  // that a true match of any kind passes the χ² test; 0 < p < 1
-  double ransac_confidence = 0.999;  // that a set of true matches was drawn before stopping; 0 < p < 1
   // Iterations count non-degenerate sets only: iterations ≤ max_ransac_iterations, draws ≤ 4
   // max_ransac_iterations.
   int max_ransac_iterations = 300;
-  // The estimate fails with kNoConsensus below this number of inliers of all kinds together, or below this
-  // share of the usable matches.
+  // The estimate fails with kNoConsensus below this number of inliers of all kinds together.
   int min_inliers = 10;
-  double min_inlier_ratio = 0.1;
   // true: Huber's loss in the maximum-likelihood refinement. It is robust where the covariances are too
   // optimistic, and the resulting covariance stays consistent where they are right (robust_kernel.hpp).
   // false: the paper's least squares.

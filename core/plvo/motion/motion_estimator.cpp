@@ -18,6 +18,8 @@ constexpr double kWiderThanEstimated = 9;
 // permanently.
 constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
+// The estimate fails with kNoConsensus if a smaller share of the usable matches are inliers.
+constexpr double kMinInlierShare = 0.1;
 // Smallest ratio of the eigenvalues of the information matrix (scaled to a unit diagonal). Below it the
 // inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -89,7 +91,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   Ransac ransac(sets, terms, solving.references, config, kernels, scratch, solving);
   if (ransac.samplable() < 3 || static_cast<int>(ransac.usable()) < config.min_inliers)
     return StatusCode::kTooFewFeatures;
-  const double least_share = config.min_inlier_ratio * static_cast<double>(ransac.usable());
+  const double least_share = kMinInlierShare * static_cast<double>(ransac.usable());
   const auto consensus = [&] {
     return ransac.inliers() >= config.min_inliers && ransac.inliers() >= least_share;
   };

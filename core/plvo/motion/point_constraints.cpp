@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "plvo/base/build.hpp"
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/pair.hpp"
 
@@ -58,7 +57,6 @@ PointConstraints::PointConstraints(std::span<const Point3d> reference, std::span
       current_(current),
       matches_(matches.first(inliers_.size())),
       usable_(workspace.usable.first(inliers_.size())) {
-  if constexpr (!kPointsBuilt) return;  // there are no matches
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const Match& match = matches_[i];
     inliers_[i] = 0;
@@ -69,7 +67,6 @@ PointConstraints::PointConstraints(std::span<const Point3d> reference, std::span
 
 Primitive PointConstraints::primitive(std::size_t i) const {
   Primitive primitive;
-  if constexpr (!kPointsBuilt) return primitive;
   const Point3d& reference = reference_[matches_[i].reference];
   const Point3d& current = current_[matches_[i].current];
   primitive.shape = Primitive::Shape::kPoint;
@@ -80,7 +77,6 @@ Primitive PointConstraints::primitive(std::size_t i) const {
 }
 
 double PointConstraints::mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const {
-  if constexpr (!kPointsBuilt) return cutoff;
   const Point3d& reference = reference_[matches_[i].reference];
   const Point3d& current = current_[matches_[i].current];
   const Vector3 e = current.p - T * reference.p;
@@ -154,7 +150,6 @@ class SharedSums {
 
 double PointConstraints::linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                                    JointInformation& sum) const {
-  if constexpr (!kPointsBuilt) return 0;
   double cost = 0;
   Matrix3 H_vv = Matrix3::Zero();
   Matrix3 H_vw = Matrix3::Zero();

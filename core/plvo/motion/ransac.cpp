@@ -21,6 +21,8 @@ constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
 // Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
+constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
+constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
 bool joins_minimal_sets(const ConstraintSet& set, std::size_t i) {
   return set.primitive(i).shape != Primitive::Shape::kNone;
@@ -41,7 +43,7 @@ Ransac::Ransac(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   for (const bool samplable : {true, false})
     for (std::size_t s = 0; s < sets_.size(); ++s) {
       const ConstraintSet& set = *sets_[s];
-      threshold_[s] = chi_square_quantile(set.dof(), config_.inlier_probability);
+      threshold_[s] = chi_square_quantile(set.dof(), kInlierProbability);
       for (std::size_t i = 0; i < set.size() && usable_ < scratch.size(); ++i) {
         if (!set.usable(i) || joins_minimal_sets(set, i) != samplable) continue;
         scratch[usable_++] = {static_cast<std::uint8_t>(s), static_cast<std::uint16_t>(i), 0};
@@ -151,11 +153,9 @@ bool Ransac::consensus_fixes_motion(std::uint64_t seed) {
 // Scores a hypothesis and refines it if it may become the best. If it does, stores it in `best` and returns
 // true.
 bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
-  ++summary.hypotheses;
   const double fresh_score = score(T, fresh_to_beat_);
   if (!(fresh_score > fresh_to_beat_)) return false;
   fresh_to_beat_ = fresh_score;
-  ++summary.refinements;
   refine(T);
 
   double refined_score = 0;
@@ -240,7 +240,7 @@ int Ransac::iterations_needed() const {
   const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
   const double all_good = w * w * w;
   if (all_good > 1 - 1e-9) return 1;
-  const double k = log(1 - config_.ransac_confidence) / log(1 - all_good);
+  const double k = log(1 - kRansacConfidence) / log(1 - all_good);
   return k < config_.max_ransac_iterations ? static_cast<int>(k) + 1 : config_.max_ransac_iterations;
 }
 

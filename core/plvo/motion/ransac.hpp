@@ -30,9 +30,7 @@ namespace plvo {
 struct RansacSummary {
   int draws = 0;       // sets drawn
   int iterations = 0;  // draws that are not degenerate
-  int hypotheses = 0;  // iterations whose set is rigid within its uncertainty, hence solved and scored
-  int refinements = 0;
-  double score = 0;  // score of the best hypothesis; 0 if there is none
+  double score = 0;    // score of the best hypothesis; 0 if there is none
 };
 
 // A match that may be an inlier.

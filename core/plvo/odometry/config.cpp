@@ -3,25 +3,12 @@
 
 #include <algorithm>
 
-#include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
-#include "plvo/image/pyramid.hpp"
 #include "plvo/motion/motion_problem.hpp"
 #include "plvo/odometry/window/kept_keyframes.hpp"
 
 namespace plvo {
 namespace {
-
-// Refuses a kind of features that this build of the core leaves out.
-Status check_built(Features features) {
-  if (!kLinesBuilt && features != Features::kPoints)
-    return {StatusCode::kUnsupported,
-            "config: features must be kPoints: this build is without lines (CMake: PLVO_FEATURES)"};
-  if (!kPointsBuilt && features != Features::kLines)
-    return {StatusCode::kUnsupported,
-            "config: features must be kLines: this build is without points (CMake: PLVO_FEATURES)"};
-  return {};
-}
 
 // Keeps the first number that is outside its range. Each range appears once; the message is built from it.
 class RangeCheck {
@@ -84,15 +71,6 @@ void check(RangeCheck& ranges, const PointConfig& points) {
   ranges.group("points.");
   ranges.require("sigma_px", points.sigma_px, 0.01, 20.0);
   ranges.require("depth_reach_px", points.depth_reach_px, 0, DepthSampler::kMaxRadius);
-  ranges.group("points.detector.");
-  ranges.require("levels", points.detector.levels, 1, Pyramid::kMaxLevels);
-  ranges.require("cell_px", points.detector.cell_px, kMinCell, kMaxCell);
-  ranges.require("noise_floor", points.detector.noise_floor, 1, 64);
-  ranges.require("min_strength", points.detector.min_strength, 0, 100000);
-  ranges.group("points.match.");
-  ranges.require("radius_px", points.match.radius_px, 1, 1000);
-  ranges.require("max_distance", points.match.max_distance, 0, 256);
-  ranges.require("max_ratio", points.match.max_ratio, 0.1, 1.0);
 }
 
 void check(RangeCheck& ranges, const NoiseConfig& noise) {
@@ -111,50 +89,23 @@ void check(RangeCheck& ranges, const NoiseConfig& noise) {
   ranges.require("line_correlation", noise.line_correlation, 0, 1);
   ranges.require("surface_correlation", noise.surface_correlation, 0, 1);
   ranges.require("common_mode_share", noise.common_mode_share, 0, 1);
-  ranges.require("depth_moment_s", noise.depth_moment_s, 0, 1);
-  ranges.require("depth_offset_m", noise.depth_offset_m, 0, 1);
 }
 
-void check(RangeCheck& ranges, const Line3dConfig& fit) {
-  ranges.group("lines.fit.");
-  ranges.require("max_samples", fit.max_samples, 2, kMaxLineSamples);
-  ranges.require("sample_spacing_px", fit.sample_spacing_px, 1, 1000);
-  ranges.require("min_consensus", fit.min_consensus, 0, 1);
-  ranges.require("min_agreement", fit.min_agreement, 0, 1);
-  ranges.require("sigma_p_px", fit.sigma_p_px, 0.01, 20.0);
-  ranges.require("inlier_chi_square", fit.inlier_chi_square, 0.1, 100.0);
-  ranges.require("max_ransac_iterations", fit.max_ransac_iterations, 1, 1000);
-  ranges.require("side_reach_px", fit.side_reach_px, 0, kMaxSideReach);
-  ranges.require("depth_correlation_px", fit.depth_correlation_px, 0.01, 1000.0);
-  ranges.require("transverse_floor_px", fit.transverse_floor_px, 0, 20);
-}
-
-void check(RangeCheck& ranges, const LineMatchConfig& match) {
-  ranges.group("lines.match.");
-  ranges.require("max_angle_rad", match.max_angle_rad, 0, 4);
-  ranges.require("max_offset_px", match.max_offset_px, 0, 4000);
-  ranges.require("min_overlap", match.min_overlap, 0, 1);
-  ranges.require("max_distance", match.max_distance, 0, 300000);
-  ranges.require("max_ratio", match.max_ratio, 0, 1);
-  ranges.require("same_line_px", match.same_line_px, 0, 4000);
-  ranges.require("same_line_rad", match.same_line_rad, 0, 4);
-}
-
-void check(RangeCheck& ranges, const LineConfig& lines) {
-  check(ranges, lines.fit);
-  check(ranges, lines.match);
+void check(RangeCheck& ranges, const Line3dConfig& lines) {
   ranges.group("lines.");
-  ranges.require("guided_offset_px", lines.guided_offset_px, 0, 4000);
-  ranges.require("guided_angle_rad", lines.guided_angle_rad, 0, 4);
+  ranges.require("sample_spacing_px", lines.sample_spacing_px, 1, 1000);
+  ranges.require("min_agreement", lines.min_agreement, 0, 1);
+  ranges.require("sigma_p_px", lines.sigma_p_px, 0.01, 20.0);
+  ranges.require("inlier_chi_square", lines.inlier_chi_square, 0.1, 100.0);
+  ranges.require("side_reach_px", lines.side_reach_px, 0, kMaxSideReach);
+  ranges.require("depth_correlation_px", lines.depth_correlation_px, 0.01, 1000.0);
+  ranges.require("transverse_floor_px", lines.transverse_floor_px, 0, 20);
 }
 
 void check(RangeCheck& ranges, const MotionConfig& motion) {
   ranges.group("motion.");
-  ranges.require("inlier_probability", motion.inlier_probability, 0.5, 0.99999);
-  ranges.require("ransac_confidence", motion.ransac_confidence, 0.5, 0.999999);
   ranges.require("max_ransac_iterations", motion.max_ransac_iterations, 1, 100000);
   ranges.require("min_inliers", motion.min_inliers, 3, 10000);
-  ranges.require("min_inlier_ratio", motion.min_inlier_ratio, 0, 1);
   ranges.require("max_sigma_m", motion.max_sigma_m, 1e-6, 100.0);
   ranges.require("max_sigma_rad", motion.max_sigma_rad, 1e-6, 10.0);
 }
@@ -164,7 +115,6 @@ void check(RangeCheck& ranges, const ReferenceConfig& references) {
   ranges.require("keyframe_inlier_ratio", references.keyframe_inlier_ratio, 0, 1);
   ranges.require("window_inlier_ratio", references.window_inlier_ratio, 0, 1);
   ranges.require("older_inlier_ratio", references.older_inlier_ratio, 0, 1);
-  ranges.require("wide_search_px", references.wide_search_px, 1, 4000);
   ranges.require("max_lost_s", references.max_lost_s, 0, 1000000);
   ranges.require("process_noise_m_per_s", references.process_noise_m_per_s, 0, 100);
   ranges.require("process_noise_rad_per_s", references.process_noise_rad_per_s, 0, 100);
@@ -198,7 +148,6 @@ Status Limits::validate() const {
 }
 
 Status Config::validate() const {
-  if (Status status = check_built(features); !status.ok()) return status;
   RangeCheck ranges;
   check(ranges, depth_noise);
   check(ranges, points);
@@ -225,7 +174,7 @@ Config Config::paper() {
   config.points.registered = false;
   config.points.sigma_px = 1;
   config.points.depth_reach_px = 0;
-  config.lines.fit = Line3dConfig::paper();
+  config.lines = Line3dConfig::paper();
   config.motion.robust = false;
   return config;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything a user may set, with the recommended defaults. Config::paper() gives the settings of Lu & Song
-// (2015). Limits are capacities and determine the memory; Config only tunes what happens within them.
+// (2015). Limits are capacities and determine the memory; Config only tunes what happens within them. A
+// number that neither the paper, a small board nor another sensor needs to change stands beside the algorithm
+// that uses it.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +12,9 @@
 #include "plvo/camera/depth_noise.hpp"
 #include "plvo/image/undistortion.hpp"
 #include "plvo/lines/line3d.hpp"
-#include "plvo/lines/line_match.hpp"
 #include "plvo/motion/motion_config.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/noise_scales.hpp"
-#include "plvo/points/detector.hpp"
-#include "plvo/points/point_match.hpp"
 
 namespace plvo {
 
@@ -33,7 +32,8 @@ struct Limits {
   // (references_of). With 1 instead of 2, features take a third less memory and matches take half.
   int references = 2;
   // Horizontal bands of the image in which segments are searched one after the other, 1 … 8. All bands use
-  // the same memory. A segment that crosses a border between bands comes out as two.
+  // the same memory: with a single band tiny() would not fit within 512 KiB. A segment that crosses a border
+  // between bands comes out as two.
   int line_bands = 1;
   // Number of keyframes kept after a loss, 0 … 4 (3 with 3 references). Each is as large as a reference
   // (kept_keyframes.hpp).
@@ -76,8 +76,6 @@ constexpr int references_of(ReferencePolicy policy) {
 }
 
 struct PointConfig {
-  DetectorConfig detector;
-  PointMatchConfig match;
   // true: keypoints are found again by registering their patches (alignment.hpp). false: by their descriptors
   // alone, as in the paper; a keypoint of a frame then lies where the detector put it.
   bool registered = true;
@@ -86,13 +84,6 @@ struct PointConfig {
   double sigma_px = 0.1;
   // Depth comes from a plane through the pixels within this radius, 0 … 3; 0: from the pixel alone.
   int depth_reach_px = 2;
-};
-
-struct LineConfig {
-  Line3dConfig fit;       // L2, L3
-  LineMatchConfig match;  // L4, before the motion is known; afterwards the gates below suffice:
-  double guided_offset_px = 8;
-  double guided_angle_rad = 0.1;
 };
 
 // Scales of the noise models, and how they are learnt. The quality of image and depth depends on the sensor,
@@ -113,10 +104,6 @@ struct NoiseConfig {
   double surface_correlation = 0.1;
   // Share of the error of matches with a keyframe that is the same in the next frame (common_mode_error.hpp).
   double common_mode_share = 0.6;
-  // SDs of the errors that all surface samples of a depth image share: the time of its exposure, and its
-  // depths (at 1 m, growing with the square of the depth).
-  double depth_moment_s = 0.005;
-  double depth_offset_m = 0.002;
 };
 
 struct ReferenceConfig {
@@ -131,8 +118,6 @@ struct ReferenceConfig {
   // down to the second share.
   double window_inlier_ratio = 0.35;
   double older_inlier_ratio = 0.2;
-  // When tracking fails, features are searched this far from their old positions, whatever the prediction.
-  double wide_search_px = 120;
   // When every frame has been lost for this long, the odometry gives up the references and starts anew from
   // the last good pose. The covariance of that pose then grows by the unobserved motion: this fast (SD per
   // second), and by the motion of a camera that went on as before. Where Limits have memory for a kept
@@ -174,7 +159,7 @@ struct Config {
   DepthNoise depth_noise;
   NoiseConfig noise;
   PointConfig points;
-  LineConfig lines;
+  Line3dConfig lines;  // L2, L3
   MotionConfig motion;
   BudgetConfig budget;
   // Seed of the random generators of RANSAC: over matches, and over the depths along each line.
@@ -191,8 +176,7 @@ struct Config {
   static Config paper();
   // Settings that fit into Limits::tiny().
   static Config tiny();
-  // Returns kInvalidArgument, naming the entry and its range, or kUnsupported for features that are not built
-  // (PLVO_FEATURES).
+  // Returns kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
 

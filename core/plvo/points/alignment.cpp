@@ -216,11 +216,11 @@ struct Moments {
   double squared = 0;                       // Σ I²
 };
 
-using Window = std::array<std::int16_t, kPixels>;
+using PatchWindow = std::array<std::int16_t, kPixels>;
 constexpr std::int32_t kOnePixel = 1 << kFractionBits;
 
 // (x, y): the position of the patch's centre, in 1/32 px. The window must lie inside the image.
-Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
+PatchWindow read_window(GrayView image, std::int32_t x, std::int32_t y) {
   const Weights& across = kWeights[static_cast<std::size_t>(x & (kOnePixel - 1))];
   const Weights& down = kWeights[static_cast<std::size_t>(y & (kOnePixel - 1))];
   const std::uint8_t* first = image.data + ((y >> kFractionBits) - kWindowReach - 1) * image.stride +
@@ -231,7 +231,7 @@ Window read_window(GrayView image, std::int32_t x, std::int32_t y) {
     static_assert(kColumns * sizeof(std::int16_t) == sizeof(Int16x8));
     blend_across(first + r * image.stride, across, &blended[static_cast<std::size_t>(r * kColumns)]);
   }
-  Window values;
+  PatchWindow values;
   if constexpr (kSimdLoops) {
     for (std::size_t k = 0; k < kPixels; ++k) values[k] = blend_down(&blended[k], kColumns, down);
     return values;
@@ -299,9 +299,9 @@ WarpedWindow warp_window(const PatchWarp& warp) {
 }
 
 // Reads each pixel at its own fraction: down its four columns, then across.
-[[maybe_unused]] Window read_each(GrayView image, const WarpedWindow& window, std::int32_t x,
-                                  std::int32_t y) {
-  Window values;
+[[maybe_unused]] PatchWindow read_each(GrayView image, const WarpedWindow& window, std::int32_t x,
+                                       std::int32_t y) {
+  PatchWindow values;
   for (std::size_t k = 0; k < kPixels; ++k) {
     const std::int32_t at_x = x + window.x[k];
     const std::int32_t at_y = y + window.y[k];
@@ -353,7 +353,7 @@ inline __attribute__((always_inline)) void read_two(const std::uint8_t* const p[
 }
 
 // Same result as read_each, one row of the window at a time.
-Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
+PatchWindow read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, std::int32_t y) {
   if constexpr (kSimdLoops) return read_each(image, window, x, y);
   constexpr std::int16_t kFraction = kOnePixel - 1;
   const std::uint8_t* const from =
@@ -362,7 +362,7 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
   const auto fraction_y = static_cast<std::int16_t>(y & kFraction);
   const auto stride = static_cast<std::int16_t>(image.stride);
   const Int16x8 steps = {stride, 1, stride, 1, stride, 1, stride, 1};
-  Window values;
+  PatchWindow values;
   for (std::size_t row = 0; row < kPixels; row += kColumns) {
     Int16x8 at_x, at_y;
     load(&window.x[row], at_x);
@@ -402,7 +402,7 @@ Window read_warped(GrayView image, const WarpedWindow& window, std::int32_t x, s
   return values;
 }
 
-Moments correlate(const Template& t, const Window& values) {
+Moments correlate(const Template& t, const PatchWindow& values) {
   // 72 products of at most 4080 with a template value of at most 4800 stay below 2^31. So do 72 squares of
   // 4080.
   std::int32_t with_gx = 0;

@@ -18,6 +18,7 @@
 
 namespace plvo {
 
+// The odometry uses the defaults; the tests of the detector vary them.
 struct DetectorConfig {
   int levels = 3;  // number of searched pyramid levels, 1 … Pyramid::kMaxLevels
   int cell_px =

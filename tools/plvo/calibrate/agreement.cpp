@@ -47,8 +47,8 @@ class Observer {
     return true;
   }
   bool line(const Segment& segment, Line3d& line) const {
-    if (observe_line(segment, depth_, camera_.pinhole, config().depth_noise, config().lines.fit,
-                     config().seed, line)
+    if (observe_line(segment, depth_, camera_.pinhole, config().depth_noise, config().lines, config().seed,
+                     line)
             .outcome != Line3dOutcome::kOk)
       return false;
     line.a = exposure_.at_mid_exposure(line.a);

@@ -4,12 +4,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plvo/eval/chi_square.hpp"
 #include "plvo/eval/motion_chain.hpp"
+#include "plvo/math/chi_square.hpp"
 #include "plvo/math/cholesky.hpp"
 
 namespace plvo::eval {
 namespace {
+
+// The 97.5 % quantile of the standard normal distribution.
+constexpr double kNormal975 = 1.959963984540054;
+
+// The band that contains 95 % of the means of n independent samples of χ²(dof). The sum is χ²(n dof). For
+// many degrees of freedom, its cube root is nearly normal (Wilson & Hilferty, 1931): the error of a bound is
+// 0.3 % at 15 degrees of freedom, 0.02 % at 60.
+Band band_of_mean(int dof, std::size_t n) {
+  constexpr int kFewDegrees = 12;  // those of chi_square_quantile
+  const double k = static_cast<double>(dof) * static_cast<double>(n);
+  if (k <= kFewDegrees) {
+    const int all = static_cast<int>(k);
+    return {dof / k * chi_square_quantile(all, 0.025), dof / k * chi_square_quantile(all, 0.975)};
+  }
+  const double variance = 2 / (9 * k);
+  const auto bound = [&](double z) { return dof * std::pow(1 - variance + z * std::sqrt(variance), 3); };
+  return {bound(-kNormal975), bound(kNormal975)};
+}
 
 // The NEES samples of one kind of error.
 class Samples {
@@ -20,16 +38,13 @@ class Samples {
   Nees finish(std::size_t independent) const {
     const Statistics summary = statistics(values_);
     Nees nees{dof_, summary.mean, summary.median, 0, {}, {}};
-    const double bound = chi_square_quantile(0.95, dof_);
+    const double bound = chi_square_quantile(dof_, 0.95);
     for (const double value : values_) nees.inside_95 += value <= bound ? 1 : 0;
     nees.inside_95 /= static_cast<double>(values_.size());
-    // The sum of n independent samples is chi-square with n times the degrees of freedom.
-    const auto n = static_cast<double>(independent);
-    const int dof = dof_ * static_cast<int>(independent);
-    nees.mean_band = {chi_square_quantile(0.025, dof) / n, chi_square_quantile(0.975, dof) / n};
+    nees.mean_band = band_of_mean(dof_, independent);
     // The number of samples below the true median is binomial: its fraction is ½ ± 1.96 · ½/√n.
-    const double share = std::min(0.49, 1.959963984540054 * 0.5 / std::sqrt(n));
-    nees.median_band = {chi_square_quantile(0.5 - share, dof_), chi_square_quantile(0.5 + share, dof_)};
+    const double share = std::min(0.49, kNormal975 * 0.5 / std::sqrt(static_cast<double>(independent)));
+    nees.median_band = {chi_square_quantile(dof_, 0.5 - share), chi_square_quantile(dof_, 0.5 + share)};
     return nees;
   }
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/view/view_hub.hpp"
 
-#include <fmt/format.h>
-
+#include <array>
 #include <cmath>
-#include <iterator>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <span>
 
 #include "plvo/host/files/stamp_text.hpp"
 #include "plvo/host/posix_clock.hpp"
-#include "plvo/host/stream/pose_json.hpp"
 #include "plvo/replay/images/image_writer.hpp"
 #include "plvo/view/view_server.hpp"
 
 namespace plvo {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kIdle_ns = 3 * kSecond;  // after this time without a request there are no viewers
@@ -33,39 +35,46 @@ std::string jpeg(const std::uint8_t* pixels, int width, int height, PixelFormat 
   return {data.begin(), data.end()};
 }
 
-std::string features_json(const ViewSnapshot& snapshot) {
-  std::string out = "\"points\":[";
-  const char* comma = "";
-  for (const ViewSnapshot::Point& p : snapshot.points) {
-    fmt::format_to(std::back_inserter(out), "{}{:.1f},{:.1f},{:.1f},{:.1f},{}", comma, p.u, p.v,
-                   p.u_reference, p.v_reference, static_cast<int>(p.fate));
-    comma = ",";
-  }
-  out += "],\"segments\":[";
-  comma = "";
-  for (const ViewSnapshot::Segment& s : snapshot.segments) {
-    fmt::format_to(std::back_inserter(out), "{}{:.1f},{:.1f},{:.1f},{:.1f},{}", comma, s.a_u, s.a_v, s.b_u,
-                   s.b_v, static_cast<int>(s.fate));
-    comma = ",";
-  }
-  return out + "]";
+// Rounds to as many decimals as the page shows or draws, which keeps the text short. JSON has neither NaN nor
+// infinity; TrackResult promises none.
+double rounded(double value, double per_unit) {
+  return std::isfinite(value) ? std::round(value * per_unit) / per_unit : 0;
+}
+constexpr double kTenths = 10, kHundredths = 100, kTenthMillimetres = 1e4, kNano = 1e9;
+
+Json features_json(const ViewSnapshot& snapshot) {
+  Json points = Json::array(), segments = Json::array();
+  const auto add = [](Json& list, std::initializer_list<float> pixels, int fate) {
+    for (const float pixel : pixels) list.push_back(rounded(static_cast<double>(pixel), kTenths));
+    list.push_back(fate);
+  };
+  for (const ViewSnapshot::Point& p : snapshot.points)
+    add(points, {p.u, p.v, p.u_reference, p.v_reference}, static_cast<int>(p.fate));
+  for (const ViewSnapshot::Segment& s : snapshot.segments)
+    add(segments, {s.a_u, s.a_v, s.b_u, s.b_v}, static_cast<int>(s.fate));
+  return {{"points", std::move(points)}, {"segments", std::move(segments)}};
 }
 
-void put_array(std::string& to, const char* name, const double* values, int count) {
-  fmt::format_to(std::back_inserter(to), ",\"{}\":[", name);
-  for (int i = 0; i < count; ++i) {
-    fmt::format_to(std::back_inserter(to), "{}{:.6g}", i > 0 ? "," : "",
-                   std::isfinite(values[i]) ? values[i] : 0.0);
-  }
-  to += ']';
+Json numbers(std::span<const double> values, double per_unit) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(rounded(value, per_unit));
+  return list;
 }
 
-void put_counts(std::string& to, const char* name, const FeatureCounts& counts) {
-  fmt::format_to(std::back_inserter(to), ",\"{}\":{{\"detected\":{},\"matched\":{},\"inliers\":{}}}", name,
-                 counts.detected, counts.matched, counts.inliers);
+Json counts_json(const FeatureCounts& counts) {
+  return {{"detected", counts.detected}, {"matched", counts.matched}, {"inliers", counts.inliers}};
 }
 
 }  // namespace
+
+struct ViewHub::Encoded {
+  std::uint64_t image = 0;
+  int width = 0, height = 0;
+  std::string colour, depth;  // JPEG
+  Json features = features_json({});
+};
+
+ViewHub::ViewHub() : encoded_(std::make_shared<Encoded>()) {}
 
 void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
                       const ViewStatus& status, bool lens_is_straight) {
@@ -157,7 +166,6 @@ std::shared_ptr<const ViewHub::Encoded> ViewHub::encoded() {
 }
 
 std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const Encoded& image) {
-  std::string out;
   const int watching = viewers();
   TrackResult r;
   ViewStatus status;
@@ -174,29 +182,38 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
     path.assign(points.begin() + static_cast<std::ptrdiff_t>(from), points.end());
   }
   const Quaternion q = to_quaternion(r.T_world_camera.R);
-  const std::array<double, 4> orientation{q.x, q.y, q.z, q.w};
-  fmt::format_to(
-      std::back_inserter(out),
-      "{{\"sequence\":{},\"image\":{},\"size\":[{},{}],\"stamp\":\"{}\",\"state\":\"{}\",\"message\":{},"
-      "\"camera\":{},\"silent\":{},\"camera_hz\":{:.2f},\"odometry_hz\":{:.2f},\"latency_ms\":{:.2f},"
-      "\"frames\":{},"
-      "\"lost\":{},\"dropped\":{},\"viewers\":{},\"brightness\":{:.1f}",
-      sequence, image.image, image.width, image.height, format_stamp(r.stamp_ns), to_string(r.state),
-      json_string(r.status.message()), json_string(status.camera), status.silent, status.camera_hz,
-      status.odometry_hz, status.latency_ms, status.frames, status.lost, status.dropped, watching,
-      r.mean_brightness);
-  put_array(out, "position", r.T_world_camera.t.data(), 3);
-  put_array(out, "orientation", orientation.data(), 4);
-  put_array(out, "covariance", r.pose_covariance.data(), 36);  // symmetric: row-major equals column-major
-  put_counts(out, "point_counts", r.points);
-  put_counts(out, "line_counts", r.lines);
-  fmt::format_to(std::back_inserter(out), ",\"path_epoch\":{},\"path_from\":{},\"path\":[", path_epoch, from);
-  const char* comma = "";
-  for (const Vector3& point : path) {
-    fmt::format_to(std::back_inserter(out), "{}{:.4f},{:.4f},{:.4f}", comma, point.x(), point.y(), point.z());
-    comma = ",";
-  }
-  return out + "]," + image.features + "}";
+  Json path_numbers = Json::array();
+  for (const Vector3& point : path)
+    for (const double coordinate : point) path_numbers.push_back(rounded(coordinate, kTenthMillimetres));
+  Json json = {
+      {"sequence", sequence},
+      {"image", image.image},
+      {"size", {image.width, image.height}},
+      {"stamp", format_stamp(r.stamp_ns)},
+      {"state", to_string(r.state)},
+      {"message", r.status.message()},
+      {"camera", status.camera},
+      {"silent", status.silent},
+      {"camera_hz", rounded(status.camera_hz, kHundredths)},
+      {"odometry_hz", rounded(status.odometry_hz, kHundredths)},
+      {"latency_ms", rounded(status.latency_ms, kHundredths)},
+      {"frames", status.frames},
+      {"lost", status.lost},
+      {"dropped", status.dropped},
+      {"viewers", watching},
+      {"brightness", rounded(r.mean_brightness, kTenths)},
+      {"position", numbers({r.T_world_camera.t.data(), 3}, kNano)},
+      {"orientation", numbers(std::array{q.x, q.y, q.z, q.w}, kNano)},
+      // Symmetric: row-major equals column-major. Variances have no fixed number of decimals.
+      {"covariance", std::vector<double>(r.pose_covariance.data(), r.pose_covariance.data() + 36)},
+      {"point_counts", counts_json(r.points)},
+      {"line_counts", counts_json(r.lines)},
+      {"path_epoch", path_epoch},
+      {"path_from", from},
+      {"path", std::move(path_numbers)},
+  };
+  json.update(image.features);
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
 std::string ViewHub::reply(const Ask& ask) {

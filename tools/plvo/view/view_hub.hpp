@@ -19,6 +19,7 @@ namespace plvo {
 
 class ViewHub {
  public:
+  ViewHub();
   // What a viewer states that it already has.
   struct Ask {
     std::uint64_t after = 0;  // sequence number
@@ -50,12 +51,7 @@ class ViewHub {
   std::uint64_t encodings() const { return encodings_; }
 
  private:
-  struct Encoded {
-    std::uint64_t image = 0;
-    int width = 0, height = 0;
-    std::string colour, depth;                               // JPEG
-    std::string features = "\"points\":[],\"segments\":[]";  // JSON members
-  };
+  struct Encoded;
   std::shared_ptr<const Encoded> encoded();
   std::string state_json(const Ask& ask, std::uint64_t sequence, const Encoded& image);
 
@@ -78,7 +74,7 @@ class ViewHub {
   std::atomic<std::uint64_t> encodings_{0};
 
   std::mutex encode_mutex_;  // one encoder at a time; guards front_'s pixels and the following members
-  std::shared_ptr<const Encoded> encoded_ = std::make_shared<Encoded>();
+  std::shared_ptr<const Encoded> encoded_;
 };
 
 }  // namespace plvo

@@ -35,7 +35,6 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
     lsd::Region region = lsd::grow(field, seed, lsd::kTau, scratch.region);
     counts.grown_pixels += region.size;
     if (region.size < min_size) continue;
-    ++counts.regions;
     lsd::GradientMass mass = lsd::weigh(field, region);
     lsd::Rectangle rectangle = lsd::fit_rectangle(region, mass);
     if (!lsd::is_dense(rectangle, region.size)) {
@@ -43,7 +42,6 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
       counts.grown_pixels += region.size;
       if (!tightened) continue;
     }
-    ++counts.dense;
     const double meaningfulness = lsd::meaningfulness(field, false_alarms_, rectangle);
     if (meaningfulness < 0) continue;
     const auto found = static_cast<std::size_t>(counts.meaningful++);
@@ -120,7 +118,7 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
     segment.a = candidate.a * scale;
     segment.b = candidate.b * scale;
     segment.meaningfulness = candidate.meaningfulness;
-    done.placed += lsd::localise(full, kAxisSd_px * scale, segment) ? 1 : 0;
+    (void)lsd::localise(full, kAxisSd_px * scale, segment);
     out.push_back(segment);
   }
   if (counts != nullptr) *counts = done;

@@ -25,13 +25,10 @@
 
 namespace plvo {
 
-// Statistics of one detection, for the records of a frame and for tests of the bounds.
+// Counts of one detection. The tests of the bounds read the pixels.
 struct SegmentCounts {
   std::int32_t directed_pixels = 0;  // pixels whose gradient exceeds the quantisation noise
-  std::int32_t regions = 0;          // regions of at least the smallest size that can be meaningful
-  std::int32_t dense = 0;            // of these, long and dense enough to be tested
-  std::int32_t meaningful = 0;       // of these, with NFA ≤ 1
-  std::int32_t placed = 0;           // of the selected ones, moved onto the full-resolution edge
+  std::int32_t meaningful = 0;       // regions with NFA ≤ 1
   std::int64_t grown_pixels = 0;     // pixels added to regions, including repeats
 };
 

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "plvo/base/build.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/image/gray.hpp"
 #include "plvo/image/smoothing.hpp"
@@ -27,11 +26,10 @@ ImageView<std::uint8_t> rows(const ImageView<std::uint8_t>& image, int begin, in
   return {image.row(begin), image.width, end - begin, image.stride};
 }
 
-bool has_points(const Config& config) { return kPointsBuilt && config.features != Features::kLines; }
-bool has_lines(const Config& config) { return kLinesBuilt && config.features != Features::kPoints; }
+bool has_points(const Config& config) { return config.features != Features::kLines; }
+bool has_lines(const Config& config) { return config.features != Features::kPoints; }
 
 void lift_points(const StageContext& context, const DepthSampler& depth_sampler, PointFeatures& points) {
-  if constexpr (!kPointsBuilt) return;
   // A registered patch is a landmark by definition, whatever its centre: only its depth is uncertain. The
   // small variance across the ray keeps its covariance invertible.
   constexpr double kPatchCentre_px = 0.02;
@@ -57,7 +55,7 @@ void lift_points(const StageContext& context, const DepthSampler& depth_sampler,
 bool lift_line(const StageContext& context, const DepthSampler& depth, const Segment& segment, Line3d& line) {
   const Config& config = context.config;
   const Line3dReport report = observe_line(segment, depth, context.camera.pinhole, config.depth_noise,
-                                           config.lines.fit, config.seed, line);
+                                           config.lines, config.seed, line);
   if (report.outcome != Line3dOutcome::kOk) return false;
   line.Sigma *= context.noise.lines;
   return true;
@@ -75,7 +73,6 @@ void lift_segments_again(const StageContext& context, const DepthSampler& depth,
 void FeatureExtraction::init(const CameraModel& camera) {
   map_.init(camera);
   pyramid_.init(camera.width, camera.height);
-  if constexpr (!kLinesBuilt) return;
   segment_search_.width = pyramid_.level(kLineLevel).width;
   segment_search_.height = pyramid_.level(kLineLevel).height;
   segment_detector_[0] = SegmentDetector(segment_search_);
@@ -115,7 +112,7 @@ void FeatureExtraction::describe_points(const StageContext& context, PointFeatur
   const std::span<std::uint8_t> storage =
       context.scratch.take<std::uint8_t>("smoothed image", pixels_of(camera.width, camera.height));
   const std::span<std::uint16_t> row = take_smoothing_row(context.scratch, camera.width);
-  for (int level = 0; level < context.config.points.detector.levels; ++level) {
+  for (int level = 0; level < DetectorConfig().levels; ++level) {
     const GrayView image = pyramid_.level(level);
     const ImageView<std::uint8_t> smoothed{storage.data(), image.width, image.height, image.width};
     smooth_binomial7(image, smoothed, row);
@@ -137,7 +134,7 @@ void FeatureExtraction::detect(const StageContext& context, const DepthSampler& 
     Arena own(scratch.take<std::byte>("points beside segments",
                                       point_scratch(context.camera.width, context.camera.height)));
     config.executor.both([&] { detect_segments(scratch, features.lines); },
-                         [&] { detect_points(context, depth, own, features.points); });
+                         [&] { detect_points(depth, own, features.points); });
     return;
   }
   if (with_points) find_points(context, depth, features.points);
@@ -150,14 +147,14 @@ void FeatureExtraction::find_points(const StageContext& context, const DepthSamp
                                     PointFeatures& points) const {
   if (!has_points(context.config) || points.looked_for) return;
   const StageTimer timer(context, Stage::kPoints);
-  detect_points(context, depth, context.scratch, points);
+  detect_points(depth, context.scratch, points);
 }
 
-void FeatureExtraction::detect_points(const StageContext& context, const DepthSampler& depth, Arena& scratch,
+void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
                                       PointFeatures& points) const {
   points.looked_for = true;
   points.candidates =
-      detect_keypoints(pyramid_, depth, context.config.points.detector, scratch, points.keypoints).candidates;
+      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints).candidates;
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
     points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
@@ -181,7 +178,6 @@ void FeatureExtraction::lift(const StageContext& context, const DepthSampler& de
 
 void FeatureExtraction::lift_lines(const StageContext& context, const DepthSampler& depth,
                                    const Exposure& exposure, LineFeatures& lines) const {
-  if constexpr (!kLinesBuilt) return;
   const StageTimer timer(context, Stage::kLines);
   if (!lines.lifted) {
     depth.fetch();

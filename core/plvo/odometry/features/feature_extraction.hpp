@@ -7,7 +7,6 @@
 #include <span>
 
 #include "plvo/base/arena.hpp"
-#include "plvo/base/build.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/frame.hpp"
 #include "plvo/image/pyramid.hpp"
@@ -103,8 +102,7 @@ class FeatureExtraction {
   }
   static void make_gray(const StageContext& context, const ColourView& colour,
                         const ImageView<std::uint8_t>& gray);
-  void detect_points(const StageContext& context, const DepthSampler& depth, Arena& scratch,
-                     PointFeatures& points) const;
+  void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points) const;
   void detect_segments(Arena& scratch, LineFeatures& lines);
   void lift_segments(const StageContext& context, const DepthSampler& depth, LineFeatures& lines) const;
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/tracking/line_tracking.hpp"
 
-#include "plvo/base/build.hpp"
-
 namespace plvo {
 namespace {
 
@@ -31,7 +29,6 @@ void match_predicted_lines(const Pinhole& pinhole, const Exposure& exposure, con
                            const Se3& T_current_reference, const LineMatchConfig& gates, Arena& scratch,
                            FixedVector<Match>& matches) {
   matches.clear();
-  if constexpr (!kLinesBuilt) return;
   const ScratchScope scope(scratch);
   const std::span<Segment> predicted = scratch.take<Segment>("predicted segments", reference.count_3d);
   if (predicted.size() < reference.count_3d) return;

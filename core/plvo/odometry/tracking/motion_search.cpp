@@ -23,6 +23,8 @@ constexpr int kMostRegistrations = 3;
 constexpr double kComparedShare = 0.3;
 // Two starts that differ by less than this in the image: registration finds the same features from both.
 constexpr double kSameStart_px = 2;
+// When tracking fails, features are searched this far from their old positions, whatever the prediction.
+constexpr double kWideSearch_px = 120;
 
 // Evidence (coverage.hpp) of the inliers, and its share of that of all features in view.
 struct Explained {
@@ -153,12 +155,12 @@ bool is_findable(const Reference& reference) {
   current.find_points();
   current.describe_points();
   const Reference& nearest = is_findable(latest) ? latest : references[0];
-  bool accepted = find(nearest, nearest.T_current_predicted, config.points.match.radius_px);
+  bool accepted = find(nearest, nearest.T_current_predicted, PointMatchConfig().radius_px);
   for (std::size_t r = references.size(); r-- > 0 && !accepted;) {
     const Reference& reference = references[r];
     if (!is_findable(reference)) continue;
     accepted = find(reference, current.predicted.sensed.known() ? reference.T_current_predicted : Se3{},
-                    config.references.wide_search_px);
+                    kWideSearch_px);
   }
   if (!accepted) take_best();
 }

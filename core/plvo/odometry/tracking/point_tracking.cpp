@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/tracking/point_tracking.hpp"
 
-#include "plvo/base/build.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/points/alignment.hpp"
 
@@ -100,7 +99,6 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
                          const Se3& T_current_reference, double radius_px, Arena& scratch,
                          PointTracks& tracks) {
   tracks.matches.clear();
-  if constexpr (!kPointsBuilt) return;
   const ScratchScope scope(scratch);
   const std::size_t n = reference.keypoints.size();
   const std::span<Prediction> predictions = scratch.take<Prediction>("predictions", n);
@@ -112,7 +110,7 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
     predictions[i] = {static_cast<float>(at.pixel.x()), static_cast<float>(at.pixel.y()), visible};
   }
 
-  PointMatchConfig config = view.config.match;
+  PointMatchConfig config;
   config.radius_px = radius_px;
   const GrayView image = view.pyramid.level(0);
   match_points(reference, predictions, current, image.width, image.height, config, scratch, putative);
@@ -133,7 +131,6 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
                      std::span<const Point3d> reference_points, const Se3& T_current_reference,
                      PointTracks& tracks) {
   tracks.matches.clear();
-  if constexpr (!kPointsBuilt) return;
   const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
     found.matches.clear();
     for (std::size_t i = begin; i < end; ++i) {

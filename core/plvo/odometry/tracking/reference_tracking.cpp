@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "plvo/base/build.hpp"
 #include "plvo/motion/prior_constraint.hpp"
 
 namespace plvo {
@@ -21,6 +20,9 @@ constexpr int kCoarseRounds = 4;
 constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
 constexpr double kAligned = 5e-4;
+// Gates of the lines once the motion is known.
+constexpr double kGuidedOffset_px = 8;
+constexpr double kGuidedAngle_rad = 0.1;
 
 // All references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and n such residuals weigh as n / (1 + (n − 1) / 2) independent ones.
@@ -186,7 +188,7 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
                                                 Se3& T_current_reference) const {
   const CameraModel& camera = current.context.camera;
   Arena& scratch = current.context.scratch;
-  if (!kPointsBuilt || !alignment_.holds(reference.features->stamp_ns)) return false;
+  if (!alignment_.holds(reference.features->stamp_ns)) return false;
   const StageTimer timer(current.context, Stage::kMatching);
   const ScratchScope scope(scratch);
   const PointFeatures& features = reference.features->points;
@@ -230,7 +232,7 @@ void ReferenceTracking::associate_by_descriptor(const Reference& reference, cons
   track_by_descriptor(view_of(current, depth, features.current_exposure), reference.features->points,
                       features.reference_points, current.features.points, T_predicted, radius_px,
                       context.scratch, tracks_[0].points);
-  LineMatchConfig gates = context.config.lines.match;
+  LineMatchConfig gates;
   gates.max_offset_px = std::max(gates.max_offset_px, radius_px);
   match_predicted_lines(camera.pinhole, features.current_exposure, reference.features->lines,
                         features.reference_lines, current.features.lines, T_predicted, gates, context.scratch,
@@ -242,7 +244,6 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
                                             const CurrentFrame& current, const Se3& T_current_base,
                                             Association& association) {
   const StageContext& context = current.context;
-  const Config& config = context.config;
   const CameraModel& camera = context.camera;
   set_poses(references, current.predicted.last, association);
   const MotionsToCurrent motions = motions_to_current(T_current_base, association.poses);
@@ -258,13 +259,13 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
     const StageTimer timer(context, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points, features.reference_points,
                     motions[r], tracks_[r].points);
-    LineMatchConfig gates = config.lines.match;
-    gates.max_offset_px = config.lines.guided_offset_px;
-    gates.max_angle_rad = config.lines.guided_angle_rad;
+    LineMatchConfig gates;
+    gates.max_offset_px = kGuidedOffset_px;
+    gates.max_angle_rad = kGuidedAngle_rad;
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features.reference_lines,
                           current.features.lines, motions[r], gates, context.scratch, tracks_[r].lines);
-    track_surfaces(depth, camera.pinhole, config.noise, context.noise.surfaces, features.reference_surfaces,
-                   motions[r], tracks_[r].surfaces);
+    track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
+                   tracks_[r].surfaces);
   }
 }
 

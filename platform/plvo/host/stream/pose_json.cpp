@@ -9,6 +9,9 @@
 namespace plvo {
 namespace {
 
+// Written by hand: a JSON library would be a dependency of the smallest robot program (plvo_host) for two
+// lines of fixed members, and would write 17 digits where nine are meaningful.
+
 // JSON has no infinity and no NaN; TrackResult promises neither, and null says so if it is broken.
 void put_number(std::string& to, double value) {
   if (std::isfinite(value)) {
@@ -24,8 +27,7 @@ void put_counts(std::string& to, const char* name, const FeatureCounts& counts) 
                  name, counts.detected, counts.dropped, counts.with_depth, counts.matched, counts.inliers);
 }
 
-}  // namespace
-
+// The text within quotes, with what JSON forbids escaped; bytes that are not ASCII become "?".
 std::string json_string(std::string_view text) {
   std::string out = "\"";
   for (char c : text) {
@@ -40,6 +42,8 @@ std::string json_string(std::string_view text) {
   }
   return out + '"';
 }
+
+}  // namespace
 
 std::string pose_json(const TrackResult& result, const FrameNames& frames) {
   std::string out = fmt::format(

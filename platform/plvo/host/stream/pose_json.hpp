@@ -23,7 +23,4 @@ struct Heartbeat {
 };
 std::string heartbeat_json(const Heartbeat& heartbeat);
 
-// The text within quotes, with what JSON forbids escaped; bytes that are not ASCII become "?".
-std::string json_string(std::string_view text);
-
 }  // namespace plvo

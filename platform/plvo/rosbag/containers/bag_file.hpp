@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The container of ROS 1, `#ROSBAG V2.0` (http://wiki.ros.org/Bags/Format/2.0).
+//
+// The reader is ours because librosbag is not designed for hostile files: it allocates what the header of a
+// chunk claims, up to 4 GiB, before it reads, and only asserts that the sizes agree (ros_comm,
+// tools/rosbag_storage/src/bag.cpp). It also needs the index at the end, and throws BagUnindexedException at
+// a recording without one.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages for man: plvo(1), plvo-run(1) and so on.
+// Pages for man: plvo(1), plvo-run(1) and so on. CLI11 makes none. help2man reads what --help prints: it
+// names the page of a subcommand PLVO(1), runs the exit codes together, and would have to run a cross-built
+// program under emulation by scripts of its own. What stands here is made from the same descriptions as the
+// completion.
 #include <fmt/core.h>
 
 #include <algorithm>
