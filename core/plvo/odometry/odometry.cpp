@@ -46,6 +46,7 @@ Odometry::Odometry() = default;
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
   window_.init(features, limits.kept_keyframes);
+  carried_.init(camera_.width, camera_.height);
   return {};
 }
 
@@ -88,7 +89,7 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
-  const StageContext context{camera_, *config_, noise_, arena_, times};
+  const StageContext context{camera_, *config_, noise_, arena_, times, carried_};
   FeatureExtraction& extraction = memory_.extraction;
   const double brightness = extraction.prepare_image(context, input.colour);
 
@@ -182,6 +183,8 @@ void Odometry::reset() {
   last_stamp_ns_ = 0;
   has_stamp_ = false;
   repeats_.forget();
+  carried_.forget();
+  carried_told_ = 0;
   memory_.views.clear();
 }
 

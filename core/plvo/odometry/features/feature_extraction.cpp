@@ -50,6 +50,7 @@ void lift_points(const StageContext& context, const DepthSampler& depth_sampler,
                             : WindowMask{};
     }
   });
+  context.carried.remove_points(points);
 }
 
 bool lift_line(const StageContext& context, const DepthSampler& depth, const Segment& segment, Line3d& line) {

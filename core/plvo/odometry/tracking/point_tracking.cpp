@@ -135,7 +135,8 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
     found.matches.clear();
     for (std::size_t i = begin; i < end; ++i) {
       Expected expected;
-      if (predict(view, reference_points[i], T_current_reference, expected))
+      if (!view.carried.is_carried(reference.keypoints[i]) &&
+          predict(view, reference_points[i], T_current_reference, expected))
         register_keypoint(view, reference, i, expected, AlignmentOptions{},
                           warp_of(view.pinhole, reference_points[i].p, T_current_reference), found);
     }

@@ -17,6 +17,7 @@
 #include "plvo/image/pyramid.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/tracking/carried_cells.hpp"
 #include "plvo/points/keypoint.hpp"
 #include "plvo/points/point_match.hpp"
 
@@ -46,6 +47,7 @@ struct TrackingView {
   const Exposure& exposure;
   const NoiseScales& noise;
   const Executor& executor;
+  const CarriedCells& carried;
 };
 
 // Tracks by descriptors, within radius_px of the positions that T_current_reference predicts for the
