@@ -31,10 +31,10 @@
 #include "plvo/odometry/image_repeats.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
-#include "plvo/odometry/tracking/carried_cells.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 #include "plvo/odometry/window/window.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 
@@ -232,7 +232,7 @@ class Odometry {
   ImageRepeats repeats_;
   CarriedCells carried_;
   int carried_told_ = 0;  // cells of them that a status has told
-  Se3 T_world_depth_;  // where the camera was when the last depth image came
+  Se3 T_world_depth_;     // where the camera was when the last depth image came
   bool has_depth_pose_ = false;
   bool depth_has_stopped_ = false;
   FeatureCounts points_found_;  // of the latest frame in which points were searched

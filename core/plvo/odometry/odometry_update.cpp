@@ -49,8 +49,8 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   if (!kept.recent && !tracked.returned)
     vote_for_carried(frame, frame.predicted.all_references[0], memory_.tracking.tracks(0),
                      motion.T_current_reference, carried_);
-  window_.remove_carried(carried_);
   if (!kept.recent) make_reference(frame, tracked.exposure, !kept.keyframe);
+  window_.remove_carried(carried_);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;
   result.status = decision.status.message()[0] == '\0' ? tell_carried() : decision.status;
@@ -83,13 +83,14 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   return result;
 }
 
-// Says where the image shows what travels with the camera: when it is found, and when it has grown to twice as
-// many cells.
+// Says where the image shows what travels with the camera: when it is found, and when it has grown to twice
+// as many cells.
 Status Odometry::tell_carried() {
   if (carried_.count() <= 2 * carried_told_) return {};
   carried_told_ = carried_.count();
   const PixelBounds bounds = carried_.bounds();
-  return Status(StatusCode::kOk, "a part of the image travels with the camera; its points are left out: columns ")
+  return Status(StatusCode::kOk,
+                "a part of the image travels with the camera; its points are left out: columns ")
       .append(bounds.left)
       .append(" to ")
       .append(bounds.right - 1)

@@ -8,7 +8,7 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/track_result.hpp"
-#include "plvo/odometry/tracking/carried_cells.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 

@@ -12,9 +12,9 @@
 
 #include <span>
 
-#include "plvo/odometry/tracking/carried_cells.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 
@@ -24,8 +24,8 @@ void vote_for_carried(const CurrentFrame& current, const Reference& reference, c
 
 // The matches of an estimate, by whether they stayed at their pixels.
 struct StayedMatches {
-  CarriedCells::Counts cells{};  // points that stayed
-  int stayed_inliers = 0;        // points
+  CarriedCells::Counts cells{};       // points that stayed
+  int stayed_inliers = 0;             // points
   int others = 0, other_inliers = 0;  // points that did not stay, and lines
 };
 StayedMatches count_stayed(std::span<const Reference> references, std::span<const ReferenceTracks> tracks,

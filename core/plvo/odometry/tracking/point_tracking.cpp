@@ -72,6 +72,9 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
       reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
       expected.pixel.x() / scale - offset_x, expected.pixel.y() / scale - offset_y, options, warp);
   if (!alignment.ok) return;
+  if (!view.mask.is_free(static_cast<int>(alignment.x * scale), static_cast<int>(alignment.y * scale),
+                         reach_on_base(keypoint.level, alignment.reach)))
+    return;
   add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
             scale * registered_sigma_px(view.config, alignment), expected.depth_m, tracks);
 }

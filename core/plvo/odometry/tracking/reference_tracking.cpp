@@ -107,8 +107,16 @@ NuisanceParameters nuisance_parameters(const NoiseConfig& config, const Exposure
 
 TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, const Exposure& exposure) {
   const StageContext& context = current.context;
-  return {context.camera.pinhole, context.config.points,  current.extraction.pyramid(), depth, exposure,
-          context.noise,          context.config.executor, context.carried};
+  const FeatureExtraction& extraction = current.extraction;
+  return {context.camera.pinhole,
+          context.config.points,
+          extraction.pyramid(),
+          extraction.mask(),
+          depth,
+          exposure,
+          context.noise,
+          context.config.executor,
+          context.carried};
 }
 
 }  // namespace
@@ -195,6 +203,7 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
   const PointFeatures& features = reference.features->points;
   const std::span<AlignmentWindow> storage = SparseAlignment::take_windows(scratch);
   const Pyramid& pyramid = current.extraction.pyramid();
+  const ImageMask& mask = current.extraction.mask();
   Se3 T = reference.T_current_predicted;
   AlignmentStep step;
   const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
@@ -205,13 +214,15 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
       const RowTimeCompensation at =
           compensate_row_times_of_points(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
-        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step,
+                        mask))
           return false;
       if (step.size < kAligned) break;
     }
     return true;
   };
-  if (!take_rounds(alignment_.cut_coarse(features, storage), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(alignment_.cut_coarse(features, storage, mask), kCoarseRounds) || !step.trusted())
+    return false;
   if (!take_rounds(SparseAlignment::cut_fine(features, storage), kFineRounds)) return false;
   T_current_reference = T;
   return true;

@@ -23,9 +23,9 @@
 #include "plvo/motion/motion_estimator.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
 #include "plvo/odometry/motion_model.hpp"
-#include "plvo/odometry/tracking/carried_cells.hpp"
 #include "plvo/odometry/window/kept_keyframes.hpp"
 #include "plvo/odometry/window/pose_with_covariance.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 

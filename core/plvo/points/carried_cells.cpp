@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/odometry/tracking/carried_cells.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 #include <algorithm>
 
@@ -13,12 +13,15 @@ void CarriedCells::init(int width, int height) {
 
 void CarriedCells::forget() {
   votes_.fill(0);
-  count_ = 0;
+  count_ = references_ = 0;
 }
 
 void CarriedCells::vote(const Counts& stayed, const Counts& moved) {
+  const bool fall = ++references_ == kMemory;
+  if (fall) references_ = 0;
   for (std::size_t cell = 0; cell < kCells; ++cell) {
     std::uint8_t& vote = votes_[cell];
+    if (fall && vote > 0) --vote;
     if (stayed[cell] > moved[cell])
       vote = std::min(static_cast<std::uint8_t>(vote + 1), kMost);
     else if (moved[cell] > 0 && vote > 0)

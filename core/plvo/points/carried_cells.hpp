@@ -6,7 +6,8 @@
 //
 // The image is divided into cells, and each cell has a vote. A frame that becomes a reference raises the vote
 // of a cell in which more features stayed at their pixels than moved along with the scene, and lowers that of
-// a cell in which features moved along. A world that is at rest in the image changes no vote.
+// a cell in which features moved along. A world that is at rest in the image changes no vote. All votes fall
+// slowly: no points are searched in carried cells, so they are tried again from time to time.
 #pragma once
 
 #include <array>
@@ -47,7 +48,10 @@ class CarriedCells {
   std::size_t cell_of(const Keypoint& keypoint) const {
     return cell_of(Vector2(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v)));
   }
-  bool is_carried(const Keypoint& keypoint) const { return votes_[cell_of(keypoint)] >= kCarried; }
+  bool is_carried(const Vector2& pixel) const { return count_ > 0 && votes_[cell_of(pixel)] >= kCarried; }
+  bool is_carried(const Keypoint& keypoint) const {
+    return count_ > 0 && votes_[cell_of(keypoint)] >= kCarried;
+  }
   // Number of carried cells, and the smallest rectangle that contains them.
   int count() const { return count_; }
   PixelBounds bounds() const;
@@ -56,15 +60,16 @@ class CarriedCells {
   void remove_points(PointFeatures& points) const;
 
  private:
-  // Cells are carried once three references agree. The vote rises further, so that a cell in which nothing
-  // is found for a moment stays carried.
+  // Cells are carried once three references agree. After so many references all votes fall by one.
   static constexpr std::uint8_t kCarried = 3;
   static constexpr std::uint8_t kMost = 12;
+  static constexpr int kMemory = 30;
 
   void count_carried();
 
   std::array<std::uint8_t, kCells> votes_{};
   int count_ = 0;
+  int references_ = 0;  // since the votes fell
   int width_ = 1, height_ = 1;
 };
 
