@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// What travels with the camera: dots that its projector throws on the scene, and a part of the robot in view.
+// Without a pattern nothing is carried.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "plvo/base/random.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "procedural_sequence.hpp"
+#include "sound.hpp"
+
+namespace plvo {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr int kFrames = 40;
+
+// Changes the images of a frame.
+using Change = void (*)(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth);
+
+void nothing(std::vector<std::uint8_t>& /*colour*/, std::vector<std::uint16_t>& /*depth*/) {}
+
+// Small bright blobs at random pixels, always the same ones, over a darker image.
+void dots(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& /*depth*/) {
+  for (std::uint8_t& level : colour) level = static_cast<std::uint8_t>(level * 0.6);
+  Random random(3);
+  for (int dot = 0; dot < 1500; ++dot) {
+    const int x = 1 + static_cast<int>(random.below(kWidth - 2));
+    const int y = 1 + static_cast<int>(random.below(kHeight - 2));
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i)
+        for (int channel = 0; channel < 3; ++channel) {
+          std::uint8_t& level = colour[static_cast<std::size_t>(3 * ((y + j) * kWidth + x + i) + channel)];
+          level = static_cast<std::uint8_t>(std::min(level + (i == 0 && j == 0 ? 110 : 50), 255));
+        }
+  }
+}
+
+// A textured part of the robot, at 0.5 m, in the lowest fifth.
+void bumper(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth) {
+  Random random(4);
+  std::vector<std::uint8_t> tiles(40 * 10);
+  for (std::uint8_t& tile : tiles) tile = static_cast<std::uint8_t>(40 + random.below(180));
+  for (int y = kHeight * 4 / 5; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto pixel = static_cast<std::size_t>(y * kWidth + x);
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        colour[3 * pixel + channel] = tiles[static_cast<std::size_t>(y / 8 % 10 * 40 + x / 8)];
+      depth[pixel] = 500;
+    }
+}
+
+struct Outcome {
+  double worst_m = 0;  // largest error of a position
+  int lost = 0;
+  std::string told;
+  int low_keypoints = 0;  // in the lowest fifth of the last image
+};
+
+Outcome walk(Change change) {
+  ProceduralSequence sequence(kWidth, kHeight);
+  const Limits limits{kWidth, kHeight};
+  std::vector<std::byte> memory(required_bytes(limits));
+  Odometry odometry;
+  const Status status = odometry.init(memory, sequence.camera(), Config(), limits);
+  EXPECT_TRUE(status.ok()) << status.message();
+  Outcome outcome;
+  const Se3 T_first_world = ProceduralSequence::T_world_camera(0).inverse();
+  for (int i = 0; i < kFrames; ++i) {
+    RgbdFrame frame = sequence.render(i);
+    std::vector<std::uint8_t> colour(frame.colour.data, frame.colour.data + 3 * kWidth * kHeight);
+    std::vector<std::uint16_t> depth(frame.depth.data, frame.depth.data + kWidth * kHeight);
+    change(colour, depth);
+    frame.colour.data = colour.data();
+    frame.depth.data = depth.data();
+    const TrackResult result = odometry.track(frame);
+    EXPECT_TRUE(test::is_sound(result)) << result.status.message();
+    outcome.lost += i > 0 && result.state != TrackState::kTracking ? 1 : 0;
+    if (outcome.told.empty() && std::string(result.status.message()).find("travels") != std::string::npos)
+      outcome.told = result.status.message();
+    const Vector3 error = result.T_world_camera.t - (T_first_world * ProceduralSequence::T_world_camera(i)).t;
+    outcome.worst_m = std::max(outcome.worst_m, error.norm());
+  }
+  for (const Keypoint& keypoint : odometry.features().keypoints)
+    outcome.low_keypoints += keypoint.v >= kHeight * 4 / 5 ? 1 : 0;
+  std::printf("%.1f mm, %d lost, %d keypoints in the lowest fifth; %s\n", 1e3 * outcome.worst_m, outcome.lost,
+              outcome.low_keypoints, outcome.told.c_str());
+  return outcome;
+}
+
+TEST(Carried, NothingIsCarriedWhereNothingTravelsWithTheCamera) {
+  const Outcome outcome = walk(nothing);
+  EXPECT_EQ(outcome.told, "");
+  EXPECT_LT(outcome.worst_m, 0.02);
+  EXPECT_GT(outcome.low_keypoints, 0);
+}
+
+TEST(Carried, APartOfTheRobotIsLeftOutAndTold) {
+  const Outcome outcome = walk(bumper);
+  EXPECT_NE(outcome.told.find("rows 180 to 239"), std::string::npos) << outcome.told;
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_LT(outcome.worst_m, 0.02);
+  EXPECT_EQ(outcome.low_keypoints, 0);
+}
+
+TEST(Carried, DotsOfAProjectorAreLeftOutAndTold) {
+  const Outcome outcome = walk(dots);
+  EXPECT_NE(outcome.told, "");
+  EXPECT_LT(outcome.worst_m, 0.05)
+      << "with the dots the camera would seem to be at rest, half a metre beside the truth";
+}
+
+}  // namespace
+}  // namespace plvo
