@@ -24,10 +24,20 @@ class Film {
   // shutter opens and closes, in the camera frame at mid-exposure. Then adapts the exposure of the next
   // frame, `frame_s` later.
   void develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
-               double frame_s);
+               double frame_s) {
+    blur(renderer, T_mid_begin, T_mid_end);
+    expose(frame, frame_s);
+  }
+  // The two steps of develop. In between, light may be added that the camera's motion does not blur.
+  void blur(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end);
+  void expose(std::uint32_t frame, double frame_s);
+  std::vector<Rgb>& light() { return blurred_; }
+  // Radiance of the brightest pixel that is not over-exposed.
+  double white() const;
 
   // 8-bit RGB, width·3 bytes per row.
   const std::uint8_t* pixels() const { return pixels_.data(); }
+  std::uint8_t* pixels() { return pixels_.data(); }
 
  private:
   void meter(ImageView<const Rgb> radiance);
