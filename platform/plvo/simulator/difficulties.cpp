@@ -17,7 +17,7 @@ constexpr std::array kDifficulties = {
     NamedDifficulty{"person-ahead", [](Difficulties& d) { d.person.emplace().ahead = true; }},
     NamedDifficulty{"mirror", [](Difficulties& d) { d.mirror = true; }},
     NamedDifficulty{"bumper", [](Difficulties& d) { d.bumper_share = 0.15; }},
-    NamedDifficulty{"dots", [](Difficulties& d) { d.dots = 4500; }},
+    NamedDifficulty{"dots", [](Difficulties& d) { d.dots_share = 0.015; }},
     NamedDifficulty{"clock", [](Difficulties& d) { d.clock = true; }},
     NamedDifficulty{"comb", [](Difficulties& d) { d.comb = true; }},
     NamedDifficulty{"frozen-depth", [](Difficulties& d) { d.frozen_depth = 20; }},
@@ -52,7 +52,7 @@ Status Difficulties::validate() const {
   }
   if (!(bumper_share >= 0 && bumper_share <= 0.5))
     return refuse("the share of the bumper must lie in 0 ... 0.5");
-  if (dots < 0 || dots > 1000000) return refuse("the number of dots must lie in 0 ... 1000000");
+  if (!(dots_share >= 0 && dots_share <= 1)) return refuse("the share of the dots must lie in 0 ... 1");
   if (frozen_depth && *frozen_depth < 0) return refuse("depth must freeze at frame 0 or later");
   return {};
 }

@@ -23,7 +23,7 @@ struct MovingBoard {
   double speed_mps = 0.4;
 };
 
-// A person whose arms and legs swing: ten solids, no two of which have the same motion.
+// A person whose arms and legs swing and whose chest turns: ten solids, no two of which have the same motion.
 struct WalkingPerson {
   double from_s = 0.65, to_s = 3.35;  // since the first frame
   double distance_m = 2;              // from the camera, at from_s
@@ -38,7 +38,7 @@ struct Difficulties {
   // that of its plane.
   bool mirror = false;
   double bumper_share = 0;          // lowest share of the image that shows the robot's own bumper
-  int dots = 0;                     // number of dots of an infrared projector, at fixed pixels
+  double dots_share = 0;            // dots of an infrared projector per pixel, at fixed pixels
   bool clock = false;               // digits of a clock in the upper left corner
   bool comb = false;                // depth of rows and columns 0, 2, 4 … is empty
   std::optional<int> frozen_depth;  // from this frame on, depth is that of this frame

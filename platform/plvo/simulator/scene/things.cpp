@@ -152,7 +152,13 @@ void Things::add_person(double t_s, std::vector<Solid>& solids) const {
   const auto hanging = [&](Float3 from, float length, double angle) {
     return from + body.forward * (length * sine_of(angle)) - kUp * (length * static_cast<float>(cos(angle)));
   };
-  Solid torso = panel(point(0, 0, 1.18F), body, {0.2F, 0.12F, 0.28F}, shirt_);
+  // The chest turns against the legs, and the shoulders with it.
+  const double turn = 0.15 * sin(phase);
+  const auto cosine = static_cast<float>(cos(turn));
+  Upright chest = body;
+  chest.forward = body.forward * cosine + body.right * sine_of(turn);
+  chest.right = body.right * cosine - body.forward * sine_of(turn);
+  Solid torso = panel(point(0, 0, 1.18F), chest, {0.2F, 0.12F, 0.28F}, shirt_);
   torso.seed = 1;
   solids.push_back(torso);
   solids.push_back(limb(point(0.02F, 0, 1.48F), point(0.03F, 0, 1.75F), 0.1F, skin_, 2));
@@ -166,7 +172,7 @@ void Things::add_person(double t_s, std::vector<Solid>& solids) const {
     solids.push_back(limb(hip, knee, 0.085F, trousers_, seed));
     solids.push_back(limb(knee, hanging(knee, 0.46F, shin), 0.065F, trousers_, seed + 1));
     const double upper_arm = -0.5 * sin(swing);
-    const Float3 shoulder = point(0, 0.255F * side, 1.42F);
+    const Float3 shoulder = point(0, 0, 1.42F) + chest.right * (0.255F * side);
     const Float3 elbow = hanging(shoulder, 0.3F, upper_arm);
     solids.push_back(limb(shoulder, elbow, 0.05F, sleeve_, seed + 2));
     solids.push_back(

@@ -32,13 +32,17 @@ Carried::Carried(const SimulatorOptions& options, Scene& scene)
       clock_(options.difficulties.clock),
       bumper_top_(height_ - static_cast<int>(options.difficulties.bumper_share * height_ + 0.5)) {
   if (bumper_top_ < height_) make_bumper(options, scene);
-  if (options.difficulties.dots > 0) make_dots(options);
+  if (options.difficulties.dots_share > 0) make_dots(options);
 }
 
 void Carried::make_bumper(const SimulatorOptions& options, Scene& scene) {
   const CameraModel& camera = options.camera;
-  scene.materials.push_back(
-      {.pattern = Pattern::kPoster, .base = {0.5F, 0.5F, 0.45F}, .second = {0.03F, 0.03F, 0.04F}});
+  scene.materials.push_back({.pattern = Pattern::kTiles,
+                             .base = {0.15F, 0.14F, 0.1F},
+                             .second = {0.02F, 0.02F, 0.02F},
+                             .scale = 0.03F,
+                             .contrast = 6});
+  // No ray hits this solid. It tells the depth sensor the material.
   Solid bumper;
   bumper.material.fill(static_cast<std::uint16_t>(scene.materials.size() - 1));
   scene.solids.push_back(bumper);
@@ -67,7 +71,8 @@ void Carried::make_bumper(const SimulatorOptions& options, Scene& scene) {
 void Carried::make_dots(const SimulatorOptions& options) {
   dots_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   Random random(options.seed, 0x444f);
-  for (int k = 0; k < options.difficulties.dots; ++k) {
+  const auto count = static_cast<int>(options.difficulties.dots_share * width_ * height_);
+  for (int k = 0; k < count; ++k) {
     const int cx = 1 + static_cast<int>(random.uniform() * (width_ - 2));
     const int cy = 1 + static_cast<int>(random.uniform() * (height_ - 2));
     for (int dy = -1; dy <= 1; ++dy) {
