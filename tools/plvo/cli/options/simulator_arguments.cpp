@@ -81,7 +81,8 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
               return expected("a range of frames such as 100:115", text);
             });
   group.add("--with", "NAME,...",
-            fmt::format("What makes it hard, one or several of: {}", fmt::join(difficulty_names(), ", ")),
+            fmt::format("Adds one or several difficulties, separated by commas: {}",
+                        fmt::join(difficulty_names(), ", ")),
             [&arguments](const std::string& text) -> std::string {
               std::istringstream names(text);
               for (std::string name; std::getline(names, name, ',');)
