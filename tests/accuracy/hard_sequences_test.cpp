@@ -69,5 +69,16 @@ TEST(HardSequences, FramesWithFrozenDepthAreLost) {
   EXPECT_LT(frozen.nees, kNeesBound);
 }
 
+// The desk has texture beside the board. In the corridor, the board's motion is taken for the camera's.
+TEST(HardSequences, ACameraThatStandsStillAtADeskDoesNotFollowABoard) {
+  SimulatorOptions options = hard_options(60, {"board"});
+  options.scene = SceneName::kDesk;
+  options.still = true;
+  const HardSequence board = track_hard(options);
+  EXPECT_EQ(board.tracked, 59);
+  EXPECT_LT(board.error_m, 0.003);
+  EXPECT_LT(board.nees, kNeesBound);
+}
+
 }  // namespace
 }  // namespace plvo
