@@ -41,20 +41,26 @@ struct Darkroom {
   std::unique_ptr<Renderer> renderer;
 };
 
+void develop(Film& film, Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end,
+             std::uint32_t frame) {
+  film.blur(renderer, T_mid_begin, T_mid_end);
+  film.expose(frame, kFrame_s);
+}
+
 TEST(Film, ExposureSettlesOnGrayAndLagsBehindTheLight) {
   Darkroom room;
   Film film(room.camera, 1, false, 1);
   room.fill(0.5F);
   std::uint32_t frame = 0;
-  film.develop(*room.renderer, {}, {}, frame++, kFrame_s);
+  develop(film, *room.renderer, {}, {}, frame++);
   EXPECT_NEAR(room.mean(film), 121, 2);
   // Twice the light: at once the picture is bright, within two seconds it is gray again.
   room.fill(1.0F);
-  film.develop(*room.renderer, {}, {}, frame++, kFrame_s);
+  develop(film, *room.renderer, {}, {}, frame++);
   EXPECT_GT(room.mean(film), 155);
   double last = room.mean(film);
   for (int k = 0; k < 60; ++k) {
-    film.develop(*room.renderer, {}, {}, frame++, kFrame_s);
+    develop(film, *room.renderer, {}, {}, frame++);
     EXPECT_LE(room.mean(film), last);
     last = room.mean(film);
   }
@@ -66,8 +72,8 @@ TEST(Film, ShutterStaysOpenLongerInTheDarkWithinItsLimits) {
   Film film(room.camera, 1, false, 1);
   const double bright_s = film.exposure_s();
   room.fill(0.1F);
-  film.develop(*room.renderer, {}, {}, 0, kFrame_s);
-  film.develop(*room.renderer, {}, {}, 1, kFrame_s);
+  develop(film, *room.renderer, {}, {}, 0);
+  develop(film, *room.renderer, {}, {}, 1);
   EXPECT_GT(film.exposure_s(), bright_s);
   EXPECT_LT(film.exposure_s(), kFrame_s);
 }
@@ -78,7 +84,7 @@ TEST(Film, NoiseHasNoBiasAndGrowsInTheDark) {
     Darkroom room;
     room.fill(radiance);
     Film film(room.camera, 1, true, 1);
-    film.develop(*room.renderer, {}, {}, 0, kFrame_s);
+    develop(film, *room.renderer, {}, {}, 0);
     const double mean = room.mean(film);
     EXPECT_NEAR(mean, 121, 2);
     double squares = 0;
@@ -101,8 +107,8 @@ TEST(Film, MotionBlursAlongTheMotionAndNoFarther) {
   const auto width = [&](double yaw) {
     Film film(room.camera, 1, true, 1);
     // Half of the turn before the middle of the exposure, half after it.
-    film.develop(*room.renderer, {rotation_exp(Vector3(0, -yaw / 2, 0)), Vector3::Zero()},
-                 {rotation_exp(Vector3(0, yaw / 2, 0)), Vector3::Zero()}, 0, kFrame_s);
+    develop(film, *room.renderer, {rotation_exp(Vector3(0, -yaw / 2, 0)), Vector3::Zero()},
+            {rotation_exp(Vector3(0, yaw / 2, 0)), Vector3::Zero()}, 0);
     const std::uint8_t* row = film.pixels() + 60 * room.camera.width * 3;
     int bright = 0;
     for (int x = 40; x < 120; ++x) bright += row[3 * x + 1] > row[3 * 20 + 1] + 25;

@@ -30,6 +30,12 @@ inline float dot(Float3 a, Float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z;
 inline Float3 cross(Float3 a, Float3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline Float3 min3(Float3 a, Float3 b) {
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+inline Float3 max3(Float3 a, Float3 b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
 inline float norm(Float3 a) { return std::sqrt(dot(a, a)); }
 inline Float3 normalised(Float3 a) { return a * (1.0F / norm(a)); }
 inline Float3 mix(Float3 a, Float3 b, float t) { return a + (b - a) * t; }

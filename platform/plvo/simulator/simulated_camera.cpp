@@ -9,6 +9,8 @@
 #include "plvo/simulator/render/renderer.hpp"
 #include "plvo/simulator/scene/lighting.hpp"
 #include "plvo/simulator/scene/scene.hpp"
+#include "plvo/simulator/scene/things.hpp"
+#include "plvo/simulator/sensor/carried.hpp"
 #include "plvo/simulator/sensor/depth_clock.hpp"
 #include "plvo/simulator/sensor/film.hpp"
 #include "plvo/simulator/sensor/inertial_sensor.hpp"
@@ -39,6 +41,8 @@ struct SimulatedCamera::Parts {
         scene(std::move(room)),
         trajectory(std::move(walk)),
         lighting(chosen.light, chosen.seed),
+        carried(chosen, *scene),
+        things(chosen, trajectory, *scene),
         renderer(*scene, chosen.camera, chosen.threads),
         film(chosen.camera, chosen.seed, chosen.noise, chosen.threads),
         clock(chosen.depth_schedule, chosen.fps, chosen.seed),
@@ -63,9 +67,39 @@ struct SimulatedCamera::Parts {
     const DepthSchedule& timing = options.depth_schedule;
     const std::int64_t stamp_us = clock.nearest(frame, since_start_us(frame, options.fps)).true_stamp_us;
     const double middle_s = static_cast<double>(stamp_us) * 1e-6 + timing.delay_s;
+    things.place(middle_s, 0, *scene);
     depth_caster->cast(
         row_poses(middle_s, trajectory.at(middle_s), timing.readout_s.value_or(options.camera.readout_s)));
     return depth_caster->hits();
+  }
+
+  // Renders the images of a frame into film and sensor.
+  void take(int frame, double t_s, const Se3& T_world_camera) {
+    const sim::LightState light = lighting.at(t_s, T_world_camera);
+    things.place(t_s, film.exposure_s(), *scene);
+    renderer.render(row_poses(t_s, T_world_camera, options.camera.readout_s), light);
+    const ImageView<const sim::PixelHit> seen = carried.cover(renderer.hits());
+    for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = seen.data[i].depth_m;
+
+    const double half_s = 0.5 * film.exposure_s();
+    const Se3 T_camera_world = T_world_camera.inverse();
+    film.blur(renderer, T_camera_world * trajectory.at(t_s - half_s),
+              T_camera_world * trajectory.at(t_s + half_s));
+    const sim::Float3 position = sim::to_float(T_world_camera.t);
+    carried.add_light(renderer.irradiance(position, {0, 0, 1}, light), static_cast<float>(film.white()),
+                      film.light());
+    film.expose(static_cast<std::uint32_t>(frame), 1 / options.fps);
+    carried.burn_in(t_s, film.pixels());
+
+    const std::optional<int> frozen = options.difficulties.frozen_depth;
+    if (frozen && frame > *frozen) return;
+    const ImageView<const sim::PixelHit> measured = carried.cover(depth_hits(frame));
+    if (options.noise) {
+      sensor.sense(measured, static_cast<std::uint32_t>(frame));
+    } else {
+      sensor.copy_exact(measured);
+    }
+    if (options.difficulties.comb) sensor.comb();
   }
 
   // Black image of a covered lens, allocated on first use.
@@ -82,6 +116,8 @@ struct SimulatedCamera::Parts {
   std::unique_ptr<sim::Scene> scene;
   sim::Trajectory trajectory;
   sim::Lighting lighting;
+  sim::Carried carried;
+  sim::Things things;
   sim::Renderer renderer;
   sim::Film film;
   sim::DepthClock clock;
@@ -109,6 +145,7 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
     const Status read = sim::Trajectory::from_tum(options.trajectory_file, *scene, trajectory);
     if (!read.ok()) return read;
   }
+  if (options.still) trajectory.stop();
   auto parts = std::make_unique<Parts>(options, std::move(scene), std::move(trajectory));
   parts->frames = options.frames;
   if (!options.trajectory_file.empty())
@@ -185,22 +222,7 @@ Status SimulatedCamera::next(RgbdFrame& frame) {
   const std::int64_t stamp = stamp_ns(k);
   const Se3 T_world_camera = pose(k);
   const double t_s = static_cast<double>(stamp - kFirstStamp_us * 1000) * 1e-9;
-  const sim::LightState light = parts.lighting.at(t_s, T_world_camera);
-  parts.renderer.render(parts.row_poses(t_s, T_world_camera, camera.readout_s), light);
-
-  const double half_s = 0.5 * parts.film.exposure_s();
-  const Se3 T_camera_world = T_world_camera.inverse();
-  parts.film.develop(parts.renderer, T_camera_world * parts.trajectory.at(t_s - half_s),
-                     T_camera_world * parts.trajectory.at(t_s + half_s), static_cast<std::uint32_t>(k),
-                     1 / parts.options.fps);
-  const ImageView<const sim::PixelHit> measured = parts.depth_hits(k);
-  if (parts.options.noise) {
-    parts.sensor.sense(measured, static_cast<std::uint32_t>(k));
-  } else {
-    parts.sensor.copy_exact(measured);
-  }
-  const ImageView<const sim::PixelHit> seen = parts.renderer.hits();
-  for (std::size_t i = 0; i < parts.exact.size(); ++i) parts.exact[i] = seen.data[i].depth_m;
+  if (!(parts.options.difficulties.repeated_frames && k % 2 == 1)) parts.take(k, t_s, T_world_camera);
 
   frame.stamp_ns = stamp;
   frame.depth_stamp_ns = depth_stamp_ns(k);

@@ -96,6 +96,7 @@ Status SimulatorOptions::validate() const {
                                     inertial.accelerometer_noise, inertial.accelerometer_offset_sigma});
   if (!(smallest >= 0 && largest <= 10))
     return invalid("noise and offsets of gyro and accelerometer must lie in 0 ... 10");
+  if (const Status status = difficulties.validate(); !status.ok()) return status;
   return validate_timing(depth_schedule, fps);
 }
 

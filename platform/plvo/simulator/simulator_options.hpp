@@ -10,6 +10,7 @@
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/simulator/difficulties.hpp"
 
 namespace plvo {
 
@@ -79,6 +80,8 @@ struct SimulatorOptions {
   int covered_first = 0, covered_end = 0;
   // A TUM ground-truth file with the trajectory of the camera; empty: a trajectory generated from the seed.
   std::string trajectory_file;
+  bool still = false;  // the camera stays at its first pose
+  Difficulties difficulties;
   int threads = 2;  // the images do not depend on it
 
   // Returns kInvalidArgument with the name of the option for a value out of range.

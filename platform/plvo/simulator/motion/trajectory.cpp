@@ -147,6 +147,9 @@ Se3 Trajectory::recording_at(double t_s) const {
   return boxplus(a, delta);
 }
 
-Se3 Trajectory::at(double t_s) const { return poses_.empty() ? walk_at(t_s) : recording_at(t_s); }
+Se3 Trajectory::at(double t_s) const {
+  if (still_) t_s = 0;
+  return poses_.empty() ? walk_at(t_s) : recording_at(t_s);
+}
 
 }  // namespace plvo::sim

@@ -26,6 +26,8 @@ class Trajectory {
   // error of read_trajectory for an unreadable file, and kDamaged for rows with a NaN or a repeated stamp.
   static Status from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory);
 
+  // Stays at the first pose.
+  void stop() { still_ = true; }
   // T_world_camera. Times outside 0 … duration_s() are clamped for a recording and wrap around for a
   // generated trajectory.
   Se3 at(double t_s) const;
@@ -43,6 +45,7 @@ class Trajectory {
   Se3 walk_at(double t_s) const;
   Se3 recording_at(double t_s) const;
 
+  bool still_ = false;
   double duration_s_ = 0;
   double scale_ = 1;
   // Generated trajectory:

@@ -31,7 +31,7 @@ void RayCaster::cast_rows(int begin, int end) {
     for (int x = 0; x < width_; ++x) {
       const auto i = static_cast<std::size_t>(y * width_ + x);
       const Float3 direction = view(y).to_world(rays_[i]);
-      const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
+      const Hit hit = scene_.closest({view(y).origin, direction}, kNear, kFar);
       PixelHit& pixel = hits_[i];
       pixel = {};
       if (hit.solid < 0) continue;

@@ -26,6 +26,7 @@ struct RowView {
   Float3 origin;
   Float3 right, down, forward;
   Float3 to_world(Float3 v) const { return right * v.x + down * v.y + forward * v.z; }
+  Float3 to_camera(Float3 v) const { return {dot(right, v), dot(down, v), dot(forward, v)}; }
 };
 
 constexpr float kNear = 1e-3F;  // m, start of the rays

@@ -63,7 +63,7 @@ float Renderer::lamp_visibility(const LightState& light, int x, int y) const {
     const Float3 target = light.lamp.centre +
                           light.lamp.half_u * (static_cast<float>(2 * u + 1) / kLampEdge - 1) +
                           light.lamp.half_v * (static_cast<float>(2 * v + 1) / kLampEdge - 1);
-    return scene_.bvh.occluded({origin, target - origin}, 0, 0.999F) ? 0 : 1;
+    return scene_.occluded({origin, target - origin}, 0, 0.999F) ? 0 : 1;
   };
   // If the corners and the centre of the lamp agree, they decide for all samples.
   constexpr int kLast = kLampEdge - 1;
@@ -120,6 +120,20 @@ void Renderer::lamp_fill_rows(const LightState& light, int begin, int end) {
   }
 }
 
+Lightmap::Light Renderer::unshadowed_light(Float3 point, Float3 normal) const {
+  Lightmap::Light sum{0, 1};
+  for (const PanelLight& panel : scene_.lights)
+    sum.direct += panel_irradiance(scene_.bvh, panel, point, normal, 1, false);
+  return sum;
+}
+
+float Renderer::irradiance(Float3 point, Float3 normal, const LightState& light) const {
+  float sum = light.ceiling * (unshadowed_light(point, normal).direct + scene_.ambient);
+  if (light.lamp_on)
+    sum += light.lamp_ambient + panel_irradiance(scene_.bvh, light.lamp, point, normal, 1, false);
+  return sum;
+}
+
 bool Renderer::on_rim(int x, int y) const {
   const auto surface = [&](int px, int py) {
     return seen_by(static_cast<std::size_t>(py * width_ + px)).surface;
@@ -159,7 +173,8 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
   Rgb emitted;
   const Rgb albedo = shade_material(material, sample, emitted);
 
-  const Lightmap::Light fixed = lightmap_.at(hit.solid, hit.face, c.u, c.v);
+  const Lightmap::Light fixed = scene_.is_thing(hit.solid) ? unshadowed_light(point, normal)
+                                                           : lightmap_.at(hit.solid, hit.face, c.u, c.v);
   float irradiance = light.ceiling * (fixed.direct + scene_.ambient * fixed.openness);
   float glint = 0;
   if (light.lamp_on) {
@@ -179,14 +194,21 @@ Rgb Renderer::radiance_at(Float3 origin, Float3 direction, const Hit& hit, float
   if (material.pattern == Pattern::kLampPanel) emitted = emitted * light.ceiling;
   Rgb colour = albedo * irradiance + emitted + Rgb{glint, glint, glint};
 
+  const Float3 reflected = towards - normal * (2 * dot(normal, towards));
+  const Ray ray{point + normal * kLift, reflected};
+  if (depth == 0 && material.mirror > 0) {
+    const Hit seen = scene_.closest(ray, kNear, kFar);
+    if (seen.solid >= 0) {
+      const float farther = footprint * (1 + seen.t / (norm(direction) * hit.t));
+      colour = colour + radiance_at(ray.origin, ray.direction, seen, farther, light, 1, 1) * material.mirror;
+    }
+  }
   if (depth == 0 && material.gloss >= kReflectiveGloss) {
     float grazing = 1 - cosine;
     grazing =
         grazing * grazing * grazing * grazing * grazing;  // Schlick's approximation of Fresnel's equations
     const float mirror = material.gloss * (0.04F + 0.6F * grazing);
-    const Float3 reflected = towards - normal * (2 * dot(normal, towards));
-    const Ray ray{point + normal * kLift, reflected};
-    const Hit seen = scene_.bvh.closest(ray, kNear, kFar);
+    const Hit seen = scene_.closest(ray, kNear, kFar);
     if (seen.solid >= 0) {
       // A polished surface is no perfect mirror: the blur of its image grows with the distance.
       const float blur = footprint + 0.05F * seen.t;
@@ -204,7 +226,7 @@ Rgb Renderer::shade_rim(const LightState& light, int x, int y) {
   Rgb sum;
   for (const auto& offset : kRimSamples) {
     const Float3 direction = view(y).to_world(ray(i) + to_right * offset[0] + to_below * offset[1]);
-    const Hit hit = scene_.bvh.closest({view(y).origin, direction}, kNear, kFar);
+    const Hit hit = scene_.closest({view(y).origin, direction}, kNear, kFar);
     if (hit.solid < 0) continue;
     // Takes the lamp's visibility from a neighbouring pixel centre on the same surface.
     float lamp_visible = lamp_[i];

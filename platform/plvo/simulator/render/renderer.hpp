@@ -27,6 +27,10 @@ class Renderer {
 
   ImageView<const PixelHit> hits() const { return caster_.hits(); }
   ImageView<Rgb> radiance() { return {radiance_.data(), width_, height_, width_}; }
+  // Irradiance of a surface that no shadow reaches.
+  float irradiance(Float3 point, Float3 normal, const LightState& light) const;
+  const Scene& scene() const { return scene_; }
+  const RowView& view(int y) const { return caster_.view(y); }
   // Direction of each pixel's ray in the camera frame, z = 1.
   ImageView<const Float3> rays() const { return caster_.rays(); }
 
@@ -37,7 +41,7 @@ class Renderer {
   float lamp_visibility(const LightState& light, int x, int y) const;
   Rgb radiance_at(Float3 origin, Float3 direction, const Hit& hit, float footprint, const LightState& light,
                   float lamp_visible, int depth);
-  const RowView& view(int y) const { return caster_.view(y); }
+  Lightmap::Light unshadowed_light(Float3 point, Float3 normal) const;
   const PixelHit& seen_by(std::size_t pixel) const { return caster_.hits().data[pixel]; }
   Float3 ray(std::size_t pixel) const { return caster_.rays().data[pixel]; }
   bool on_rim(int x, int y) const;

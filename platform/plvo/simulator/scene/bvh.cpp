@@ -11,9 +11,6 @@ namespace {
 constexpr std::size_t kLeafSize = 2;
 constexpr int kMaxDepth = 40;  // deeper nodes become leaves, which bounds the stack of a traversal
 
-Float3 min3(Float3 a, Float3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-Float3 max3(Float3 a, Float3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-
 float half_area(Float3 lo, Float3 hi) {
   const Float3 d = hi - lo;
   return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -35,12 +32,7 @@ void Bvh::build(const std::vector<Solid>& solids) {
   order_.clear();
   std::vector<std::uint32_t> items;
   for (const Solid& solid : solids) {
-    Float3 extent;
-    const Float3 h = solid.half;
-    const auto& a = solid.axes;
-    extent.x = std::abs(a[0].x) * h.x + std::abs(a[1].x) * h.y + std::abs(a[2].x) * h.z;
-    extent.y = std::abs(a[0].y) * h.x + std::abs(a[1].y) * h.y + std::abs(a[2].y) * h.z;
-    extent.z = std::abs(a[0].z) * h.x + std::abs(a[1].z) * h.y + std::abs(a[2].z) * h.z;
+    const Float3 extent = half_extent(solid);
     constexpr Float3 kMargin{1e-4F, 1e-4F, 1e-4F};  // for rounding errors and flat solids
     lo_.push_back(solid.centre - extent - kMargin);
     hi_.push_back(solid.centre + extent + kMargin);

@@ -36,6 +36,7 @@ struct Material {
   float scale = 0.3F;     // m, period of the pattern, if it has one
   float contrast = 1;     // amplitude factor of the noise
   float gloss = 0;        // 0 matt … 1 polished
+  float mirror = 0;       // share of the light that is reflected as by a mirror, at any angle
   float infrared = 0.6F;  // share of the projector's light that is reflected diffusely
   float emission = 0;     // radiance where the pattern emits
 };

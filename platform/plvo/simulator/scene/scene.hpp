@@ -32,7 +32,19 @@ struct Scene {
   std::vector<Solid> solids;
   std::vector<Material> materials;
   std::vector<PanelLight> lights;
-  Bvh bvh;
+  Bvh bvh;  // of the room's solids
+
+  // The solids from this index on move between images (things.hpp) and are not in the hierarchy.
+  std::size_t first_thing = 0;
+  // The same solids where they are when the shutter opens and closes.
+  std::vector<Solid> things_opening, things_closing;
+
+  bool is_thing(int solid) const { return static_cast<std::size_t>(solid) >= first_thing; }
+  // As Bvh::closest and Bvh::occluded, things included.
+  Hit closest(const Ray& ray, float t_min, float t_max) const;
+  bool occluded(const Ray& ray, float t_min, float t_max) const;
+  // To be called when the things have moved.
+  void bound_things();
 
   float ambient = 0.25F;  // ambient irradiance while the ceiling light is on
   float lightmap_step_m = 0.06F;
@@ -51,6 +63,9 @@ struct Scene {
     return materials[solids[static_cast<std::size_t>(surface / Solid::kFaces)]
                          .material[static_cast<std::size_t>(surface % Solid::kFaces)]];
   }
+
+ private:
+  Solid things_box_;  // contains all things
 };
 
 // Builds the room; the same name and seed give the same room. Returns null for an unknown name.

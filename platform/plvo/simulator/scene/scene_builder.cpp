@@ -55,10 +55,7 @@ Solid& SceneBuilder::cylinder(Float3 centre, float radius, float half_length, st
 Solid& SceneBuilder::rod(Float3 a, Float3 b, float radius, std::uint16_t material) {
   Solid& solid = cylinder((a + b) * 0.5F, radius, 0.5F * norm(b - a), material);
   solid.aligned = false;
-  const Float3 along = normalised(b - a);
-  const Float3 side =
-      normalised(std::abs(along.z) < 0.9F ? cross(along, Float3{0, 0, 1}) : cross(along, Float3{1, 0, 0}));
-  solid.axes = {side, cross(along, side), along};
+  solid.axes = axes_along(normalised(b - a));
   return solid;
 }
 
@@ -93,6 +90,7 @@ Rgb SceneBuilder::colour(float lightness, float saturation) {
 
 std::unique_ptr<Scene> SceneBuilder::finish() {
   scene_->bvh.build(scene_->solids);
+  scene_->first_thing = scene_->solids.size();
   return std::move(scene_);
 }
 

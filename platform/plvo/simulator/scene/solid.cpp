@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/simulator/scene/solid.hpp"
 
+#include <cmath>
+
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::sim {
@@ -88,6 +90,20 @@ bool intersect(const Solid& solid, const Ray& ray, float t_min, float t_max, flo
   const Float3 d = solid.rotate_to_local(ray.direction);
   return solid.shape == Solid::Shape::kBox ? intersect_box(solid.half, o, d, t_min, t_max, t, face)
                                            : intersect_cylinder(solid.half, o, d, t_min, t_max, t, face);
+}
+
+std::array<Float3, 3> axes_along(Float3 along) {
+  const Float3 side =
+      normalised(std::abs(along.z) < 0.9F ? cross(along, Float3{0, 0, 1}) : cross(along, Float3{1, 0, 0}));
+  return {side, cross(along, side), along};
+}
+
+Float3 half_extent(const Solid& solid) {
+  const Float3 h = solid.half;
+  const auto& a = solid.axes;
+  return {std::abs(a[0].x) * h.x + std::abs(a[1].x) * h.y + std::abs(a[2].x) * h.z,
+          std::abs(a[0].y) * h.x + std::abs(a[1].y) * h.y + std::abs(a[2].y) * h.z,
+          std::abs(a[0].z) * h.x + std::abs(a[1].z) * h.y + std::abs(a[2].z) * h.z};
 }
 
 void face_size(const Solid& solid, int face, float& size_u, float& size_v) {

@@ -64,6 +64,10 @@ Float3 face_point(const Solid& solid, int face, float u, float v);
 Float3 face_normal(const Solid& solid, int face, Float3 local);
 // Local axes along which u and v grow (unit vectors, solid's frame).
 void face_axes(const Solid& solid, int face, Float3 local, Float3& axis_u, Float3& axis_v);
+// Axes of a solid whose z axis has this direction (a unit vector).
+std::array<Float3, 3> axes_along(Float3 along);
+// Half the size of the box that is parallel to the world axes and contains the solid.
+Float3 half_extent(const Solid& solid);
 // Size of a face in metres.
 void face_size(const Solid& solid, int face, float& size_u, float& size_v);
 

@@ -76,6 +76,7 @@ void Film::blur_rows(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mi
   const ImageView<Rgb> radiance = renderer.radiance();
   const ImageView<const PixelHit> hits = renderer.hits();
   const ImageView<const Float3> rays = renderer.rays();
+  const Scene& scene = renderer.scene();
   const Se3 T_begin_mid = T_mid_begin.inverse();
   const Se3 T_end_mid = T_mid_end.inverse();
   const auto fx = static_cast<float>(camera_.pinhole.fx);
@@ -85,8 +86,19 @@ void Film::blur_rows(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mi
       Rgb& out = blurred_[static_cast<std::size_t>(y * radiance.width + x)];
       const float depth = hits.at(x, y).depth_m > 0 ? hits.at(x, y).depth_m : 1e3F;
       const Float3 p = rays.at(x, y) * depth;
-      const Float3 a = transform(T_begin_mid, p);
-      const Float3 b = transform(T_end_mid, p);
+      Float3 opening = p;
+      Float3 closing = p;
+      if (const int solid = hits.at(x, y).surface / Solid::kFaces;
+          hits.at(x, y).surface >= 0 && scene.is_thing(solid)) {
+        const RowView& view = renderer.view(y);
+        const Float3 point = view.origin + view.to_world(p);
+        const Float3 local = scene.solids[static_cast<std::size_t>(solid)].to_local(point);
+        const std::size_t thing = static_cast<std::size_t>(solid) - scene.first_thing;
+        opening = p + view.to_camera(scene.things_opening[thing].to_world(local) - point);
+        closing = p + view.to_camera(scene.things_closing[thing].to_world(local) - point);
+      }
+      const Float3 a = transform(T_begin_mid, opening);
+      const Float3 b = transform(T_end_mid, closing);
       if (a.z < 0.05F || b.z < 0.05F) {
         out = radiance.at(x, y);
         continue;
@@ -148,8 +160,7 @@ void Film::expose_rows(std::uint32_t frame, int begin, int end) {
   }
 }
 
-void Film::develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
-                   double frame_s) {
+void Film::blur(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end) {
   meter(renderer.radiance());
   if (!metered_) {  // the camera was already running before the first frame
     level_ = measured_;
@@ -166,7 +177,12 @@ void Film::develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_
   } else {
     std::copy(radiance.data, radiance.data + blurred_.size(), blurred_.begin());
   }
-  for_rows(threads_, radiance.height, kThreadRows, [&](int a, int b) { expose_rows(frame, a, b); });
+}
+
+double Film::white() const { return level_ / kTargetMean; }
+
+void Film::expose(std::uint32_t frame, double frame_s) {
+  for_rows(threads_, camera_.height, kThreadRows, [&](int a, int b) { expose_rows(frame, a, b); });
 
   level_ += (measured_ - level_) * (1 - plvo::exp(-frame_s / kLag_s));
   exposure_s_ = std::clamp(kBrightExposure_s * kExposureLevel / level_, kBrightExposure_s, kDarkExposure_s);

@@ -20,14 +20,19 @@ class Film {
   // Exposure time of the next frame in seconds; known before the frame is rendered.
   double exposure_s() const { return exposure_s_; }
 
-  // Converts the radiance rendered at mid-exposure. T_mid_begin, T_mid_end: pose of the camera when the
-  // shutter opens and closes, in the camera frame at mid-exposure. Then adapts the exposure of the next
-  // frame, `frame_s` later.
-  void develop(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end, std::uint32_t frame,
-               double frame_s);
+  // Takes the radiance rendered at mid-exposure and blurs it by motion. T_mid_begin, T_mid_end: pose of the
+  // camera when the shutter opens and closes, in the camera frame at mid-exposure.
+  void blur(Renderer& renderer, const Se3& T_mid_begin, const Se3& T_mid_end);
+  // The blurred radiance. Before `expose`, light may be added that the camera's motion does not blur.
+  std::vector<Rgb>& light() { return blurred_; }
+  // Converts the blurred radiance to pixels. Then adapts the exposure of the next frame, `frame_s` later.
+  void expose(std::uint32_t frame, double frame_s);
+  // Radiance of the brightest pixel that is not over-exposed.
+  double white() const;
 
   // 8-bit RGB, width·3 bytes per row.
   const std::uint8_t* pixels() const { return pixels_.data(); }
+  std::uint8_t* pixels() { return pixels_.data(); }
 
  private:
   void meter(ImageView<const Rgb> radiance);

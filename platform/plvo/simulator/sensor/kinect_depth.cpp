@@ -47,6 +47,14 @@ KinectDepth::KinectDepth(const Scene& scene, const CameraModel& camera, const De
 
 DepthView KinectDepth::view() const { return {depth_.data(), width_, height_, width_, kMetresPerUnit}; }
 
+void KinectDepth::comb() {
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (y % 2 == 0 || x % 2 == 0) depth_[static_cast<std::size_t>(y * width_ + x)] = 0;
+    }
+  }
+}
+
 void KinectDepth::copy_exact(ImageView<const PixelHit> hits) {
   const auto scale = static_cast<float>(options_.scale_error);
   for (int y = 0; y < height_; ++y) {

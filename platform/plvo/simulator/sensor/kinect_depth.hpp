@@ -27,6 +27,9 @@ class KinectDepth {
   // Noise-free depth: exact but for the scale error, rounded to the unit of the format.
   void copy_exact(ImageView<const PixelHit> hits);
 
+  // Empties every second row and column, as of a coarser depth camera that is registered to colour.
+  void comb();
+
   DepthView view() const;
 
  private:

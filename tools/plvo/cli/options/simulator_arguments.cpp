@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/options/simulator_arguments.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <charconv>
+#include <sstream>
 
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/cli/options/arguments.hpp"
@@ -79,6 +80,19 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
               if (parse_range(text, arguments.covered_first, arguments.covered_end)) return {};
               return expected("a range of frames such as 100:115", text);
             });
+  group.add("--with", "NAME,...",
+            fmt::format("Adds one or several difficulties, separated by commas: {}",
+                        fmt::join(difficulty_names(), ", ")),
+            [&arguments](const std::string& text) -> std::string {
+              std::istringstream names(text);
+              for (std::string name; std::getline(names, name, ',');)
+                if (!add_difficulty(name, arguments.difficulties).ok())
+                  return expected(fmt::format("names out of {}, separated by commas",
+                                              fmt::join(difficulty_names(), ", ")),
+                                  name);
+              return {};
+            });
+  group.flag("--still", arguments.still, "The camera stays at its first pose");
   group.path("--trajectory", arguments.trajectory,
              "TUM trajectory along which the camera moves, instead of the seeded walk");
   group.whole("--threads", arguments.threads, 1, 256,
@@ -99,6 +113,8 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   camera.readout_s = arguments.readout_s;
   options.depth_schedule = arguments.depth_schedule;
   options.depth.scale_error = arguments.depth_scale_error;
+  options.difficulties = arguments.difficulties;
+  options.still = arguments.still;
   options.covered_first = arguments.covered_first;
   options.covered_end = arguments.covered_end;
   if (arguments.width > 0) {

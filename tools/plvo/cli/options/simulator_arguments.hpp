@@ -24,6 +24,8 @@ struct SimulatorArguments {
   DepthSchedule depth_schedule;
   double depth_scale_error = 1;
   int covered_first = 0, covered_end = 0;
+  Difficulties difficulties;
+  bool still = false;
   std::string trajectory;
   bool clean = false;
   int threads = 2;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Simulated sequences that are hard for an odometry, with default settings (docs/user/simulator.md).
+#include <algorithm>
+#include <initializer_list>
+
+#include "tracked_sequence.hpp"
+
+namespace plvo {
+namespace {
+
+// Of the motion of any tracked frame, which has six degrees of freedom.
+constexpr double kNeesBound = 20;
+
+struct HardSequence {
+  int tracked = 0, lost = 0, repeated = 0;
+  double error_m = 0;  // the largest of a position
+  double nees = 0;     // the largest of the motion of a tracked frame
+};
+
+SimulatorOptions hard_options(int frames, std::initializer_list<const char*> names) {
+  SimulatorOptions options = test::small_options(SceneName::kCorridor);
+  options.camera.width = 320;
+  options.camera.height = 240;
+  options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
+  options.frames = frames;
+  for (const char* name : names) EXPECT_TRUE(add_difficulty(name, options.difficulties).ok()) << name;
+  return options;
+}
+
+HardSequence track_hard(const SimulatorOptions& options) {
+  const test::TrackedSequence walk = test::track_sequence(options, test::kTestLimits, Config{});
+  HardSequence figures;
+  for (std::size_t i = 0; i < walk.results.size(); ++i) {
+    const TrackResult& result = walk.results[i];
+    figures.lost += result.state == TrackState::kLost ? 1 : 0;
+    figures.repeated += result.repeated ? 1 : 0;
+    const Vector3 position = (walk.truth.front().inverse() * walk.truth[i]).t;
+    figures.error_m = std::max(figures.error_m, (result.T_world_camera.t - position).norm());
+    if (result.state != TrackState::kTracking) continue;
+    ++figures.tracked;
+    figures.nees = std::max(figures.nees, walk.nees_of_motion(i));
+  }
+  return figures;
+}
+
+// Depth of every second row and column is missing.
+TEST(HardSequences, ACombInDepthIsTrackedAsDepthWithoutHoles) {
+  const HardSequence comb = track_hard(hard_options(60, {"comb"}));
+  EXPECT_EQ(comb.tracked, 59);
+  EXPECT_LT(comb.error_m, 0.008);
+  EXPECT_LT(comb.nees, kNeesBound);
+}
+
+TEST(HardSequences, RepeatedFramesArePassedOver) {
+  SimulatorOptions options = hard_options(60, {"repeated-frames"});
+  options.fps = 60;
+  const HardSequence repeated = track_hard(options);
+  EXPECT_EQ(repeated.repeated, 30);
+  EXPECT_EQ(repeated.lost, 0);
+  EXPECT_LT(repeated.error_m, 0.008);
+  EXPECT_LT(repeated.nees, kNeesBound);
+}
+
+// Frames are tracked until it is certain that depth stands still. Then they are lost.
+TEST(HardSequences, FramesWithFrozenDepthAreLost) {
+  const HardSequence frozen = track_hard(hard_options(45, {"frozen-depth"}));
+  EXPECT_GE(frozen.tracked, 20);
+  EXPECT_GE(frozen.lost, 15);
+  EXPECT_LT(frozen.nees, kNeesBound);
+}
+
+// The desk has texture beside the board. In the corridor, the board's motion is taken for the camera's.
+TEST(HardSequences, ACameraThatStandsStillAtADeskDoesNotFollowABoard) {
+  SimulatorOptions options = hard_options(60, {"board"});
+  options.scene = SceneName::kDesk;
+  options.still = true;
+  const HardSequence board = track_hard(options);
+  EXPECT_EQ(board.tracked, 59);
+  EXPECT_LT(board.error_m, 0.003);
+  EXPECT_LT(board.nees, kNeesBound);
+}
+
+}  // namespace
+}  // namespace plvo
