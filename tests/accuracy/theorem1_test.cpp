@@ -47,7 +47,8 @@ class Pairs {
   MotionEstimate next(const RgbdFrame& frame) {
     const NoiseScales noise = config_.noise.initial;
     StageTimes times{};
-    const StageContext context{camera_, config_, noise, arena_, times};
+    CarriedCells carried;
+    const StageContext context{camera_, config_, noise, arena_, times, carried};
     FeatureExtraction& extraction = modules_.extraction;
     const DepthSampler depth = extraction.depth_sampler(frame, config_.depth_noise);
     PredictedMotion predicted;

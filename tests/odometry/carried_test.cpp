@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plvo/base/random.hpp"
+#include "plvo/math/cholesky.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "procedural_sequence.hpp"
 #include "sound.hpp"
@@ -55,7 +56,8 @@ void bumper(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth
 }
 
 struct Outcome {
-  double worst_m = 0;  // largest error of a position
+  double worst_m = 0;     // largest error of a position
+  double worst_nees = 0;  // of a position that is called tracked: squared, by the covariance of the pose
   int lost = 0;
   std::string told;
   int low_keypoints = 0;  // in the lowest fifth of the last image
@@ -83,12 +85,16 @@ Outcome walk(Change change) {
     if (outcome.told.empty() && std::string(result.status.message()).find("travels") != std::string::npos)
       outcome.told = result.status.message();
     const Vector3 error = result.T_world_camera.t - (T_first_world * ProceduralSequence::T_world_camera(i)).t;
-    outcome.worst_m = std::max(outcome.worst_m, error.norm());
+    outcome.worst_m = std::max(outcome.worst_m, static_cast<double>(error.norm()));
+    Cholesky<3> cholesky;
+    if (i > 0 && result.state == TrackState::kTracking &&
+        cholesky.factor(result.pose_covariance.block<3, 3>(0, 0)))
+      outcome.worst_nees = std::max(outcome.worst_nees, error.dot(cholesky.inverse() * error));
   }
   for (const Keypoint& keypoint : odometry.features().keypoints)
     outcome.low_keypoints += keypoint.v >= kHeight * 4 / 5 ? 1 : 0;
-  std::printf("%.1f mm, %d lost, %d keypoints in the lowest fifth; %s\n", 1e3 * outcome.worst_m, outcome.lost,
-              outcome.low_keypoints, outcome.told.c_str());
+  std::printf("%.1f mm, NEES %.1f, %d lost, %d keypoints in the lowest fifth; %s\n", 1e3 * outcome.worst_m,
+              outcome.worst_nees, outcome.lost, outcome.low_keypoints, outcome.told.c_str());
   return outcome;
 }
 
@@ -107,11 +113,13 @@ TEST(Carried, APartOfTheRobotIsLeftOutAndTold) {
   EXPECT_EQ(outcome.low_keypoints, 0);
 }
 
-TEST(Carried, DotsOfAProjectorAreLeftOutAndTold) {
+// The dots seem to be a world at rest, until enough of them lie on surfaces whose depths have changed. Left
+// in, they would keep the camera where it began, half a metre beside the truth.
+TEST(Carried, DotsOfAProjectorAreFoundByTheDepthBehindThem) {
   const Outcome outcome = walk(dots);
   EXPECT_NE(outcome.told, "");
-  EXPECT_LT(outcome.worst_m, 0.05)
-      << "with the dots the camera would seem to be at rest, half a metre beside the truth";
+  EXPECT_LT(outcome.worst_m, 0.35);
+  EXPECT_EQ(outcome.low_keypoints, 0);
 }
 
 }  // namespace

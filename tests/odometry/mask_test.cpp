@@ -248,7 +248,8 @@ TEST(Mask, NoSurfaceSampleLiesInMaskedPixels) {
   const Config config;
   const NoiseScales noise = config.noise.initial;
   StageTimes times{};
-  const StageContext context{camera, config, noise, arena, times};
+  CarriedCells carried;
+  const StageContext context{camera, config, noise, arena, times, carried};
   const MaskedPixels masked(camera);
   std::size_t samples = 0;
   for (int i = 0; i < 4; ++i) {
@@ -272,7 +273,9 @@ TEST(Mask, APartOfTheRobotInViewDoesNoHarm) {
       const Se3 truth =
           ProceduralSequence::T_world_camera(0).inverse() * ProceduralSequence::T_world_camera(i);
       worst = std::max(worst, static_cast<double>((result.T_world_camera.t - truth.t).norm()));
-      if (with_mask && i > 0) EXPECT_EQ(result.state, TrackState::kTracking) << i;
+      if (with_mask && i > 0) {
+        EXPECT_EQ(result.state, TrackState::kTracking) << i;
+      }
     }
     return worst;
   };

@@ -18,6 +18,8 @@ constexpr double kMoved_px = 3;
 // patch has to be more similar: it lies where it lay, without a change of perspective.
 constexpr AlignmentOptions kAtSamePixel{
     .max_iterations = 3, .max_shift_px = 2 * kStayed_px, .max_residual = 0.25};
+// The depth contradicts rest if so many points stayed, and less than two thirds of them are inliers.
+constexpr int kLeastContradicted = 30;
 // The other matches must support their own motion this many times as much as that of the points that stayed,
 // and this share of its inliers must lie in cells with such points.
 constexpr int kTimesTheSupport = 3;
@@ -86,6 +88,7 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
       const int inlier = tracks[r].point_inliers[i];
       if (has_stayed(features, points, points.matches[i])) {
         ++counts.cells[cells.cell_of(features.points.keypoints[points.matches[i].reference])];
+        ++counts.stayed;
         counts.stayed_inliers += inlier;
       } else {
         ++counts.others;
@@ -97,6 +100,10 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
       counts.other_inliers += tracks[r].line_inliers[i];
   }
   return counts;
+}
+
+bool depth_contradicts(const StayedMatches& before) {
+  return before.stayed >= kLeastContradicted && 3 * before.stayed_inliers < 2 * before.stayed;
 }
 
 bool may_be_misled(const StayedMatches& before) {

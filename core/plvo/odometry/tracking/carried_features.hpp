@@ -24,14 +24,17 @@ void vote_for_carried(const CurrentFrame& current, const Reference& reference, c
 
 // The matches of an estimate, by whether they stayed at their pixels.
 struct StayedMatches {
-  CarriedCells::Counts cells{};       // points that stayed
-  int stayed_inliers = 0;             // points
-  int others = 0, other_inliers = 0;  // points that did not stay, and lines
+  CarriedCells::Counts cells{};        // points that stayed
+  int stayed = 0, stayed_inliers = 0;  // points
+  int others = 0, other_inliers = 0;   // points that did not stay, and lines
 };
 StayedMatches count_stayed(std::span<const Reference> references, std::span<const ReferenceTracks> tracks,
                            const CarriedCells& cells);
 // Whether the estimate may be misled: most points stayed, and most other matches disagree.
 bool may_be_misled(const StayedMatches& before);
+// Whether many points stayed at their pixels although their depths changed: what they show is light, not a
+// place on a surface.
+bool depth_contradicts(const StayedMatches& before);
 // Moves the points that stayed to the end of the tracks and leaves them out. Returns the size before.
 std::size_t leave_stayed_out(const Reference& reference, ReferenceTracks& tracks);
 // Whether the other matches agree on a motion of their own and lie among the points that stayed. tracks: with

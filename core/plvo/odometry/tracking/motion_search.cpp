@@ -18,11 +18,15 @@ constexpr double kSameMotion = 0.02;
 // Features are registered again where the estimate is another motion than that of the start, so many times in
 // all: those that move so are now found.
 constexpr int kMostRegistrations = 3;
-// An aligned motion that explains less than this share is compared with the predicted one: the image may be
-// aligned to an object. While nothing moves, most frames explain more: a third to a half.
-constexpr double kComparedShare = 0.3;
-// Two starts that differ by less than this in the image: registration finds the same features from both.
-constexpr double kSameStart_px = 2;
+// An aligned motion is compared with the predicted one, as the image may be aligned to an object; not where
+// they differ by less than this in the plane z = 1 (4 px of a Kinect): registration finds the same features
+// from both.
+constexpr double kSameStart = 4.0 / 525;
+// Two starts led to different motions if those differ by more than this in the plane z = 1 (2 px of a
+// Kinect). The one from the prediction is then preferred if it explains this share of what the other one
+// does: a camera goes on as it moved.
+constexpr double kOtherMotion = 2.0 / 525;
+constexpr double kPreferredShare = 0.8;
 // When tracking fails, features are searched this far from their old positions, whatever the prediction.
 constexpr double kWideSearch_px = 120;
 
@@ -75,15 +79,15 @@ void for_each_extent(const FrameFeatures& features, const Visit& visit) {
   return found;
 }
 
-// Mean distance in px between where two motions put the features of a reference.
-double distance_px(const FrameFeatures& features, const Pinhole& pinhole, const Se3& a, const Se3& b) {
+// Mean distance in the plane z = 1 between where two motions put the features of a reference.
+double distance_between(const Se3& a, const Se3& b, const FrameFeatures& features) {
   double sum = 0;
   int n = 0;
   for_each_extent(features, [&](const Extent& extent) {
     const Vector3 at_a = a * extent.middle;
     const Vector3 at_b = b * extent.middle;
     if (!(at_a.z() > kNearestSeen_m && at_b.z() > kNearestSeen_m)) return;
-    sum += sqrt((project(pinhole, at_a) - project(pinhole, at_b)).squaredNorm());
+    sum += sqrt((at_a / at_a.z() - at_b / at_b.z()).squaredNorm());
     ++n;
   });
   return n > 0 ? sum / n : 0;
@@ -130,6 +134,10 @@ bool is_findable(const Reference& reference) {
   const auto take_best = [&] {
     if (!last_is_best && best.explained.evidence > 0) (void)refine(best.start);
   };
+  const auto is_other_motion = [&](const Se3& a, const Se3& b) {
+    const Se3 T_base_latest = latest.pose.T_reference_base.inverse();
+    return distance_between(a * T_base_latest, b * T_base_latest, *latest.features) > kOtherMotion;
+  };
   const auto find = [&](const Reference& from, const Se3& T_predicted, double radius_px) {
     last_is_best = false;
     tracking.find(from, current, T_predicted, radius_px, tracked);
@@ -142,12 +150,16 @@ bool is_findable(const Reference& reference) {
   };
 
   if (Se3 aligned; registered && tracking.align(latest, current, aligned)) {
-    const Explained explained = explain(aligned * latest.pose.T_reference_base);
-    if (explained.share >= kAcceptedShareByImage) {
+    const Explained by_image = explain(aligned * latest.pose.T_reference_base);
+    if (by_image.share >= kAcceptedShareByImage) {
       const Se3& predicted = latest.T_current_predicted;
-      if (explained.share < kComparedShare &&
-          distance_px(*latest.features, context.camera.pinhole, aligned, predicted) > kSameStart_px)
-        (void)explain(predicted * latest.pose.T_reference_base);
+      if (distance_between(aligned, predicted, *latest.features) > kSameStart) {
+        const Se3 by_image_motion = best.motion;
+        const Explained by_prediction = explain(predicted * latest.pose.T_reference_base);
+        if (by_prediction.evidence > kPreferredShare * by_image.evidence &&
+            is_other_motion(tracked.motion.T_current_reference, by_image_motion))
+          return;
+      }
       take_best();
       return;
     }

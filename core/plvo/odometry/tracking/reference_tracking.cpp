@@ -319,6 +319,11 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     carried.convict(stayed.cells);
     return;
   }
+  if (depth_contradicts(stayed)) {
+    carried.convict(stayed.cells);
+    tracked.motion.status = StatusCode::kNoConsensus;
+    return;
+  }
   for (std::size_t r = 0; r < references.size(); ++r) tracks[r].points.matches.resize(sizes[r]);
   estimate(association, current, start, kFineSolve, tracked);
 }
