@@ -11,6 +11,7 @@ import struct
 import subprocess
 import threading
 import time
+import xml.etree.ElementTree
 
 import numpy as np
 import pytest
@@ -450,6 +451,14 @@ def test_what_cannot_be_tracked_is_named(ros, walk):
         other.K = [2 * k for k in other.K]
         session.publishers["camera_info"].publish(other)
         session.track(2)
+
+
+def test_the_page_has_every_argument_of_the_launch_file():
+    arguments = xml.etree.ElementTree.parse(PACKAGES / "plvo" / "launch" / "plvo.launch").getroot().findall("arg")
+    page = pathlib.Path(os.environ["PLVO_PAGE"]).read_text().partition("## A node for ROS 1")[2].partition("\n## ")[0]
+    assert len(arguments) > 10
+    for argument in arguments:
+        assert f"`{argument.get('name')}`" in page, argument.get("name")
 
 
 @pytest.mark.parametrize("parameter, words", [
