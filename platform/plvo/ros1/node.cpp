@@ -32,26 +32,34 @@ constexpr double kSilence_s = 2;  // without images, until the diagnosis says so
 
 struct Parameters {
   explicit Parameters(const ros::NodeHandle& node) {
-    node.param<std::string>("base_frame", base_frame, "base_link");
-    node.param<std::string>("odom_frame", odom_frame, "odom");
-    node.param<std::string>("base_camera", base_camera, "");
-    node.param<std::string>("camera_imu", camera_imu, "");
-    node.param("publish_tf", publish_tf, true);
-    node.param("exact_sync", exact_sync, false);
-    node.param("max_interval_s", max_interval_s, 0.02);
-    node.param("queue_size", queue_size, 10);
-    node.param("imu", odometry.imu, false);
-    node.param("imu_wait_s", imu_wait_s, 0.1);
-    node.param("level", odometry.level, false);
-    node.param("depth_units_per_metre", odometry.depth_units_per_metre, 1000.0);
-    node.param("stamp_sigma_s", odometry.stamp_sigma_s, 0.0);
+    read(node, "base_frame", base_frame);
+    read(node, "odom_frame", odom_frame);
+    read(node, "base_camera", base_camera);
+    read(node, "camera_imu", camera_imu);
+    read(node, "publish_tf", publish_tf);
+    read(node, "exact_sync", exact_sync);
+    read(node, "max_interval_s", max_interval_s);
+    read(node, "queue_size", queue_size);
+    read(node, "imu", odometry.imu);
+    read(node, "imu_wait_s", imu_wait_s);
+    read(node, "level", odometry.level);
+    read(node, "depth_units_per_metre", odometry.depth_units_per_metre);
+    read(node, "stamp_sigma_s", odometry.stamp_sigma_s);
   }
 
-  std::string base_frame, odom_frame, base_camera, camera_imu;
+  std::string base_frame = "base_link", odom_frame = "odom", base_camera, camera_imu;
   bool publish_tf = true, exact_sync = false;
-  double max_interval_s = 0, imu_wait_s = 0;
-  int queue_size = 0;
+  double max_interval_s = 0.02, imu_wait_s = 0.1;
+  int queue_size = 10;
   RosOdometrySettings odometry;
+  std::string wrong;  // a parameter of another type
+
+ private:
+  template <typename Value>
+  void read(const ros::NodeHandle& node, const std::string& name, Value& value) {
+    if (node.hasParam(name) && !node.getParam(name, value))
+      wrong = "~" + name + " has a value of another type than share/doc/plvo/user/robots.md names";
+  }
 };
 
 // `count` numbers with spaces between them, and nothing else.
@@ -127,6 +135,7 @@ class Node {
   }
 
   bool check_parameters() {
+    if (!parameters_.wrong.empty()) return refuse(parameters_.wrong);
     if (!parameters_.base_camera.empty()) {
       const auto n = numbers_of(parameters_.base_camera, 7);
       if (!n) return refuse("~base_camera must be seven numbers: tx ty tz qx qy qz qw");
@@ -162,14 +171,7 @@ class Node {
   }
 
   void on_imu(const RawPtr& imu) {
-    if (!imu_axes_are_known_) {
-      // Readings before the frames are only needed by frames that came before, of which there are none.
-      if (camera_frame_.empty()) return;
-      const auto turn = look_up(camera_frame_, imu->header.frame_id, "~camera_imu");
-      if (!turn) return;
-      complain(odometry_.set_imu_axes(turn->orientation));
-      imu_axes_are_known_ = true;
-    }
+    imu_frame_ = imu->header.frame_id;
     std::int64_t stamp_ns = 0;
     complain(odometry_.add_imu(imu->message, stamp_ns));
     last_imu_ns_ = std::max(last_imu_ns_, stamp_ns);
@@ -181,7 +183,9 @@ class Node {
     last_pair_ = ros::WallTime::now();
     waiting_.push_back({colour, depth, last_pair_});
     track_waiting();
-    if (waiting_.size() > queue_length()) waiting_.pop_front();
+    if (waiting_.size() <= queue_length()) return;
+    waiting_.pop_front();
+    ++dropped_;
   }
 
   void poll(const ros::WallTimerEvent&) { track_waiting(); }
@@ -202,6 +206,14 @@ class Node {
       if (!place) return false;
       complain(odometry_.set_base_camera(*place));
       base_is_known_ = true;
+    }
+    if (parameters_.odometry.imu && !imu_axes_are_known_) {
+      if (imu_frame_.empty())
+        return wait_for("images wait for a reading of the IMU on " + imu_subscriber_.getTopic());
+      const auto turn = look_up(pair.colour->header.frame_id, imu_frame_, "~camera_imu");
+      if (!turn) return false;
+      complain(odometry_.set_imu_axes(turn->orientation));
+      imu_axes_are_known_ = true;
     }
     waits_for_.clear();
     const auto stamp_ns = static_cast<std::int64_t>(pair.colour->header.stamp.toNSec());
@@ -232,8 +244,8 @@ class Node {
     const bool news = estimate.state != estimate_.state;
     estimate_ = estimate;
     const std::string text = sentence(estimate.state, estimate.reason);
-    if (news && !estimate.has_pose) ROS_WARN("%s", text.c_str());
-    if (news && estimate.has_pose) ROS_INFO("%s", text.c_str());
+    if (news && estimate.reason.empty()) ROS_INFO("%s", text.c_str());
+    if (news && !estimate.reason.empty()) ROS_WARN("%s", text.c_str());
     if (news) diagnose();
     if (!estimate.has_pose) return;
 
@@ -300,6 +312,7 @@ class Node {
     add("reason", reason);
     add("frames", std::to_string(frames_));
     add("frames without a pose", std::to_string(without_pose_));
+    add("frames dropped while they waited", std::to_string(dropped_));
     add("inliers, points", std::to_string(estimate_.points));
     add("inliers, lines", std::to_string(estimate_.lines));
     add("poses set", std::to_string(poses_set_));
@@ -359,11 +372,11 @@ class Node {
   ros::WallTimer poll_, diagnosis_;
 
   std::deque<Pair> waiting_;
-  std::string camera_frame_;
+  std::string camera_frame_, imu_frame_;
   bool base_is_known_ = false, imu_axes_are_known_ = false;
   std::int64_t last_imu_ns_ = 0;
   RosEstimate estimate_;
-  std::uint64_t frames_ = 0, without_pose_ = 0, poses_set_ = 0;
+  std::uint64_t frames_ = 0, without_pose_ = 0, dropped_ = 0, poses_set_ = 0;
   std::string waits_for_, camera_wanted_, complaint_;
   ros::WallTime complained_, last_pair_;
 };
