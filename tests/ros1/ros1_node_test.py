@@ -402,6 +402,17 @@ def test_set_pose_moves_the_base(ros, walk):
         assert abs(moved.twist.twist.linear.x) < 1, "the jump is not a velocity"
 
 
+def test_set_pose_before_the_first_frame_is_that_frame_s(ros, walk):
+    from geometry_msgs.msg import PoseWithCovarianceStamped
+    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+        wanted = PoseWithCovarianceStamped()
+        p, q = wanted.pose.pose.position, wanted.pose.pose.orientation
+        p.x, p.y, p.z, q.z, q.w = 3, -2, 0.1, 0.6, 0.8
+        session.publishers["set_pose"].publish(wanted)
+        session.report("poses set\"\nvalue: \"1\"")
+        assert np.abs(pose_of(session.track(0)) - [3, -2, 0.1, 0, 0, 0.6, 0.8]).max() < 1e-9
+
+
 def test_an_imu_gives_the_poses_of_plvo_run_with_imu(ros, walk, tmp_path):
     bag_of(walk, raw, tmp_path / "walk.bag", imu=True)
     with Session(ros, walk, base_camera=AHEAD, imu="true", camera_imu="0 0 0 1", imu_wait_s=PATIENCE_S, level="true").runs() as session:

@@ -62,7 +62,7 @@ class RosOdometry {
   // A sensor_msgs/CameraInfo. The first one counts until reset(), which takes the latest one.
   std::string set_camera(const RosMessage& camera_info);
   bool has_camera() const;
-  // Where the camera, in optical axes, sits in the base. It counts from the next frame.
+  // Where the camera, in optical axes, sits in the base. Call it before the first frame.
   std::string set_base_camera(const RosPose& T_base_camera);
   // Rotation from the axes of the IMU to those of the camera, x y z w.
   std::string set_imu_axes(const std::array<double, 4>& q_camera_imu);
