@@ -14,8 +14,9 @@ namespace plvo {
 
 inline plvo_camera c_camera(const CameraModel& model) { return c::to_c(model); }
 inline plvo_limits c_limits(const Limits& limits) {
-  return {sizeof(plvo_limits), limits.width,      limits.height,         limits.keypoints, limits.segments,
-          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores,     limits.surfaces};
+  return {sizeof(plvo_limits), limits.width,      limits.height,      limits.keypoints,
+          limits.segments,     limits.references, limits.line_bands,  limits.kept_keyframes,
+          limits.cores,        limits.surfaces,   limits.mask ? 1 : 0};
 }
 inline plvo_frame c_frame(const RgbdFrame& frame) {
   plvo_frame result = {};

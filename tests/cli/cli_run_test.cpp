@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "plvo/replay/images/image_decoder.hpp"
 #include "plvo/replay/images/image_writer.hpp"
 #include "plvo_command.hpp"
 #include "simulated_sequence.hpp"
@@ -119,6 +120,46 @@ TEST_F(CliRun, SurfacesAreUsedUnlessDisabled) {
   EXPECT_EQ(run("--preset paper --surfaces 200").exit_code, 2);
   EXPECT_EQ(trajectory("--preset tiny"), trajectory("--preset tiny --surfaces 0"));
   EXPECT_EQ(run("--surfaces 1001").exit_code, 2);
+}
+
+TEST_F(CliRun, AMaskHidesWhatTravelsWithTheCamera) {
+  constexpr int kWidth = 160, kHeight = 120;  // of the sequence
+  const auto write_mask = [&](int height, std::uint8_t lowest_rows) {
+    std::vector<std::uint8_t> levels(static_cast<std::size_t>(kWidth * height), 255);
+    std::fill(levels.end() - kWidth * 18, levels.end(), lowest_rows);
+    EXPECT_TRUE(
+        write_png(path("mask.png"), {levels.data(), kWidth, height, kWidth, PixelFormat::kGray8}).ok());
+  };
+  const auto trajectory = [&](const std::string& options) {
+    const CommandResult r = run("--quiet --out " + path("t.txt") + ' ' + options);
+    EXPECT_EQ(r.exit_code, 0) << r.err;
+    return read_file(path("t.txt"));
+  };
+  const std::string mask = " --mask " + path("mask.png");
+  write_mask(kHeight, 255);
+  EXPECT_EQ(trajectory(mask), trajectory("")) << "a white mask hides nothing";
+  write_mask(kHeight, 0);
+  const std::string masked = trajectory(mask);
+  EXPECT_NE(masked, trajectory(""));
+  // What lies there has no influence.
+  for (int k = 0; k < kFrames; ++k) {
+    ImageDecoder decoder;
+    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * kWidth * kHeight));
+    ASSERT_TRUE(decoder.decode_rgb(image("rgb", k), kWidth, kHeight, rgb).ok());
+    for (std::size_t i = rgb.size() - 3 * kWidth * 18; i < rgb.size(); ++i)
+      rgb[i] = static_cast<std::uint8_t>(i * i % 251);
+    ASSERT_TRUE(write_png(image("rgb", k),
+                          {rgb.data(), kWidth, kHeight, 3 * std::ptrdiff_t{kWidth}, PixelFormat::kRgb8})
+                    .ok());
+  }
+  EXPECT_EQ(trajectory(mask), masked);
+
+  write_mask(kHeight - 1, 0);
+  expect_refused(
+      run(mask),
+      "the mask has 160x119 pixels, the camera's images have 160x120; draw it over one of the colour");
+  expect_refused(run("--mask " + path("none.png")), "none.png");
+  EXPECT_EQ(run(mask + " --report " + path("mask.png")).exit_code, 2) << "the mask would be overwritten";
 }
 
 TEST_F(CliRun, SimulatedCameraEqualsItsRecording) {

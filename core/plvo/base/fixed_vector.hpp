@@ -31,6 +31,8 @@ class FixedVector {
     size_ = 0;
     dropped_ = 0;
   }
+  // Sets the size to at most the capacity; elements that become part of it have the values that they had.
+  constexpr void resize(std::size_t size) { size_ = size < capacity_ ? size : capacity_; }
   // Counts elements that the caller's own selection rule left out.
   constexpr void add_dropped(std::size_t count) { dropped_ += count; }
 

@@ -83,11 +83,12 @@ void to_gray(const ColourView& colour, ImageView<std::uint8_t> gray) {
   }
 }
 
-double mean_brightness(GrayView gray) {
+double mean_brightness(GrayView gray, const ImageMask& mask) {
   std::uint64_t sum = 0;
   std::uint64_t count = 0;
   for (int y = 0; y < gray.height; y += 4) {
     for (int x = 0; x < gray.width; x += 4) {
+      if (!mask.is_free(x, y, 0)) continue;
       sum += gray.row(y)[x];
       ++count;
     }

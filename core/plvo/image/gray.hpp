@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/image_view.hpp"
 
 namespace plvo {
@@ -11,7 +12,7 @@ namespace plvo {
 // Both images have the same size. Grey input is copied.
 void to_gray(const ColourView& colour, ImageView<std::uint8_t> gray);
 
-// Mean grey level, 0 … 255, over every fourth row and column.
-double mean_brightness(GrayView gray);
+// Mean grey level, 0 … 255, over every fourth row and column; without masked pixels.
+double mean_brightness(GrayView gray, const ImageMask& mask = {});
 
 }  // namespace plvo

@@ -10,6 +10,7 @@
 #include "plvo/base/executor.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/image/image_view.hpp"
 #include "plvo/image/undistortion.hpp"
 #include "plvo/lines/line3d.hpp"
 #include "plvo/motion/motion_config.hpp"
@@ -43,6 +44,9 @@ struct Limits {
   // Surface samples per frame, 0 … 1000; they constrain the motion by depth alone. 0: none, and no memory for
   // them.
   int surfaces = 200;
+  // Whether Config::mask may be set. It takes width × height × 33/16 bytes more, mostly for a depth image
+  // without the masked readings.
+  bool mask = false;
   static constexpr Limits vga() { return {}; }
   // A quarter of VGA's pixels and features. More features make a frame's estimate better; but on a processor
   // that cannot keep up with the camera, a higher frame rate improves the motion more
@@ -162,6 +166,12 @@ struct Config {
   Line3dConfig lines;  // L2, L3
   MotionConfig motion;
   BudgetConfig budget;
+  // Pixels that show what travels with the camera (a part of the robot, burnt-in text): 0 where the image
+  // must not be used, any other value where it is. The mask has the size of the camera's images and is in
+  // their pixels, before undistortion. What lies in masked pixels, grey levels and depth, has no influence on
+  // the result (image/image_mask.hpp). The pixels are borrowed: they must stay valid and unchanged as long as
+  // the odometry is used. No data: all pixels are used. Needs Limits::mask.
+  GrayView mask;
   // Seed of the random generators of RANSAC: over matches, and over the depths along each line.
   std::uint64_t seed = 1;
 

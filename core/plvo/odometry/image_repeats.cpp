@@ -25,18 +25,19 @@ class GridHash {
 };
 
 template <typename Visit>
-void visit_grid(int width, int height, const Visit& visit) {
+void visit_grid(int width, int height, GrayView mask, const Visit& visit) {
   int first = 0;
   for (int y = 0; y < height; y += kGridStep) {
-    for (int x = first; x < width; x += kGridStep) visit(x, y);
+    for (int x = first; x < width; x += kGridStep)
+      if (mask.data == nullptr || mask.at(x, y) != 0) visit(x, y);
     first = (first + kGridShift) % kGridStep;
   }
 }
 
-std::uint64_t hash_of(const ColourView& colour) {
+std::uint64_t hash_of(const ColourView& colour, GrayView mask) {
   GridHash hash;
   const bool gray = colour.format == PixelFormat::kGray8;
-  visit_grid(colour.width, colour.height, [&](int x, int y) {
+  visit_grid(colour.width, colour.height, mask, [&](int x, int y) {
     const std::uint8_t* row = colour.data + y * colour.stride_bytes;
     if (gray) {
       hash.add(row[x]);
@@ -48,10 +49,10 @@ std::uint64_t hash_of(const ColourView& colour) {
   return hash.value();
 }
 
-std::uint64_t hash_of(const DepthView& depth, int& readings) {
+std::uint64_t hash_of(const DepthView& depth, GrayView mask, int& readings) {
   GridHash hash;
   readings = 0;
-  visit_grid(depth.width, depth.height, [&](int x, int y) {
+  visit_grid(depth.width, depth.height, mask, [&](int x, int y) {
     const std::uint16_t reading = depth.data[y * depth.stride + x];
     readings += reading != 0 ? 1 : 0;
     hash.add(reading);
@@ -61,10 +62,10 @@ std::uint64_t hash_of(const DepthView& depth, int& readings) {
 
 }  // namespace
 
-void ImageRepeats::look(const RgbdFrame& frame) {
+void ImageRepeats::look(const RgbdFrame& frame, GrayView mask) {
   int readings = 0;
-  const std::uint64_t colour = hash_of(frame.colour);
-  const std::uint64_t depth = hash_of(frame.depth, readings);
+  const std::uint64_t colour = hash_of(frame.colour, mask);
+  const std::uint64_t depth = hash_of(frame.depth, mask, readings);
   colour_is_repeated_ = has_frame_ && colour == colour_hash_;
   depth_is_repeated_ = has_frame_ && depth == depth_hash_ && readings >= kLeastReadingsCompared;
   if (!depth_is_repeated_) {

@@ -15,8 +15,9 @@ namespace plvo {
 
 class ImageRepeats {
  public:
-  // Takes in the images of the next frame, whose sizes were checked.
-  void look(const RgbdFrame& frame);
+  // Takes in the images of the next frame, whose sizes were checked. mask: as in Config; masked pixels are
+  // not compared.
+  void look(const RgbdFrame& frame, GrayView mask = {});
   void forget() { *this = ImageRepeats(); }
 
   // Whether the colour image of the last frame, or its depth image, is that of the frame before. A depth

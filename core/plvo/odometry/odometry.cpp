@@ -7,6 +7,29 @@
 #include "plvo/odometry/tracking/motion_search.hpp"
 
 namespace plvo {
+namespace {
+
+Status check_mask(GrayView mask, const CameraModel& camera, const Limits& limits) {
+  if (mask.data == nullptr) return {};
+  if (!limits.mask) return {StatusCode::kInvalidArgument, "config: mask needs Limits::mask = true"};
+  if (mask.width != camera.width || mask.height != camera.height)
+    return Status(StatusCode::kInvalidArgument, "config: mask must have the size of the camera's images, ")
+        .append(camera.width)
+        .append("x")
+        .append(camera.height)
+        .append(", not ")
+        .append(mask.width)
+        .append("x")
+        .append(mask.height);
+  if (mask.stride < mask.width)
+    return {StatusCode::kInvalidArgument, "config: the stride of mask is shorter than its row"};
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (mask.at(x, y) != 0) return {};
+  return {StatusCode::kInvalidArgument, "config: mask leaves no pixel to be used: its pixels are all 0"};
+}
+
+}  // namespace
 
 // Defined here, not in the header, so that the user's program does not hold a second copy of this code.
 Odometry::Odometry() = default;
@@ -30,6 +53,7 @@ Odometry::Odometry() = default;
         .append(references);
   if (config.executor && limits.cores < 2)
     return {StatusCode::kInvalidArgument, "config: executor needs Limits::cores = 2"};
+  if (Status status = check_mask(config.mask, camera, limits); !status.ok()) return status;
   if (const std::size_t bytes = required_bytes(limits); memory.size() < bytes)
     return Status(StatusCode::kOutOfMemory, "init needs a block of ")
         .append(static_cast<std::ptrdiff_t>(bytes))
@@ -42,10 +66,11 @@ Odometry::Odometry() = default;
   arena_.seal();
   camera_ = camera;
   config_ = config;
-  memory_.extraction.init(camera_);
+  memory_.extraction.init(camera_, config_->mask);
   noise_ = config.noise.initial;
   budget_.init(config.budget, limits);
   window_.init(features, limits.kept_keyframes);
+  carried_.init(camera_.width, camera_.height);
   return {};
 }
 
@@ -55,7 +80,7 @@ Odometry::Odometry() = default;
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   memory_.views.clear();
   const Status refusal = check(input, prior);
-  if (refusal.ok()) repeats_.look(input);
+  if (refusal.ok()) repeats_.look(input, config_->mask);
   TrackResult result = !refusal.ok()      ? refuse(input, refusal)
                        : is_passed_over() ? pass_over(input, prior)
                                           : process(input, prior);
@@ -88,7 +113,7 @@ TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
 TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) {
   // Image: grey, without distortion, as a pyramid.
   StageTimes times{};
-  const StageContext context{camera_, *config_, noise_, arena_, times};
+  const StageContext context{camera_, *config_, noise_, arena_, times, carried_};
   FeatureExtraction& extraction = memory_.extraction;
   const double brightness = extraction.prepare_image(context, input.colour);
 
@@ -182,6 +207,8 @@ void Odometry::reset() {
   last_stamp_ns_ = 0;
   has_stamp_ = false;
   repeats_.forget();
+  carried_.forget();
+  carried_told_ = 0;
   memory_.views.clear();
 }
 

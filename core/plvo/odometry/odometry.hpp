@@ -34,6 +34,7 @@
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
 #include "plvo/odometry/window/window.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 
@@ -175,6 +176,7 @@ class Odometry {
                     const TrackedMotion& tracked);
   TrackResult lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
                    const TrackedMotion& tracked);
+  Status tell_carried();
   void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool keyframe);
   void show_tracks();
   TrackResult begin_result(const CurrentFrame& frame, const TrackedMotion& tracked);
@@ -228,7 +230,9 @@ class Odometry {
   bool is_lost_ = false;            // the last frame had no pose from its images
   std::int64_t lost_since_ns_ = 0;  // stamp of the first lost frame
   ImageRepeats repeats_;
-  Se3 T_world_depth_;  // where the camera was when the last depth image came
+  CarriedCells carried_;
+  int carried_told_ = 0;  // cells of them that a status has told
+  Se3 T_world_depth_;     // where the camera was when the last depth image came
   bool has_depth_pose_ = false;
   bool depth_has_stopped_ = false;
   FeatureCounts points_found_;  // of the latest frame in which points were searched

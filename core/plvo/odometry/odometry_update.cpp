@@ -5,6 +5,7 @@
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
+#include "plvo/odometry/tracking/carried_features.hpp"
 
 namespace plvo {
 namespace {
@@ -45,10 +46,14 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
   if (!tracked.returned) show_tracks();
+  if (!kept.recent && !tracked.returned)
+    vote_for_carried(frame, frame.predicted.all_references[0], memory_.tracking.tracks(0),
+                     motion.T_current_reference, carried_);
   if (!kept.recent) make_reference(frame, tracked.exposure, !kept.keyframe);
+  window_.remove_carried(carried_);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;
-  result.status = decision.status;
+  result.status = decision.status.message()[0] == '\0' ? tell_carried() : decision.status;
   result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
   result.T_camera_reference = motion.T_current_reference;
   const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
@@ -76,6 +81,23 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   result.returned = tracked.returned;
   report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
+}
+
+// Says where the image shows what travels with the camera: when it is found, and when it has grown to twice
+// as many cells.
+Status Odometry::tell_carried() {
+  if (carried_.count() <= 2 * carried_told_) return {};
+  carried_told_ = carried_.count();
+  const PixelBounds bounds = carried_.bounds();
+  return Status(StatusCode::kOk,
+                "a part of the image travels with the camera; its points are left out: columns ")
+      .append(bounds.left)
+      .append(" to ")
+      .append(bounds.right - 1)
+      .append(", rows ")
+      .append(bounds.top)
+      .append(" to ")
+      .append(bounds.bottom - 1);
 }
 
 // Makes the current frame the keyframe and the last good one, without a motion before it; or waits for one

@@ -8,6 +8,7 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/odometry/config.hpp"
 #include "plvo/odometry/track_result.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 
@@ -16,7 +17,8 @@ struct StageContext {
   const Config& config;
   const NoiseScales& noise;  // learnt so far
   Arena& scratch;
-  StageTimes& times;  // of this frame
+  StageTimes& times;      // of this frame
+  CarriedCells& carried;  // found so far
 };
 
 // Adds the duration of a scope to the time of a stage, by the clock of Config, and calls Config's hook at its

@@ -506,6 +506,7 @@ Alignment align_patch(const Patch& patch, const WindowMask& mask, GrayView image
     // The spline leaves a quarter of the variance of white noise, but all of its strength at low frequencies,
     // where the gradients are. Adjacent residuals are therefore correlated, and only one in four counts.
     result.sigma_px = sqrt(4 * residual_variance * largest);
+    result.reach = window.reach + 2;
     result.ok = true;
   }
   return result;

@@ -33,6 +33,7 @@ struct Alignment {
   // Standard deviation of the position along its worse axis, from the residual and the patch's gradients.
   double sigma_px = 0;
   int iterations = 0;
+  int reach = 0;  // pixels of the level around (x, y), along x and along y, within which the image was read
 };
 
 // Deformation of the patch since the reference: a pixel at (dx, dy) from its centre is now at W (dx, dy).

@@ -219,6 +219,8 @@ class BestOfCell {
 struct Search {
   const Pyramid& pyramid;
   const DepthSampler& depth;
+  const ImageMask& mask;
+  const CarriedCells& carried;
   const DetectorConfig& config;
   FixedVector<Candidate>& candidates;
   int found = 0;
@@ -268,12 +270,16 @@ void search_cell(Search& search, const Band& band, int level, const Cell& cell) 
   constexpr int kEnoughPixels = 3 * kKeypointsPerCell;
   while (threshold > search.config.noise_floor && band.count_above(cell, threshold) < kEnoughPixels)
     threshold = std::max(search.config.noise_floor, threshold / 2);
+  // Neither the detector nor the refinement reads beyond the patch.
+  const int reach = reach_on_base(level, kPatchRadius);
   BestOfCell best;
   DepthQueue queue(search.depth, best);
   for (int y = cell.y0; y < cell.y1; ++y) {
     for (int block = cell.x0; block < cell.x1; block += Band::kAtOnce) {
       for (unsigned maxima = band.maxima(cell, block, y, threshold); maxima != 0; maxima &= maxima - 1) {
         const int x = block + lowest_bit(maxima);
+        if (!search.mask.is_free(x << level, y << level, reach)) continue;
+        if (search.carried.is_carried(Vector2(x << level, y << level))) continue;
         const auto strength = static_cast<float>(corner_strength(image, x, y));
         if (strength < static_cast<float>(search.config.min_strength)) continue;
         ++search.found;
@@ -385,7 +391,8 @@ double corner_strength(GrayView image, int x, int y) {
 }
 
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out) {
+                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out,
+                                  const ImageMask& mask, const CarriedCells& carried) {
   const ScratchScope scope(scratch);
   const std::span<std::uint8_t> scores =
       scratch.take<std::uint8_t>("keypoint scores", detection_band(pyramid.level(0).width, config.cell_px));
@@ -397,7 +404,7 @@ DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& de
   out.clear();
   if (scores.empty() || candidates.capacity() == 0) return {};
 
-  Search search{pyramid, depth, config, candidates};
+  Search search{pyramid, depth, mask, carried, config, candidates};
   Band band(scores);
   for (int level = 0; level < config.levels; ++level) search_level(search, band, level);
   const std::size_t kept = select_best_spread(candidates, out.capacity());

@@ -13,7 +13,9 @@
 
 #include "plvo/base/arena.hpp"
 #include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/pyramid.hpp"
+#include "plvo/points/carried_cells.hpp"
 #include "plvo/points/keypoint.hpp"
 
 namespace plvo {
@@ -77,9 +79,10 @@ double corner_strength(GrayView image, int x, int y);
 
 // Fills `out` up to its capacity: first the best keypoint of every cell, then the second best, and so on. Of
 // a rank that does not fit completely, the strongest are kept. Pixels without depth (DepthSampler::near) are
-// skipped, because only 3D points are of use. out.dropped() counts the candidates that did not fit. Scratch:
-// see reserve_detection.
+// skipped, because only 3D points are of use; so are those whose patch reaches into the mask, and those in
+// carried cells. out.dropped() counts the candidates that did not fit. Scratch: see reserve_detection.
 DetectionSummary detect_keypoints(const Pyramid& pyramid, const DepthSampler& depth,
-                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out);
+                                  const DetectorConfig& config, Arena& scratch, FixedVector<Keypoint>& out,
+                                  const ImageMask& mask = {}, const CarriedCells& carried = {});
 
 }  // namespace plvo

@@ -18,6 +18,8 @@ constexpr double kGreyNoise = 2;
 constexpr double kAlike = 0.1;
 constexpr double kLeastGain = 0.3;
 constexpr double kMostGain = 3;
+// Reach of a window and of the pixels beside it that give its gradients, or between which it is read.
+constexpr int kReadReach = kAlignmentReach + 1;
 constexpr int kReadBits = 4;  // positions are read on a grid of 1/16 px
 
 using Numbers = std::array<std::int16_t, kAlignmentPixels>;
@@ -145,11 +147,13 @@ void SparseAlignment::keep(const Pyramid& pyramid, std::int64_t stamp_ns) {
 }
 
 std::span<AlignmentWindow> SparseAlignment::cut_coarse(const PointFeatures& features,
-                                                       std::span<AlignmentWindow> capacity) const {
+                                                       std::span<AlignmentWindow> capacity,
+                                                       const ImageMask& mask) const {
   return cut(features, capacity, [&](std::size_t i, AlignmentWindow& window) {
     const Vector2 at = position(features.keypoints[i], kLevel);
     const int x = static_cast<int>(at.x() + 0.5);
     const int y = static_cast<int>(at.y() + 0.5);
+    if (!mask.is_free(x << kLevel, y << kLevel, reach_on_base(kLevel, kReadReach))) return false;
     window.level = kLevel;
     window.centre = at - Vector2(x, y);
     return x > kAlignmentReach && y > kAlignmentReach && x < image_.width - kAlignmentReach &&
@@ -171,7 +175,7 @@ std::span<AlignmentWindow> SparseAlignment::cut_fine(const PointFeatures& featur
 
 bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3d> points,
                 const Pinhole& pinhole, const Exposure& exposure, const Pyramid& pyramid,
-                Se3& T_current_reference, AlignmentStep& step) {
+                Se3& T_current_reference, AlignmentStep& step, const ImageMask& mask) {
   const Se3& T = T_current_reference;
   Matrix6 H = Matrix6::Zero();
   Vector6 g = Vector6::Zero();
@@ -188,6 +192,10 @@ bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3
     if (!(expected.x() >= kAlignmentReach && expected.y() >= kAlignmentReach &&
           expected.x() < image.width - kAlignmentReach - 1 &&
           expected.y() < image.height - kAlignmentReach - 1))
+      continue;
+    if (!mask.is_free(static_cast<int>(expected.x() + 0.5) << window.level,
+                      static_cast<int>(expected.y() + 0.5) << window.level,
+                      reach_on_base(window.level, kReadReach)))
       continue;
     ++step.seen;
     constexpr double kGrid = 1 << kReadBits;

@@ -16,6 +16,7 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/camera/exposure.hpp"
 #include "plvo/camera/observation.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/points/keypoint.hpp"
@@ -73,10 +74,10 @@ class SparseAlignment {
   bool holds(std::int64_t stamp_ns) const { return image_.data != nullptr && stamp_ns == stamp_ns_; }
 
   // Cuts windows around the keypoints of that frame, or around every n-th if they exceed the capacity:
-  // cut_coarse from the kept image, cut_fine from the keypoints' patches. Windows at the border or without
-  // texture are left out.
-  std::span<AlignmentWindow> cut_coarse(const PointFeatures& features,
-                                        std::span<AlignmentWindow> capacity) const;
+  // cut_coarse from the kept image, cut_fine from the keypoints' patches. Windows at the border, without
+  // texture or on masked pixels are left out.
+  std::span<AlignmentWindow> cut_coarse(const PointFeatures& features, std::span<AlignmentWindow> capacity,
+                                        const ImageMask& mask = {}) const;
   static std::span<AlignmentWindow> cut_fine(const PointFeatures& features,
                                              std::span<AlignmentWindow> capacity);
 
@@ -88,10 +89,10 @@ class SparseAlignment {
 };
 
 // One Gauss–Newton step. Replaces T_current_reference by the improved motion. points: those of the keypoints,
-// at the reference's mid-exposure. Returns false and leaves T unchanged if the visible windows do not
-// determine it.
+// at the reference's mid-exposure. Windows that reach into the mask are not seen. Returns false and leaves T
+// unchanged if the visible windows do not determine it.
 bool align_step(std::span<const AlignmentWindow> windows, std::span<const Point3d> points,
                 const Pinhole& pinhole, const Exposure& exposure, const Pyramid& pyramid,
-                Se3& T_current_reference, AlignmentStep& step);
+                Se3& T_current_reference, AlignmentStep& step, const ImageMask& mask = {});
 
 }  // namespace plvo

@@ -42,7 +42,7 @@ void take_in_turns(const FixedVector<SurfaceSample>& from, std::span<std::uint16
 }  // namespace
 
 void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int width, int height,
-                     double noise_scale, Arena& scratch, SurfaceFeatures& features) {
+                     double noise_scale, Arena& scratch, SurfaceFeatures& features, const ImageMask& mask) {
   features.samples.clear();
   if (features.samples.capacity() == 0) return;
   const ScratchScope scope(scratch);
@@ -51,7 +51,8 @@ void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int widt
   SurfaceSample sample;
   for (int y = kSurfaceCell / 2; y < height; y += kSurfaceCell)
     for (int x = kSurfaceCell / 2; x < width; x += kSurfaceCell)
-      if (observe_surface(depth, pinhole, x, y, noise_scale, sample)) candidates.push_back(sample);
+      if (mask.is_free(x, y, 0) && observe_surface(depth, pinhole, x, y, noise_scale, sample))
+        candidates.push_back(sample);
   if (candidates.size() > features.samples.capacity()) shuffle(candidates);
   take_in_turns(candidates, scratch.take<std::uint16_t>("turns of surface candidates", cells),
                 features.samples);

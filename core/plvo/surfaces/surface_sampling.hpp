@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "plvo/base/arena.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/surfaces/plane_window.hpp"
 
 namespace plvo {
@@ -16,7 +17,8 @@ namespace plvo {
 // Samples the whole image, width × height, and fills features up to its capacity. Scratch: see
 // reserve_surface_sampling.
 void sample_surfaces(const DepthSampler& depth, const Pinhole& pinhole, int width, int height,
-                     double noise_scale, Arena& scratch, SurfaceFeatures& features);
+                     double noise_scale, Arena& scratch, SurfaceFeatures& features,
+                     const ImageMask& mask = {});
 
 inline constexpr int kSurfaceCell = 24;  // px
 

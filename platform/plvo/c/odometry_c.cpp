@@ -35,8 +35,9 @@ using plvo::c::vector3;
 constexpr std::size_t kHandleBytes = plvo::align_up(sizeof(plvo_odometry));
 
 plvo_limits to_c(const plvo::Limits& limits) {
-  return {sizeof(plvo_limits), limits.width,      limits.height,         limits.keypoints, limits.segments,
-          limits.references,   limits.line_bands, limits.kept_keyframes, limits.cores,     limits.surfaces};
+  return {sizeof(plvo_limits), limits.width,      limits.height,      limits.keypoints,
+          limits.segments,     limits.references, limits.line_bands,  limits.kept_keyframes,
+          limits.cores,        limits.surfaces,   limits.mask ? 1 : 0};
 }
 
 plvo_config default_config() {
@@ -64,10 +65,12 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
       .kept_keyframes = whole.kept_keyframes,
       .cores = whole.cores != 0 ? whole.cores : limits.cores,
       .surfaces = whole.surfaces,
+      .mask = whole.mask != 0,
   };
   return limits.validate();
 }
 
+constexpr std::int64_t kMostStride = std::int64_t{1} << 30;  // bytes
 constexpr const char* kNoPreset = "preset must be one of PLVO_PRESET_…";
 
 Status take_config(const plvo_config* given, plvo::Config& config) {
@@ -99,6 +102,9 @@ Status take_config(const plvo_config* given, plvo::Config& config) {
   config.seed = whole.seed;
   config.stage_clock = whole.stage_clock;
   config.level_world = whole.level_world != 0;
+  const std::int64_t stride = whole.mask_stride_bytes != 0 ? whole.mask_stride_bytes : whole.mask_width;
+  if (stride > kMostStride) return refuse("config: the stride of mask is longer than 2^30 bytes");
+  config.mask = {whole.mask, whole.mask_width, whole.mask_height, static_cast<std::ptrdiff_t>(stride)};
   config.budget.frame_ns = whole.frame_budget_ns;
   if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
   if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
@@ -136,7 +142,6 @@ Status take_frame(const plvo_frame* given, plvo::RgbdFrame& frame) {
   if (whole.depth_stride_bytes % kDepthBytes != 0 ||
       reinterpret_cast<std::uintptr_t>(whole.depth) % alignof(std::uint16_t) != 0)
     return refuse("frame: depth and its stride must be multiples of 2 bytes");
-  constexpr std::int64_t kMostStride = std::int64_t{1} << 30;
   if (std::max(whole.colour_stride_bytes, whole.depth_stride_bytes) > kMostStride)
     return refuse("frame: a stride is longer than 2^30 bytes");
   frame.stamp_ns = whole.stamp_ns;

@@ -95,6 +95,7 @@ typedef struct plvo_limits {
   int32_t kept_keyframes;      /* after a loss, 0 to 4, or 3 beside 3 references */
   int32_t cores;               /* 2: room for plvo_config.executor; 0: the default, 1 */
   int32_t surfaces;            /* samples of bare surfaces per frame, 0 to 1000; 0: none */
+  int32_t mask;                /* 1: room for plvo_config.mask, width * height * 33 / 16 bytes; 0: none */
 } plvo_limits;
 
 /* PLVO_PRESET_PAPER: the settings of Lu & Song (2015). PLVO_PRESET_TINY: what the limits of that name have
@@ -144,6 +145,13 @@ typedef struct plvo_config {
   /* 1: a level world. Its y axis points down, its heading is the first camera's; the first frame waits for
    * one whose plvo_prior brings gravity. plvo_set_pose before the first frame comes before it. */
   int32_t level_world;
+  /* Pixels that show what travels with the camera (a part of the robot, burnt-in text): a byte for each, 0
+   * where the image must not be used. Of the size of the camera's images, before undistortion. The odometry
+   * does not copy it: it must stay as it is while the odometry is used. It needs plvo_limits.mask = 1. NULL:
+   * all pixels are used. */
+  const uint8_t* mask;
+  int32_t mask_width, mask_height;
+  int64_t mask_stride_bytes; /* from the start of a row to the next; 0: mask_width */
 } plvo_config;
 
 /* Each sets struct_size and the defaults. `size` is sizeof of the struct. */

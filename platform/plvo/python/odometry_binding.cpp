@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The odometry for Python, in a block of its own; other threads run while it tracks. The second of two cores
 // never meets the interpreter. There is no stage hook: see docs/user/python.md.
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -37,18 +38,42 @@ struct OwnLimits {
   }
 };
 
+// A copy of a mask: 1 where the pixel is used, else 0.
+using UsedPixels = py::array_t<std::uint8_t, py::array::c_style>;
+UsedPixels used_pixels(const py::object& mask) {
+  const auto array = py::array::ensure(mask);
+  if (!array ||
+      !(array.dtype().equal(py::dtype::of<bool>()) || array.dtype().equal(py::dtype::of<std::uint8_t>()))) {
+    PyErr_Clear();
+    throw py::type_error("mask: expected an array of bool or uint8, not 0 where a pixel is used");
+  }
+  if (array.ndim() != 2) refuse_array("mask", "expected (height, width)");
+  const UsedPixels given(array);
+  UsedPixels used({given.shape(0), given.shape(1)});
+  std::transform(given.data(), given.data() + given.size(), used.mutable_data(),
+                 [](std::uint8_t value) { return static_cast<std::uint8_t>(value != 0 ? 1 : 0); });
+  return used;
+}
+
 class Tracker {
  public:
-  Tracker(const Calibration& camera, const Settings& settings, const OwnLimits& own, int cores)
+  Tracker(const Calibration& camera, const Settings& settings, const OwnLimits& own, int cores,
+          const py::object& mask)
       : metres_per_unit_(1.0 / camera.depth_units_per_metre) {
     Limits limits = settings.limits;
     limits.cores = cores;
     limits.width = camera.camera.width;
     limits.height = camera.camera.height;
     own.put_into(limits);
+    limits.mask = !mask.is_none();
     throw_unless_ok(limits.validate());
     memory_.resize(required_bytes(limits));
     Config config = settings.config;
+    if (limits.mask) {
+      used_ = used_pixels(mask);
+      config.mask = {used_.data(), static_cast<int>(used_.shape(1)), static_cast<int>(used_.shape(0)),
+                     used_.shape(1)};
+    }
     if (cores > 1) {
       pair_ = std::make_unique<ThreadPair>();
       config.executor = pair_->executor();
@@ -95,6 +120,7 @@ class Tracker {
  private:
   std::vector<std::byte> memory_;
   std::unique_ptr<ThreadPair> pair_;
+  UsedPixels used_;  // Config::mask, which is borrowed
   Odometry odometry_;
   double metres_per_unit_;
   OneThread one_thread_{"Odometry"};
@@ -124,15 +150,18 @@ void bind_odometry(py::module_& module) {
   bind_class<Tracker>(module, "Odometry")
       .def(py::init([](const Calibration& camera, const py::object& config, const py::object& keypoints,
                        const py::object& segments, const py::object& references, const py::object& line_bands,
-                       const py::object& kept_keyframes, const py::object& surfaces, int cores) {
+                       const py::object& kept_keyframes, const py::object& surfaces, int cores,
+                       const py::object& mask) {
              return std::make_unique<Tracker>(
                  camera,
                  config.is_none() ? Settings() : argument<const Settings&>(config, "config", "a plvo.Config"),
-                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes, surfaces}, cores);
+                 OwnLimits{keypoints, segments, references, line_bands, kept_keyframes, surfaces}, cores,
+                 mask);
            }),
            "camera"_a, "config"_a = py::none(), py::kw_only(), "keypoints"_a = py::none(),
            "segments"_a = py::none(), "references"_a = py::none(), "line_bands"_a = py::none(),
-           "kept_keyframes"_a = py::none(), "surfaces"_a = py::none(), "cores"_a = Limits().cores)
+           "kept_keyframes"_a = py::none(), "surfaces"_a = py::none(), "cores"_a = Limits().cores,
+           "mask"_a = py::none())
       .def(
           "track",
           [](Tracker& tracker, const py::array& colour, const py::array& depth, std::int64_t stamp_ns,

@@ -74,6 +74,20 @@ unsigned make_gradients(const std::uint8_t* above, const std::uint8_t* below, Bl
   return negative_mask(first) | negative_mask(last) << 4;
 }
 
+// Pixels of the full image that are read to either side of a segment, at most: for its gradients, and for its
+// localisation (edge_localisation.hpp), which moves it.
+constexpr int kSegmentReach_px = 8;
+
+// A bit for each entry of the block that is away from masked pixels.
+unsigned free_entries(const FieldMask& masked, int x, int y) {
+  unsigned bits = 0;
+  for (int i = 0; i < kBlockPixels; ++i)
+    if (masked.mask->is_free(static_cast<int>((x + i + 0.5) * masked.scale),
+                             static_cast<int>((masked.row_0 + y + 0.5) * masked.scale), kSegmentReach_px))
+      bits |= 1U << i;
+  return bits;
+}
+
 // Calls with_bin(i, bin) for the pixels of a block that have an angle, first to last. With SIMD vectors, it
 // is also called for the other pixels, with bins from kBins on, because a branch on them is unpredictable.
 constexpr std::size_t kAllBins = kSimdLoops ? kBins : 2 * kBins;
@@ -98,7 +112,7 @@ void for_each_bin(const std::int16_t* magnitudes, unsigned bits, WithBin&& with_
 
 PolarGradient polar_gradient(int gx, int gy) { return polar(gx, gy); }
 
-void compute_field(GrayView image, LevelLineField& field) {
+void compute_field(GrayView image, LevelLineField& field, const FieldMask& masked) {
   std::fill(field.padded_open.begin(), field.padded_open.end(), std::uint8_t{0});
   std::uint8_t* const directed = field.directed.data();
   std::uint8_t* const open = field.open();
@@ -106,6 +120,7 @@ void compute_field(GrayView image, LevelLineField& field) {
   std::int16_t* const magnitudes = field.magnitude_and_releases.data();
   std::array<std::uint32_t, kAllBins> places{};  // counts first, then positions
   const int blocks = field.stride - 1;
+  const bool has_mask = masked.mask != nullptr && masked.mask->active();
   for (int y = 0; y < field.height; ++y) {
     const std::uint8_t* above = image.row(y);
     const std::uint8_t* below = image.row(y + 1);
@@ -124,6 +139,7 @@ void compute_field(GrayView image, LevelLineField& field) {
         std::memcpy(ends[1], below + x, static_cast<std::size_t>(left + 1));
         bits = make_gradients(ends[0], ends[1], gradients) & ((1U << left) - 1);
       }
+      if (has_mask) bits &= free_entries(masked, x, y);
       directed[at] = open[at] = static_cast<std::uint8_t>(bits);
       if (bits == 0) continue;
       Angle* const angle = angles + at * kBlockPixels;

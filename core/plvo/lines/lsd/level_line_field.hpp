@@ -12,6 +12,7 @@
 
 #include "plvo/base/arena.hpp"
 #include "plvo/base/bits.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/image_view.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -94,8 +95,15 @@ struct PolarGradient {
 };
 PolarGradient polar_gradient(int gx, int gy);
 
+// The mask of the full image. Pixel (x, y) of the field's image is at (scale x, scale (row_0 + y)) of it.
+struct FieldMask {
+  const ImageMask* mask = nullptr;  // nullptr: none
+  double scale = 1;
+  int row_0 = 0;
+};
+
 // Computes the field of an image, and its seeds: every pixel with an angle, strongest first in 1024 bins, in
-// raster order within a bin.
-void compute_field(GrayView image, LevelLineField& field);
+// raster order within a bin. Pixels near masked ones have no angle.
+void compute_field(GrayView image, LevelLineField& field, const FieldMask& masked = {});
 
 }  // namespace plvo::lsd

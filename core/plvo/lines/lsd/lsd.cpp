@@ -24,10 +24,11 @@ std::size_t cell_of(const Vector2& middle, int width, int height) {
 
 }  // namespace
 
-void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, SegmentCounts& counts) const {
+void SegmentDetector::search(GrayView band, const lsd::FieldMask& masked, Scratch& scratch,
+                             SegmentCounts& counts) const {
   lsd::LevelLineField& field = scratch.field;
   field.height = band.height - 1;
-  lsd::compute_field(band, field);
+  lsd::compute_field(band, field, masked);
   counts.directed_pixels += static_cast<std::int32_t>(field.seed_count);
   const auto min_size = static_cast<std::int32_t>(min_region(search_.width, search_.height));
   for (const lsd::PixelRun seed : field.seeds.first(field.seed_count)) {
@@ -46,7 +47,7 @@ void SegmentDetector::search(GrayView band, int row_0, Scratch& scratch, Segment
     if (meaningfulness < 0) continue;
     const auto found = static_cast<std::size_t>(counts.meaningful++);
     if (found < scratch.candidates.size())
-      scratch.candidates[found] = describe(rectangle, row_0, meaningfulness);
+      scratch.candidates[found] = describe(rectangle, masked.row_0, meaningfulness);
   }
 }
 
@@ -86,7 +87,8 @@ std::size_t SegmentDetector::select(std::span<Candidate> candidates, std::size_t
 }
 
 Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Arena& scratch_memory,
-                               FixedVector<Segment>& out, SegmentCounts* counts) const {
+                               FixedVector<Segment>& out, SegmentCounts* counts,
+                               const ImageMask& mask) const {
   out.clear();
   if (reduced.data == nullptr || full.data == nullptr || reduced.width != search_.width ||
       reduced.height != search_.height) {
@@ -106,8 +108,8 @@ Status SegmentDetector::detect(GrayView reduced, double scale, GrayView full, Ar
   SegmentCounts done;
   const int rows = band_rows(search_);
   for (int row = 0; row + 1 < reduced.height; row += rows)
-    search({reduced.row(row), reduced.width, std::min(rows + 1, reduced.height - row), reduced.stride}, row,
-           scratch, done);
+    search({reduced.row(row), reduced.width, std::min(rows + 1, reduced.height - row), reduced.stride},
+           {&mask, scale, row}, scratch, done);
   const auto meaningful = static_cast<std::size_t>(done.meaningful);
   const std::span<Candidate> candidates =
       scratch.candidates.first(std::min(meaningful, scratch.candidates.size()));

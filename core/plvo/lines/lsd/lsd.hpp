@@ -19,6 +19,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/status.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/image_view.hpp"
 #include "plvo/lines/lsd/line_validation.hpp"
 #include "plvo/lines/segment.hpp"
@@ -59,9 +60,9 @@ class SegmentDetector {
   // capacity goes to the most meaningful ones. The other half is spread over a 6 × 4 grid of cells: the best
   // of every cell (by its middle) before the second best of any. out.dropped() counts the rest. Fails if an
   // image is missing, has another size than announced, or is wider than LevelLineField::kMostWidth, and if
-  // scratch is too small.
+  // scratch is too small. mask: of full; segments keep away from it.
   Status detect(GrayView reduced, double scale, GrayView full, Arena& scratch, FixedVector<Segment>& out,
-                SegmentCounts* counts = nullptr) const;
+                SegmentCounts* counts = nullptr, const ImageMask& mask = {}) const;
 
  private:
   // A meaningful rectangle, in pixels of the reduced image.
@@ -109,7 +110,7 @@ class SegmentDetector {
 
   // Searches the band whose first row is the image's row row_0. Adds to the counts, and to the candidates up
   // to their capacity.
-  void search(GrayView band, int row_0, Scratch& scratch, SegmentCounts& counts) const;
+  void search(GrayView band, const lsd::FieldMask& masked, Scratch& scratch, SegmentCounts& counts) const;
   static Candidate describe(const lsd::Rectangle& rectangle, int row_0, double meaningfulness);
   // Moves the selected candidates to the front and returns their number.
   std::size_t select(std::span<Candidate> candidates, std::size_t capacity) const;

@@ -70,8 +70,9 @@ void lift_segments_again(const StageContext& context, const DepthSampler& depth,
 
 }  // namespace
 
-void FeatureExtraction::init(const CameraModel& camera) {
+void FeatureExtraction::init(const CameraModel& camera, GrayView mask) {
   map_.init(camera);
+  mask_.init(mask, map_);
   pyramid_.init(camera.width, camera.height);
   segment_search_.width = pyramid_.level(kLineLevel).width;
   segment_search_.height = pyramid_.level(kLineLevel).height;
@@ -79,9 +80,10 @@ void FeatureExtraction::init(const CameraModel& camera) {
 }
 
 void FeatureExtraction::make_gray(const StageContext& context, const ColourView& colour,
-                                  const ImageView<std::uint8_t>& gray) {
+                                  const ImageView<std::uint8_t>& gray) const {
   context.config.executor.halves(context.camera.height, [&](int begin, int end) {
     to_gray(rows(colour, begin, end), rows(gray, begin, end));
+    mask_.blank(rows(gray, begin, end), begin);
   });
 }
 
@@ -100,7 +102,7 @@ double FeatureExtraction::prepare_image(const StageContext& context, const Colou
     make_gray(context, colour, pyramid_.base());
   }
   pyramid_.build();
-  return mean_brightness(pyramid_.level(0));
+  return mean_brightness(pyramid_.level(0), mask_);
 }
 
 void FeatureExtraction::describe_points(const StageContext& context, PointFeatures& points) const {
@@ -134,7 +136,7 @@ void FeatureExtraction::detect(const StageContext& context, const DepthSampler& 
     Arena own(scratch.take<std::byte>("points beside segments",
                                       point_scratch(context.camera.width, context.camera.height)));
     config.executor.both([&] { detect_segments(scratch, features.lines); },
-                         [&] { detect_points(depth, own, features.points); });
+                         [&] { detect_points(depth, context.carried, own, features.points); });
     return;
   }
   if (with_points) find_points(context, depth, features.points);
@@ -147,14 +149,15 @@ void FeatureExtraction::find_points(const StageContext& context, const DepthSamp
                                     PointFeatures& points) const {
   if (!has_points(context.config) || points.looked_for) return;
   const StageTimer timer(context, Stage::kPoints);
-  detect_points(depth, context.scratch, points);
+  detect_points(depth, context.carried, context.scratch, points);
 }
 
-void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
+void FeatureExtraction::detect_points(const DepthSampler& depth, const CarriedCells& carried, Arena& scratch,
                                       PointFeatures& points) const {
   points.looked_for = true;
   points.candidates =
-      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints).candidates;
+      detect_keypoints(pyramid_, depth, DetectorConfig(), scratch, points.keypoints, mask_, carried)
+          .candidates;
   for (std::size_t i = 0; i < points.keypoints.size(); ++i) {
     const Keypoint& keypoint = points.keypoints[i];
     points.patches[i] = cut_patch(pyramid_.level(keypoint.level), keypoint.x, keypoint.y);
@@ -162,8 +165,9 @@ void FeatureExtraction::detect_points(const DepthSampler& depth, Arena& scratch,
 }
 
 void FeatureExtraction::detect_segments(Arena& scratch, LineFeatures& lines) {
-  const Status status = segment_detector_[0].detect(pyramid_.level(kLineLevel), 1 << kLineLevel,
-                                                    pyramid_.level(0), scratch, lines.segments);
+  const Status status =
+      segment_detector_[0].detect(pyramid_.level(kLineLevel), 1 << kLineLevel, pyramid_.level(0), scratch,
+                                  lines.segments, nullptr, mask_);
   if (!status.ok()) lines.segments.clear();
 }
 
@@ -173,7 +177,7 @@ void FeatureExtraction::lift(const StageContext& context, const DepthSampler& de
   const CameraModel& camera = context.camera;
   if (context.config.surfaces)
     sample_surfaces(depth, camera.pinhole, camera.width, camera.height, context.noise.surfaces,
-                    context.scratch, features.surfaces);
+                    context.scratch, features.surfaces, mask_);
 }
 
 void FeatureExtraction::lift_lines(const StageContext& context, const DepthSampler& depth,

@@ -9,6 +9,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/image/depth_sampler.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/image/undistortion.hpp"
 #include "plvo/lines/lsd/lsd.hpp"
@@ -24,6 +25,7 @@ class FeatureExtraction {
   constexpr void allocate(Arena& memory, const Limits& limits) {
     map_.allocate(memory, limits.width, limits.height);
     pyramid_.allocate(memory, limits.width, limits.height);
+    if (limits.mask) mask_.allocate(memory, limits.width, limits.height);
     segment_search_ = segment_search(limits);
     segment_detector_ = memory.take<SegmentDetector>("segment detector", 1);
   }
@@ -53,12 +55,13 @@ class FeatureExtraction {
     }
   }
 
-  // Builds the tables of this camera.
-  void init(const CameraModel& camera);
+  // Builds the tables of this camera. mask: as in Config, of its size.
+  void init(const CameraModel& camera, GrayView mask = {});
 
-  // Returns a sampler of the frame's own depth; it is valid as long as the frame's views.
+  // Returns a sampler of the frame's own depth; it is valid as long as the frame's views, and with a mask
+  // until the next one is made.
   DepthSampler depth_sampler(const RgbdFrame& frame, const DepthNoise& noise) const {
-    return {frame.depth, map_, noise};
+    return {mask_.active() ? mask_.without_masked(frame.depth) : frame.depth, map_, noise};
   }
 
   // Makes the grey, undistorted pyramid of a colour image, whose size was checked. All functions below work
@@ -82,6 +85,7 @@ class FeatureExtraction {
 
   // Image of the last frame, which matching registers against.
   const Pyramid& pyramid() const { return pyramid_; }
+  const ImageMask& mask() const { return mask_; }
 
  private:
   // Segments are searched at half the resolution. With several bands, the number of candidates is bounded as
@@ -100,14 +104,16 @@ class FeatureExtraction {
     reserve_detection(sizer, width, height);
     return sizer.peak() + kArenaAlignment;
   }
-  static void make_gray(const StageContext& context, const ColourView& colour,
-                        const ImageView<std::uint8_t>& gray);
-  void detect_points(const DepthSampler& depth, Arena& scratch, PointFeatures& points) const;
+  void make_gray(const StageContext& context, const ColourView& colour,
+                 const ImageView<std::uint8_t>& gray) const;
+  void detect_points(const DepthSampler& depth, const CarriedCells& carried, Arena& scratch,
+                     PointFeatures& points) const;
   void detect_segments(Arena& scratch, LineFeatures& lines);
   void lift_segments(const StageContext& context, const DepthSampler& depth, LineFeatures& lines) const;
 
   UndistortionMap map_;
   Pyramid pyramid_;
+  ImageMask mask_;
   SegmentSearch segment_search_;
   std::span<SegmentDetector> segment_detector_;  // size 1
 };

@@ -72,6 +72,9 @@ void register_keypoint(const TrackingView& view, const PointFeatures& reference,
       reference.patches[i], reference.masks[i], view.pyramid.level(keypoint.level),
       expected.pixel.x() / scale - offset_x, expected.pixel.y() / scale - offset_y, options, warp);
   if (!alignment.ok) return;
+  if (!view.mask.is_free(static_cast<int>(alignment.x * scale), static_cast<int>(alignment.y * scale),
+                         reach_on_base(keypoint.level, alignment.reach)))
+    return;
   add_track(view, i, {(alignment.x + offset_x) * scale, (alignment.y + offset_y) * scale},
             scale * registered_sigma_px(view.config, alignment), expected.depth_m, tracks);
 }
@@ -135,7 +138,8 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
     found.matches.clear();
     for (std::size_t i = begin; i < end; ++i) {
       Expected expected;
-      if (predict(view, reference_points[i], T_current_reference, expected))
+      if (!view.carried.is_carried(reference.keypoints[i]) &&
+          predict(view, reference_points[i], T_current_reference, expected))
         register_keypoint(view, reference, i, expected, AlignmentOptions{},
                           warp_of(view.pinhole, reference_points[i].p, T_current_reference), found);
     }

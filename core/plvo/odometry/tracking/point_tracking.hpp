@@ -14,9 +14,11 @@
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/camera/exposure.hpp"
 #include "plvo/image/depth_sampler.hpp"
+#include "plvo/image/image_mask.hpp"
 #include "plvo/image/pyramid.hpp"
 #include "plvo/math/se3.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/points/carried_cells.hpp"
 #include "plvo/points/keypoint.hpp"
 #include "plvo/points/point_match.hpp"
 
@@ -42,10 +44,12 @@ struct TrackingView {
   const Pinhole& pinhole;
   const PointConfig& config;
   const Pyramid& pyramid;
+  const ImageMask& mask;
   const DepthSampler& depth;
   const Exposure& exposure;
   const NoiseScales& noise;
   const Executor& executor;
+  const CarriedCells& carried;
 };
 
 // Tracks by descriptors, within radius_px of the positions that T_current_reference predicts for the

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "plvo/motion/prior_constraint.hpp"
+#include "plvo/odometry/tracking/carried_features.hpp"
 
 namespace plvo {
 namespace {
@@ -106,8 +107,16 @@ NuisanceParameters nuisance_parameters(const NoiseConfig& config, const Exposure
 
 TrackingView view_of(const CurrentFrame& current, const DepthSampler& depth, const Exposure& exposure) {
   const StageContext& context = current.context;
-  return {context.camera.pinhole, context.config.points,  current.extraction.pyramid(), depth, exposure,
-          context.noise,          context.config.executor};
+  const FeatureExtraction& extraction = current.extraction;
+  return {context.camera.pinhole,
+          context.config.points,
+          extraction.pyramid(),
+          extraction.mask(),
+          depth,
+          exposure,
+          context.noise,
+          context.config.executor,
+          context.carried};
 }
 
 }  // namespace
@@ -194,6 +203,7 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
   const PointFeatures& features = reference.features->points;
   const std::span<AlignmentWindow> storage = SparseAlignment::take_windows(scratch);
   const Pyramid& pyramid = current.extraction.pyramid();
+  const ImageMask& mask = current.extraction.mask();
   Se3 T = reference.T_current_predicted;
   AlignmentStep step;
   const auto take_rounds = [&](std::span<const AlignmentWindow> windows, int rounds) {
@@ -204,13 +214,15 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
       const RowTimeCompensation at =
           compensate_row_times_of_points(camera, reference.prior, T, *reference.features, scratch);
       for (int i = 0; i < kStepsOfRound; ++i)
-        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step))
+        if (!align_step(windows, at.reference_points, camera.pinhole, at.current_exposure, pyramid, T, step,
+                        mask))
           return false;
       if (step.size < kAligned) break;
     }
     return true;
   };
-  if (!take_rounds(alignment_.cut_coarse(features, storage), kCoarseRounds) || !step.trusted()) return false;
+  if (!take_rounds(alignment_.cut_coarse(features, storage, mask), kCoarseRounds) || !step.trusted())
+    return false;
   if (!take_rounds(SparseAlignment::cut_fine(features, storage), kFineRounds)) return false;
   T_current_reference = T;
   return true;
@@ -286,6 +298,31 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     tracked.exposure = current_exposure(context.camera, reference.prior, tracked.motion.T_current_reference);
 }
 
+// Where the points that stayed at their pixels may mislead the estimate, looks for a motion of the other
+// matches. If there is one among them, those points travel with the camera.
+[[gnu::noinline]] void ReferenceTracking::look_beside_stayed(std::span<const Reference> references,
+                                                             const CurrentFrame& current,
+                                                             const Association& association,
+                                                             const MotionStart& start,
+                                                             TrackedMotion& tracked) {
+  CarriedCells& carried = current.context.carried;
+  const auto tracks = std::span(tracks_).first(references.size());
+  const StayedMatches stayed = count_stayed(references, tracks, carried);
+  if (!may_be_misled(stayed)) return;
+  std::array<std::size_t, kMaxReferences> sizes{};
+  for (std::size_t r = 0; r < references.size(); ++r) sizes[r] = leave_stayed_out(references[r], tracks[r]);
+  MotionStart anew = start;
+  anew.estimated = false;
+  estimate(association, current, anew, kFineSolve, tracked);
+  if (tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried)) {
+    tracked.motion.is_other = true;
+    carried.convict(stayed.cells);
+    return;
+  }
+  for (std::size_t r = 0; r < references.size(); ++r) tracks[r].points.matches.resize(sizes[r]);
+  estimate(association, current, start, kFineSolve, tracked);
+}
+
 void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
                                const Se3& T_current_base, TrackedMotion& tracked) {
   const StageContext& context = current.context;
@@ -295,7 +332,9 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const std::size_t latest = association.latest;
   const NuisanceParameters shared =
       nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);
-  estimate(association, current, {&T_current_base, shared, true}, kFineSolve, tracked);
+  const MotionStart start{&T_current_base, shared, true};
+  estimate(association, current, start, kFineSolve, tracked);
+  if (tracked.ok()) look_beside_stayed(references, current, association, start, tracked);
   if (tracked.ok())
     tracked.exposure =
         current_exposure(context.camera, references[latest].prior, tracked.motion.motions[latest]);

@@ -123,6 +123,8 @@ class ReferenceTracking {
                                const Se3& T_predicted, double radius_px, Association& association);
   void associate_by_motion(std::span<const Reference> references, const CurrentFrame& current,
                            const Se3& T_current_base, Association& association);
+  void look_beside_stayed(std::span<const Reference> references, const CurrentFrame& current,
+                          const Association& association, const MotionStart& start, TrackedMotion& tracked);
   void estimate(const Association& association, const CurrentFrame& current, const MotionStart& start,
                 const LmOptions& lm, TrackedMotion& tracked);
 

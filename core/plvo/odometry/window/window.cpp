@@ -52,6 +52,10 @@ void Window::move_last(const PoseWithCovariance& pose, const Matrix6& covariance
   set_pose(last_, pose);
 }
 
+void Window::remove_carried(const CarriedCells& cells) {
+  for (Frame& frame : frames_) cells.remove_points(frame.features.points);
+}
+
 // Limits for one reference provide memory for the features of two frames: the reference and the current
 // frame. The current frame takes over the memory of the last one unless that is the reference.
 FrameFeatures& Window::begin_frame() {

@@ -25,6 +25,7 @@
 #include "plvo/odometry/motion_model.hpp"
 #include "plvo/odometry/window/kept_keyframes.hpp"
 #include "plvo/odometry/window/pose_with_covariance.hpp"
+#include "plvo/points/carried_cells.hpp"
 
 namespace plvo {
 
@@ -104,6 +105,9 @@ class Window {
   // Corrects the last frame's pose. The keyframe, if there is one, moves with it; its new covariance includes
   // that of T_keyframe_last, which the caller gives.
   void move_last(const PoseWithCovariance& pose, const Matrix6& covariance_keyframe_last);
+
+  // Removes the 3D points in carried cells from all frames.
+  void remove_carried(const CarriedCells& cells);
 
   // Gives the current frame memory for its features.
   FrameFeatures& begin_frame();

@@ -13,14 +13,14 @@ __all__ = [
 ]
 
 
-def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, cores=1, topics=None):
+def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, cores=1, topics=None, mask=None):
     """Tracks a recorded folder or recording of ROS: a Result for each frame. imu: with the folder's gyroscope.txt and
     accelerometer.txt, or the bag's sensor_msgs/Imu, turned into the camera's axes by R_camera_imu. topics: of a bag, where
     plvo cannot choose by itself; a dictionary with colour, depth, camera_info, gyro or accelerometer. cores: 2 for a second
-    thread; the same bits. A budget of config's is held against the processor time of this thread; results then depend on
+    thread; the same bits. mask: False or 0 where a pixel must not be used, as in Odometry. A budget of config's is held against the processor time of this thread; results then depend on
     the machine."""
     sequence = Sequence(recording, camera, topics=topics)
-    odometry = Odometry(sequence.camera, config, cores=cores)
+    odometry = Odometry(sequence.camera, config, cores=cores, mask=mask)
     readings = sequence.imu(R_camera_imu=R_camera_imu) if imu else None
     for frame in sequence:
         began_ns = _time.thread_time_ns()

@@ -221,7 +221,9 @@ class RecordedImu:
     def learn(self, result: Result) -> None: ...
 
 class Odometry:
-    """Frames in, poses out. What is None of the limits is the preset's. cores: 2 for a second thread; the same bits."""
+    """Frames in, poses out. What is None of the limits is the preset's. cores: 2 for a second thread; the same bits.
+    mask: (height, width) of the camera's images, before undistortion; False or 0 where a pixel must not be used, because it
+    shows what travels with the camera: a part of the robot, burnt-in text. It is copied."""
 
     def __init__(
         self,
@@ -235,6 +237,7 @@ class Odometry:
         kept_keyframes: int | None = None,
         surfaces: int | None = None,
         cores: int = 1,
+        mask: NDArray[uint8] | NDArray[bool_] | None = None,
     ) -> None: ...
     def track(
         self,
@@ -284,6 +287,7 @@ def run(
     R_camera_imu: _Array | None = None,
     cores: int = 1,
     topics: dict[_Topic, str] | None = None,
+    mask: NDArray[uint8] | NDArray[bool_] | None = None,
 ) -> Iterator[Result]: ...
 def evaluate(
     truth: _Path,

@@ -95,6 +95,7 @@ void check(const CLI::App& command, LiveOptions& options) {
   check_level_option(command, options.imu);
   options.odometry.level_world = outputs.files.base.level;
   FileRoles files;
+  files.reads(options.odometry.mask);
   for (const auto& [option, path] : options.outputs.files.named()) files.writes(option, path);
   files.writes("--json", options.summary);
   if (is_oni_file(options.record)) files.writes("--record", options.record);

@@ -5,6 +5,7 @@
 
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/replay/images/mask_file.hpp"
 
 namespace plvo::cli {
 
@@ -38,6 +39,9 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
   group.whole("--surfaces", options.surfaces, 0, 1000,
               "So many samples of surfaces from each depth image, besides points and lines; 0: none "
               "(default 200; none of --preset paper and tiny)");
+  group.path("--mask", options.mask,
+             "PNG of the size of the colour images, drawn over one of them: white is used, black is not. For "
+             "what travels with the camera: a part of the robot in view, burnt-in text");
   group.whole("--ransac-seed", options.seed, 0, UINT64_MAX, "Seed of RANSAC's random generators");
 }
 
@@ -82,14 +86,21 @@ Limits make_limits(const OdometryOptions& options, const Config& config, const C
 
 }  // namespace
 
-Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& options) {
+Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& options, int scaled_down_by) {
   Config config = make_config(options);
   config.stage_clock = posix_thread_cpu_ns;
   if (options.cores > 1) {
     pair_ = std::make_unique<ThreadPair>();
     config.executor = pair_->executor();
   }
-  const Limits limits = make_limits(options, config, camera);
+  Limits limits = make_limits(options, config, camera);
+  if (!options.mask.empty()) {
+    if (Status status = read_mask(options.mask, camera.width, camera.height, scaled_down_by, used_pixels_);
+        !status.ok())
+      return status;
+    config.mask = {used_pixels_.data(), camera.width, camera.height, camera.width};
+    limits.mask = true;
+  }
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});
   return odometry_.init(memory_, camera, config, limits);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "plvo/cli/common/frame_record.hpp"
@@ -26,6 +27,7 @@ struct OdometryOptions {
   int cores = 1;
   bool level_world = false;
   std::optional<int> surfaces;
+  std::string mask;  // a file; empty: none
 };
 void add_odometry_options(CLI::App& command, OdometryOptions& options);
 // Ends the command when they contradict each other.
@@ -35,7 +37,8 @@ void check_odometry_options(const OdometryOptions& options);
 // is touched, so that memory does not seem to grow later.
 class OdometryBlock {
  public:
-  Status init(const CameraModel& camera, const OdometryOptions& options);
+  // scaled_down_by: factor between the images of the recording and those of the camera.
+  Status init(const CameraModel& camera, const OdometryOptions& options, int scaled_down_by = 1);
   // Tracks, notes what came of it and what it took, and tells the budget.
   // imu: nullptr without one.
   void track(const RgbdFrame& frame, ImuIntegrator* imu, FrameRecord& record);
@@ -45,6 +48,7 @@ class OdometryBlock {
   std::int64_t cpu_ns() const;
 
   std::vector<std::byte> memory_;
+  std::vector<std::uint8_t> used_pixels_;  // Config::mask
   std::unique_ptr<ThreadPair> pair_;
   Odometry odometry_;
 };

@@ -82,7 +82,9 @@ class Run {
   // Everything that can be wrong is found before the first file is made.
   Status open() {
     if (Status status = open_camera(options_.camera, console_, opened_); !status.ok()) return status;
-    if (Status status = block_.init(opened_.camera->model(), options_.odometry); !status.ok()) return status;
+    if (Status status = block_.init(opened_.camera->model(), options_.odometry, opened_.scaled_down_by);
+        !status.ok())
+      return status;
     if (Status status = open_imu(options_.imu, opened_, options_.outputs.base.level, console_, imu_);
         !status.ok())
       return status;
@@ -211,6 +213,7 @@ void check(const CLI::App& command, RunOptions& options) {
   files.writes("--report", options.report);
   files.writes_folder("--overlay", options.overlay);
   add_inputs(options.camera, files);
+  files.reads(options.odometry.mask);
   files.check();
 }
 

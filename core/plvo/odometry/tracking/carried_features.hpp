@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the features that travel with the camera (carried_cells.hpp), in two ways.
+//
+// Where the motion of the camera is known, features that it moves in the image are looked for at the pixels
+// where they were. Each reference votes.
+//
+// Where most of the image travels with the camera, the estimate itself is misled: everything seems to be at
+// rest. Then the features that did not stay agree on another motion, and they lie among those that stayed. A
+// surface has one motion, so one of the two is light that falls on it or is mirrored by it. What stays at its
+// pixels is the camera's own.
+#pragma once
+
+#include <span>
+
+#include "plvo/odometry/tracking/current_frame.hpp"
+#include "plvo/odometry/tracking/reference_tracking.hpp"
+#include "plvo/points/carried_cells.hpp"
+
+namespace plvo {
+
+// Votes by the keypoints of a reference: those that the motion moves by a few pixels.
+void vote_for_carried(const CurrentFrame& current, const Reference& reference, const ReferenceTracks& tracks,
+                      const Se3& T_current_reference, CarriedCells& cells);
+
+// The matches of an estimate, by whether they stayed at their pixels.
+struct StayedMatches {
+  CarriedCells::Counts cells{};       // points that stayed
+  int stayed_inliers = 0;             // points
+  int others = 0, other_inliers = 0;  // points that did not stay, and lines
+};
+StayedMatches count_stayed(std::span<const Reference> references, std::span<const ReferenceTracks> tracks,
+                           const CarriedCells& cells);
+// Whether the estimate may be misled: most points stayed, and most other matches disagree.
+bool may_be_misled(const StayedMatches& before);
+// Moves the points that stayed to the end of the tracks and leaves them out. Returns the size before.
+std::size_t leave_stayed_out(const Reference& reference, ReferenceTracks& tracks);
+// Whether the other matches agree on a motion of their own and lie among the points that stayed. tracks: with
+// the flags of an estimate from the other matches alone.
+bool agree_among_stayed(const StayedMatches& before, std::span<const Reference> references,
+                        std::span<const ReferenceTracks> tracks, const CameraModel& camera,
+                        const CarriedCells& cells);
+
+}  // namespace plvo
