@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install: the public headers under include/plvo/<module>/, libplvo_core.a, the CMake package (find_package(plvo)
 # defines plvo::core, plvo::hal and plvo::plvo, the shared library for C), the files for pkg-config, and the command line.
-# The components are the Debian packages of package.cmake: library, development, python, and tools, which is the default.
+# The components are the Debian packages of package.cmake: library, development, python, ros1, and tools, which is the default.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -69,6 +69,14 @@ if(TARGET plvo_python_odometry)
     LIBRARY DESTINATION ${PLVO_PYTHON_INSTALL_DIR}/plvo COMPONENT python)
   install(FILES ${python_source}/__init__.py ${python_source}/__init__.pyi ${python_source}/py.typed
     DESTINATION ${PLVO_PYTHON_INSTALL_DIR}/plvo COMPONENT python)
+endif()
+
+# A package of ROS, where roslaunch looks for it.
+if(TARGET plvo_ros1_node)
+  install(TARGETS plvo_ros1_node RUNTIME DESTINATION lib/plvo COMPONENT ros1)
+  install(FILES ${PROJECT_BINARY_DIR}/ros1/plvo/package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/plvo COMPONENT ros1)
+  install(FILES ${PROJECT_SOURCE_DIR}/platform/plvo/ros1/plvo.launch DESTINATION ${CMAKE_INSTALL_DATADIR}/plvo/launch
+    COMPONENT ros1)
 endif()
 
 # The pages. Messages name them by this path below the prefix; the link makes it right in the build folder, too.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack: four Debian packages, one for each component of install.cmake. tools/setup/package.sh configures for it (prefix
+# cpack: Debian packages, one for each component of install.cmake. tools/setup/package.sh configures for it (prefix
 # /usr), builds, and tests the packages in a clean root.
 set(PLVO_PACKAGE_CONTACT "plvo maintainers <maintainers@plvo.invalid>" CACHE STRING "Whom the packages name as their maintainer")
 set(CPACK_GENERATOR DEB)
@@ -53,7 +53,7 @@ file(WRITE ${PROJECT_BINARY_DIR}/packaging/triggers "activate-noawait ldconfig\n
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
   ${PROJECT_BINARY_DIR}/packaging/shlibs ${PROJECT_BINARY_DIR}/packaging/triggers)
-foreach(component LIBRARY DEVELOPMENT PYTHON)
+foreach(component LIBRARY DEVELOPMENT PYTHON ROS1)
   set(CPACK_DEBIAN_${component}_PACKAGE_SUGGESTS plvo-tools)  # it has the pages that messages name
 endforeach()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libplvo${PLVO_ABI_VERSION} (= ${PROJECT_VERSION}), libeigen3-dev")
@@ -70,6 +70,12 @@ if(TARGET plvo_python_odometry)
   configure_file(tools/packaging/python-postinst packaging/postinst COPYONLY)
   configure_file(tools/packaging/python-prerm packaging/prerm COPYONLY)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/postinst ${PROJECT_BINARY_DIR}/packaging/prerm)
+endif()
+
+if(TARGET plvo_ros1_node)
+  list(APPEND CPACK_COMPONENTS_ALL ros1)
+  plvo_package(ros1 ros-plvo misc "A node for ROS 1: odometry, tf and diagnostics from images, with a launch file.")
+  set(CPACK_DEBIAN_ROS1_PACKAGE_DEPENDS python3-roslaunch)
 endif()
 
 # The date of the last commit, so that two builds of it are identical.

@@ -12,6 +12,7 @@ message(STATUS "plvo: ${CMAKE_BUILD_TYPE} build with ${CMAKE_CXX_COMPILER_ID} ${
 if(PLVO_BUILD_PLATFORM)
   plvo_summary_target("recorded sequences" plvo_replay "platform/plvo/replay was not configured")
   plvo_summary_target("recordings of ROS" plvo_rosbag "install libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev")
+  plvo_summary_target("node for ROS 1" plvo_ros1_node "install libroscpp-dev and what docs/user/robots.md names with it")
   plvo_summary_target("simulated camera" plvo_simulator "platform/plvo/simulator was not configured")
   plvo_summary_target("live cameras over OpenNI2" plvo_openni2 "install libopenni2-dev pkg-config")
   plvo_summary_target("USB diagnosis and the Kinect's motor" plvo_usb "install libusb-1.0-0-dev pkg-config")

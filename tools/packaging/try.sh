@@ -5,7 +5,7 @@
 set -euo pipefail
 cd /try
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
-packages="libplvo0 libplvo-dev plvo-tools python3-plvo"
+packages="libplvo0 libplvo-dev plvo-tools python3-plvo ros-plvo"
 files() {
   find / -xdev \( -path /try -o -path /proc -o -path /sys -o -path /tmp -o -path /var/lib/dpkg -o -path /var/log \
     -o -path /var/cache \) -prune -o -print | sort
@@ -68,6 +68,10 @@ import plvo
 poses = [" ".join(f"{x:.9f}" for x in (*r.position, *r.quaternion)) for r in plvo.run("walk") if r.has_pose]
 assert poses == pathlib.Path("run.poses").read_text().splitlines()
 PROGRAM
+
+step "ROS 1: roslaunch finds the node and its launch file"
+ROS_HOME=/tmp/ros roslaunch --args /plvo plvo plvo.launch | grep -q "/usr/lib/plvo/odometry colour:="
+if ldd /usr/lib/plvo/odometry | grep "not found" >&2; then exit 1; fi
 
 step "purge, install and use once more, purge: the same files before and after, and none of plvo's"
 apt-get purge -y -qq $packages >/dev/null

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo, and checks them
-# with lintian. Packages of this machine's architecture are then tested in a clean Debian 12: installed with apt, used from
+# Builds Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo, and of
+# this machine's architecture ros-plvo; checks them with lintian. Packages of this machine's architecture are then tested in a clean Debian 12: installed with apt, used from
 # C, C++ and Python, and purged (as root; it downloads about 200 MB of Debian packages). Packages of a board run under
 # emulation.
 # usage: tools/setup/package.sh [arm64|armhf]
@@ -15,7 +15,7 @@ architecture=${1:-$(dpkg --print-architecture)}
 case "${1:-}" in
   "")
     build=build/package
-    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_PYTHON lintian mmdebstrap
+    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS lintian mmdebstrap
     cmake --preset package >&2
     ;;
   arm64 | armhf)
