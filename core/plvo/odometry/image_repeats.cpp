@@ -12,7 +12,7 @@ constexpr int kGridStep = 7;
 // Each row of the grid begins this much further to the right, so that the grid meets lines in any direction.
 constexpr int kGridShift = 3;
 // A depth image with fewer readings on the grid is not compared: an empty one has nothing to repeat.
-constexpr int kLeastReadings = 50;
+constexpr int kLeastRepeatedReadings = 50;
 
 // FNV-1a over whole pixels. Grids that differ in one pixel never have the same hash.
 class GridHash {
@@ -66,7 +66,7 @@ void ImageRepeats::look(const RgbdFrame& frame) {
   const std::uint64_t colour = hash_of(frame.colour);
   const std::uint64_t depth = hash_of(frame.depth, readings);
   colour_is_repeated_ = has_frame_ && colour == colour_hash_;
-  depth_is_repeated_ = has_frame_ && depth == depth_hash_ && readings >= kLeastReadings;
+  depth_is_repeated_ = has_frame_ && depth == depth_hash_ && readings >= kLeastRepeatedReadings;
   if (!depth_is_repeated_) {
     depth_first_ns_ = frame.stamp_ns;
     depth_stamp_ns_ = frame.depth_stamp_ns;
