@@ -89,6 +89,7 @@ Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& opt
     pair_ = std::make_unique<ThreadPair>();
     config.executor = pair_->executor();
   }
+  config_ = config;
   const Limits limits = make_limits(options, config, camera);
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});
   return odometry_.init(memory_, camera, config, limits);

@@ -22,6 +22,12 @@ SummaryRows RunSummary::rows() const {
   rows.emplace_back("damaged", fmt::format("{}", damaged()));
   if (unpaired_images > 0) rows.emplace_back("colour without depth", fmt::format("{}", unpaired_images));
   add(cost_rows());
+  if (map) {
+    rows.emplace_back("map", fmt::format("{} keyframes of {}, {:.1f} MB", map->keyframes, map->capacity,
+                                         static_cast<double>(map->bytes) * 1e-6));
+    rows.emplace_back("places seen again",
+                      fmt::format("{} times, by {} pairs of keyframes", map->recognised, map->loops));
+  }
   return rows;
 }
 
@@ -37,7 +43,9 @@ std::string RunSummary::to_text() const {
         delta.text, 1e3 * estimate.translation_m.rmse, estimate.rotation_deg.rmse,
         1e3 * still.translation_m.rmse, still.rotation_deg.rmse);
   }
-  return text + fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
+  text += fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
+  if (map && map->ate_m) text += fmt::format("ATE in the map         {:.1f} mm\n", 1e3 * *map->ate_m);
+  return text;
 }
 
 nlohmann::ordered_json RunSummary::to_json() const {
@@ -47,6 +55,13 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["unpaired_images"] = unpaired_images;
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
+  if (map) {
+    json["map"] = {{"keyframes", map->keyframes}, {"capacity", map->capacity},
+                   {"bytes", map->bytes},         {"removed", map->removed},
+                   {"compared", map->compared},   {"recognised", map->recognised},
+                   {"loops", map->loops},         {"ate_m", nullptr}};
+    if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
+  }
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   return json;
 }
