@@ -123,7 +123,8 @@ void say(const char* what, const MappedCamera& camera) {
       camera.recognised, 1e3 * camera.odometry_error_m(), 1e3 * camera.map_error_m());
 }
 
-constexpr int kFar = 100;  // the turning point: farther on the camera would be in the wall
+constexpr int kTurn = 70;  // views to the turning point
+constexpr int kFar = 100;  // so near to a wall that the odometry loses its way for a moment
 
 TEST(Map, CorrectsTheDriftWhereAPlaceComesBack) {
   MappedCamera camera(64);
@@ -141,30 +142,32 @@ TEST(Map, CorrectsTheDriftWhereAPlaceComesBack) {
 
 TEST(Map, FindsTheCameraThatWasCarriedBlind) {
   MappedCamera camera(64);
-  camera.walk(0, kFar);
+  camera.walk(0, kTurn);
   for (int i = 0; i < 40; ++i) camera.see(kDark);
   int frames = 0;
-  for (int view = 30; view < 70; ++view) {
+  for (int view = 30; view < 60; ++view) {
     camera.see(view);
     frames += camera.recognised == 0 ? 1 : 0;
   }
   std::printf("found after %d frames\n", frames);
   EXPECT_LT(frames, 10);
-  camera.settle(70);
+  camera.settle(60);
   say("carried", camera);
   EXPECT_GT(camera.recognised, 0);
-  EXPECT_LT(camera.error_m(70), 0.1);
-  EXPECT_GT((camera.result.T_world_camera.t - MappedCamera::truth(70).t).norm(), 0.3)
+  EXPECT_LT(camera.error_m(60), 0.1);
+  EXPECT_GT((camera.result.T_world_camera.t - MappedCamera::truth(60).t).norm(), 0.3)
       << "the odometry does not know where it is";
   EXPECT_LT(std::sqrt(camera.in_map.pose_covariance(0, 0)), 0.1);
 }
 
 TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   MappedCamera camera(64);
-  camera.walk(0, kFar);
-  camera.walk(kFar, 0);
-  camera.walk(0, 60);
-  const int recognised = camera.recognised, loops = camera.map.counts().loops;
+  for (int round = 0; round < 3; ++round) {
+    camera.walk(0, kTurn);
+    camera.walk(kTurn, 0);
+  }
+  camera.walk(0, 50);
+  const std::uint32_t last_of_the_first_room = camera.in_map.keyframe;
   const int compared = camera.map.counts().compared;
   // Wheels measure that the camera moves on by ten metres in the dark, into a room with the same walls.
   MotionPrior wheels;
@@ -175,12 +178,16 @@ TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   camera.see(30, wheels);
   EXPECT_GT(camera.result.T_world_camera.t.norm(), 5);
   EXPECT_LT(camera.result.pose_covariance(0, 0), 0.1);
-  camera.walk(31, kFar);
-  camera.settle(kFar);
+  camera.walk(31, kTurn);
+  camera.walk(kTurn, 0);
+  camera.settle(0);
   say("looks alike", camera);
   EXPECT_GT(camera.map.counts().compared, compared + 3) << "the views look alike";
-  EXPECT_EQ(camera.recognised, recognised);
-  EXPECT_EQ(camera.map.counts().loops, loops);
+  const PoseGraph& graph = camera.map.graph();
+  for (const PoseGraph::Loop& loop : graph.loops())
+    EXPECT_EQ(graph.node(loop.older).id <= last_of_the_first_room,
+              graph.node(loop.newer).id <= last_of_the_first_room)
+        << "a loop joins the two rooms";
 }
 
 TEST(Map, StaysWithinItsCapacityRoundAfterRound) {

@@ -109,6 +109,7 @@ std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   summary.bytes = memory_.size();
   summary.removed = map_.counts().removed;
   summary.compared = map_.counts().compared;
+  summary.accepted = map_.counts().accepted;
   summary.recognised = recognised_;
   summary.loops = map_.counts().loops;
   const eval::Trajectory poses = trajectory();

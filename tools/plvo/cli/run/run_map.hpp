@@ -24,7 +24,7 @@ void check_map_options(const CLI::App& command, const MapOptions& options);
 
 struct MapSummary {
   std::size_t keyframes = 0, capacity = 0, bytes = 0;
-  int removed = 0, compared = 0, recognised = 0, loops = 0;
+  int removed = 0, compared = 0, accepted = 0, recognised = 0, loops = 0;
   std::optional<double> ate_m;  // where there is ground truth
 };
 

@@ -56,10 +56,9 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
   if (map) {
-    json["map"] = {{"keyframes", map->keyframes}, {"capacity", map->capacity},
-                   {"bytes", map->bytes},         {"removed", map->removed},
-                   {"compared", map->compared},   {"recognised", map->recognised},
-                   {"loops", map->loops},         {"ate_m", nullptr}};
+    json["map"] = {{"keyframes", map->keyframes},   {"capacity", map->capacity}, {"bytes", map->bytes},
+                   {"removed", map->removed},       {"compared", map->compared}, {"accepted", map->accepted},
+                   {"recognised", map->recognised}, {"loops", map->loops},       {"ate_m", nullptr}};
     if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
   }
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
