@@ -10,6 +10,7 @@
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/host/posix_clock.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -79,7 +80,9 @@ Status RunMap::init(const MapOptions& options, const CameraModel& camera, const 
 
 void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
   if (options_.keyframes == 0) return;
+  const std::int64_t start_ns = posix_thread_cpu_ns();
   const MapResult result = map_.update(odometry, record.result);
+  cpu_.add(static_cast<double>(posix_thread_cpu_ns() - start_ns) * 1e-6);
   recognised_ += result.recognised ? 1 : 0;
   if (result.removed != 0) removed_[result.removed] = {result.removed_into, result.T_into_removed};
   if (record.has_pose() && result.keyframe != 0)
@@ -112,6 +115,7 @@ std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   summary.accepted = map_.counts().accepted;
   summary.recognised = recognised_;
   summary.loops = map_.counts().loops;
+  summary.cpu = cpu_;
   const eval::Trajectory poses = trajectory();
   std::vector<std::int64_t> stamps;
   for (const eval::StampedPose& pose : poses.poses) stamps.push_back(pose.stamp_ns);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "plvo/cli/common/duration_histogram.hpp"
 #include "plvo/cli/common/frame_record.hpp"
 #include "plvo/cli/options/camera_options.hpp"
 #include "plvo/eval/trajectory.hpp"
@@ -25,6 +26,7 @@ void check_map_options(const CLI::App& command, const MapOptions& options);
 struct MapSummary {
   std::size_t keyframes = 0, capacity = 0, bytes = 0;
   int removed = 0, compared = 0, accepted = 0, recognised = 0, loops = 0;
+  DurationHistogram cpu;        // of Map::update()
   std::optional<double> ate_m;  // where there is ground truth
 };
 
@@ -63,6 +65,7 @@ class RunMap {
   std::vector<Anchored> frames_;
   std::map<std::uint32_t, Removed> removed_;
   int recognised_ = 0;
+  DurationHistogram cpu_;
 };
 
 }  // namespace plvo::cli

@@ -27,6 +27,9 @@ SummaryRows RunSummary::rows() const {
                                          static_cast<double>(map->bytes) * 1e-6));
     rows.emplace_back("places seen again",
                       fmt::format("{} times, by {} pairs of keyframes", map->recognised, map->loops));
+    rows.emplace_back("map, CPU per frame",
+                      fmt::format("{:.2f} ms median, {:.2f} p99, {:.2f} max", map->cpu.quantile_ms(0.5),
+                                  map->cpu.quantile_ms(0.99), map->cpu.max_ms()));
   }
   return rows;
 }
@@ -56,9 +59,16 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
   if (map) {
-    json["map"] = {{"keyframes", map->keyframes},   {"capacity", map->capacity}, {"bytes", map->bytes},
-                   {"removed", map->removed},       {"compared", map->compared}, {"accepted", map->accepted},
-                   {"recognised", map->recognised}, {"loops", map->loops},       {"ate_m", nullptr}};
+    json["map"] = {{"keyframes", map->keyframes},
+                   {"capacity", map->capacity},
+                   {"bytes", map->bytes},
+                   {"removed", map->removed},
+                   {"compared", map->compared},
+                   {"accepted", map->accepted},
+                   {"recognised", map->recognised},
+                   {"loops", map->loops},
+                   {"cpu_ms", cli::to_json(map->cpu)},
+                   {"ate_m", nullptr}};
     if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
   }
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
