@@ -161,6 +161,20 @@ TEST(Map, FindsTheCameraThatWasCarriedBlind) {
   EXPECT_LT(std::sqrt(camera.in_map.pose_covariance(0, 0)), 0.1);
 }
 
+TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
+  MappedCamera camera(64);
+  camera.walk(0, kTurn);
+  camera.odometry.reset();
+  camera.see(40);
+  EXPECT_LT(camera.result.T_world_camera.t.norm(), 1e-9);
+  EXPECT_GT(camera.in_map.pose_covariance(0, 0), 1e3);
+  for (int view = 41; view < kTurn; ++view) camera.see(view);
+  EXPECT_GT(camera.recognised, 0);
+  EXPECT_LT((camera.in_map.T_map_world * camera.result.T_world_camera).t.norm(), 2);
+  EXPECT_LT(camera.error_m(kTurn - 1), 0.1);
+  EXPECT_LT(camera.in_map.pose_covariance(0, 0), 0.01);
+}
+
 TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   MappedCamera camera(64);
   for (int round = 0; round < 3; ++round) {

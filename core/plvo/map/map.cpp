@@ -123,7 +123,11 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   const FrameFeatures& features = *view.features;
   const bool measured = result.state == TrackState::kTracking && result.stamp_ns == features.stamp_ns &&
                         result.reference_stamp_ns == keyframe_stamp_ns_;
-  const bool new_world = result.state == TrackState::kInitialising && result.status.message()[0] != '\0';
+  // A world starts anew with a message, or after Odometry::reset() with a pose that is as certain as at
+  // first.
+  const bool new_world =
+      result.state == TrackState::kInitialising &&
+      (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace());
   Se3 T_previous_this = view.T_world_camera;  // the map begins as the world
   Matrix6 covariance = Matrix6::Zero();
   if (memory_.graph.size() > 0) {
