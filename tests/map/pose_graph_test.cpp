@@ -148,7 +148,7 @@ std::vector<Se3> dense_solution(const PoseGraph& graph) {
 }
 
 TEST(PoseGraph, FindsTheSolutionOfADenseSolver) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const std::vector<Se3> truth = circle(25);
     Graph g(30);
     walk(g.graph, truth, seed);
