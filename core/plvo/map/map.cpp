@@ -74,6 +74,7 @@ Status Map::init(std::span<std::byte> memory, const CameraModel& camera, const C
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = hypothesis_count_ = refreshed_ = 0;
+  is_judged_ = true;
   counts_ = {};
   ready_ = true;
   return {};

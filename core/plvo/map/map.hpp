@@ -140,7 +140,7 @@ class Map {
   std::size_t refreshed_ = 0;  // the position whose neighbour is searched next
 
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
-  Se3 T_world_keyframe_;                // as the odometry had it when the keyframe joined
+  Se3 T_world_keyframe_;                // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();
   std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
   std::size_t candidate_count_ = 0;
