@@ -26,7 +26,7 @@ struct Graph {
   // The number of steps until nothing is left to do.
   int solve() {
     int steps = 0;
-    for (; !graph.idle() && steps < 10000; ++steps) (void)graph.step();
+    for (; !graph.idle() && steps < 10000; ++steps) graph.step();
     return steps;
   }
   std::vector<std::byte> memory;

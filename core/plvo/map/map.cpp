@@ -27,8 +27,8 @@ constexpr double kPlausibleLoop = 0.9999;
 constexpr double kCovarianceSlack = 4;  // of the variances
 // Variances of the motion between two worlds, where nothing is known of it (m², rad²).
 constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
-// Two views are of the same place if the camera moved by less than the depth of the scene, or turned by less
-// than this angle; see view_distance().
+// Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
+// by less than this angle; see view_distance().
 constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
 // A motion more uncertain than this was not seen (m² + rad²): what it separates is not recent, and
 // comparisons whose difference is more uncertain neither agree nor contradict.
@@ -92,7 +92,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
       compare_next();
     else if (!is_judged_)
       judge(out);
-    out.moved = memory_.graph.step();
+    memory_.graph.step();
     for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
       refreshed_ = (refreshed_ + 1) % memory_.graph.size();
       find_neighbour(memory_.graph.slot_at(refreshed_));

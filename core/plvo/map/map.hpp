@@ -46,7 +46,6 @@ struct MapResult {
   std::uint32_t keyframe = 0;
   Se3 T_keyframe_camera;
   bool recognised = false;  // a place, in this frame
-  bool moved = false;       // poses of the map moved
   // A keyframe that made room in this frame, and its pose relative to one that stays.
   std::uint32_t removed = 0, removed_into = 0;
   Se3 T_into_removed;

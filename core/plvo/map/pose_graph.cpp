@@ -178,33 +178,34 @@ void PoseGraph::note_change() {
   changed_ = true;
 }
 
-bool PoseGraph::step() {
+void PoseGraph::step() {
   switch (phase_) {
     case Phase::kIdle:
-      if (!changed_ || loop_count_ == 0) {
-        changed_ = false;
-        return false;
+      if (changed_ && loop_count_ > 0) {
+        begin_round(0);
+        linearise();
       }
       changed_ = false;
-      round_ = 0;
       break;
-    case Phase::kLinearise: break;
+    case Phase::kLinearise: linearise(); break;
     case Phase::kIterate:
-      for (int i = 0; i < kIterationsPerStep; ++i)
-        if (iterate()) {
-          const bool again = apply() && ++round_ < kMostRounds;
-          phase_ = again ? Phase::kLinearise : Phase::kIdle;
-          count_ = size_;
-          edge_ = 1;
-          return true;
-        }
-      return false;
+      for (int i = 0; i < kIterationsPerStep && phase_ == Phase::kIterate; ++i) {
+        if (!iterate()) continue;
+        phase_ = Phase::kIdle;
+        if (apply() && round_ + 1 < kMostRounds) begin_round(round_ + 1);
+      }
+      break;
   }
-  if (phase_ == Phase::kIdle) {
-    phase_ = Phase::kLinearise;
-    count_ = size_;
-    edge_ = 1;  // the first node has no motion
-  }
+}
+
+void PoseGraph::begin_round(int round) {
+  phase_ = Phase::kLinearise;
+  round_ = round;
+  count_ = size_;
+  edge_ = 1;  // the first node has no motion
+}
+
+void PoseGraph::linearise() {
   for (int i = 0; i < kEdgesPerStep && edge_ < count_ + loop_count_; ++i, ++edge_) {
     if (edge_ < count_)
       linearise_chain(edge_);
@@ -212,7 +213,6 @@ bool PoseGraph::step() {
       linearise_loop(loops_[edge_ - count_]);
   }
   if (edge_ == count_ + loop_count_) begin_iterations();
-  return false;
 }
 
 // If the path over `from` is more certain, the covariance of `node` is that of this path.

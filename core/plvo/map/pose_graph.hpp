@@ -85,8 +85,8 @@ class PoseGraph {
   // Covariance of the perturbation of x_b − x_a along the chain.
   Matrix6 chain_covariance(std::uint16_t a, std::uint16_t b) const;
 
-  // Does a part of the work. Returns true if poses moved.
-  bool step();
+  // Does a part of the work.
+  void step();
   bool idle() const { return phase_ == Phase::kIdle && !changed_; }
 
  private:
@@ -96,6 +96,8 @@ class PoseGraph {
   const Node& at(std::size_t position) const { return nodes_[order_[position]]; }
   bool has_loop(std::uint16_t a, std::uint16_t b) const;
   void note_change();
+  void begin_round(int round);
+  void linearise();
   void linearise_chain(std::size_t position);
   void linearise_loop(Loop& loop);
   void begin_iterations();
