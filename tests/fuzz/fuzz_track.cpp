@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "plvo/base/random.hpp"
+#include "plvo/map/map.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "scratch_file.hpp"
 #include "sound.hpp"
@@ -245,6 +246,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static Odometry odometry;
   if (!odometry.init(memory, camera, config, limits).ok()) return 0;
 
+  // A map beside it; small, so that keyframes have to make room.
+  constexpr MapLimits kMap{8, 50, 16};
+  static std::vector<std::byte> map_memory(Map::required_bytes(kMap, kMostSide, kMostSide));
+  static Map map;
+  fuzz::require(map.init(map_memory, camera, config, kMap).ok());
+
   static Picture picture;
   // Unsigned, so that it wraps around at the largest stamp; such a frame is refused.
   std::uint64_t stamp_ns = bytes.one_in(8) ? bytes.take<std::uint64_t>() : 0;
@@ -255,7 +262,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     frame.depth_stamp_ns = static_cast<std::int64_t>(
         stamp_ns + static_cast<std::uint64_t>(bytes.take<std::int8_t>() * 1'000'000LL));
     act(bytes, odometry);
-    fuzz::require(test::is_sound(odometry.track(frame, read_prior(bytes))));
+    const TrackResult result = odometry.track(frame, read_prior(bytes));
+    fuzz::require(test::is_sound(result));
+    const MapResult in_map = map.update(odometry, result);
+    fuzz::require(in_map.T_map_world.is_finite() && is_rotation(in_map.T_map_world.R) &&
+                  is_covariance(in_map.pose_covariance));
   }
   return 0;
 }

@@ -220,6 +220,12 @@ FeatureView Odometry::features() const {
   return view;
 }
 
+KeyframeView Odometry::keyframe() const {
+  if (!window_.has_keyframe()) return {};
+  const Window::Frame& keyframe = window_[window_.keyframe()];
+  return {&keyframe.features, keyframe.pose.T_world_camera};
+}
+
 std::span<const Arena::Record> Odometry::memory_records() const { return arena_.records(); }
 std::size_t Odometry::memory_used() const { return arena_.used(); }
 std::size_t Odometry::memory_peak() const { return arena_.peak(); }

@@ -67,6 +67,12 @@ constexpr std::size_t required_bytes(const Limits& limits) {
   return sizer.peak() + kArenaAlignment;
 }
 
+// The keyframe that frames are matched with, and its pose as known now.
+struct KeyframeView {
+  const FrameFeatures* features = nullptr;  // null: there is none
+  Se3 T_world_camera;
+};
+
 class Odometry {
  public:
   Odometry();
@@ -114,6 +120,8 @@ class Odometry {
   std::size_t memory_peak() const;
 
   FeatureView features() const;
+  // Valid until the next call of track().
+  KeyframeView keyframe() const;
 
  private:
   // How a frame ends, and what follows from it.

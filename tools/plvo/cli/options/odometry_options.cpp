@@ -101,6 +101,7 @@ Status OdometryBlock::init(const CameraModel& camera, const OdometryOptions& opt
     config.mask = {used_pixels_.data(), camera.width, camera.height, camera.width};
     limits.mask = true;
   }
+  config_ = config;
   memory_.assign(required_bytes(limits) + kArenaAlignment, std::byte{0});
   return odometry_.init(memory_, camera, config, limits);
 }

@@ -43,10 +43,12 @@ class OdometryBlock {
   // imu: nullptr without one.
   void track(const RgbdFrame& frame, ImuIntegrator* imu, FrameRecord& record);
   Odometry& odometry() { return odometry_; }
+  const Config& config() const { return config_; }
 
  private:
   std::int64_t cpu_ns() const;
 
+  Config config_;
   std::vector<std::byte> memory_;
   std::vector<std::uint8_t> used_pixels_;  // Config::mask
   std::unique_ptr<ThreadPair> pair_;

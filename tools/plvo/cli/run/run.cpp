@@ -20,6 +20,7 @@
 #include "plvo/cli/run/imu_options.hpp"
 #include "plvo/cli/run/overlay.hpp"
 #include "plvo/cli/run/run_history.hpp"
+#include "plvo/cli/run/run_map.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
 #include "plvo/cli/run/run_summary.hpp"
 #include "plvo/host/posix_clock.hpp"
@@ -38,6 +39,7 @@ constexpr const char* kRunHelp =
     "  plvo run --camera sim --frames 100                   no sensor and no recording needed\n"
     "  plvo run DIR --camera-model tum-fr1 --out t.txt      a TUM recording of the fr1 series\n"
     "  plvo run walk --report run.html                      what plvo record or plvo simulate made\n"
+    "  plvo run walk --map 256 --map-trajectory map.txt      places that come back correct the drift\n"
     "  plvo run walk --imu                                  with the help of a gyro and an accelerometer\n"
     "  plvo run walk --quiet --out - | your_program         the trajectory into a pipe\n";
 
@@ -50,6 +52,7 @@ struct RunOptions {
   Pace pace = Pace::kFast;
   bool quiet = false;
   ImuOptions imu;
+  MapOptions map;
 };
 
 // One key a frame: the next line of standard input.
@@ -71,7 +74,7 @@ class Run {
     console_.clear();
     // An output that fails does not take the others with it.
     int exit_code = summary_->failure.ok() ? kExitSuccess : fail(summary_->failure);
-    for (const Status& status : {finish(), write_report(), write_summary()})
+    for (const Status& status : {finish(), write_report(), write_summary(), map_.write()})
       if (!status.ok()) exit_code = fail(status);
     if (exit_code != kExitSuccess || !summary_->failed()) return exit_code;
     fail(summary_->why_failed());
@@ -88,6 +91,10 @@ class Run {
     if (Status status = open_imu(options_.imu, opened_, options_.outputs.base.level, console_, imu_);
         !status.ok())
       return status;
+    if (Status status = map_.init(options_.map, opened_.camera->model(), block_.config(),
+                                  opened_.frame_count.value_or(kUnknownFrameCount));
+        !status.ok())
+      return status;
     warn_of_base_option(options_.outputs.base, console_);
     summary_ = std::make_unique<RunSummary>();
     summary_->camera_name = opened_.name;
@@ -95,7 +102,8 @@ class Run {
     summary_->image = {opened_.camera->model().width, opened_.camera->model().height, opened_.scaled_down_by};
     history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
                                             opened_.frame_count.value_or(kUnknownFrameCount));
-    for (const std::string& file : {options_.report, options_.summary})
+    for (const std::string& file :
+         {options_.report, options_.summary, options_.map.trajectory, options_.map.ply})
       if (!file.empty())
         if (Status status = LineFile::check(file); !status.ok()) return status;
     if (!options_.overlay.empty())
@@ -134,6 +142,7 @@ class Run {
         tell(check_.add(frame));
         block_.track(frame, imu_ ? &imu_->until(frame.stamp_ns) : nullptr, record);
       }
+      if (!record.damaged()) map_.add(block_.odometry(), record);
       summary_->add(record);
       history_->add(record, record.damaged() ? nullptr : &frame, block_.odometry());
       if (Status status = outputs_.write(record); !status.ok()) return status;
@@ -165,14 +174,15 @@ class Run {
     if (const Status status = history_->evaluate(opened_); !status.ok())
       console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
+    summary_->map = map_.summary(opened_);
     if (summary_->evaluation)
       if (const std::string doubt = eval::doubt_about_scale(*summary_->evaluation); !doubt.empty())
         console_.write(LogLevel::kWarning, doubt);
     summary_->warnings = console_.warnings();
     if (options_.quiet) return {};
     const OutputOptions& o = options_.outputs;
-    if (!takes_standard_output(
-            {o.trajectory, o.covariance, o.motions, o.stats, options_.summary, options_.report}))
+    if (!takes_standard_output({o.trajectory, o.covariance, o.motions, o.stats, options_.summary,
+                                options_.report, options_.map.trajectory, options_.map.ply}))
       return print(summary_->to_text());
     print_to_stderr(summary_->to_text());
     return {};
@@ -191,6 +201,7 @@ class Run {
   OdometryBlock block_;
   std::optional<RecordedImu> imu_;
   FrameCheck check_;
+  RunMap map_;
   RunOutputs outputs_;
   Overlay overlay_;
   std::unique_ptr<RunSummary> summary_;
@@ -204,11 +215,14 @@ void check(const CLI::App& command, RunOptions& options) {
   check_imu_options(command, options.imu, options.camera);
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
+  check_map_options(command, options.map);
   check_base_option(options.outputs.base, options.outputs.has_poses());
   check_level_option(command, options.imu.used);
   options.odometry.level_world = options.outputs.base.level;
   FileRoles files;
   for (const auto& [option, path] : options.outputs.named()) files.writes(option, path);
+  files.writes("--map-trajectory", options.map.trajectory);
+  files.writes("--ply", options.map.ply);
   files.writes("--json", options.summary);
   files.writes("--report", options.report);
   files.writes_folder("--overlay", options.overlay);
@@ -228,6 +242,7 @@ void add_run(CLI::App& app, int& exit_code) {
       Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}},
       "As fast as it goes (default), as the stamps say, or a frame for each Enter");
   add_imu_options(command, options->imu);
+  add_map_options(command, options->map);
   add_output_options(command, options->outputs);
   OptionGroup base(command, kOutputGroup);
   add_level_option(base, options->outputs.base);

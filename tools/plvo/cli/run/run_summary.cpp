@@ -22,6 +22,15 @@ SummaryRows RunSummary::rows() const {
   rows.emplace_back("damaged", fmt::format("{}", damaged()));
   if (unpaired_images > 0) rows.emplace_back("colour without depth", fmt::format("{}", unpaired_images));
   add(cost_rows());
+  if (map) {
+    rows.emplace_back("map", fmt::format("{} keyframes of {}, {:.1f} MB", map->keyframes, map->capacity,
+                                         static_cast<double>(map->bytes) * 1e-6));
+    rows.emplace_back("places seen again",
+                      fmt::format("{} times, by {} pairs of keyframes", map->recognised, map->loops));
+    rows.emplace_back("map, CPU per frame",
+                      fmt::format("{:.2f} ms median, {:.2f} p99, {:.2f} max", map->cpu.quantile_ms(0.5),
+                                  map->cpu.quantile_ms(0.99), map->cpu.max_ms()));
+  }
   return rows;
 }
 
@@ -37,7 +46,9 @@ std::string RunSummary::to_text() const {
         delta.text, 1e3 * estimate.translation_m.rmse, estimate.rotation_deg.rmse,
         1e3 * still.translation_m.rmse, still.rotation_deg.rmse);
   }
-  return text + fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
+  text += fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
+  if (map && map->ate_m) text += fmt::format("ATE in the map         {:.1f} mm\n", 1e3 * *map->ate_m);
+  return text;
 }
 
 nlohmann::ordered_json RunSummary::to_json() const {
@@ -47,6 +58,19 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["unpaired_images"] = unpaired_images;
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
+  if (map) {
+    json["map"] = {{"keyframes", map->keyframes},
+                   {"capacity", map->capacity},
+                   {"bytes", map->bytes},
+                   {"removed", map->removed},
+                   {"compared", map->compared},
+                   {"accepted", map->accepted},
+                   {"recognised", map->recognised},
+                   {"loops", map->loops},
+                   {"cpu_ms", cli::to_json(map->cpu)},
+                   {"ate_m", nullptr}};
+    if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
+  }
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   return json;
 }

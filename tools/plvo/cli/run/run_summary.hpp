@@ -7,6 +7,7 @@
 #include <string>
 
 #include "plvo/cli/common/track_summary.hpp"
+#include "plvo/cli/run/run_map.hpp"
 #include "plvo/eval/evaluation.hpp"
 
 namespace plvo::cli {
@@ -23,6 +24,7 @@ class RunSummary : public TrackSummary {
     int scaled_down_by = 1;
   } image;  // as it is tracked
   std::size_t unpaired_images = 0;
+  std::optional<MapSummary> map;
   Status failure;                              // ended the run before its last frame
   std::optional<eval::Evaluation> evaluation;  // where there is ground truth
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/map/loop_check.hpp"
+
+#include <algorithm>
+
+namespace plvo {
+namespace {
+
+// Standard deviation of a detected keypoint between views that differ, in pixels of its level.
+constexpr double kDetectedSigma_px = 1;
+// A loop needs so many inliers, and this share of the matches of points.
+constexpr int kLeastLoopInliers = 20;
+constexpr double kLeastLoopShare = 0.4;
+// Bounds on the standard deviations of the motion in its worst direction.
+constexpr double kMostLoopSigma_m = 0.05, kMostLoopSigma_rad = 0.05;
+// Gates of the lines once the points gave a motion.
+constexpr double kLoopLineOffset_px = 8, kLoopLineAngle_rad = 0.1;
+
+constexpr LmOptions kLoopSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
+
+void unpack_points(const MapFeatures& view, const Pinhole& pinhole, PointFeatures& out) {
+  out.keypoints.clear();
+  for (const MapPoint& point : view.points) {
+    out.points[out.keypoints.size()] = unpack(point, pinhole, kDetectedSigma_px);
+    Keypoint keypoint;
+    keypoint.u = point.u;
+    keypoint.v = point.v;
+    keypoint.level = point.level;
+    out.keypoints.push_back(keypoint);
+  }
+  out.descriptors = view.descriptors;
+}
+
+// The segment that shows this line.
+Segment project_line(const Pinhole& pinhole, const Vector3& a, const Vector3& b) {
+  constexpr double kNowhere_px = -1e5;  // where nothing matches
+  Segment segment;
+  if (a.z() > kNearestSeen_m && b.z() > kNearestSeen_m) {
+    segment.a = project(pinhole, a);
+    segment.b = project(pinhole, b);
+  } else {
+    segment.a = Vector2(kNowhere_px, kNowhere_px);
+    segment.b = Vector2(kNowhere_px + 1, kNowhere_px);
+  }
+  return segment;
+}
+
+}  // namespace
+
+LoopCheck::LoopCheck(const CameraModel& of_camera, const Config& config)
+    : camera(of_camera),
+      motion(config.motion),
+      point_correlation(config.noise.point_correlation),
+      line_correlation(config.noise.line_correlation),
+      seed(config.seed) {
+  motion.min_inliers = std::max(motion.min_inliers, kLeastLoopInliers);
+  motion.max_sigma_m = std::min(motion.max_sigma_m, kMostLoopSigma_m);
+  motion.max_sigma_rad = std::min(motion.max_sigma_rad, kMostLoopSigma_rad);
+}
+
+void LoopCheck::match_lines_after(const Se3& T_new_old, const MapFeatures& old_view,
+                                  const MapFeatures& new_view, Views& views, Arena& scratch) const {
+  const std::size_t n_old = old_view.lines.size(), n_new = new_view.lines.size();
+  for (std::size_t i = 0; i < n_old; ++i) {
+    const Line3d& line = views.old_lines[i] = unpack(old_view.lines[i]);
+    views.predicted[i] = project_line(camera.pinhole, T_new_old * line.a, T_new_old * line.b);
+  }
+  for (std::size_t i = 0; i < n_new; ++i) {
+    const Line3d& line = views.new_lines[i] = unpack(new_view.lines[i]);
+    views.found[i] = project_line(camera.pinhole, line.a, line.b);
+  }
+  LineMatchConfig gates;
+  gates.max_offset_px = kLoopLineOffset_px;
+  gates.max_angle_rad = kLoopLineAngle_rad;
+  match_lines(views.predicted.first(n_old), old_view.line_descriptors, views.found.first(n_new),
+              new_view.line_descriptors, gates, scratch, views.line_matches);
+}
+
+LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeatures& new_view,
+                                      Arena& scratch) const {
+  LoopMeasurement loop;
+  const ScratchScope scope(scratch);
+  const std::size_t most_points = std::max(old_view.points.size(), new_view.points.size());
+  const std::size_t most_lines = std::max(old_view.lines.size(), new_view.lines.size());
+  Views views = take_views(scratch, most_points, most_lines);
+  if (scratch.exhausted()) return loop;
+  unpack_points(old_view, camera.pinhole, views.old_points);
+  unpack_points(new_view, camera.pinhole, views.new_points);
+  std::fill(views.anywhere.begin(), views.anywhere.end(), Prediction{0, 0, true});
+  PointMatchConfig everywhere;
+  everywhere.radius_px = camera.width + camera.height;
+  match_points(views.old_points, views.anywhere, views.new_points, camera.width, camera.height, everywhere,
+               scratch, views.point_matches);
+
+  // First the points alone. Lines are matched where that motion puts them, and join the estimate.
+  Se3 T_new_old;
+  for (const bool with_lines : {false, true}) {
+    if (with_lines) match_lines_after(T_new_old, old_view, new_view, views, scratch);
+    const ScratchScope estimating(scratch);
+    PointConstraints points(views.old_points.points, views.new_points.points, views.point_matches.span(),
+                            PointConstraints::Workspace::take(scratch, views.point_matches.size()));
+    LineConstraints lines(views.old_lines, views.new_lines, views.line_matches.span(),
+                          LineConstraints::Workspace::take(scratch, views.line_matches.size()));
+    points.set_reference(0, point_correlation);
+    lines.set_reference(0, line_correlation);
+    const std::array<ConstraintSet*, 2> sets{&points, &lines};
+    const MotionStart start(with_lines ? &T_new_old : nullptr, NuisanceParameters(), with_lines);
+    const std::span<MotionEstimate> estimate = scratch.take<MotionEstimate>("map check", 1);
+    if (estimate.empty()) return loop;
+    estimate_motion(sets, {}, MotionReferences(), motion, kLoopSolve, seed, start, scratch, estimate[0]);
+    if (estimate[0].status != StatusCode::kOk ||
+        estimate[0].inliers[0] < kLeastLoopShare * static_cast<double>(points.size()))
+      return loop;
+    T_new_old = estimate[0].T_current_reference;
+    if (!with_lines) continue;
+    loop.found = true;
+    loop.T_old_new = T_new_old.inverse();
+    loop.covariance = inverse_covariance(T_new_old, estimate[0].C_H);
+    loop.inliers = estimate[0].inliers[0] + estimate[0].inliers[1];
+  }
+  return loop;
+}
+
+}  // namespace plvo

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether two keyframes of the map show the same place, and the motion between them: descriptors are matched
+// over the whole image, and the estimator that tracks (motion_estimator.hpp) judges the matches, points
+// first, then points and lines.
+#pragma once
+
+#include "plvo/base/arena.hpp"
+#include "plvo/camera/camera_model.hpp"
+#include "plvo/lines/line_match.hpp"
+#include "plvo/map/map_keyframe.hpp"
+#include "plvo/motion/motion_estimator.hpp"
+#include "plvo/odometry/config.hpp"
+#include "plvo/odometry/tracking/line_tracking.hpp"
+#include "plvo/points/point_match.hpp"
+
+namespace plvo {
+
+struct LoopMeasurement {
+  bool found = false;
+  Se3 T_old_new;
+  Matrix6 covariance = Matrix6::Zero();  // of the ⊞-perturbation of T_old_new
+  int inliers = 0;                       // points and lines
+};
+
+// Settings of the estimator, and the camera that the features are of.
+struct LoopCheck {
+  CameraModel camera;
+  MotionConfig motion;
+  double point_correlation = 0, line_correlation = 0;
+  std::uint64_t seed = 1;
+
+  LoopCheck() = default;
+  LoopCheck(const CameraModel& of_camera, const Config& config);
+
+  LoopMeasurement operator()(const MapFeatures& old_view, const MapFeatures& new_view, Arena& scratch) const;
+
+  // Reserves the scratch of a check.
+  static constexpr void reserve(Arena& memory, const MapLimits& limits, int width, int height) {
+    const ScratchScope scope(memory);
+    const auto points = static_cast<std::size_t>(limits.keypoints);
+    const auto segments = static_cast<std::size_t>(limits.segments);
+    take_views(memory, points, segments);
+    {
+      const ScratchScope matching(memory);
+      reserve_point_match(memory, limits.keypoints, width, height);
+    }
+    {
+      const ScratchScope matching(memory);
+      take_line_match_scratch(memory, segments, segments);
+    }
+    size_motion(memory, 1, points, segments);
+  }
+
+ private:
+  // Both views, unpacked, and their matches.
+  struct Views {
+    PointFeatures old_points, new_points;
+    std::span<Prediction> anywhere;
+    std::span<Line3d> old_lines, new_lines;
+    std::span<Segment> predicted, found;
+    FixedVector<Match> point_matches, line_matches;
+  };
+  static constexpr Views take_views(Arena& memory, std::size_t points, std::size_t segments) {
+    Views views;
+    for (PointFeatures* side : {&views.old_points, &views.new_points}) {
+      side->keypoints = FixedVector<Keypoint>(memory.take<Keypoint>("map check", points));
+      side->points = memory.take<Point3d>("map check", points);
+    }
+    views.anywhere = memory.take<Prediction>("map check", points);
+    views.old_lines = memory.take<Line3d>("map check", segments);
+    views.new_lines = memory.take<Line3d>("map check", segments);
+    views.predicted = memory.take<Segment>("map check", segments);
+    views.found = memory.take<Segment>("map check", segments);
+    views.point_matches = FixedVector<Match>(memory.take<Match>("map check", points));
+    views.line_matches = FixedVector<Match>(memory.take<Match>("map check", segments));
+    return views;
+  }
+  void match_lines_after(const Se3& T_new_old, const MapFeatures& old_view, const MapFeatures& new_view,
+                         Views& views, Arena& scratch) const;
+};
+
+}  // namespace plvo

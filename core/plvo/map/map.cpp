@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/map/map.hpp"
+
+#include <algorithm>
+
+#include "plvo/base/heap_sort.hpp"
+#include "plvo/math/chi_square.hpp"
+#include "plvo/math/cholesky.hpp"
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+// Keyframes that joined in a row see the same place anyway: no loops are searched among so many.
+constexpr std::uint32_t kRecentKeyframes = 5;
+// Comparisons of this many keyframes in a row must agree.
+constexpr std::uint32_t kJudgedKeyframes = 10;
+// A keyframe is compared only where at least so many descriptors voted for it alone, or more for several.
+constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
+// A place is recognised when so many comparisons agree.
+constexpr int kLeastAgreeing = 3;
+// One that contradicts them counts if it has this share of their inliers.
+constexpr double kRivalShare = 0.5;
+// Probability with which a correct loop passes a test of its motion. The covariances of the odometry state
+// its errors within this factor.
+constexpr double kPlausibleLoop = 0.9999;
+constexpr double kCovarianceSlack = 4;  // of the variances
+// Variances of the motion between two worlds, where nothing is known of it (m², rad²).
+constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
+// Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
+// by less than this angle; see view_distance().
+constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
+// A motion more uncertain than this was not seen (m² + rad²): what it separates is not recent, and
+// comparisons whose difference is more uncertain neither agree nor contradict.
+constexpr double kMostSeenVariance = 0.1;
+// Neighbours that are searched anew for each frame.
+constexpr int kRefreshedPerFrame = 2;
+
+// Whether δ is within a covariance.
+bool lies_within(const Vector6& delta, const Matrix6& covariance) {
+  Cholesky<6> cholesky;
+  return cholesky.factor(covariance) && cholesky.solve_lower(delta).squaredNorm() <=
+                                            kCovarianceSlack * chi_square_quantile(6, kPlausibleLoop);
+}
+
+float median_depth(std::span<const MapPoint> points, Arena& scratch) {
+  const ScratchScope scope(scratch);
+  const std::span<float> depths = scratch.take<float>("map check", points.size());
+  if (points.empty() || depths.empty()) return 1;
+  for (std::size_t i = 0; i < points.size(); ++i) depths[i] = points[i].depth_m;
+  heap_sort(depths.data(), depths.data() + depths.size(), [](float a, float b) { return a < b; });
+  return depths[depths.size() / 2];
+}
+
+}  // namespace
+
+Status Map::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
+                 const MapLimits& limits) {
+  ready_ = false;
+  if (Status status = camera.validate(); !status.ok()) return status;
+  if (Status status = config.validate(); !status.ok()) return status;
+  if (Status status = limits.validate(); !status.ok()) return status;
+  if (const std::size_t bytes = required_bytes(limits, camera.width, camera.height); memory.size() < bytes)
+    return Status(StatusCode::kOutOfMemory, "the map needs a block of ")
+        .append(static_cast<std::ptrdiff_t>(bytes))
+        .append(" bytes for these MapLimits, got ")
+        .append(static_cast<std::ptrdiff_t>(memory.size()));
+  arena_ = Arena(memory);
+  memory_.allocate(arena_, limits);
+  arena_.seal();
+  check_ = LoopCheck(camera, config);
+  memory_.features.clear();
+  memory_.index.clear();
+  memory_.graph.clear();
+  std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
+  candidate_count_ = hypothesis_count_ = refreshed_ = 0;
+  is_judged_ = true;
+  counts_ = {};
+  ready_ = true;
+  return {};
+}
+
+MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
+  MapResult out;
+  const KeyframeView view = odometry.keyframe();
+  if (!ready_) return out;
+  if (view.features != nullptr && view.features->points.described &&
+      (memory_.graph.size() == 0 || view.features->stamp_ns != keyframe_stamp_ns_)) {
+    add_keyframe(view, result, out);
+  } else {
+    if (candidate_count_ > 0)
+      compare_next();
+    else if (!is_judged_)
+      judge(out);
+    memory_.graph.step();
+    for (int i = 0; i < kRefreshedPerFrame && memory_.graph.size() > 0; ++i) {
+      refreshed_ = (refreshed_ + 1) % memory_.graph.size();
+      find_neighbour(memory_.graph.slot_at(refreshed_));
+    }
+  }
+  if (memory_.graph.size() == 0) return out;
+  const PoseGraph::Node& latest = memory_.graph.node(memory_.graph.last());
+  if (view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
+    T_world_keyframe_ = view.T_world_camera;
+  out.keyframe = latest.id;
+  out.T_map_world = latest.T_map_keyframe * T_world_keyframe_.inverse();
+  out.T_map_world.R = renormalise(out.T_map_world.R);
+  out.T_keyframe_camera = T_world_keyframe_.inverse() * result.T_world_camera;
+  const Matrix6 of_keyframe = about_position(latest.covariance, latest.T_map_keyframe.t);
+  const bool moved_since = result.reference_stamp_ns == keyframe_stamp_ns_;
+  const Matrix6 of_motion = moved_since
+                                ? inverse_covariance(result.T_camera_reference, result.motion_covariance)
+                                : Matrix6(Matrix6::Zero());
+  out.pose_covariance =
+      compose_covariance(latest.T_map_keyframe, of_keyframe, out.T_keyframe_camera, of_motion);
+  (void)make_bounded_covariance(out.pose_covariance);
+  return out;
+}
+
+// The motion from the keyframe before is the odometry's measurement, if the frame was matched with that
+// keyframe. Otherwise it is the difference of the poses, with their uncertainty; in a new world nothing is
+// known of it.
+void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out) {
+  const FrameFeatures& features = *view.features;
+  const bool measured = result.state == TrackState::kTracking && result.stamp_ns == features.stamp_ns &&
+                        result.reference_stamp_ns == keyframe_stamp_ns_;
+  // A world starts anew with a message, or after Odometry::reset() with a pose that is as certain as at
+  // first.
+  const bool new_world =
+      result.state == TrackState::kInitialising &&
+      (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace());
+  Se3 T_previous_this = view.T_world_camera;  // the map begins as the world
+  Matrix6 covariance = Matrix6::Zero();
+  if (memory_.graph.size() > 0) {
+    if (measured) {
+      T_previous_this = result.T_camera_reference.inverse();
+      covariance = inverse_covariance(result.T_camera_reference, result.motion_covariance);
+    } else {
+      T_previous_this = T_world_keyframe_.inverse() * view.T_world_camera;
+      covariance = compose_covariance(T_world_keyframe_.inverse(),
+                                      inverse_covariance(T_world_keyframe_, world_covariance_),
+                                      view.T_world_camera, result.pose_covariance);
+      if (new_world) {
+        covariance.setZero();
+        covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
+        covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
+      }
+    }
+  }
+  if (!is_judged_) judge(out);
+  if (memory_.graph.full()) {
+    const std::uint16_t goes = least_needed();
+    if (goes == memory_.graph.last()) {
+      // The motion is then that from the keyframe before it.
+      const PoseGraph::Node& last = memory_.graph.node(goes);
+      covariance =
+          compose_covariance(last.T_previous_keyframe, last.motion_covariance, T_previous_this, covariance);
+      T_previous_this = last.T_previous_keyframe * T_previous_this;
+    }
+    remove(goes, out);
+  }
+  const std::uint16_t slot = memory_.graph.append(T_previous_this, covariance);
+  memory_.features.set(slot, features.points, features.lines);
+  const MapFeatures stored = memory_.features.at(slot);
+  memory_.depths[slot] = median_depth(stored.points, arena_);
+  memory_.index.add(all_descriptors(), slot, stored.descriptors.size());
+  find_neighbour(slot);
+  ++counts_.keyframes;
+  keyframe_stamp_ns_ = features.stamp_ns;
+  world_covariance_ = result.pose_covariance;
+  find_candidates(slot);
+}
+
+// How much two views differ: in depths of the scene moved, and in the angle turned. Below 1 each shows what
+// the other does.
+float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
+  const Se3& A = memory_.graph.node(a).T_map_keyframe;
+  const Se3& B = memory_.graph.node(b).T_map_keyframe;
+  const double depth = static_cast<double>(std::min(memory_.depths[a], memory_.depths[b]));
+  const double move = (A.t - B.t).squaredNorm() / (kSameViewMove * kSameViewMove * depth * depth);
+  // 2 (1 − cos θ) ≈ θ².
+  const double cos_turn = 0.5 * (A.R.cwiseProduct(B.R).sum() - 1);
+  const double turn = 2 * (1 - cos_turn) / (kSameViewTurn_rad * kSameViewTurn_rad);
+  return static_cast<float>(sqrt(std::max(0.0, move + turn)));
+}
+
+// Also makes the node the neighbour of those that it is nearer to than theirs.
+void Map::find_neighbour(std::uint16_t slot) {
+  MapMemory::Neighbour nearest;
+  for (std::size_t k = 0; k < memory_.graph.size(); ++k) {
+    const std::uint16_t other = memory_.graph.slot_at(k);
+    if (other == slot) continue;
+    const float distance = view_distance(slot, other);
+    if (distance < nearest.distance) nearest = {distance, other};
+    if (distance < memory_.neighbours[other].distance) memory_.neighbours[other] = {distance, slot};
+  }
+  memory_.neighbours[slot] = nearest;
+}
+
+// Of the two views that differ least, the later one goes; the first keyframe, which defines the map, stays.
+// If no two views show the same place, the latest keyframe goes: the old places stay.
+std::uint16_t Map::least_needed() const {
+  std::uint16_t least = memory_.graph.last();
+  float distance = 1;
+  for (std::size_t k = 1; k < memory_.graph.size(); ++k) {
+    const std::uint16_t slot = memory_.graph.slot_at(k);
+    if (memory_.neighbours[slot].distance >= distance) continue;
+    distance = memory_.neighbours[slot].distance;
+    const std::uint16_t other = memory_.neighbours[slot].slot;
+    least = memory_.graph.node(other).position > k ? other : slot;
+  }
+  return least;
+}
+
+void Map::remove(std::uint16_t slot, MapResult& out) {
+  memory_.index.remove(all_descriptors(), slot, memory_.features.at(slot).descriptors.size());
+  out.removed = memory_.graph.node(slot).id;
+  const PoseGraph::Removed removed = memory_.graph.remove(slot);
+  out.removed_into = memory_.graph.node(removed.into).id;
+  out.T_into_removed = removed.T_into_removed;
+  ++counts_.removed;
+  memory_.neighbours[slot] = MapMemory::Neighbour();
+  for (MapMemory::Neighbour& neighbour : memory_.neighbours)
+    if (neighbour.slot == slot) neighbour = MapMemory::Neighbour();  // until it is searched anew
+  const auto gone = [slot](const Hypothesis& h) { return h.old_slot == slot || h.new_slot == slot; };
+  hypothesis_count_ = static_cast<std::size_t>(
+      std::remove_if(hypotheses_.begin(),
+                     hypotheses_.begin() + static_cast<std::ptrdiff_t>(hypothesis_count_), gone) -
+      hypotheses_.begin());
+}
+
+void Map::find_candidates(std::uint16_t slot) {
+  std::fill(memory_.excluded.begin(), memory_.excluded.end(), std::uint8_t{0});
+  const std::uint32_t id = memory_.graph.node(slot).id;
+  for (std::size_t k = memory_.graph.size(); k-- > 0;) {
+    const PoseGraph::Node& node = memory_.graph.node(memory_.graph.slot_at(k));
+    if (node.id + kRecentKeyframes < id) break;
+    memory_.excluded[memory_.graph.slot_at(k)] = 1;
+    if (node.motion_covariance.trace() > kMostSeenVariance) break;
+  }
+  FixedVector<PlaceCandidate> best(candidates_);
+  memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
+  candidate_count_ = 0;
+  for (const PlaceCandidate& candidate : best)
+    if (candidate.score >= kLeastScore) ++candidate_count_;
+  is_judged_ = candidate_count_ == 0;
+  std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
+}
+
+// Compares the latest keyframe with the most promising candidate that is left.
+void Map::compare_next() {
+  Hypothesis latest;
+  latest.old_slot = candidates_[--candidate_count_].slot;
+  latest.new_slot = memory_.graph.last();
+  ++counts_.compared;
+  latest.loop = check_(memory_.features.at(latest.old_slot), memory_.features.at(latest.new_slot), arena_);
+  if (!latest.loop.found || !plausible(latest)) return;
+  ++counts_.accepted;
+  if (hypothesis_count_ == kHypotheses) {
+    std::move(hypotheses_.begin() + 1, hypotheses_.end(), hypotheses_.begin());
+    --hypothesis_count_;
+  }
+  hypotheses_[hypothesis_count_++] = latest;
+}
+
+// Whether the map's own uncertainty allows the motion: along the chain, or from the first keyframe to each of
+// the two, whichever is known better.
+bool Map::plausible(const Hypothesis& h) const {
+  const PoseGraph::Node& a = memory_.graph.node(h.old_slot);
+  const PoseGraph::Node& b = memory_.graph.node(h.new_slot);
+  const Vector3& t = b.T_map_keyframe.t;
+  const Matrix6 covariance =
+      about_position(between(h.old_slot, h.new_slot, t) +
+                         motion_in_map(a.T_map_keyframe, h.loop.T_old_new, h.loop.covariance),
+                     t);
+  return lies_within(boxminus(a.T_map_keyframe * h.loop.T_old_new, b.T_map_keyframe), covariance);
+}
+
+// Covariance of the perturbation x_b − x_a.
+Matrix6 Map::between(std::uint16_t a, std::uint16_t b, const Vector3& t) const {
+  const Matrix6 chain = memory_.graph.chain_covariance(a, b);
+  const Matrix6 both = memory_.graph.node(a).covariance + memory_.graph.node(b).covariance;
+  return about_position(chain, t).trace() < about_position(both, t).trace() ? chain : both;
+}
+
+// Each of the two puts the latest part of the map somewhere: they agree if it is the same place.
+Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
+  const PoseGraph::Node& new_a = memory_.graph.node(a.new_slot);
+  const PoseGraph::Node& new_b = memory_.graph.node(b.new_slot);
+  if (new_a.id + kJudgedKeyframes < new_b.id || new_b.id + kJudgedKeyframes < new_a.id)
+    return Relation::kUnrelated;
+  const Se3& old_a = memory_.graph.node(a.old_slot).T_map_keyframe;
+  const Se3& old_b = memory_.graph.node(b.old_slot).T_map_keyframe;
+  const Se3 by_a = old_a * a.loop.T_old_new * new_a.T_map_keyframe.inverse() * new_b.T_map_keyframe;
+  const Se3 by_b = old_b * b.loop.T_old_new;
+  // The errors of both loops and of the map around the old views; then of the motion between the new ones,
+  // turned as the loop turns it.
+  Matrix6 covariance = about_position(between(a.old_slot, b.old_slot, by_b.t) +
+                                          motion_in_map(old_a, a.loop.T_old_new, a.loop.covariance) +
+                                          motion_in_map(old_b, b.loop.T_old_new, b.loop.covariance),
+                                      by_b.t);
+  const Matrix3 turn = by_b.R * new_b.T_map_keyframe.R.transpose();
+  Matrix6 J = Matrix6::Zero();
+  J.block<3, 3>(0, 0) = J.block<3, 3>(3, 3) = turn;
+  const Matrix6 of_new =
+      about_position(memory_.graph.chain_covariance(a.new_slot, b.new_slot), new_b.T_map_keyframe.t);
+  covariance += J.lazyProduct(of_new).eval().lazyProduct(J.transpose());
+  if (covariance.trace() > kMostSeenVariance) return Relation::kUnrelated;
+  return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
+}
+
+// After the last comparison of a keyframe: the best of its hypotheses joins with those that agree with it, if
+// they are enough and none contradicts.
+void Map::judge(MapResult& out) {
+  is_judged_ = true;
+  if (hypothesis_count_ == 0) return;
+  const std::span<Hypothesis> all = std::span(hypotheses_).first(hypothesis_count_);
+  const std::uint16_t newest = all.back().new_slot;
+  const Hypothesis* best = nullptr;
+  for (const Hypothesis& h : all)
+    if (h.new_slot == newest && (best == nullptr || h.loop.inliers > best->loop.inliers)) best = &h;
+  int agreeing = 0;
+  std::array<bool, kHypotheses> agrees{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Relation relation = &all[i] == best ? Relation::kAgree : compare(all[i], *best);
+    if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers) return;
+    agrees[i] = relation == Relation::kAgree;
+    agreeing += agrees[i] ? 1 : 0;
+  }
+  if (agreeing < kLeastAgreeing) return;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Hypothesis& h = all[i];
+    if (!agrees[i] || h.joined) continue;
+    h.joined = true;
+    memory_.graph.add_loop(h.old_slot, h.new_slot, h.loop.T_old_new, h.loop.covariance);
+    ++counts_.loops;
+    out.recognised = true;
+  }
+}
+
+std::optional<Se3> Map::keyframe_pose(std::uint32_t id) const {
+  for (std::size_t k = 0; k < memory_.graph.size(); ++k)
+    if (const PoseGraph::Node& node = memory_.graph.node(memory_.graph.slot_at(k)); node.id == id)
+      return node.T_map_keyframe;
+  return std::nullopt;
+}
+
+}  // namespace plvo

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map of the places that the camera has seen, in fixed memory, beside the odometry:
+//
+//   plvo::Map map;
+//   map.init(memory, camera, config, plvo::MapLimits());      // plvo::Map::required_bytes(...) bytes
+//   const plvo::TrackResult result = odometry.track(frame);
+//   const plvo::MapResult in_map = map.update(odometry, result);
+//   in_map.T_map_world * result.T_world_camera                 // the camera in the map
+//
+// The odometry's pose stays as it is; T_map_world takes the corrections (as odom and map in ROS REP 105).
+//
+// Each keyframe of the odometry becomes one of the map (map_keyframe.hpp). It is compared with those that
+// look alike (place_index.hpp), one for each frame, by the estimator (loop_check.hpp). A place is recognised
+// when several comparisons agree on one motion, none contradicts them, and the motion lies within the
+// uncertainty of the map. The loops then join the pose graph (pose_graph.hpp), which is solved in steps, one
+// for each frame. When the map is full, the keyframe goes whose view another one has as well; one that is the
+// only view of a place stays.
+//
+// Like the odometry, a map takes all memory at init, allocates nothing, and gives the same bits everywhere.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/status.hpp"
+#include "plvo/map/loop_check.hpp"
+#include "plvo/map/map_keyframe.hpp"
+#include "plvo/map/map_limits.hpp"
+#include "plvo/map/place_index.hpp"
+#include "plvo/map/pose_graph.hpp"
+#include "plvo/odometry/odometry.hpp"
+
+namespace plvo {
+
+struct MapResult {
+  Se3 T_map_world;
+  // Covariance of T_map_world · T_world_camera, of its ⊞-perturbation in the axes of the map. Large until a
+  // place is recognised, where the odometry did not see the motion.
+  Matrix6 pose_covariance = Matrix6::Zero();
+  // The latest keyframe and the pose of the camera relative to it; id 0: there is none yet. With
+  // keyframe_pose() of a later time, a past pose of the camera takes the corrections that came since.
+  std::uint32_t keyframe = 0;
+  Se3 T_keyframe_camera;
+  bool recognised = false;  // a place, in this frame
+  // A keyframe that made room in this frame, and its pose relative to one that stays.
+  std::uint32_t removed = 0, removed_into = 0;
+  Se3 T_into_removed;
+};
+
+// What init allocates; an arena without memory counts the bytes.
+struct MapMemory {
+  // Another keyframe with nearly the same view.
+  struct Neighbour {
+    static constexpr float kUnknown = 1e9F;
+    float distance = kUnknown;
+    std::uint16_t slot = 0;
+  };
+  MapFeatureStore features;
+  PlaceIndex index;
+  PoseGraph graph;
+  // By slot:
+  std::span<Neighbour> neighbours;
+  std::span<float> depths;           // median depth of the points
+  std::span<std::uint8_t> excluded;  // from the query
+
+  constexpr void allocate(Arena& memory, const MapLimits& limits) {
+    const auto n = static_cast<std::size_t>(limits.keyframes);
+    features.allocate(memory, limits);
+    index.allocate(memory, limits);
+    graph.allocate(memory, limits.keyframes);
+    neighbours = memory.take<Neighbour>("map", n);
+    depths = memory.take<float>("map", n);
+    excluded = memory.take<std::uint8_t>("map", n);
+  }
+};
+
+class Map {
+ public:
+  // Bytes that init needs, whatever the alignment of the block. width, height: of the camera's image.
+  static constexpr std::size_t required_bytes(const MapLimits& limits, int width, int height) {
+    Arena sizer = Arena::counting();
+    MapMemory().allocate(sizer, limits);
+    LoopCheck::reserve(sizer, limits, width, height);
+    return sizer.peak() + kArenaAlignment;
+  }
+  // Bytes of one more keyframe; the tables of the index grow in powers of two, up to this.
+  static constexpr std::size_t kKeyframeBytes = 24 * 1024;
+
+  // config: that of the odometry.
+  Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
+              const MapLimits& limits);
+
+  // Takes the result of a frame right after Odometry::track(). Does a bounded part of the work that waits.
+  MapResult update(const Odometry& odometry, const TrackResult& result);
+
+  const PoseGraph& graph() const { return memory_.graph; }
+  MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
+  // The pose of a keyframe as it is known now; nothing if it was removed.
+  std::optional<Se3> keyframe_pose(std::uint32_t id) const;
+
+  // Counts since init: keyframes that joined, pairs that were compared, pairs that the comparison accepted,
+  // and loops that joined the graph.
+  struct Counts {
+    int keyframes = 0, compared = 0, accepted = 0, loops = 0, removed = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  // A pair of keyframes that the comparison accepted.
+  struct Hypothesis {
+    std::uint16_t old_slot = 0, new_slot = 0;
+    LoopMeasurement loop;
+    bool joined = false;  // the graph
+  };
+  static constexpr std::size_t kCandidates = 4;
+  static constexpr std::size_t kHypotheses = 24;
+
+  void add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out);
+  std::uint16_t least_needed() const;
+  void remove(std::uint16_t slot, MapResult& out);
+  void find_candidates(std::uint16_t slot);
+  void compare_next();
+  bool plausible(const Hypothesis& hypothesis) const;
+  enum class Relation : std::uint8_t { kAgree, kContradict, kUnrelated };
+  Relation compare(const Hypothesis& a, const Hypothesis& b) const;
+  Matrix6 between(std::uint16_t a, std::uint16_t b, const Vector3& t) const;
+  void judge(MapResult& out);
+  float view_distance(std::uint16_t a, std::uint16_t b) const;
+  void find_neighbour(std::uint16_t slot);
+  std::span<const Descriptor> all_descriptors() const { return memory_.features.all_descriptors(); }
+
+  Arena arena_;
+  LoopCheck check_;
+  MapMemory memory_;
+  std::size_t refreshed_ = 0;  // the position whose neighbour is searched next
+
+  std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
+  Se3 T_world_keyframe_;                // as the odometry has it
+  Matrix6 world_covariance_ = Matrix6::Zero();
+  std::array<PlaceCandidate, kCandidates> candidates_;  // of the latest keyframe, the next to compare last
+  std::size_t candidate_count_ = 0;
+  bool is_judged_ = true;                           // what the comparisons of the latest keyframe gave
+  std::array<Hypothesis, kHypotheses> hypotheses_;  // the latest, oldest first
+  std::size_t hypothesis_count_ = 0;
+  Counts counts_;
+  bool ready_ = false;
+};
+
+}  // namespace plvo

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/map/map_limits.hpp"
+
+namespace plvo {
+namespace {
+
+struct MapRange {
+  const char* name;
+  int value, least, most;
+};
+
+}  // namespace
+
+Status MapLimits::validate() const {
+  for (const MapRange& range :
+       {MapRange{"keyframes", keyframes, 8, kMostKeyframes}, MapRange{"keypoints", keypoints, 50, 400},
+        MapRange{"segments", segments, 1, 256}})
+    if (range.value < range.least || range.value > range.most)
+      return Status(StatusCode::kInvalidArgument, "MapLimits::")
+          .append(range.name)
+          .append(" must lie between ")
+          .append(range.least)
+          .append(" and ")
+          .append(range.most)
+          .append(", got ")
+          .append(range.value);
+  return {};
+}
+
+}  // namespace plvo

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which keyframes of the map look like this one. Binary descriptors that are near each other agree in most
+// bits. So a few of the bits, drawn once, are a key that both often have in common; a table from keys to
+// descriptors finds one from the other without comparing all (bit sampling: Indyk & Motwani, STOC 1998;
+// several tables over different bits: Norouzi, Punjani & Fleet, CVPR 2012). It needs no training.
+//
+// Each descriptor of the query votes for the keyframes that have one near to it. A vote is divided by the
+// number of keyframes that it goes to: what is everywhere says nothing about the place (inverse document
+// frequency: Sivic & Zisserman, ICCV 2003).
+//
+// Every list has a bound, so each call does: adding and removing a descriptor visit at most kListLength
+// entries for each table; a query compares at most kTables · kListLength descriptors with each of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/base/fixed_vector.hpp"
+#include "plvo/map/map_limits.hpp"
+#include "plvo/points/keypoint.hpp"
+
+namespace plvo {
+
+struct PlaceCandidate {
+  std::uint16_t slot = 0;
+  std::uint32_t score = 0;  // kWholeVote for a descriptor that votes for this keyframe alone
+};
+
+class PlaceIndex {
+ public:
+  static constexpr std::size_t kTables = 3;
+  static constexpr int kKeyBits = 14;
+  static constexpr std::size_t kListLength = 24;
+  static constexpr int kNear = 48;  // bits of 256 in which a descriptor that votes differs at most
+  static constexpr std::uint32_t kWholeVote = 64;
+
+  constexpr void allocate(Arena& memory, const MapLimits& limits) {
+    keypoints_ = static_cast<std::size_t>(limits.keypoints);
+    const std::size_t entries = static_cast<std::size_t>(limits.keyframes) * keypoints_;
+    lists_ = lists(entries);
+    heads_ = memory.take<std::uint32_t>("map index", kTables * lists_);
+    nexts_ = memory.take<std::uint32_t>("map index", kTables * entries);
+    scores_ = memory.take<std::uint32_t>("map index", static_cast<std::size_t>(limits.keyframes));
+    voters_ = memory.take<std::uint32_t>("map index", static_cast<std::size_t>(limits.keyframes));
+  }
+  // Removes all descriptors.
+  void clear();
+
+  // `stored`: all descriptors of the map, those of slot s from s · keypoints on. The descriptors of a slot
+  // must be the same when it is added and when it is removed.
+  void add(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
+  void remove(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
+
+  // Writes the keyframes with the highest scores, the best first, and among equal ones the lower slot. Slots
+  // with a flag in `excluded` get no vote.
+  void query(std::span<const Descriptor> stored, std::span<const Descriptor> query,
+             std::span<const std::uint8_t> excluded, FixedVector<PlaceCandidate>& best);
+
+ private:
+  static constexpr std::uint32_t kEnd = 0xffffffff;
+  // A power of two of lists for each table: one for two to four descriptors, at most one for each key.
+  static constexpr std::size_t lists(std::size_t entries) {
+    std::size_t n = 1;
+    while (4 * n <= entries && n < (std::size_t{1} << kKeyBits)) n *= 2;
+    return n;
+  }
+  std::uint32_t& head(std::size_t table, const Descriptor& descriptor);
+  std::uint32_t& next(std::size_t table, std::size_t entry) {
+    return nexts_[table * (nexts_.size() / kTables) + entry];
+  }
+
+  std::size_t keypoints_ = 0, lists_ = 0;
+  std::span<std::uint32_t> heads_, nexts_;
+  std::span<std::uint32_t> scores_, voters_;  // by slot, of one query
+};
+
+}  // namespace plvo

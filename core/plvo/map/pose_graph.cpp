@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/map/pose_graph.hpp"
+
+#include <algorithm>
+
+#include "plvo/math/cholesky.hpp"
+
+namespace plvo {
+namespace {
+
+// Added to the variances of every motion, so that none is exact: 0.1 mm, 0.1 mrad.
+constexpr double kMotionFloor = 1e-8;
+// The iterations end when rᵀ C r is below this share of its first value, or below this number.
+constexpr double kGainShare = 1e-8, kGainEnough = 1e-6;
+// Another linearisation follows where a pose moved by more than this (m, rad).
+constexpr double kGraphMoved = 1e-3;
+
+Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
+
+// ρ = v + [t]× ω for a pose at t.
+Matrix6 transform(const Matrix6& C, const Matrix3& lever) {
+  Matrix6 J = Matrix6::Identity();
+  J.block<3, 3>(0, 3) = lever;
+  return J.lazyProduct(C).eval().lazyProduct(J.transpose());
+}
+
+// The sum of the variances of position and orientation (m², rad²) at t.
+double spread(const Matrix6& covariance, const Vector3& t) { return about_position(covariance, t).trace(); }
+
+}  // namespace
+
+Matrix6 about_origin(const Matrix6& covariance, const Vector3& t) { return transform(covariance, skew(t)); }
+Matrix6 about_position(const Matrix6& covariance, const Vector3& t) {
+  return transform(covariance, -skew(t));
+}
+
+Matrix6 motion_in_map(const Se3& T_i, const Se3& T_ij, const Matrix6& covariance) {
+  Matrix6 J = Matrix6::Zero();
+  J.block<3, 3>(0, 0) = T_i.R;
+  J.block<3, 3>(3, 3) = T_i.R;
+  const Matrix6 turned = J.lazyProduct(covariance).eval().lazyProduct(J.transpose());
+  return about_origin(turned, T_i * T_ij.t);
+}
+
+Vector6 difference(const Se3& T) {
+  Vector6 r;
+  r.head<3>() = T.t;
+  r.tail<3>() = rotation_log(T.R);
+  return r;
+}
+
+void PoseGraph::clear() {
+  for (Node& node : nodes_) node.id = 0;
+  size_ = loop_count_ = 0;
+  next_id_ = 1;
+  kernel_ = RobustKernel(RobustLoss::kHuber, 6);
+  phase_ = Phase::kIdle;
+  changed_ = false;
+}
+
+std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& covariance) {
+  std::size_t slot = 0;
+  while (nodes_[slot].id != 0) ++slot;
+  Node& node = nodes_[slot];
+  node = Node();
+  node.id = next_id_++;
+  node.position = static_cast<std::uint16_t>(size_);
+  if (size_ > 0) {
+    const Node& previous = at(size_ - 1);
+    node.T_previous_keyframe = T_previous_keyframe;
+    node.motion_covariance = covariance + kMotionFloor * Matrix6::Identity();
+    node.T_map_keyframe = previous.T_map_keyframe * T_previous_keyframe;
+    node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
+    node.covariance = previous.covariance +
+                      motion_in_map(previous.T_map_keyframe, T_previous_keyframe, node.motion_covariance);
+  }
+  if (size_ == 0) node.T_map_keyframe = T_previous_keyframe;
+  order_[size_++] = static_cast<std::uint16_t>(slot);
+  return static_cast<std::uint16_t>(slot);
+}
+
+bool PoseGraph::has_loop(std::uint16_t a, std::uint16_t b) const {
+  for (const Loop& loop : loops())
+    if ((loop.older == a && loop.newer == b) || (loop.older == b && loop.newer == a)) return true;
+  return false;
+}
+
+void PoseGraph::add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance) {
+  if (a == b || has_loop(a, b)) return;
+  note_change();
+  const bool in_order = nodes_[a].position < nodes_[b].position;
+  Loop loop;
+  loop.older = in_order ? a : b;
+  loop.newer = in_order ? b : a;
+  loop.T_older_newer = in_order ? T_a_b : T_a_b.inverse();
+  loop.covariance = in_order ? covariance : inverse_covariance(T_a_b, covariance);
+  loop.covariance += kMotionFloor * Matrix6::Identity();
+  if (loop_count_ < loops_.size()) {
+    loops_[loop_count_++] = loop;
+    return;
+  }
+  const auto worst = std::max_element(loops_.begin(), loops_.end(), [](const Loop& l, const Loop& m) {
+    return l.covariance.trace() < m.covariance.trace();
+  });
+  if (worst->covariance.trace() > loop.covariance.trace()) *worst = loop;
+}
+
+PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
+  note_change();
+  Node& node = nodes_[slot];
+  const std::size_t position = node.position;
+  const bool has_previous = position > 0, has_next = position + 1 < size_;
+  Node* const next = has_next ? &at(position + 1) : nullptr;
+  const bool into_next =
+      has_next && (!has_previous || next->motion_covariance.trace() <= node.motion_covariance.trace());
+  Removed removed;
+  removed.slot = slot;
+  removed.into = order_[into_next ? position + 1 : position - 1];
+  removed.T_into_removed = nodes_[removed.into].T_map_keyframe.inverse() * node.T_map_keyframe;
+
+  // The loops, with the measured motion to the node that takes them.
+  const Se3 T_slot_into = into_next ? next->T_previous_keyframe : node.T_previous_keyframe.inverse();
+  const Matrix6 C_slot_into = into_next
+                                  ? next->motion_covariance
+                                  : inverse_covariance(node.T_previous_keyframe, node.motion_covariance);
+  const std::size_t count = loop_count_;
+  loop_count_ = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Loop loop = loops_[i];
+    if (loop.older != slot && loop.newer != slot) {
+      loops_[loop_count_++] = loop;
+      continue;
+    }
+    const bool removed_is_newer = loop.newer == slot;
+    const std::uint16_t other = removed_is_newer ? loop.older : loop.newer;
+    const Se3 T_other_slot = removed_is_newer ? loop.T_older_newer : loop.T_older_newer.inverse();
+    const Matrix6 C_other_slot =
+        removed_is_newer ? loop.covariance : inverse_covariance(loop.T_older_newer, loop.covariance);
+    if (other == removed.into || has_loop(other, removed.into)) continue;
+    const bool in_order = nodes_[other].position < nodes_[removed.into].position;
+    const Se3 T = T_other_slot * T_slot_into;
+    const Matrix6 C = compose_covariance(T_other_slot, C_other_slot, T_slot_into, C_slot_into);
+    Loop& moved = loops_[loop_count_++];
+    moved.older = in_order ? other : removed.into;
+    moved.newer = in_order ? removed.into : other;
+    moved.T_older_newer = in_order ? T : T.inverse();
+    moved.covariance = in_order ? C : inverse_covariance(T, C);
+  }
+
+  if (has_previous && has_next) {
+    next->motion_covariance = compose_covariance(node.T_previous_keyframe, node.motion_covariance,
+                                                 next->T_previous_keyframe, next->motion_covariance);
+    next->T_previous_keyframe = node.T_previous_keyframe * next->T_previous_keyframe;
+    next->T_previous_keyframe.R = renormalise(next->T_previous_keyframe.R);
+  }
+  for (std::size_t k = position; k + 1 < size_; ++k) {
+    order_[k] = order_[k + 1];
+    nodes_[order_[k]].position = static_cast<std::uint16_t>(k);
+  }
+  --size_;
+  node.id = 0;
+  return removed;
+}
+
+Matrix6 PoseGraph::chain_covariance(std::uint16_t a, std::uint16_t b) const {
+  const std::size_t first = std::min(nodes_[a].position, nodes_[b].position);
+  const std::size_t last = std::max(nodes_[a].position, nodes_[b].position);
+  Matrix6 sum = Matrix6::Zero();
+  for (std::size_t k = first + 1; k <= last; ++k)
+    sum += motion_in_map(at(k - 1).T_map_keyframe, at(k).T_previous_keyframe, at(k).motion_covariance);
+  return sum;
+}
+
+// What the iterations have reached so far is kept; the rest begins anew.
+void PoseGraph::note_change() {
+  if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply();
+  phase_ = Phase::kIdle;
+  changed_ = true;
+}
+
+void PoseGraph::step() {
+  switch (phase_) {
+    case Phase::kIdle:
+      if (changed_ && loop_count_ > 0) {
+        begin_round(0);
+        linearise();
+      }
+      changed_ = false;
+      break;
+    case Phase::kLinearise: linearise(); break;
+    case Phase::kIterate:
+      for (int i = 0; i < kIterationsPerStep && phase_ == Phase::kIterate; ++i) {
+        if (!iterate()) continue;
+        phase_ = Phase::kIdle;
+        if (apply() && round_ + 1 < kMostRounds) begin_round(round_ + 1);
+      }
+      break;
+  }
+}
+
+void PoseGraph::begin_round(int round) {
+  phase_ = Phase::kLinearise;
+  round_ = round;
+  count_ = size_;
+  edge_ = 1;  // the first node has no motion
+}
+
+void PoseGraph::linearise() {
+  for (int i = 0; i < kEdgesPerStep && edge_ < count_ + loop_count_; ++i, ++edge_) {
+    if (edge_ < count_)
+      linearise_chain(edge_);
+    else
+      linearise_loop(loops_[edge_ - count_]);
+  }
+  if (edge_ == count_ + loop_count_) begin_iterations();
+}
+
+// If the path over `from` is more certain, the covariance of `node` is that of this path.
+void PoseGraph::relax(Node& node, const Node& from, const Matrix6& between) const {
+  const Matrix6 covariance = from.covariance + between;
+  const Vector3& t = node.T_map_keyframe.t;
+  if (node.position > 0 && spread(covariance, t) < spread(node.covariance, t)) node.covariance = covariance;
+}
+
+void PoseGraph::linearise_chain(std::size_t position) {
+  Node& node = at(position);
+  const Node& previous = at(position - 1);
+  node.C = motion_in_map(previous.T_map_keyframe, node.T_previous_keyframe, node.motion_covariance);
+  Cholesky<6> cholesky;
+  node.W = cholesky.factor(node.C) ? cholesky.inverse() : Matrix6(Matrix6::Zero());
+  node.residual =
+      difference(previous.T_map_keyframe * node.T_previous_keyframe * node.T_map_keyframe.inverse());
+  relax(node, previous, node.C);
+}
+
+void PoseGraph::linearise_loop(Loop& loop) {
+  Node& older = nodes_[loop.older];
+  Node& newer = nodes_[loop.newer];
+  loop.residual = difference(older.T_map_keyframe * loop.T_older_newer * newer.T_map_keyframe.inverse());
+  const Matrix6 C = motion_in_map(older.T_map_keyframe, loop.T_older_newer, loop.covariance);
+  Cholesky<6> cholesky;
+  loop.W.setZero();
+  if (cholesky.factor(C)) {
+    double weight = 1;
+    kernel_(cholesky.solve_lower(loop.residual).squaredNorm(), weight);
+    loop.W = weight * cholesky.inverse();
+  }
+  relax(newer, older, C);
+  relax(older, newer, C);
+}
+
+// The gradient at y = 0: W r of each motion, and of each loop for all motions that it spans.
+void PoseGraph::begin_iterations() {
+  for (std::size_t k = 0; k < count_; ++k) at(k).q.setZero();
+  for (const Loop& loop : loops()) {
+    const Vector6 force = loop.W * loop.residual;
+    nodes_[loop.newer].q += force;
+    nodes_[loop.older].q -= force;
+  }
+  Vector6 sum = Vector6::Zero();
+  gain_ = 0;
+  for (std::size_t k = count_; k-- > 1;) {
+    Node& node = at(k);
+    sum += node.q;
+    node.r = node.W * node.residual + sum;
+    node.y.setZero();
+    node.p = node.C * node.r;
+    gain_ += node.r.dot(node.p);
+  }
+  first_gain_ = gain_;
+  iteration_ = 0;
+  phase_ = Phase::kIterate;
+}
+
+// One iteration of preconditioned conjugate gradients (Hestenes & Stiefel, 1952). Returns true at the end.
+bool PoseGraph::iterate() {
+  if (!(gain_ > kGainEnough && gain_ > kGainShare * first_gain_) || iteration_ == kMostIterations)
+    return true;
+  ++iteration_;
+  // q = H p
+  Vector6 x = Vector6::Zero();
+  for (std::size_t k = 0; k < count_; ++k) {
+    Node& node = at(k);
+    if (k > 0) x += node.p;
+    node.x = x;
+    node.q.setZero();
+  }
+  for (const Loop& loop : loops()) {
+    const Vector6 force = loop.W * (nodes_[loop.newer].x - nodes_[loop.older].x);
+    nodes_[loop.newer].q += force;
+    nodes_[loop.older].q -= force;
+  }
+  Vector6 sum = Vector6::Zero();
+  double curvature = 0;
+  for (std::size_t k = count_; k-- > 1;) {
+    Node& node = at(k);
+    sum += node.q;
+    node.q = node.W * node.p + sum;
+    curvature += node.p.dot(node.q);
+  }
+  if (!(curvature > 0)) return true;
+  const double alpha = gain_ / curvature;
+  double gain = 0;
+  for (std::size_t k = 1; k < count_; ++k) {
+    Node& node = at(k);
+    node.y += alpha * node.p;
+    node.r -= alpha * node.q;
+    node.q = node.C * node.r;
+    gain += node.r.dot(node.q);
+  }
+  const double beta = gain / gain_;
+  gain_ = gain;
+  for (std::size_t k = 1; k < count_; ++k) at(k).p = at(k).q + beta * at(k).p;
+  return false;
+}
+
+// Moves the poses; those that joined since the linearisation move with the last one. Returns whether any
+// moved far.
+bool PoseGraph::apply() {
+  Vector6 x = Vector6::Zero();
+  bool moved = false;
+  for (std::size_t k = 1; k < size_; ++k) {
+    Node& node = at(k);
+    if (k < count_) x += node.y;
+    node.T_map_keyframe = displacement(x) * node.T_map_keyframe;
+    node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
+    moved = moved || x.cwiseAbs().maxCoeff() > kGraphMoved;
+  }
+  for (std::size_t k = count_; k-- > 1;) relax(at(k - 1), at(k), at(k).C);
+  for (std::size_t k = 1; k < size_; ++k)
+    if (k < count_)
+      relax(at(k), at(k - 1), at(k).C);
+    else
+      relax(at(k), at(k - 1),
+            motion_in_map(at(k - 1).T_map_keyframe, at(k).T_previous_keyframe, at(k).motion_covariance));
+  return moved;
+}
+
+}  // namespace plvo

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pose graph of the map. Its nodes are the keyframes. They form a chain in the order in which they were
+// seen: each has the motion from the one before, as the odometry measured it. Loops are further motions,
+// between keyframes that show the same place.
+//
+// Perturbations x = (ρ, ω) move a pose in the axes of the map and about its origin: T ← (Exp(ω), ρ) T. The
+// residual of a measured motion T_ij is r = (t, Log R) of T_i T_ij T_j⁻¹, and to first order it becomes r +
+// x_i − x_j. The unknowns are the differences y_k = x_k − x_(k−1) along the chain. The Hessian of the chain
+// is then block-diagonal, with the covariances of its motions as its inverse: the preconditioner of conjugate
+// gradients (as the subgraph of Dellaert, Carlson, Ila, Ni & Thorpe, IROS 2010). A loop only adds the sum of
+// the y that it spans. Loops have Huber's loss; their weights are renewed with each linearisation.
+//
+// step() does a bounded part of the work: it linearises at most kEdgesPerStep edges, or takes at most
+// kIterationsPerStep iterations, each of which visits every edge once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "plvo/base/arena.hpp"
+#include "plvo/math/se3.hpp"
+#include "plvo/motion/robust_kernel.hpp"
+
+namespace plvo {
+
+class PoseGraph {
+ public:
+  static constexpr int kEdgesPerStep = 64;
+  static constexpr int kIterationsPerStep = 2;
+  static constexpr int kMostIterations = 40;  // of one linearisation
+  static constexpr int kMostRounds = 10;      // linearisations after a change
+
+  struct Node {
+    Se3 T_map_keyframe;
+    Se3 T_previous_keyframe;                      // as measured; unused in the first node
+    Matrix6 motion_covariance = Matrix6::Zero();  // of its ⊞-perturbation
+    // Covariance of the perturbation (ρ, ω), along the path through the graph on which it is smallest. The
+    // other paths would only make it smaller.
+    Matrix6 covariance = Matrix6::Zero();
+    std::uint32_t id = 0;  // 1, 2, … in the order of the chain; 0: the slot is free
+    std::uint16_t position = 0;
+
+    // The solver's: covariance and information of the motion in the axes of the map, and vectors.
+    Matrix6 C = Matrix6::Zero(), W = Matrix6::Zero();
+    Vector6 residual = Vector6::Zero(), y = residual, r = residual, p = residual, q = residual, x = residual;
+  };
+  struct Loop {
+    std::uint16_t older = 0, newer = 0;  // slots, in the order of the chain
+    Se3 T_older_newer;
+    Matrix6 covariance = Matrix6::Zero();  // of its ⊞-perturbation
+    Matrix6 W = Matrix6::Zero();           // with the robust weight
+    Vector6 residual = Vector6::Zero();
+  };
+  // What remove() did with the node: its pose relative to a node that stays.
+  struct Removed {
+    std::uint16_t slot = 0, into = 0;
+    Se3 T_into_removed;
+  };
+
+  constexpr void allocate(Arena& memory, int keyframes) {
+    const auto n = static_cast<std::size_t>(keyframes);
+    nodes_ = memory.take<Node>("pose graph", n);
+    order_ = memory.take<std::uint16_t>("pose graph", n);
+    loops_ = memory.take<Loop>("pose graph", n);
+  }
+  void clear();
+
+  // Nodes in the order of the chain.
+  std::size_t size() const { return size_; }
+  bool full() const { return size_ == nodes_.size(); }
+  std::uint16_t slot_at(std::size_t position) const { return order_[position]; }
+  std::uint16_t last() const { return order_[size_ - 1]; }
+  const Node& node(std::size_t slot) const { return nodes_[slot]; }
+  std::span<const Loop> loops() const { return loops_.first(loop_count_); }
+
+  // Adds a node at the end of the chain, and returns its slot. The graph must not be full. The first node
+  // defines the map: for it, the motion is its pose, and has no covariance.
+  std::uint16_t append(const Se3& T_previous_keyframe, const Matrix6& covariance);
+  // Adds a measured motion. If there is no room, the most uncertain loop gives way.
+  void add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
+  // Removes a node. Its neighbours' motions are composed; its loops go to the neighbour whose motion is more
+  // certain. There must be another node.
+  Removed remove(std::uint16_t slot);
+
+  // Covariance of the perturbation of x_b − x_a along the chain.
+  Matrix6 chain_covariance(std::uint16_t a, std::uint16_t b) const;
+
+  // Does a part of the work.
+  void step();
+  bool idle() const { return phase_ == Phase::kIdle && !changed_; }
+
+ private:
+  enum class Phase : std::uint8_t { kIdle, kLinearise, kIterate };
+
+  Node& at(std::size_t position) { return nodes_[order_[position]]; }
+  const Node& at(std::size_t position) const { return nodes_[order_[position]]; }
+  bool has_loop(std::uint16_t a, std::uint16_t b) const;
+  void note_change();
+  void begin_round(int round);
+  void linearise();
+  void linearise_chain(std::size_t position);
+  void linearise_loop(Loop& loop);
+  void begin_iterations();
+  bool iterate();
+  bool apply();
+  void relax(Node& node, const Node& from, const Matrix6& between) const;
+
+  std::span<Node> nodes_;           // by slot
+  std::span<std::uint16_t> order_;  // slots by position in the chain
+  std::size_t size_ = 0;
+  std::span<Loop> loops_;
+  std::size_t loop_count_ = 0;
+  std::uint32_t next_id_ = 1;
+  RobustKernel kernel_;
+
+  Phase phase_ = Phase::kIdle;
+  bool changed_ = false;   // since the last linearisation began
+  std::size_t count_ = 0;  // nodes and
+  std::size_t edge_ = 0;   // edges of the chain, then loops, that were linearised
+  int iteration_ = 0, round_ = 0;
+  double first_gain_ = 0, gain_ = 0;  // rᵀ C r, in squared standard deviations
+};
+
+// The covariance of the perturbation (ρ, ω) from that of the ⊞-perturbation of a pose at t, and back.
+Matrix6 about_origin(const Matrix6& covariance, const Vector3& t);
+Matrix6 about_position(const Matrix6& covariance, const Vector3& t);
+// Covariance of the perturbation (ρ, ω) of T_i T_ij, from that of the ⊞-perturbation of T_ij.
+Matrix6 motion_in_map(const Se3& T_i, const Se3& T_ij, const Matrix6& covariance);
+// (t, Log R).
+Vector6 difference(const Se3& T);
+
+}  // namespace plvo

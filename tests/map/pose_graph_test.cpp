@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pose graph against a dense least-squares solution of the same problem, and what removal does to it.
+#include "plvo/map/pose_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "plvo/base/random.hpp"
+
+namespace plvo {
+namespace {
+
+struct Graph {
+  explicit Graph(int keyframes) : memory(bytes(keyframes)) {
+    arena = Arena(memory);
+    graph.allocate(arena, keyframes);
+    graph.clear();
+  }
+  static std::size_t bytes(int keyframes) {
+    Arena sizer = Arena::counting();
+    PoseGraph().allocate(sizer, keyframes);
+    return sizer.peak() + kArenaAlignment;
+  }
+  // The number of steps until nothing is left to do.
+  int solve() {
+    int steps = 0;
+    for (; !graph.idle() && steps < 10000; ++steps) graph.step();
+    return steps;
+  }
+  std::vector<std::byte> memory;
+  Arena arena;
+  PoseGraph graph;
+};
+
+Vector6 draw(Random& random, double sigma_m, double sigma_rad) {
+  Vector6 x;
+  for (int i = 0; i < 6; ++i) {
+    double sum = -6;
+    for (int k = 0; k < 12; ++k) sum += random.uniform();
+    x[i] = sum * (i < 3 ? sigma_m : sigma_rad);
+  }
+  return x;
+}
+
+constexpr double kStep_m = 0.01, kStep_rad = 0.01;
+
+Matrix6 covariance(double sigma_m, double sigma_rad) {
+  Vector6 d;
+  d << Vector3::Constant(sigma_m * sigma_m), Vector3::Constant(sigma_rad * sigma_rad);
+  return d.asDiagonal();
+}
+
+// A round walk of n keyframes, which ends where it began; the truth.
+std::vector<Se3> circle(int n) {
+  std::vector<Se3> poses;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2 * 3.14159265358979 * k / (n - 1);
+    poses.push_back(
+        {rotation_exp({0, 0, angle}), {2 * std::sin(angle), 2 - 2 * std::cos(angle), 0.1 * k / n}});
+  }
+  return poses;
+}
+
+// The chain of a noisy odometry along these poses.
+void walk(PoseGraph& graph, const std::vector<Se3>& truth, std::uint64_t seed) {
+  Random random(seed);
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const Se3 motion = k == 0 ? truth[0] : truth[k - 1].inverse() * truth[k];
+    graph.append(k == 0 ? motion : boxplus(motion, draw(random, kStep_m, kStep_rad)),
+                 covariance(kStep_m, kStep_rad));
+  }
+}
+
+double robust_cost(double s) {
+  const double k = chi_square_quantile(6, 0.95);
+  return s <= k ? s : 2 * std::sqrt(k * s) - k;
+}
+
+// Residual of a measured motion, whitened by its covariance in the axes of its start.
+Vector6 whitened(const Se3& a, const Se3& b, const Se3& T_a_b, const Matrix6& C) {
+  const Eigen::Matrix<double, 6, 6> L = Eigen::Matrix<double, 6, 6>(C).llt().matrixL();
+  return Eigen::Matrix<double, 6, 6>(L).triangularView<Eigen::Lower>().solve(
+      Eigen::Matrix<double, 6, 1>(boxminus(a.inverse() * b, T_a_b)));
+}
+
+double cost(const PoseGraph& graph, const std::vector<Se3>& poses) {
+  double sum = 0;
+  for (std::size_t k = 1; k < graph.size(); ++k) {
+    const PoseGraph::Node& node = graph.node(graph.slot_at(k));
+    sum += whitened(poses[k - 1], poses[k], node.T_previous_keyframe, node.motion_covariance).squaredNorm();
+  }
+  for (const PoseGraph::Loop& loop : graph.loops())
+    sum += robust_cost(whitened(poses[graph.node(loop.older).position],
+                                poses[graph.node(loop.newer).position], loop.T_older_newer, loop.covariance)
+                           .squaredNorm());
+  return sum;
+}
+
+std::vector<Se3> poses_of(const PoseGraph& graph) {
+  std::vector<Se3> poses;
+  for (std::size_t k = 0; k < graph.size(); ++k) poses.push_back(graph.node(graph.slot_at(k)).T_map_keyframe);
+  return poses;
+}
+
+// Gauss–Newton with a dense matrix and numeric derivatives of the ⊞-perturbations of all poses but the first.
+std::vector<Se3> dense_solution(const PoseGraph& graph) {
+  std::vector<Se3> poses = poses_of(graph);
+  const auto n = static_cast<Eigen::Index>(6 * (poses.size() - 1));
+  const auto edges = static_cast<Eigen::Index>(poses.size() - 1 + graph.loops().size());
+  const auto residuals = [&](const std::vector<Se3>& at) {
+    Eigen::VectorXd r(6 * edges);
+    for (Eigen::Index e = 0; e < edges; ++e) {
+      const auto k = static_cast<std::size_t>(e + 1);
+      if (k < poses.size()) {
+        const PoseGraph::Node& node = graph.node(graph.slot_at(k));
+        r.segment<6>(6 * e) = whitened(at[k - 1], at[k], node.T_previous_keyframe, node.motion_covariance);
+      } else {
+        const PoseGraph::Loop& loop = graph.loops()[k - poses.size()];
+        Vector6 w = whitened(at[graph.node(loop.older).position], at[graph.node(loop.newer).position],
+                             loop.T_older_newer, loop.covariance);
+        const double s = w.squaredNorm(), limit = chi_square_quantile(6, 0.95);
+        if (s > limit) w *= std::sqrt(std::sqrt(limit / s));  // by the root of the weight
+        r.segment<6>(6 * e) = w;
+      }
+    }
+    return r;
+  };
+  for (int round = 0; round < 20; ++round) {
+    const Eigen::VectorXd r = residuals(poses);
+    Eigen::MatrixXd J(6 * edges, n);
+    constexpr double kTiny = 1e-6;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      std::vector<Se3> moved = poses;
+      Vector6 delta = Vector6::Zero();
+      delta[i % 6] = kTiny;
+      Se3& pose = moved[static_cast<std::size_t>(i / 6 + 1)];
+      pose = boxplus(pose, delta);
+      J.col(i) = (residuals(moved) - r) / kTiny;
+    }
+    const Eigen::VectorXd step = -J.colPivHouseholderQr().solve(r);
+    for (std::size_t k = 1; k < poses.size(); ++k)
+      poses[k] = boxplus(poses[k], step.segment<6>(static_cast<Eigen::Index>(6 * (k - 1))));
+    if (step.cwiseAbs().maxCoeff() < 1e-9) break;
+  }
+  return poses;
+}
+
+TEST(PoseGraph, FindsTheSolutionOfADenseSolver) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const std::vector<Se3> truth = circle(25);
+    Graph g(30);
+    walk(g.graph, truth, seed);
+    Random random(seed, 7);
+    for (const auto& [a, b] : {std::pair{0, 24}, {3, 20}, {1, 23}}) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      g.graph.add_loop(g.graph.slot_at(i), g.graph.slot_at(j),
+                       boxplus(truth[i].inverse() * truth[j], draw(random, 0.01, 0.01)),
+                       covariance(0.01, 0.01));
+    }
+    const double before = cost(g.graph, poses_of(g.graph));
+    const std::vector<Se3> reference = dense_solution(g.graph);
+    g.solve();
+    const std::vector<Se3> solved = poses_of(g.graph);
+    double apart = 0;
+    for (std::size_t k = 0; k < solved.size(); ++k)
+      apart = std::max(apart, boxminus(solved[k], reference[k]).cwiseAbs().maxCoeff());
+    std::printf("cost %.1f before, %.3f solved, %.3f dense; poses %.2g apart\n", before,
+                cost(g.graph, solved), cost(g.graph, reference), apart);
+    // The two linearise a motion's error at its two ends: they differ by products of the errors.
+    EXPECT_LT(cost(g.graph, solved), 1.05 * cost(g.graph, reference) + 0.1);
+    EXPECT_LT(apart, 5e-3);
+    EXPECT_LT((solved.back().t - truth.back().t).norm(), 0.03);
+  }
+}
+
+TEST(PoseGraph, BoundsTheWorkOfAStep) {
+  constexpr int kNodes = 512;
+  const std::vector<Se3> truth = circle(kNodes);
+  Graph g(kNodes);
+  walk(g.graph, truth, 5);
+  g.graph.add_loop(g.graph.slot_at(0), g.graph.last(), truth.front().inverse() * truth.back(),
+                   covariance(0.01, 0.01));
+  const int steps = g.solve();
+  std::printf("%d steps for %d nodes\n", steps, kNodes);
+  // Linearisations by parts, then iterations two by two.
+  EXPECT_GE(steps, (kNodes + 1) / PoseGraph::kEdgesPerStep);
+  EXPECT_LE(steps, PoseGraph::kMostRounds * ((kNodes + 1) / PoseGraph::kEdgesPerStep + 1 +
+                                             PoseGraph::kMostIterations / PoseGraph::kIterationsPerStep + 1));
+  EXPECT_LT((g.graph.node(g.graph.last()).T_map_keyframe.t - truth.back().t).norm(), 0.05);
+}
+
+TEST(PoseGraph, MovesWhatWasNotSeenAndKeepsWhatWas) {
+  // Between keyframes 9 and 10 nothing was seen: the odometry went on at a wrong place.
+  const std::vector<Se3> truth = circle(20);
+  Graph g(20);
+  walk(g.graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
+  g.graph.append({rotation_exp({0.3, -2, 0.4}), {30, -20, 10}}, covariance(100, 3));
+  for (std::size_t k = 11; k < 20; ++k)
+    g.graph.append(truth[k - 1].inverse() * truth[k], covariance(kStep_m, kStep_rad));
+  EXPECT_GT(g.graph.node(g.graph.last()).covariance(0, 0), 1e3);
+  g.graph.add_loop(g.graph.slot_at(1), g.graph.slot_at(18), truth[1].inverse() * truth[18],
+                   covariance(0.01, 0.01));
+  g.solve();
+  EXPECT_LT((g.graph.node(g.graph.last()).T_map_keyframe.t - truth.back().t).norm(), 0.2);
+  EXPECT_LT(about_position(g.graph.node(g.graph.last()).covariance, truth.back().t)(0, 0), 0.01)
+      << "by the path over the loop";
+}
+
+TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
+  const std::vector<Se3> truth = circle(12);
+  Graph g(12);
+  for (std::size_t k = 0; k < truth.size(); ++k)
+    g.graph.append(k == 0 ? truth[0] : truth[k - 1].inverse() * truth[k], covariance(kStep_m, kStep_rad));
+  g.graph.add_loop(g.graph.slot_at(0), g.graph.slot_at(11), truth[0].inverse() * truth[11],
+                   covariance(0.01, 0.01));
+  g.solve();
+  // Information of the differences x along the chain, about the origin.
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(66, 66);
+  const auto add = [&H](int i, int j, const Matrix6& C) {
+    const Eigen::Matrix<double, 6, 6> W = Eigen::Matrix<double, 6, 6>(C).inverse();
+    if (i >= 0) H.block<6, 6>(6 * i, 6 * i) += W;
+    H.block<6, 6>(6 * j, 6 * j) += W;
+    if (i < 0) return;
+    H.block<6, 6>(6 * i, 6 * j) -= W;
+    H.block<6, 6>(6 * j, 6 * i) -= W;
+  };
+  for (int k = 1; k < 12; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const PoseGraph::Node& node = g.graph.node(g.graph.slot_at(at));
+    add(k - 2, k - 1, motion_in_map(truth[at - 1], node.T_previous_keyframe, node.motion_covariance));
+  }
+  const PoseGraph::Loop& loop = g.graph.loops()[0];
+  add(-1, 10, motion_in_map(truth[0], loop.T_older_newer, loop.covariance));
+  const Eigen::MatrixXd marginal = H.inverse();
+  for (int k = 1; k < 12; ++k) {
+    const Eigen::Matrix<double, 6, 6> more =
+        Eigen::Matrix<double, 6, 6>(g.graph.node(g.graph.slot_at(static_cast<std::size_t>(k))).covariance) -
+        marginal.block<6, 6>(6 * (k - 1), 6 * (k - 1));
+    EXPECT_GT(more.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-7) << "node " << k;
+  }
+}
+
+TEST(PoseGraph, ARemovedNodeLeavesItsMotionsAndLoops) {
+  const std::vector<Se3> truth = circle(10);
+  Graph g(10);
+  walk(g.graph, truth, 4);
+  g.graph.add_loop(g.graph.slot_at(1), g.graph.slot_at(8), truth[1].inverse() * truth[8],
+                   covariance(0.01, 0.01));
+  const std::vector<Se3> before = poses_of(g.graph);
+  const std::uint16_t gone = g.graph.slot_at(8);
+  const PoseGraph::Removed removed = g.graph.remove(gone);
+  EXPECT_EQ(g.graph.size(), 9U);
+  EXPECT_LT(boxminus(g.graph.node(removed.into).T_map_keyframe * removed.T_into_removed, before[8]).norm(),
+            1e-12);
+  ASSERT_EQ(g.graph.loops().size(), 1U);
+  const PoseGraph::Loop& loop = g.graph.loops()[0];
+  EXPECT_EQ(loop.older, g.graph.slot_at(1));
+  EXPECT_EQ(loop.newer, removed.into);
+  EXPECT_GT(loop.covariance(0, 0), 1.5e-4) << "it includes the motion to the neighbour";
+  const PoseGraph::Node& next = g.graph.node(g.graph.slot_at(8));
+  EXPECT_LT(boxminus(before[7] * next.T_previous_keyframe, before[9]).norm(), 1e-12);
+  EXPECT_GT(next.motion_covariance(0, 0), 1.5e-4);
+  // The slot is used again, with a new number.
+  EXPECT_EQ(g.graph.append(Se3(), covariance(1, 1)), gone);
+  EXPECT_EQ(g.graph.node(gone).id, 11U);
+}
+
+TEST(PoseGraph, KeepsTheMoreCertainLoopsWhenFull) {
+  const std::vector<Se3> truth = circle(6);
+  Graph g(6);
+  walk(g.graph, truth, 1);
+  double sigma = 0.1;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = i + 2; j < 6; ++j, sigma -= 0.005)
+      g.graph.add_loop(g.graph.slot_at(i), g.graph.slot_at(j), truth[i].inverse() * truth[j],
+                       covariance(sigma, sigma));
+  ASSERT_EQ(g.graph.loops().size(), 6U);
+  for (const PoseGraph::Loop& loop : g.graph.loops()) EXPECT_LT(loop.covariance(0, 0), 0.081 * 0.081);
+}
+
+}  // namespace
+}  // namespace plvo
