@@ -10,11 +10,11 @@
 namespace plvo {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;  // cells of 20 × 20 pixels
+constexpr int kImageWidth = 320, kImageHeight = 240;  // cells of 20 × 20 pixels
 
-CarriedCells cells() {
+CarriedCells empty_cells() {
   CarriedCells cells;
-  cells.init(kWidth, kHeight);
+  cells.init(kImageWidth, kImageHeight);
   return cells;
 }
 CarriedCells::Counts counts_at(std::size_t cell, std::uint16_t count) {
@@ -24,9 +24,9 @@ CarriedCells::Counts counts_at(std::size_t cell, std::uint16_t count) {
 }
 
 TEST(CarriedCells, APixelBelongsToTheCellAroundIt) {
-  const CarriedCells image = cells();
-  for (int y = 0; y < kHeight; y += 3)
-    for (int x = 0; x < kWidth; x += 3)
+  const CarriedCells image = empty_cells();
+  for (int y = 0; y < kImageHeight; y += 3)
+    for (int x = 0; x < kImageWidth; x += 3)
       EXPECT_EQ(image.cell_of(Vector2(x, y)),
                 static_cast<std::size_t>(y / 20 * CarriedCells::kColumns + x / 20));
   EXPECT_EQ(image.cell_of(Vector2(-1e9, -1e9)), 0U);
@@ -34,7 +34,7 @@ TEST(CarriedCells, APixelBelongsToTheCellAroundIt) {
 }
 
 TEST(CarriedCells, ThreeReferencesThatAgreeMakeACellCarried) {
-  CarriedCells image = cells();
+  CarriedCells image = empty_cells();
   const Vector2 pixel(50, 70);
   const CarriedCells::Counts stayed = counts_at(image.cell_of(pixel), 2);
   for (int reference = 1; reference <= 3; ++reference) {
@@ -51,13 +51,13 @@ TEST(CarriedCells, ThreeReferencesThatAgreeMakeACellCarried) {
 }
 
 TEST(CarriedCells, MoreFeaturesThatMovedOutvoteThoseThatStayed) {
-  CarriedCells image = cells();
+  CarriedCells image = empty_cells();
   for (int reference = 0; reference < 20; ++reference) image.vote(counts_at(5, 2), counts_at(5, 2));
   EXPECT_EQ(image.count(), 0);
 }
 
 TEST(CarriedCells, WithoutNewEvidenceVotesFallUntilTheCellIsTriedAgain) {
-  CarriedCells image = cells();
+  CarriedCells image = empty_cells();
   for (int reference = 0; reference < 3; ++reference) image.vote(counts_at(5, 1), {});
   EXPECT_EQ(image.count(), 1);
   int references = 0;
@@ -69,7 +69,7 @@ TEST(CarriedCells, WithoutNewEvidenceVotesFallUntilTheCellIsTriedAgain) {
 }
 
 TEST(CarriedCells, AConvictionTakesTheCellsAround) {
-  CarriedCells image = cells();
+  CarriedCells image = empty_cells();
   image.convict(counts_at(0, 1));
   EXPECT_EQ(image.count(), 4);  // a corner of the image
   image.convict(counts_at(CarriedCells::kColumns * 5 + 5, 1));
@@ -80,7 +80,7 @@ TEST(CarriedCells, AConvictionTakesTheCellsAround) {
 }
 
 TEST(CarriedCells, KeypointsThereLoseTheir3DPoints) {
-  CarriedCells image = cells();
+  CarriedCells image = empty_cells();
   image.convict(counts_at(image.cell_of(Vector2(100, 100)), 1));
   std::vector<std::byte> memory(1 << 20);
   Arena arena(memory);
