@@ -188,10 +188,14 @@ TEST_F(BudgetedOdometry, CallsTheHookAfterEachStage) {
   EXPECT_EQ(stages,
             (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines, Stage::kLines, Stage::kPoints}))
       << "a keyframe's points are described last";
-  stages.clear();
+  // The second frame gives the velocity. With it the aligned motion is near the predicted one, so one search
+  // suffices.
   (void)odometry_.track(sequence_.render(1));
-  EXPECT_EQ(stages, (std::vector{Stage::kImage, Stage::kPoints, Stage::kLines, Stage::kMatching,
-                                 Stage::kLines, Stage::kMatching, Stage::kMotion}));
+  stages.clear();
+  (void)odometry_.track(sequence_.render(2));
+  EXPECT_EQ(stages, (std::vector{Stage::kImage, Stage::kLines, Stage::kMatching, Stage::kLines,
+                                 Stage::kMatching, Stage::kMatching, Stage::kMotion}))
+      << "the frame is aligned, and both references are matched";
 }
 
 }  // namespace
