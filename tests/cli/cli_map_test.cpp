@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::read_file;
 
-constexpr int kFrames = 6;
+constexpr int kFramesOfMapRun = 6;
 
 class CliMap : public test::PlvoCommand {
  protected:
   CommandResult run(const std::string& more) const {
-    return plvo("run " + test::simulated_sequence<kFrames>().string() + ' ' + more);
+    return plvo("run " + test::simulated_sequence<kFramesOfMapRun>().string() + ' ' + more);
   }
   std::string file(const char* name) const { return (folder_ / name).string(); }
 };
@@ -52,7 +52,7 @@ TEST_F(CliMap, ChangesNoResultOfTheOdometry) {
     }
     ++poses;
   }
-  EXPECT_EQ(poses, kFrames);
+  EXPECT_EQ(poses, kFramesOfMapRun);
 }
 
 TEST_F(CliMap, WritesAPlyWithPointsLinesAndTrajectory) {
@@ -65,7 +65,7 @@ TEST_F(CliMap, WritesAPlyWithPointsLinesAndTrajectory) {
     (void)std::sscanf(line.c_str(), "element edge %zu", &edges);
   }
   EXPECT_GT(vertices, 100U);
-  EXPECT_GE(edges, kFrames - 1U);
+  EXPECT_GE(edges, kFramesOfMapRun - 1U);
   std::size_t rows = 0;
   double a = 0, b = 0;
   while (std::getline(ply, line)) {
