@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hall seen through a rolling shutter: little has depth, so a recent frame's pose is known to a millimetre
-// or worse, of which its matches tell more. Where it was thought to be they are outliers; the motion is found
-// all the same, with the pose, and nothing has to be searched for.
+// or worse, and its matches tell more of it. At the pose that was known they are outliers. The motion is
+// found with the pose, without a search by RANSAC, except where a motion that differs from the prediction is
+// compared with it.
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -18,13 +19,15 @@ TEST(RecentPose, IsEstimatedWithTheMotionInAHall) {
   options.frames = 25;
   const test::TrackedSequence walk = test::track_sequence(options, Limits{}, Config{});
   double most = 0;
+  int searched = 0;
   for (std::size_t i = 1; i < walk.results.size(); ++i) {
     const TrackResult& result = walk.results[i];
     ASSERT_EQ(result.state, TrackState::kTracking);
-    EXPECT_EQ(result.ransac_iterations, 0) << "in frame " << i;
+    searched += result.ransac_iterations > 0 ? 1 : 0;
     most = std::max(most, walk.error_of_motion(i).head<3>().norm());
   }
-  std::printf("at most %.1f mm off\n", 1e3 * most);
+  std::printf("at most %.1f mm off; RANSAC in %d of 24 frames\n", 1e3 * most, searched);
+  EXPECT_LE(searched, 4);
   EXPECT_LT(most, 0.012);
 }
 
