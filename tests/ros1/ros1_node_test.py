@@ -9,6 +9,7 @@ import pathlib
 import socket
 import struct
 import subprocess
+import sys
 import threading
 import time
 import xml.etree.ElementTree
@@ -16,6 +17,9 @@ import xml.etree.ElementTree
 import numpy as np
 import pytest
 from PIL import Image as Picture
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from simulated_folder import SimulatedFolder
 
 PLVO, PACKAGES = os.environ["PLVO_BINARY"], pathlib.Path(os.environ["PLVO_ROS1"])
 NODE = PACKAGES / "plvo" / "odometry"
@@ -70,29 +74,15 @@ def ros(tmp_path_factory):
 
 # --- what is published ---------------------------------------------------------------------------------------------------------------
 
-class Walk:
-    """A simulated folder as messages of ROS."""
+class Walk(SimulatedFolder):
+    """A simulated folder as messages of ROS. frames: (stamp in ns, RGB, depth in mm)."""
 
     def __init__(self, folder, size, frames):
         made = subprocess.run([PLVO, "simulate", "--size", size, "--frames", str(frames), "--seed", "3", "--quiet", "--out", folder],
                               stderr=subprocess.PIPE, text=True, check=False)
         assert made.returncode == 0, made.stderr
-        self.folder = folder
-        self.numbers = [float(x) for x in self.rows("calibration.txt")[0]]
-        self.frames = []
-        for colour, depth in zip(self.rows("rgb.txt"), self.rows("depth.txt")):
-            rgb = np.asarray(Picture.open(folder / colour[1]).convert("RGB"))
-            metres = np.asarray(Picture.open(folder / depth[1])).astype(float) / self.numbers[4]
-            self.frames.append((self.ns(colour[0]), rgb, np.round(1000 * metres).astype("<u2")))
-
-    def rows(self, name):
-        lines = (self.folder / name).read_text().splitlines()
-        return [line.split() for line in lines if line and not line.startswith("#")]
-
-    @staticmethod
-    def ns(stamp):
-        seconds, _, rest = stamp.partition(".")
-        return int(seconds) * 10**9 + int(rest.ljust(9, "0")[:9])
+        super().__init__(folder)
+        self.frames = [(ns, rgb, np.round(1000 * (units / self.numbers[4])).astype("<u2")) for ns, rgb, _, units in self.frames]
 
 
 @pytest.fixture(scope="module")

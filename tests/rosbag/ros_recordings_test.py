@@ -9,6 +9,7 @@ import shutil
 import sqlite3
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -17,6 +18,9 @@ from PIL import Image
 
 import ros_containers as containers
 import ros_messages as ros
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from simulated_folder import SimulatedFolder
 
 PLVO = os.environ["PLVO_BINARY"]
 COLOUR, DEPTH = "/camera/color/image_raw", "/camera/aligned_depth_to_color/image_raw"
@@ -41,29 +45,14 @@ def jpeg(array):
     return out.getvalue()
 
 
-class Walk:
+class Walk(SimulatedFolder):
     """A simulated folder, as arrays."""
 
     def __init__(self, folder):
-        self.folder = folder
-        self.frames = []
-        for colour, depth in zip(self.rows("rgb.txt"), self.rows("depth.txt")):
-            rgb = np.asarray(Image.open(folder / colour[1]).convert("RGB"))
-            units = np.asarray(Image.open(folder / depth[1])).astype(np.uint16)
-            self.frames.append((self.ns(colour[0]), rgb, self.ns(depth[0]), units))
-        numbers = [float(x) for x in self.rows("calibration.txt")[0]]
-        self.camera = numbers[:4]
-        self.lens = numbers[5:10] if len(numbers) >= 10 else [0] * 5
+        super().__init__(folder)
+        self.camera = self.numbers[:4]
+        self.lens = self.numbers[5:10] if len(self.numbers) >= 10 else [0] * 5
         self.height, self.width = self.frames[0][3].shape
-
-    def rows(self, name):
-        lines = (self.folder / name).read_text().splitlines()
-        return [line.split() for line in lines if line and not line.startswith("#")]
-
-    @staticmethod
-    def ns(stamp):
-        seconds, _, rest = stamp.partition(".")
-        return int(seconds) * 10**9 + int(rest.ljust(9, "0")[:9])
 
 
 class RosRecordings(unittest.TestCase):

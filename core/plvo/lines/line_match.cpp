@@ -93,6 +93,19 @@ LineCandidate clear_best(std::span<const LineCandidate> candidates, std::span<co
 
 }  // namespace
 
+Segment project_line(const Pinhole& pinhole, const Vector3& a, const Vector3& b) {
+  constexpr double kNowhere_px = -1e5;
+  Segment segment;
+  if (a.z() > kNearestSeen_m && b.z() > kNearestSeen_m) {
+    segment.a = project(pinhole, a);
+    segment.b = project(pinhole, b);
+  } else {
+    segment.a = Vector2(kNowhere_px, kNowhere_px);
+    segment.b = Vector2(kNowhere_px + 1, kNowhere_px);
+  }
+  return segment;
+}
+
 void match_lines(std::span<const Segment> predicted, std::span<const LineDescriptor> reference_descriptors,
                  std::span<const Segment> current, std::span<const LineDescriptor> current_descriptors,
                  const LineMatchConfig& config, Arena& memory, FixedVector<Match>& matches) {

@@ -10,12 +10,13 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
 #include "plvo/base/match.hpp"
+#include "plvo/camera/camera_model.hpp"
 #include "plvo/lines/msld.hpp"
 #include "plvo/lines/segment.hpp"
 
 namespace plvo {
 
-// The defaults are for a motion that is only predicted. The odometry narrows or widens the first two.
+// The defaults are for a motion that is only predicted. A lost frame widens the second.
 struct LineMatchConfig {
   double max_angle_rad = 0.2;  // between predicted and current direction
   // Limit of the distance across the predicted segment, at the middle of the current one. The same slack
@@ -27,6 +28,9 @@ struct LineMatchConfig {
   // A rival is a fragment of the best one's line if it is within this distance and angle of it.
   double same_line_px = 3;
   double same_line_rad = 0.07;
+
+  // For a motion that is known.
+  static constexpr LineMatchConfig guided() { return {.max_angle_rad = 0.1, .max_offset_px = 8}; }
 };
 
 // Pose of one segment.
@@ -55,6 +59,11 @@ constexpr LineMatchScratch take_line_match_scratch(Arena& memory, std::size_t re
           memory.take<LineCandidate>("line match", currents),
           memory.take<std::uint16_t>("line match", references)};
 }
+
+// Where the line between two points in the current camera's frame is seen, for match_lines: only the ends of
+// the segment are set. A line that reaches behind the camera goes far outside the image, where it has no
+// match.
+Segment project_line(const Pinhole& pinhole, const Vector3& a, const Vector3& b);
 
 // predicted: the reference segments at their predicted positions in the current image (or at their old
 // positions, with wide gates). Matches follow the order of the reference segments. Each side has at most

@@ -13,8 +13,6 @@ constexpr int kLeastLoopInliers = 20;
 constexpr double kLeastLoopShare = 0.4;
 // Bounds on the standard deviations of the motion in its worst direction.
 constexpr double kMostLoopSigma_m = 0.05, kMostLoopSigma_rad = 0.05;
-// Gates of the lines once the points gave a motion.
-constexpr double kLoopLineOffset_px = 8, kLoopLineAngle_rad = 0.1;
 
 constexpr LmOptions kLoopSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
@@ -29,20 +27,6 @@ void unpack_points(const MapFeatures& view, const Pinhole& pinhole, PointFeature
     out.keypoints.push_back(keypoint);
   }
   out.descriptors = view.descriptors;
-}
-
-// The segment that shows this line.
-Segment project_line(const Pinhole& pinhole, const Vector3& a, const Vector3& b) {
-  constexpr double kNowhere_px = -1e5;  // where nothing matches
-  Segment segment;
-  if (a.z() > kNearestSeen_m && b.z() > kNearestSeen_m) {
-    segment.a = project(pinhole, a);
-    segment.b = project(pinhole, b);
-  } else {
-    segment.a = Vector2(kNowhere_px, kNowhere_px);
-    segment.b = Vector2(kNowhere_px + 1, kNowhere_px);
-  }
-  return segment;
 }
 
 }  // namespace
@@ -69,11 +53,8 @@ void LoopCheck::match_lines_after(const Se3& T_new_old, const MapFeatures& old_v
     const Line3d& line = views.new_lines[i] = unpack(new_view.lines[i]);
     views.found[i] = project_line(camera.pinhole, line.a, line.b);
   }
-  LineMatchConfig gates;
-  gates.max_offset_px = kLoopLineOffset_px;
-  gates.max_angle_rad = kLoopLineAngle_rad;
   match_lines(views.predicted.first(n_old), old_view.line_descriptors, views.found.first(n_new),
-              new_view.line_descriptors, gates, scratch, views.line_matches);
+              new_view.line_descriptors, LineMatchConfig::guided(), scratch, views.line_matches);
 }
 
 LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeatures& new_view,

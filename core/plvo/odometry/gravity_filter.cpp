@@ -15,7 +15,7 @@ constexpr double kJolt = 13.816;  // 99.9 % quantile of χ²(2)
 constexpr double kLeastReadingVariance = 1e-12;
 
 template <int N>
-[[gnu::noinline]] Matrix<N, N> symmetric(const Matrix<N, N>& M) {
+Matrix<N, N> symmetric(const Matrix<N, N>& M) {
   return 0.5 * (M + Matrix<N, N>(M.transpose()));
 }
 

@@ -21,9 +21,6 @@ constexpr int kCoarseRounds = 4;
 constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
 constexpr double kAligned = 5e-4;
-// Gates of the lines once the motion is known.
-constexpr double kGuidedOffset_px = 8;
-constexpr double kGuidedAngle_rad = 0.1;
 
 // All references are matched with the same measurements of the current frame: their residuals correlate by ½,
 // and n such residuals weigh as n / (1 + (n − 1) / 2) independent ones.
@@ -271,11 +268,9 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
     const StageTimer timer(context, Stage::kMatching);
     track_by_motion(view_of(current, depth, exposure), reference.features->points, features.reference_points,
                     motions[r], tracks_[r].points);
-    LineMatchConfig gates;
-    gates.max_offset_px = kGuidedOffset_px;
-    gates.max_angle_rad = kGuidedAngle_rad;
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features.reference_lines,
-                          current.features.lines, motions[r], gates, context.scratch, tracks_[r].lines);
+                          current.features.lines, motions[r], LineMatchConfig::guided(), context.scratch,
+                          tracks_[r].lines);
     track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
                    tracks_[r].surfaces);
   }
