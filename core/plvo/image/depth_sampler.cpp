@@ -97,6 +97,21 @@ void sum_up(const WindowReadings& readings, SurfaceSums& sums) {
     }
 }
 
+// Returns whether each quarter of the window around (x, y) has a reading: without, no surface surrounds it.
+// Most pixels without depth lie beside or within a large area without depth, so this saves most of the work.
+bool may_be_surrounded(const DepthSampler& depth, int x, int y) {
+  constexpr int kReach = DepthSampler::kMaxRadius;
+  const auto has_reading = [&](int left, int top, int columns, int rows) {
+    for (int row = top; row < top + rows; ++row)
+      for (int column = left; column < left + columns; ++column)
+        if (depth.raw_units(column, row) > 0) return true;
+    return false;
+  };
+  return has_reading(x + 1, y, kReach, kReach + 1) && has_reading(x - kReach, y + 1, kReach + 1, kReach) &&
+         has_reading(x - kReach, y - kReach, kReach, kReach + 1) &&
+         has_reading(x, y - kReach, kReach + 1, kReach);
+}
+
 // Returns whether readings of the surface surround the window's centre. The window without its centre
 // consists of four quarters, each from one half-axis to before the next; each of them must have a reading.
 bool surrounds_centre(const SurfaceSums& surface, const WindowReadings& readings) {
@@ -325,6 +340,7 @@ DepthSample DepthSampler::sample_window(const Vector2& located, int radius) cons
 }
 
 DepthSample DepthSampler::sample_between(int x, int y, const Vector2& beside) const {
+  if (!may_be_surrounded(*this, x, y)) return {};
   WindowReadings readings;
   read_window(*this, x, y, kMaxRadius, readings);
   SurfaceSums sums;

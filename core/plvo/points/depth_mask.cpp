@@ -86,8 +86,17 @@ class LevelReadings {
   // image does not contain the pixel.
   static constexpr std::int32_t kOutside = -1;
   std::int32_t at(int column, int row) const { return offset(column * step_, row * step_); }
-  // The same; on levels above 0, a missing reading is replaced by one of the adjacent pixels that the level's
-  // pixel covers too.
+  // The readings of a row from column −reach on, step() apart, if the image contains the square of this reach
+  // around the centre and the pixels that its pixels cover; otherwise nullptr.
+  const std::uint16_t* row(int row, int reach) const {
+    const int from_centre = reach * step_;
+    if (!straight_ || !depth_.holds_raw(place_.x - from_centre, place_.y - from_centre) ||
+        !depth_.holds_raw(place_.x + from_centre + step_, place_.y + from_centre + step_))
+      return nullptr;
+    return depth_.raw(place_.x - from_centre, place_.y + row * step_);
+  }
+  // A reading as by at(); on levels above 0, a missing reading is replaced by one of the adjacent pixels that
+  // the level's pixel covers too.
   std::int32_t covered(int column, int row) const {
     std::int32_t units = at(column, row);
     for (int i = 1; i < 4 && units == 0 && step_ > 1; ++i) {
@@ -139,13 +148,17 @@ void shrink(std::span<Bits> rows, int reach) {
 // Returns the pixels of the keypoint's surface and those without depth that it surrounds.
 SurfaceBits fill_holes(const LevelReadings& readings, const Range& range) {
   std::array<WideRow, kHoleRows> own{}, other{};
-  for (int r = 0; r < kHoleRows; ++r)
+  for (int r = 0; r < kHoleRows; ++r) {
+    const std::uint16_t* const row = readings.row(r - kHoleReach, kHoleReach);
     for (int c = 0; c < kHoleColumns; ++c) {
-      const std::int32_t units = readings.covered(c - kHoleReach, r - kHoleReach);
+      std::int32_t units = row != nullptr ? row[c * readings.step()] : 0;
+      if (units == 0 && (row == nullptr || readings.step() > 1))
+        units = readings.covered(c - kHoleReach, r - kHoleReach);
       if (units <= 0) continue;
       const bool is_own = units >= range.first && units <= range.last;
       (is_own ? own : other)[static_cast<std::size_t>(r)] |= WideRow{1} << c;
     }
+  }
   // Growing and shrinking by the same amount closes the holes that the surface surrounds.
   grow(std::span<WideRow>(own), kHole);
   shrink(std::span<WideRow>(own).first(kHoleRows - 2 * kHole), kHole);
