@@ -62,6 +62,20 @@ Vector3 Exposure::at_depth_time(const Vector3& p, double v, double depth_v) cons
   return Path(p, v_, omega_).after(depth_lag_s(v, depth_v));
 }
 
+double Exposure::depth_shift_px(const Exposure& other) const {
+  double largest = 0;
+  for (const double u : {0.0, 2 * pinhole_.cx})
+    for (const double v : {0.0, last_row_}) {
+      const Vector3 p((u - pinhole_.cx) / pinhole_.fx, (v - pinhole_.cy) / pinhole_.fy, 1);
+      const Vector3 here = as_depth_sees(p, v);
+      const Vector3 there = other.as_depth_sees(p, v);
+      if (!(here.z() > 0 && there.z() > 0)) return pinhole_.fx;
+      const double shift = sqrt((project(pinhole_, here) - project(pinhole_, there)).squaredNorm());
+      if (shift > largest) largest = shift;
+    }
+  return largest;
+}
+
 Vector3 Exposure::as_depth_sees(const Vector3& p, double v) const {
   // Same iteration as in as_seen. For depth, a tenth of a pixel is accurate enough.
   const Path path(p, v_, omega_);

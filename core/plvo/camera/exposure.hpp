@@ -42,6 +42,10 @@ class Exposure {
   // Moves p from the exposure of colour's row v to that of the depth row that sees it.
   Vector3 as_depth_sees(const Vector3& p, double v) const;
 
+  // Largest distance in pixels between the depth readings of one colour pixel with this motion and with that
+  // of `other`: at the corners of the image, for surfaces 1 m away.
+  double depth_shift_px(const Exposure& other) const;
+
   // Seconds from the exposure of colour's middle row to that of depth's row depth_v. Valid if depth_apart().
   double depth_delay_s(double depth_v) const { return depth_lag_s(0.5 * last_row_, depth_v); }
   // Velocity of a point at p, m/s.

@@ -7,6 +7,7 @@
 
 #include "plvo/base/arena.hpp"
 #include "plvo/base/fixed_vector.hpp"
+#include "plvo/camera/exposure.hpp"
 #include "plvo/camera/observation.hpp"
 #include "plvo/lines/msld.hpp"
 #include "plvo/lines/segment.hpp"
@@ -19,6 +20,7 @@ struct LineFeatures {
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
   bool lifted = false;  // 3D lines have been searched for
+  std::span<Exposure> lifted_with;  // one: the motion that the lines were lifted with
 
   // Removes all segments and limits the capacity.
   void clear(std::size_t capacity) {
@@ -32,6 +34,7 @@ struct LineFeatures {
     segments = FixedVector<Segment>(memory.take<Segment>("line features", n));
     descriptors = memory.take<LineDescriptor>("line features", n);
     lines = memory.take<Line3d>("line features", n);
+    lifted_with = memory.take<Exposure>("line features", 1);
   }
 
   std::span<const Segment> segments_3d() const { return segments.span().first(count_3d); }

@@ -39,7 +39,8 @@ class ConstraintSet : public CostTerm {
   // match is never sampled and never an inlier.
   virtual bool usable(std::size_t i) const = 0;
   virtual Primitive primitive(std::size_t i) const = 0;
-  virtual Extent extent(std::size_t i) const = 0;  // in current coordinates
+  // In current coordinates, with the record of the reference's landmark.
+  virtual Extent extent(std::size_t i) const = 0;
 
   // Squared Mahalanobis distance between the two measurements of match i under T, χ²(dof()) for a true match.
   // If the distance exceeds `cutoff`, any value above `cutoff` may be returned.

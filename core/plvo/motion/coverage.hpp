@@ -3,7 +3,8 @@
 // the larger part of the scene, not that of the most features: an object or a part of the robot may have most
 // of the texture, but it is smaller than the room. So the evidence of a feature is the size of what it stands
 // for. The image is divided into square cells, and the features of a cell share its evidence: its width,
-// which is in proportion to the depth. A line has that of all the cells that it spans.
+// which is in proportion to the depth. A line has that of all the cells that it spans. A landmark with a bad
+// record has no evidence.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +17,23 @@
 
 namespace plvo {
 
-// What has more than this share of the evidence is beyond dispute: nothing else has more.
-inline constexpr double kMajority = 0.5;
+// In a world at rest, the camera's motion explains more than this share of the evidence of all matches: on
+// recordings, in nine frames of ten.
+inline constexpr double kWorldAtRest = 0.75;
 
 // The part of the scene that a feature stands for: its place in camera coordinates, z > 0, and the length of
 // its image in the plane z = 1 (0 for a point).
 struct Extent {
   Vector3 middle;
   double length = 0;
+  bool trusted = true;  // the record of its landmark
 };
 
-inline Extent extent_of(const Point3d& point) { return {point.p}; }
+inline Extent extent_of(const Point3d& point) { return {point.p, 0, point.record.trusted()}; }
 // Always inlined: used by code that is compiled for speed and by code that is compiled for size.
 [[gnu::always_inline]] inline Extent extent_of(const Line3d& line) {
   const Vector3 image = line.b / line.b.z() - line.a / line.a.z();
-  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm())};
+  return {0.5 * (line.a + line.b), sqrt(image.squaredNorm()), line.record.trusted()};
 }
 
 // The features of one frame: first all of them are counted, then their evidence is asked for.
@@ -39,11 +42,13 @@ class Coverage {
   Coverage() { clear(); }
   void clear() { crowd_.fill(0); }
   void count(const Extent& extent) {
+    if (!extent.trusted) return;
     std::uint8_t& features = crowd_[cell_of(extent.middle)];
     if (features < 255) ++features;
   }
   // In depths (m) of a cell. A feature that was not counted counts as one that shares its cell with no other.
   double evidence(const Extent& extent) const {
+    if (!extent.trusted) return 0;
     const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
     return extent.middle.z() * cells / std::max(crowd_[cell_of(extent.middle)], std::uint8_t{1});
   }

@@ -74,7 +74,11 @@ class LineConstraints final : public ConstraintSet {
   int dof() const override { return 4; }
   bool usable(std::size_t i) const override { return usable_[i] != 0; }
   Primitive primitive(std::size_t i) const override;
-  Extent extent(std::size_t i) const override { return extent_of(current_[matches_[i].current]); }
+  Extent extent(std::size_t i) const override {
+    Extent extent = extent_of(current_[matches_[i].current]);
+    extent.trusted = reference_[matches_[i].reference].record.trusted();
+    return extent;
+  }
   // Takes the reference measurement as the landmark. The result equals that of the eliminated residual to
   // first order in the noise.
   double mahalanobis_squared(std::size_t i, const Se3& T, double cutoff) const override;

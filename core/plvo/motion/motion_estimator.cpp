@@ -143,14 +143,13 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   }
   if (status != StatusCode::kOk || !consensus()) {
     scale = kWiderThanRefined;
-    if (!ransac.run(seed, start.prediction, Ransac::Gain::kMatch, first, estimate.ransac))
-      return StatusCode::kNoConsensus;
+    if (!ransac.run(seed, start.prediction, first, estimate.ransac)) return StatusCode::kNoConsensus;
     status = approach_from(first, scale);
     if (status != StatusCode::kOk) return status;
   }
-  if (const double covered = ransac.covered(); covered < kMajority) {
-    Se3 other;
-    estimate.is_other = ransac.run(seed, start.prediction, Ransac::Gain::kEvidence, other, estimate.ransac) &&
+  if (const double covered = ransac.covered(); start.others && covered < kWorldAtRest) {
+    Se3 other = T;
+    estimate.is_other = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
                         approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus() &&
                         ransac.covered() > covered;
     if (!estimate.is_other) {
@@ -158,6 +157,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
       if (status != StatusCode::kOk) return status;
     }
   }
+  estimate.explained = ransac.covered();
   status = refine(lm);
   if (status != StatusCode::kOk) return status;
   for (std::size_t i = 0; i < terms.size() && i < kInformedTerms; ++i)

@@ -27,6 +27,8 @@ struct MotionEstimate {
   // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
   Se3 T_current_reference;  // X' = R X + t, equation (11)
+  // Share of the evidence of all matches (coverage.hpp) that the motion explains.
+  double explained = 0;
   // Whether another motion than the first one with a consensus was taken, because it has more evidence.
   bool is_other = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
@@ -58,6 +60,7 @@ struct MotionStart {
   const Se3* prediction;
   NuisanceParameters shared;
   bool estimated;
+  bool others = true;  // look for another motion where this one explains too little
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not

@@ -21,6 +21,12 @@ constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
 // Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
+// run_beside: a motion that is worth finding explains this share of the matches that are left. A hypothesis
+// is dropped unless so many of this many of them agree with it (bail-out test: Capel, "An effective bail-out
+// test for RANSAC consensus scoring", BMVC 2005).
+constexpr double kShareBeside = 0.4;
+constexpr std::size_t kTested = 16;
+constexpr int kLeastAgreeing = 5;
 constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
 constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
@@ -80,32 +86,87 @@ double Ransac::covered() const {
   return inliers / evidence_;
 }
 
-bool Ransac::run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary) {
-  summary = {};
-  gain_ = gain;
-  fresh_to_beat_ = 0;
-  is_majority_ = false;
-  inliers_ = 0;
+bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
+  start(Gain::kMatch, summary);
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
-  if (samplable_ >= 3) {
-    const Matrix3 R_expected = prediction != nullptr ? prediction->R : Matrix3::Identity();
-    Random random(seed);
-    const auto n = static_cast<std::uint32_t>(samplable_);
-    int needed = iterations_needed();
-    while (summary.iterations < needed && summary.draws < 4 * config_.max_ransac_iterations) {
-      ++summary.draws;
-      Se3 hypothesis;
-      const MinimalSetStatus status = solve_minimal_set(draw(random, n), R_expected, hypothesis);
-      if (status == MinimalSetStatus::kDegenerate) continue;
-      ++summary.iterations;
-      if (status == MinimalSetStatus::kInconsistent || !hypothesis.is_finite()) continue;
-      if (consider(hypothesis, best, summary)) needed = iterations_needed();
-    }
-  }
+  const auto share = [&] { return static_cast<double>(inliers_) / static_cast<double>(usable_); };
+  const Matrix3 R_expected = prediction != nullptr ? prediction->R : Matrix3::Identity();
+  sample(seed, samplable_, R_expected, share, best, summary);
   if (!(summary.score > 0)) return false;
   T = best;
   return true;
+}
+
+bool Ransac::run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
+  tested_first_ = move_inliers_back();
+  start(Gain::kEvidence, summary);
+  Se3 best;
+  rate(T, best, summary);
+  bool found = prediction != nullptr && prediction->is_finite() && consider(*prediction, best, summary);
+  const auto share = [] { return kShareBeside; };
+  if (sample(seed, tested_first_, T.R, share, best, summary)) found = true;
+  tested_first_ = 0;
+  if (found) T = best;
+  return found;
+}
+
+void Ransac::start(Gain gain, RansacSummary& summary) {
+  summary = {};
+  gain_ = gain;
+  fresh_to_beat_ = 0;
+  inliers_ = 0;
+}
+
+// Draws minimal sets from the first n candidates, until one of true matches alone was probably among them:
+// share() of the matches are true. Returns true if a hypothesis became the best.
+template <typename Share>
+bool Ransac::sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, const Share& share,
+                    Se3& best, RansacSummary& summary) {
+  if (n < 3) return false;
+  Random random(seed);
+  bool found = false;
+  int needed = iterations_needed(share());
+  while (summary.iterations < needed && summary.draws < 4 * config_.max_ransac_iterations) {
+    ++summary.draws;
+    Se3 hypothesis;
+    const MinimalSetStatus status =
+        solve_minimal_set(draw(random, static_cast<std::uint32_t>(n)), R_expected, hypothesis);
+    if (status == MinimalSetStatus::kDegenerate) continue;
+    ++summary.iterations;
+    if (status == MinimalSetStatus::kInconsistent || !hypothesis.is_finite()) continue;
+    if (!is_promising(hypothesis) || !consider(hypothesis, best, summary)) continue;
+    found = true;
+    needed = iterations_needed(share());
+  }
+  return found;
+}
+
+// The bail-out test.
+bool Ransac::is_promising(const Se3& T) const {
+  if (tested_first_ < kTested) return true;
+  const MotionsToCurrent motions = motions_to_current(T, references_);
+  int agreeing = 0;
+  for (std::size_t k = 0; k < kTested; ++k) {
+    const RansacCandidate& candidate = candidates_[k * tested_first_ / kTested];
+    const ConstraintSet& set = *sets_[candidate.set];
+    const double threshold = kFreshScale * threshold_[candidate.set];
+    if (set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold)
+      ++agreeing;
+  }
+  return agreeing >= kLeastAgreeing;
+}
+
+// Moves the candidates that may form minimal sets and are no inliers to the front. Returns their number.
+std::size_t Ransac::move_inliers_back() {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < samplable_; ++k) {
+    const RansacCandidate candidate = candidates_[k];
+    if (sets_[candidate.set]->inliers()[candidate.index] != 0) continue;
+    candidates_[k] = candidates_[n];
+    candidates_[n++] = candidate;
+  }
+  return n;
 }
 
 // Draws three different matches of the first n, n ≥ 3, without a loop: random numbers below n, n − 1 and n −
@@ -157,11 +218,14 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
   if (!(fresh_score > fresh_to_beat_)) return false;
   fresh_to_beat_ = fresh_score;
   refine(T);
+  return rate(T, best, summary);
+}
 
+// Scores a refined hypothesis. If it is the best, stores it in `best` and returns true.
+bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
   double refined_score = 0;
   double refined_score_as_fresh = 0;
   int inliers = 0;
-  double covered = 0;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   for (const RansacCandidate& candidate : candidates_) {
     const double threshold = threshold_[candidate.set];
@@ -172,14 +236,12 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
     if (s <= kFreshScale * threshold) refined_score_as_fresh += gained * (kFreshScale * threshold - s);
     if (s > threshold) continue;
     refined_score += gained * (threshold - s);
-    covered += static_cast<double>(candidate.evidence);
     ++inliers;
   }
   if (!(refined_score > summary.score)) return false;
   summary.score = refined_score;
   best = T;
   inliers_ = inliers;
-  is_majority_ = covered > kMajority * evidence_;
   const double share = kFreshShare * refined_score_as_fresh;
   if (share > fresh_to_beat_) fresh_to_beat_ = share;
   return true;
@@ -233,12 +295,10 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   }
 }
 
-int Ransac::iterations_needed() const {
-  // A consensus with few inliers may have the most evidence.
-  if (inliers_ < 3 || (gain_ == Gain::kEvidence && !is_majority_)) return config_.max_ransac_iterations;
+int Ransac::iterations_needed(double share) const {
   // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
-  const double w = static_cast<double>(inliers_) / static_cast<double>(usable_);
-  const double all_good = w * w * w;
+  const double all_good = share * share * share;
+  if (!(all_good > 1e-9)) return config_.max_ransac_iterations;
   if (all_good > 1 - 1e-9) return 1;
   const double k = log(1 - kRansacConfidence) / log(1 - all_good);
   return k < config_.max_ransac_iterations ? static_cast<int>(k) + 1 : config_.max_ransac_iterations;

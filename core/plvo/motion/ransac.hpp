@@ -10,8 +10,8 @@
 // cannot raise it to the best score; this does not change the result. A new best hypothesis is refined on its
 // inliers by a few steps of the maximum-likelihood problem (LO-RANSAC, Chum, Matas & Kittler 2003).
 //
-// If the consensus of the most matches has less than half of the evidence (coverage.hpp), the estimator
-// searches for the one that has the most.
+// If a motion explains less of the evidence (coverage.hpp) than the camera's motion does in a world at rest,
+// run_beside() searches for another one among the matches that it leaves.
 #pragma once
 
 #include <array>
@@ -57,13 +57,12 @@ class Ransac {
   std::size_t usable() const { return usable_; }
   std::size_t samplable() const { return samplable_; }
 
-  // What an inlier adds to the score is in proportion to this.
-  enum class Gain : std::uint8_t {
-    kMatch,     // every match counts the same
-    kEvidence,  // by its evidence
-  };
-  // Writes the best motion to T. Returns false if no hypothesis has a score above zero.
-  bool run(std::uint64_t seed, const Se3* prediction, Gain gain, Se3& T, RansacSummary& summary);
+  // Writes the motion of the most matches to T. Returns false if no hypothesis has a score above zero.
+  bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
+  // Searches for a motion with more evidence than T, the motion of the flagged inliers. Sets are drawn from
+  // the other matches; the prediction, if any, is the first hypothesis. Returns false, and leaves T, if no
+  // better one is found. Reorders the scratch.
+  bool run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
   void judge(const Se3& T, double scale) { judge(T, scale, 1); }
@@ -77,18 +76,30 @@ class Ransac {
   bool consensus_fixes_motion(std::uint64_t seed);
 
  private:
+  // What an inlier adds to the score is in proportion to this.
+  enum class Gain : std::uint8_t {
+    kMatch,     // every match counts the same
+    kEvidence,  // by its evidence
+  };
   void weigh();
+  void start(Gain gain, RansacSummary& summary);
+  template <typename Share>
+  bool sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, const Share& share, Se3& best,
+              RansacSummary& summary);
+  std::size_t move_inliers_back();
+  bool is_promising(const Se3& T) const;
   double gain(const RansacCandidate& candidate) const {
     return gain_ == Gain::kMatch ? 1 : static_cast<double>(candidate.evidence);
   }
   std::array<Primitive, 3> draw(Random& random, std::uint32_t n) const;
   double score(const Se3& T, double to_beat) const;
   bool consider(Se3 T, Se3& best, RansacSummary& summary);
+  bool rate(const Se3& T, Se3& best, RansacSummary& summary);
   // Refines T on a subset of the matches that agree with it, and writes the inlier flags.
   void refine(Se3& T);
   // Judges every stride-th match and clears the flags of the others.
   void judge(const Se3& T, double scale, std::size_t stride);
-  int iterations_needed() const;
+  int iterations_needed(double share) const;
 
   std::span<ConstraintSet* const> sets_;
   const CostTerms& terms_;
@@ -102,8 +113,8 @@ class Ransac {
   int inliers_ = 0;
   double evidence_ = 0;  // of all candidates
   Gain gain_ = Gain::kMatch;
-  bool is_majority_ = false;  // the best hypothesis
-  double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
+  std::size_t tested_first_ = 0;  // the bail-out test is by so many candidates; 0: it is not made
+  double fresh_to_beat_ = 0;      // score that the next hypothesis must exceed to be refined
   std::array<double, kMaxConstraintSets> threshold_{};
 };
 

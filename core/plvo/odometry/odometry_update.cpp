@@ -6,6 +6,7 @@
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
+#include "plvo/odometry/tracking/landmark_records.hpp"
 
 namespace plvo {
 namespace {
@@ -49,7 +50,13 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   if (!kept.recent && !tracked.returned)
     vote_for_carried(frame, frame.predicted.all_references[0], memory_.tracking.tracks(0),
                      motion.T_current_reference, carried_);
+  const std::span<const Reference> references = frame.predicted.references();
+  if (!tracked.returned)
+    for (std::size_t r = 0; r < references.size(); ++r)
+      if (FrameFeatures* features = window_.find(references[r].features); features != nullptr)
+        note_records(memory_.tracking.tracks(r), *features);
   if (!kept.recent) make_reference(frame, tracked.exposure, !kept.keyframe);
+  if (!kept.recent && !tracked.returned) inherit_records(references, memory_.tracking, frame);
   window_.remove_carried(carried_);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;

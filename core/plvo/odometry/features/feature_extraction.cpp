@@ -61,6 +61,9 @@ bool lift_line(const StageContext& context, const DepthSampler& depth, const Seg
   return true;
 }
 
+// Lines are not lifted again if their depth would be read at another place by less than this.
+constexpr double kSameDepth_px = 0.5;
+
 void lift_segments_again(const StageContext& context, const DepthSampler& depth, LineFeatures& lines) {
   context.config.executor.halves(lines.count_3d, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -187,9 +190,12 @@ void FeatureExtraction::lift_lines(const StageContext& context, const DepthSampl
     depth.fetch();
     lift_segments(context, depth.with(exposure), lines);
     lines.lifted = true;
-  } else if (exposure.depth_apart()) {
+  } else if (exposure.depth_apart() && exposure.depth_shift_px(lines.lifted_with[0]) > kSameDepth_px) {
     lift_segments_again(context, depth.with(exposure), lines);
+  } else {
+    return;
   }
+  lines.lifted_with[0] = exposure;
 }
 
 void FeatureExtraction::lift_segments(const StageContext& context, const DepthSampler& depth,
@@ -201,6 +207,7 @@ void FeatureExtraction::lift_segments(const StageContext& context, const DepthSa
     for (std::size_t i = begin; i < end; ++i) {
       const Segment& segment = lines.segments[i];
       lifted[i] = lift_line(context, depth, segment, lines.lines[i]) ? 1 : 0;
+      lines.lines[i].record = {};
       if (lifted[i] != 0)
         lines.descriptors[i] = describe_segment(pyramid_.level(kLineLevel), 1.0 / (1 << kLineLevel), segment);
     }

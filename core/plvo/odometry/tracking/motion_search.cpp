@@ -18,13 +18,13 @@ constexpr double kSameMotion = 0.02;
 // Features are registered again where the estimate is another motion than that of the start, so many times in
 // all: those that move so are now found.
 constexpr int kMostRegistrations = 3;
-// An aligned motion is compared with the predicted one, as the image may be aligned to an object; not where
-// they differ by less than this in the plane z = 1 (4 px of a Kinect): registration finds the same features
-// from both.
+// The image may be aligned to an object. Where the aligned and the predicted motion differ by more than this
+// in the plane z = 1 (4 px of a Kinect), a glance at both tells which one to start from. Otherwise
+// registration finds the same features from both.
 constexpr double kSameStart = 4.0 / 525;
-// Two starts led to different motions if those differ by more than this in the plane z = 1 (2 px of a
-// Kinect). The one from the prediction is then preferred if it explains this share of what the other one
-// does: a camera goes on as it moved.
+// The estimates of two glances are different motions if they differ by more than this in the plane z = 1 (2
+// px of a Kinect). The one from the prediction is then preferred if it explains this share of what the other
+// one does: a camera goes on as it moved.
 constexpr double kOtherMotion = 2.0 / 525;
 constexpr double kPreferredShare = 0.8;
 // When tracking fails, features are searched this far from their old positions, whatever the prediction.
@@ -131,6 +131,12 @@ bool is_findable(const Reference& reference) {
     if (last_is_best) best = {start, tracked.motion.T_current_reference, explained};
     return explained;
   };
+  const auto glance = [&](const Se3& start) {
+    tracking.glance(references, current, start, tracked);
+    return tracked.ok()
+               ? explained_by(tracked.motion.T_current_reference, references, tracking, context.camera)
+               : Explained{};
+  };
   const auto take_best = [&] {
     if (!last_is_best && best.explained.evidence > 0) (void)refine(best.start);
   };
@@ -150,17 +156,24 @@ bool is_findable(const Reference& reference) {
   };
 
   if (Se3 aligned; registered && tracking.align(latest, current, aligned)) {
-    const Explained by_image = explain(aligned * latest.pose.T_reference_base);
-    if (by_image.share >= kAcceptedShareByImage) {
-      const Se3& predicted = latest.T_current_predicted;
-      if (distance_between(aligned, predicted, *latest.features) > kSameStart) {
-        const Se3 by_image_motion = best.motion;
-        const Explained by_prediction = explain(predicted * latest.pose.T_reference_base);
-        if (by_prediction.evidence > kPreferredShare * by_image.evidence &&
-            is_other_motion(tracked.motion.T_current_reference, by_image_motion))
-          return;
+    const Se3 by_prediction = latest.T_current_predicted * latest.pose.T_reference_base;
+    Se3 start = aligned * latest.pose.T_reference_base;
+    const bool compare = distance_between(aligned, latest.T_current_predicted, *latest.features) > kSameStart;
+    if (compare) {
+      const Explained predicted = glance(by_prediction);
+      const Se3 motion = tracked.motion.T_current_reference;
+      const Explained by_image = glance(start);
+      const bool is_other = !tracked.ok() || is_other_motion(motion, tracked.motion.T_current_reference);
+      if (predicted.evidence > (is_other ? kPreferredShare : 1) * by_image.evidence) start = motion;
+    }
+    const Explained found = explain(start);
+    if (found.share >= kAcceptedShareByImage) {
+      if (!compare && tracked.motion.explained < kWorldAtRest) {
+        // The prediction has to explain clearly more than what was found first.
+        best.explained.evidence /= kPreferredShare;
+        explain(by_prediction);
+        take_best();
       }
-      take_best();
       return;
     }
   }

@@ -26,6 +26,9 @@ constexpr double kAligned = 5e-4;
 // and n such residuals weigh as n / (1 + (n − 1) / 2) independent ones.
 double weight_of_one(std::size_t references) { return 2 / (1 + static_cast<double>(references)); }
 
+// A glance takes every n-th point of a reference, and no more than this many.
+constexpr std::size_t kGlancePoints = 64;
+
 // With a propagated prior, the covariance states how uncertain the directions are that vision leaves open.
 // The bounds on the SDs are then this large, so that no estimate fails by them.
 constexpr double kUnboundedSigma = 1e6;
@@ -251,7 +254,7 @@ void ReferenceTracking::associate_by_descriptor(const Reference& reference, cons
 
 void ReferenceTracking::associate_by_motion(std::span<const Reference> references,
                                             const CurrentFrame& current, const Se3& T_current_base,
-                                            Association& association) {
+                                            Association& association, bool is_whole) {
   const StageContext& context = current.context;
   const CameraModel& camera = context.camera;
   set_poses(references, current.predicted.last, association);
@@ -259,20 +262,24 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
   const Exposure exposure =
       current_exposure(camera, references[association.latest].prior, motions[association.latest]);
   const DepthSampler depth = current.depth.with(exposure);
-  current.extraction.lift_lines(context, current.depth, exposure, current.features.lines);
+  if (is_whole || !current.features.lines.lifted)
+    current.extraction.lift_lines(context, current.depth, exposure, current.features.lines);
   for (std::size_t r = 0; r < references.size(); ++r) {
     const Reference& reference = references[r];
     RowTimeCompensation& features = association.features[r];
     features = compensate_row_times(camera, reference.prior, motions[r], *reference.features,
                                     current.features, context.scratch);
     const StageTimer timer(context, Stage::kMatching);
+    const std::size_t stride = is_whole ? 1 : reference.features->points.keypoints.size() / kGlancePoints + 1;
     track_by_motion(view_of(current, depth, exposure), reference.features->points, features.reference_points,
-                    motions[r], tracks_[r].points);
+                    motions[r], stride, tracks_[r].points);
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features.reference_lines,
                           current.features.lines, motions[r], LineMatchConfig::guided(), context.scratch,
                           tracks_[r].lines);
-    track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
-                   tracks_[r].surfaces);
+    tracks_[r].surfaces.clear();
+    if (is_whole)
+      track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
+                     tracks_[r].surfaces);
   }
 }
 
@@ -323,12 +330,23 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   estimate(association, current, start, kFineSolve, tracked);
 }
 
+void ReferenceTracking::glance(std::span<const Reference> references, const CurrentFrame& current,
+                               const Se3& T_current_base, TrackedMotion& tracked) {
+  const StageContext& context = current.context;
+  const ScratchScope scope(context.scratch);
+  Association association;
+  associate_by_motion(references, current, T_current_base, association, false);
+  MotionStart start(&T_current_base, {}, true);
+  start.others = false;
+  estimate(association, current, start, kRoughSolve, tracked);
+}
+
 void ReferenceTracking::refine(std::span<const Reference> references, const CurrentFrame& current,
                                const Se3& T_current_base, TrackedMotion& tracked) {
   const StageContext& context = current.context;
   const ScratchScope scope(context.scratch);
   Association association;
-  associate_by_motion(references, current, T_current_base, association);
+  associate_by_motion(references, current, T_current_base, association, true);
   const std::size_t latest = association.latest;
   const NuisanceParameters shared =
       nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);

@@ -64,7 +64,7 @@ RowTimeCompensation compensate_row_times_of_points(const CameraModel& camera, co
   const Exposure exposure = reference_exposure(camera, prior, T_current_reference);
   const std::span<Point3d> copies = scratch.take<Point3d>("at mid-exposure", points.size());
   for (std::size_t i = 0; i < copies.size(); ++i)
-    copies[i] = {exposure.at_mid_exposure(points[i].p), points[i].Sigma};
+    copies[i] = {exposure.at_mid_exposure(points[i].p), points[i].Sigma, points[i].record};
   result.reference_points = copies;
   return result;
 }

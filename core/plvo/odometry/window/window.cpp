@@ -22,6 +22,12 @@ void Window::clear() {
   kept_.clear();
 }
 
+FrameFeatures* Window::find(const FrameFeatures* features) {
+  for (Frame& frame : frames_)
+    if (&frame.features == features) return &frame.features;
+  return nullptr;
+}
+
 void Window::set_pose(int slot, PoseWithCovariance pose) {
   (void)settle(pose);
   (*this)[slot].pose = pose;

@@ -87,6 +87,9 @@ class Window {
   Frame& operator[](int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& operator[](int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
+  // The features of a frame of the window that were handed out to be read; nullptr if they are not its own.
+  FrameFeatures* find(const FrameFeatures* features);
+
   Frame& current_frame() { return (*this)[current_]; }
   const Frame& current_frame() const { return (*this)[current_]; }
   Frame& last_frame() { return (*this)[last_]; }

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/odometry/tracking/landmark_records.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace plvo {
+namespace {
+
+// A new landmark inherits at most this balance, and at least −1: one frame decides whether it is trusted.
+constexpr int kMostInherited = 3;
+constexpr int kLeastInherited = -1;
+
+// Sum and number of the records in each cell of the image.
+class RecordsByCell {
+ public:
+  explicit RecordsByCell(const CurrentFrame& current)
+      : pinhole_(current.context.camera.pinhole), cells_(current.context.carried) {}
+
+  void add(const Vector2& pixel, const LandmarkRecord& record) {
+    Cell& cell = at(pixel);
+    cell.sum = static_cast<std::int16_t>(cell.sum + record.balance());
+    ++cell.count;
+  }
+  void add(const Line3d& where, const LandmarkRecord& record) {
+    for_each_place(where, [&](const Vector2& pixel) { add(pixel, record); });
+  }
+  LandmarkRecord inherited(const Vector2& pixel) { return LandmarkRecord(mean(at(pixel))); }
+  LandmarkRecord inherited(const Line3d& line) {
+    int least = kMostInherited;
+    for_each_place(line, [&](const Vector2& pixel) { least = std::min(least, mean(at(pixel))); });
+    return LandmarkRecord(least);
+  }
+
+ private:
+  struct Cell {
+    std::int16_t sum = 0, count = 0;
+  };
+  Cell& at(const Vector2& pixel) { return all_[cells_.cell_of(pixel)]; }
+  static int mean(const Cell& cell) {
+    if (cell.sum < 0) return kLeastInherited;
+    return cell.count > 0 ? std::min(cell.sum / cell.count, kMostInherited) : 0;
+  }
+  // The ends and the middle of a line.
+  template <typename Visit>
+  void for_each_place(const Line3d& line, const Visit& visit) const {
+    for (const double share : {0.0, 0.5, 1.0})
+      visit(project(pinhole_, (1 - share) * line.a + share * line.b));
+  }
+
+  const Pinhole& pinhole_;
+  const CarriedCells& cells_;
+  std::array<Cell, CarriedCells::kCells> all_{};
+};
+
+}  // namespace
+
+void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
+  for (std::size_t i = 0; i < tracks.points.matches.size(); ++i)
+    reference.points.points[tracks.points.matches[i].reference].record.add(tracks.point_inliers[i] != 0);
+  for (std::size_t i = 0; i < tracks.lines.size(); ++i)
+    reference.lines.lines[tracks.lines[i].reference].record.add(tracks.line_inliers[i] != 0);
+}
+
+// Not inlined: the cells are on the stack during it alone.
+[[gnu::noinline]] void inherit_records(std::span<const Reference> references,
+                                       const ReferenceTracking& tracking, const CurrentFrame& current) {
+  RecordsByCell cells(current);
+  FrameFeatures& features = current.features;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const FrameFeatures& reference = *references[r].features;
+    const ReferenceTracks& tracks = tracking.tracks(r);
+    for (const Match& match : tracks.points.matches.span())
+      cells.add(tracks.points.pixels[match.current], reference.points.points[match.reference].record);
+    for (const Match& match : tracks.lines.span())
+      cells.add(features.lines.lines[match.current], reference.lines.lines[match.reference].record);
+  }
+  for (std::size_t i = 0; i < features.points.keypoints.size(); ++i) {
+    const Keypoint& keypoint = features.points.keypoints[i];
+    features.points.points[i].record =
+        cells.inherited(Vector2(static_cast<double>(keypoint.u), static_cast<double>(keypoint.v)));
+  }
+  for (std::size_t i = 0; i < features.lines.count_3d; ++i)
+    features.lines.lines[i].record = cells.inherited(features.lines.lines[i]);
+}
+
+}  // namespace plvo
