@@ -15,8 +15,6 @@
 namespace plvo::cli {
 namespace {
 
-constexpr std::uint64_t kLeastMapKeyframes = 8;
-
 // Vertices and edges of a PLY file, as text.
 class PlyScene {
  public:
@@ -51,7 +49,7 @@ class PlyScene {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   OptionGroup group(command, "Map");
-  group.whole("--map", options.keyframes, kLeastMapKeyframes, MapLimits::kMostKeyframes,
+  group.whole("--map", options.keyframes, MapLimits::kLeastKeyframes, MapLimits::kMostKeyframes,
               "Keep a map of up to so many keyframes, which corrects the drift where a place is seen again "
               "(24 KB each)");
   group.path("--map-trajectory", options.trajectory,
