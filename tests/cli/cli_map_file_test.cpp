@@ -3,6 +3,7 @@
 // elsewhere, under other light, and finds its place in the map of the first.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
