@@ -17,6 +17,8 @@ constexpr std::uint32_t kRecentKeyframes = 5;
 constexpr std::uint32_t kJudgedKeyframes = 10;
 // A keyframe is compared only where at least so many descriptors voted for it alone, or more for several.
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
+// While the place is not known, all that looks alike at all is compared: there is nothing else to do.
+constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
 // A place is recognised when so many comparisons agree.
 constexpr int kLeastAgreeing = 3;
 // One that contradicts them counts if it has this share of their inliers.
@@ -261,7 +263,8 @@ void Map::find_candidates(std::uint16_t slot) {
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= kLeastScore) ++candidate_count_;
+    if (candidate.score >= (memory_.graph.is_placed(slot) ? kLeastScore : kLeastScoreUnplaced))
+      ++candidate_count_;
   is_judged_ = candidate_count_ == 0;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }

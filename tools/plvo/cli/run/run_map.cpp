@@ -119,6 +119,7 @@ void RunMap::finish() {
   if (options_.keyframes == 0 || map_.graph().size() == 0) return;
   if (map_.settle()) ++recognised_;
   located_ = map_.graph().is_placed(map_.graph().last());
+  if (located_ && !located_stamp_ns_ && !frames_.empty()) located_stamp_ns_ = frames_.back().stamp_ns;
 }
 
 eval::Trajectory RunMap::trajectory() const {
