@@ -17,7 +17,7 @@ set(include ${WORK}/prefix/include)
 set(reached plvo/odometry/odometry.hpp plvo/map/map.hpp plvo/inertial/imu_integrator.hpp plvo/camera/camera_info.hpp plvo/hal/clock.hpp
   plvo/hal/log.hpp plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp plvo/hal/task_pair.hpp)
 if(C_EXAMPLE)
-  list(APPEND reached plvo/c/imu.h plvo/c/plvo.h plvo/c/sequence.h plvo/c/thread_pair.h)
+  list(APPEND reached plvo/c/imu.h plvo/c/map.h plvo/c/plvo.h plvo/c/sequence.h plvo/c/thread_pair.h)
 endif()
 set(open ${reached})
 while(open)
@@ -80,7 +80,7 @@ run(${WORK}/consumer_by_pkg_config)
 if(C_EXAMPLE)
   get_filename_component(library_dir ${pc_dir} DIRECTORY)
   run(python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
-    ${include}/plvo/c/imu.h ${include}/plvo/c/sequence.h
+    ${include}/plvo/c/imu.h ${include}/plvo/c/map.h ${include}/plvo/c/sequence.h
     ${include}/plvo/c/thread_pair.h)
   execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
     RESULT_VARIABLE result OUTPUT_VARIABLE said)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "page_functions.h"
 
+#include <stdio.h>
 #include <string.h>
 
 int64_t now_ns(void) {
@@ -12,3 +13,4 @@ int64_t now_ns(void) {
 #include "function_3_of_page.inc"
 #include "function_4_of_page.inc"
 #include "function_6_of_page.inc"
+#include "function_7_of_page.inc"

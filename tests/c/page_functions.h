@@ -4,6 +4,7 @@
 #define PLVO_TESTS_C_PAGE_FUNCTIONS_H
 
 #include "plvo/c/imu.h"
+#include "plvo/c/map.h"
 #include "plvo/c/plvo.h"
 #include "plvo/c/thread_pair.h"
 
@@ -25,6 +26,9 @@ plvo_status track_with_imu(plvo_odometry* odometry, plvo_imu* imu, const plvo_fr
 plvo_status start_on_two_cores(plvo_thread_pair* pair, const plvo_camera* camera,
                                void (*feed)(void* watchdog, int32_t stage), void* watchdog,
                                plvo_odometry** odometry);
+
+plvo_status save_map(plvo_map* map, const char* path, const char* part);
+plvo_status load_map(plvo_map* map, const char* path);
 
 #ifdef __cplusplus
 }

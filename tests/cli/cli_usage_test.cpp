@@ -101,9 +101,10 @@ TEST(CliUsage, NumbersHaveReadableLimits) {
 }
 
 TEST(CliUsage, UnknownWordsAreNamedAndMisspellingsCorrected) {
-  expect_usage("",
-               "a command is needed: run, live, record, convert, info, calibrate, eval, simulate, doctor or "
-               "tilt (see plvo --help)");
+  expect_usage(
+      "",
+      "a command is needed: run, live, record, convert, info, map, calibrate, eval, simulate, doctor or "
+      "tilt (see plvo --help)");
   expect_usage("rnu x", "there is no command 'rnu'");
   expect_usage("recrod x", "there is no command 'recrod'; did you mean record?");
   expect_usage("x --out y", "there is no command 'x'; choose run, live,");
@@ -250,8 +251,8 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
 TEST(CliUsage, SameFlagHasTheSameMeaning) {
   std::map<std::string, std::set<std::string>> meanings;
   std::map<std::string, std::string> where;
-  for (const char* command :
-       {"run", "live", "record", "convert", "info", "calibrate", "eval", "simulate", "doctor", "tilt"}) {
+  for (const char* command : {"run", "live", "record", "convert", "info", "map", "calibrate", "eval",
+                              "simulate", "doctor", "tilt"}) {
     const auto flags = flags_of(command);
     EXPECT_FALSE(flags.empty()) << command;
     for (const auto& [flag, words] : flags) {

@@ -208,6 +208,35 @@ TEST(PoseGraph, MovesWhatWasNotSeenAndKeepsWhatWas) {
       << "by the path over the loop";
 }
 
+TEST(PoseGraph, APartMovesAsAWholeToWhereItsPlaceIsFound) {
+  const std::vector<Se3> truth = circle(20);
+  // Whichever of the two is named first, the part that began later moves.
+  for (const bool swapped : {false, true}) {
+    Graph g(20);
+    PoseGraph& graph = g.graph;
+    walk(graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
+    graph.append(Se3(), covariance(100, 3), graph.next_id());
+    for (std::size_t k = 11; k < 20; ++k)
+      graph.append(truth[k - 1].inverse() * truth[k], covariance(kStep_m, kStep_rad));
+    for (std::size_t k = 0; k < 20; ++k) EXPECT_EQ(graph.is_placed(graph.slot_at(k)), k < 10) << k;
+    const std::vector<Se3> before = poses_of(graph);
+    const std::uint16_t a = graph.slot_at(2), b = graph.slot_at(15);
+    const Se3 T_a_b = truth[2].inverse() * truth[15];
+    const Matrix6 C = covariance(0.01, 0.01);
+    if (swapped)
+      graph.join_parts(b, a, T_a_b.inverse(), inverse_covariance(T_a_b, C));
+    else
+      graph.join_parts(a, b, T_a_b, C);
+    for (std::size_t k = 0; k < 20; ++k) {
+      const PoseGraph::Node& node = graph.node(graph.slot_at(k));
+      EXPECT_TRUE(graph.is_placed(graph.slot_at(k)));
+      const Se3 expected = k < 10 ? before[k] : before[2] * truth[2].inverse() * truth[k];
+      EXPECT_LT(boxminus(node.T_map_keyframe, expected).norm(), k < 10 ? 1e-300 : 1e-9) << k;
+      EXPECT_LT(about_position(node.covariance, node.T_map_keyframe.t).trace(), 0.1) << k;
+    }
+  }
+}
+
 TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
   const std::vector<Se3> truth = circle(12);
   Graph g(12);

@@ -73,6 +73,12 @@ def places(walk):
                                             "depth_stamp_ns": None, "bgr": False, "prior": None}),
         ("Odometry.frame_took", odometry.frame_took, {"ns": 1}),
         ("Odometry.set_pose", odometry.set_pose, {"T_world_camera": np.eye(4), "covariance": np.eye(6)}),
+        ("Map", plvo.Map, {"camera": CAMERA, "config": None, "keyframes": 8, "keypoints": 100, "segments": 32}),
+        ("Map.update", plvo.Map(CAMERA).update, {"odometry": odometry, "result": results(walk)[0]}),
+        # An empty map: nothing is saved.
+        ("Map.save", plvo.Map(CAMERA).save, {"path": walk.parent / "empty.map"}),
+        ("Map.load", plvo.Map(CAMERA).load, {"path": walk.parent / "none.map"}),
+        ("Map.keyframe_pose", plvo.Map(CAMERA).keyframe_pose, {"keyframe": 1}),
         ("Sequence", plvo.Sequence, {"recording": walk, "camera": None, "topics": None}),
         ("Sequence.imu", plvo.Sequence(walk).imu, {"R_camera_imu": EYE}),
         ("run", lambda **given: next(plvo.run(**given)), {"recording": walk, "camera": None, "config": None, "imu": True,
@@ -115,6 +121,7 @@ def test_elements_are_named_too(walk):
         (lambda: plvo.Config(seed="x"), "seed: expected an int from 0 to 18446744073709551615, got str"),
         (lambda: plvo.Config(features=3), "features: expected a str, got int"),
         (lambda: plvo.Odometry(CAMERA, 3), "config: expected a plvo.Config, got int"),
+        (lambda: plvo.Map(CAMERA, 3), "config: expected a plvo.Config, got int"),
         (lambda: plvo.Odometry(CAMERA, keypoints=1.5), "keypoints: expected an int from .*, got float"),
         (lambda: fresh(walk)[0].track(*fresh(walk)[1], prior=3), "prior: expected a plvo.MotionPrior, got int"),
         (lambda: plvo.Sequence(walk, topics=3), "topics: expected a dict, got int"),
@@ -156,7 +163,8 @@ def test_a_path_may_be_any_bytes(walk, tmp_path):
 def test_what_was_not_initialised_is_refused(walk):
     odometry, frame = fresh(walk)
     given = {"track": frame, "frame_took": (1,), "set_pose": (np.eye(4),), "prior": (1,), "learn": (results(walk)[0],),
-             "add_gyro": (1, [0, 0, 0]), "add_acceleration": (1, [0, 0, 0])}
+             "add_gyro": (1, [0, 0, 0]), "add_acceleration": (1, [0, 0, 0]), "update": (odometry, results(walk)[0]),
+             "save": ("x",), "load": ("x",), "keyframe_pose": (1,)}
     uses = 0
     for cls in BOUND:
         for name in [name for name in dir(cls) if not name.startswith("_")] + ["__next__", "__len__", "__iter__"]:

@@ -17,6 +17,8 @@ constexpr std::uint32_t kRecentKeyframes = 5;
 constexpr std::uint32_t kJudgedKeyframes = 10;
 // A keyframe is compared only where at least so many descriptors voted for it alone, or more for several.
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
+// While the place is not known, all that looks alike at all is compared: there is nothing else to do.
+constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
 // A place is recognised when so many comparisons agree.
 constexpr int kLeastAgreeing = 3;
 // One that contradicts them counts if it has this share of their inliers.
@@ -43,15 +45,6 @@ bool lies_within(const Vector6& delta, const Matrix6& covariance) {
                                             kCovarianceSlack * chi_square_quantile(6, kPlausibleLoop);
 }
 
-float median_depth(std::span<const MapPoint> points, Arena& scratch) {
-  const ScratchScope scope(scratch);
-  const std::span<float> depths = scratch.take<float>("map check", points.size());
-  if (points.empty() || depths.empty()) return 1;
-  for (std::size_t i = 0; i < points.size(); ++i) depths[i] = points[i].depth_m;
-  heap_sort(depths.data(), depths.data() + depths.size(), [](float a, float b) { return a < b; });
-  return depths[depths.size() / 2];
-}
-
 }  // namespace
 
 Status Map::init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
@@ -69,15 +62,20 @@ Status Map::init(std::span<std::byte> memory, const CameraModel& camera, const C
   memory_.allocate(arena_, limits);
   arena_.seal();
   check_ = LoopCheck(camera, config);
+  clear();
+  counts_ = {};
+  ready_ = true;
+  return {};
+}
+
+void Map::clear() {
   memory_.features.clear();
   memory_.index.clear();
   memory_.graph.clear();
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   candidate_count_ = hypothesis_count_ = refreshed_ = 0;
   is_judged_ = true;
-  counts_ = {};
-  ready_ = true;
-  return {};
+  follows_camera_ = false;
 }
 
 MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
@@ -85,7 +83,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
   const KeyframeView view = odometry.keyframe();
   if (!ready_) return out;
   if (view.features != nullptr && view.features->points.described &&
-      (memory_.graph.size() == 0 || view.features->stamp_ns != keyframe_stamp_ns_)) {
+      (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
   } else {
     if (candidate_count_ > 0)
@@ -98,10 +96,11 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
       find_neighbour(memory_.graph.slot_at(refreshed_));
     }
   }
-  if (memory_.graph.size() == 0) return out;
+  if (!follows_camera_) return out;
   const PoseGraph::Node& latest = memory_.graph.node(memory_.graph.last());
   if (view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
     T_world_keyframe_ = view.T_world_camera;
+  out.located = memory_.graph.is_placed(memory_.graph.last());
   out.keyframe = latest.id;
   out.T_map_world = latest.T_map_keyframe * T_world_keyframe_.inverse();
   out.T_map_world.R = renormalise(out.T_map_world.R);
@@ -126,28 +125,30 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                         result.reference_stamp_ns == keyframe_stamp_ns_;
   // A world starts anew with a message, or after Odometry::reset() with a pose that is as certain as at
   // first.
-  const bool new_world =
-      result.state == TrackState::kInitialising &&
-      (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace());
-  Se3 T_previous_this = view.T_world_camera;  // the map begins as the world
+  const bool unseen =
+      !follows_camera_ ||
+      (result.state == TrackState::kInitialising &&
+       (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace()));
+  Se3 T_previous_this;
   Matrix6 covariance = Matrix6::Zero();
-  if (memory_.graph.size() > 0) {
-    if (measured) {
-      T_previous_this = result.T_camera_reference.inverse();
-      covariance = inverse_covariance(result.T_camera_reference, result.motion_covariance);
-    } else {
-      T_previous_this = T_world_keyframe_.inverse() * view.T_world_camera;
-      covariance = compose_covariance(T_world_keyframe_.inverse(),
-                                      inverse_covariance(T_world_keyframe_, world_covariance_),
-                                      view.T_world_camera, result.pose_covariance);
-      if (new_world) {
-        covariance.setZero();
-        covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
-        covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
-      }
-    }
+  if (memory_.graph.size() == 0) {
+    T_previous_this = view.T_world_camera;  // the map begins as the world
+  } else if (unseen) {
+    covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
+    covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
+  } else if (measured) {
+    T_previous_this = result.T_camera_reference.inverse();
+    covariance = inverse_covariance(result.T_camera_reference, result.motion_covariance);
+  } else {
+    T_previous_this = T_world_keyframe_.inverse() * view.T_world_camera;
+    covariance = compose_covariance(T_world_keyframe_.inverse(),
+                                    inverse_covariance(T_world_keyframe_, world_covariance_),
+                                    view.T_world_camera, result.pose_covariance);
   }
   if (!is_judged_) judge(out);
+  const bool begins_part = memory_.graph.size() == 0 || unseen;
+  const std::uint32_t part =
+      begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {
     const std::uint16_t goes = least_needed();
     if (goes == memory_.graph.last()) {
@@ -159,21 +160,41 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
     }
     remove(goes, out);
   }
-  const std::uint16_t slot = memory_.graph.append(T_previous_this, covariance);
+  const std::uint16_t slot = memory_.graph.append(T_previous_this, covariance, part);
   memory_.features.set(slot, features.points, features.lines);
-  const MapFeatures stored = memory_.features.at(slot);
-  memory_.depths[slot] = median_depth(stored.points, arena_);
-  memory_.index.add(all_descriptors(), slot, stored.descriptors.size());
+  measure_depth(slot);
+  memory_.index.add(all_descriptors(), slot, memory_.features.at(slot).descriptors.size());
   find_neighbour(slot);
   ++counts_.keyframes;
+  follows_camera_ = true;
   keyframe_stamp_ns_ = features.stamp_ns;
   world_covariance_ = result.pose_covariance;
   find_candidates(slot);
 }
 
+void Map::measure_depth(std::uint16_t slot) {
+  const std::span<const MapPoint> points = memory_.features.at(slot).points;
+  const ScratchScope scope(arena_);
+  const std::span<float> depths = arena_.take<float>("map check", points.size());
+  memory_.depths[slot] = 1;
+  if (depths.empty()) return;
+  for (std::size_t i = 0; i < points.size(); ++i) depths[i] = points[i].depth_m;
+  heap_sort(depths.data(), depths.data() + depths.size(), [](float a, float b) { return a < b; });
+  memory_.depths[slot] = depths[depths.size() / 2];
+}
+
+bool Map::settle() {
+  MapResult out;
+  while (candidate_count_ > 0) compare_next();
+  if (!is_judged_) judge(out);
+  while (!memory_.graph.idle()) memory_.graph.step();
+  return out.recognised;
+}
+
 // How much two views differ: in depths of the scene moved, and in the angle turned. Below 1 each shows what
-// the other does.
+// the other does. Nothing is known of views of different parts.
 float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
+  if (memory_.graph.node(a).part != memory_.graph.node(b).part) return MapMemory::Neighbour::kUnknown;
   const Se3& A = memory_.graph.node(a).T_map_keyframe;
   const Se3& B = memory_.graph.node(b).T_map_keyframe;
   const double depth = static_cast<double>(std::min(memory_.depths[a], memory_.depths[b]));
@@ -242,7 +263,8 @@ void Map::find_candidates(std::uint16_t slot) {
   memory_.index.query(all_descriptors(), memory_.features.at(slot).descriptors, memory_.excluded, best);
   candidate_count_ = 0;
   for (const PlaceCandidate& candidate : best)
-    if (candidate.score >= kLeastScore) ++candidate_count_;
+    if (candidate.score >= (memory_.graph.is_placed(slot) ? kLeastScore : kLeastScoreUnplaced))
+      ++candidate_count_;
   is_judged_ = candidate_count_ == 0;
   std::reverse(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(candidate_count_));
 }
@@ -328,6 +350,7 @@ void Map::judge(MapResult& out) {
     agreeing += agrees[i] ? 1 : 0;
   }
   if (agreeing < kLeastAgreeing) return;
+  memory_.graph.join_parts(best->old_slot, best->new_slot, best->loop.T_old_new, best->loop.covariance);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Hypothesis& h = all[i];
     if (!agrees[i] || h.joined) continue;
@@ -340,8 +363,9 @@ void Map::judge(MapResult& out) {
 
 std::optional<Se3> Map::keyframe_pose(std::uint32_t id) const {
   for (std::size_t k = 0; k < memory_.graph.size(); ++k)
-    if (const PoseGraph::Node& node = memory_.graph.node(memory_.graph.slot_at(k)); node.id == id)
-      return node.T_map_keyframe;
+    if (const std::uint16_t slot = memory_.graph.slot_at(k); memory_.graph.node(slot).id == id)
+      return memory_.graph.is_placed(slot) ? std::optional(memory_.graph.node(slot).T_map_keyframe)
+                                           : std::nullopt;
   return std::nullopt;
 }
 

@@ -28,6 +28,7 @@
 #include "plvo/base/arena.hpp"
 #include "plvo/base/status.hpp"
 #include "plvo/map/loop_check.hpp"
+#include "plvo/map/map_file.hpp"
 #include "plvo/map/map_keyframe.hpp"
 #include "plvo/map/map_limits.hpp"
 #include "plvo/map/place_index.hpp"
@@ -37,6 +38,10 @@
 namespace plvo {
 
 struct MapResult {
+  // Whether it is known where the camera is in the map. It is not where nothing is known of the motion since:
+  // after load(), and in a new world of the odometry, until a place is recognised. T_map_world has no meaning
+  // until then.
+  bool located = false;
   Se3 T_map_world;
   // Covariance of T_map_world · T_world_camera, of its ⊞-perturbation in the axes of the map. Large until a
   // place is recognised, where the odometry did not see the motion.
@@ -97,9 +102,22 @@ class Map {
   // Takes the result of a frame right after Odometry::track(). Does a bounded part of the work that waits.
   MapResult update(const Odometry& odometry, const TrackResult& result);
 
+  // Does all the work that waits, however long it takes: at the end of a way. Returns whether a place was
+  // recognised.
+  bool settle();
+
+  // Writes the map, after settle(). kNotFound: it holds no keyframe yet. map_file.hpp has the format.
+  Status save(ByteSink& sink);
+  std::size_t saved_bytes() const;
+  // Replaces the map by a saved one, which behaves as that one did: the same bits, if the limits are the
+  // same. The camera is not located until it sees a place of the map; its keyframes join the same graph.
+  // Not ok(): the map is empty, and the message says why. kOutOfMemory: these MapLimits hold less.
+  Status load(ByteSource& source);
+
   const PoseGraph& graph() const { return memory_.graph; }
   MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
-  // The pose of a keyframe as it is known now; nothing if it was removed.
+  // The pose of a keyframe as it is known now; nothing if it was removed, or if its place in the map is not
+  // known.
   std::optional<Se3> keyframe_pose(std::uint32_t id) const;
 
   // Counts since init: keyframes that joined, pairs that were compared, pairs that the comparison accepted,
@@ -110,6 +128,15 @@ class Map {
   const Counts& counts() const { return counts_; }
 
  private:
+  void clear();
+  // map_file.cpp
+  MapFileInfo file_info() const;
+  Status fits(const MapFileInfo& info) const;
+  void write_keyframe(std::uint16_t slot, MapWriter& writer);
+  bool read_keyframe(const MapFileInfo& info, MapReader& reader);
+  bool read_loop(const MapFileInfo& info, MapReader& reader);
+  void find_all_neighbours();
+
   // A pair of keyframes that the comparison accepted.
   struct Hypothesis {
     std::uint16_t old_slot = 0, new_slot = 0;
@@ -131,6 +158,7 @@ class Map {
   void judge(MapResult& out);
   float view_distance(std::uint16_t a, std::uint16_t b) const;
   void find_neighbour(std::uint16_t slot);
+  void measure_depth(std::uint16_t slot);
   std::span<const Descriptor> all_descriptors() const { return memory_.features.all_descriptors(); }
 
   Arena arena_;
@@ -138,6 +166,7 @@ class Map {
   MapMemory memory_;
   std::size_t refreshed_ = 0;  // the position whose neighbour is searched next
 
+  bool follows_camera_ = false;         // a keyframe of this odometry has joined
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
   Se3 T_world_keyframe_;                // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();

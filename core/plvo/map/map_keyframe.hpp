@@ -53,6 +53,11 @@ class MapFeatureStore {
   // Writes the features of a keyframe; those beyond the capacity, and points without depth, are left out.
   void set(std::size_t slot, const PointFeatures& points, const LineFeatures& lines);
   MapFeatures at(std::size_t slot) const;
+  // Room for features that the caller writes; no more than keypoints() and segments().
+  MapFeatures make_room(std::size_t slot, std::uint16_t points, std::uint16_t lines) {
+    counts_[slot] = {points, lines};
+    return at(slot);
+  }
   // Those of slot s begin at s · keypoints().
   std::span<const Descriptor> all_descriptors() const { return descriptors_; }
 

@@ -12,9 +12,9 @@ struct MapRange {
 }  // namespace
 
 Status MapLimits::validate() const {
-  for (const MapRange& range :
-       {MapRange{"keyframes", keyframes, 8, kMostKeyframes}, MapRange{"keypoints", keypoints, 50, 400},
-        MapRange{"segments", segments, 1, 256}})
+  for (const MapRange& range : {MapRange{"keyframes", keyframes, kLeastKeyframes, kMostKeyframes},
+                                MapRange{"keypoints", keypoints, kLeastKeypoints, kMostKeypoints},
+                                MapRange{"segments", segments, kLeastSegments, kMostSegments}})
     if (range.value < range.least || range.value > range.most)
       return Status(StatusCode::kInvalidArgument, "MapLimits::")
           .append(range.name)

@@ -52,18 +52,33 @@ std::uint32_t& PlaceIndex::head(std::size_t table, const Descriptor& descriptor)
 }
 
 // A new entry comes first; the last of a full list falls out.
+void PlaceIndex::insert(std::size_t table, std::span<const Descriptor> stored, std::size_t entry) {
+  std::uint32_t& first = head(table, stored[entry]);
+  next(table, entry) = first;
+  first = static_cast<std::uint32_t>(entry);
+  std::uint32_t at = first;
+  for (std::size_t n = 1; n < kListLength && at != kEnd; ++n) at = next(table, at);
+  if (at != kEnd) next(table, at) = kEnd;
+}
+
 void PlaceIndex::add(std::span<const Descriptor> stored, std::size_t slot, std::size_t count) {
+  for (std::size_t table = 0; table < kTables; ++table)
+    for (std::size_t i = 0; i < count; ++i) insert(table, stored, slot * keypoints_ + i);
+}
+
+std::uint8_t PlaceIndex::tables_of(std::span<const Descriptor> stored, std::size_t entry) {
+  std::uint8_t tables = 0;
   for (std::size_t table = 0; table < kTables; ++table) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t entry = slot * keypoints_ + i;
-      std::uint32_t& first = head(table, stored[entry]);
-      next(table, entry) = first;
-      first = static_cast<std::uint32_t>(entry);
-      std::uint32_t at = first;
-      for (std::size_t n = 1; n < kListLength && at != kEnd; ++n) at = next(table, at);
-      if (at != kEnd) next(table, at) = kEnd;
-    }
+    std::uint32_t at = head(table, stored[entry]);
+    while (at != kEnd && at != entry) at = next(table, at);
+    if (at == entry) tables = static_cast<std::uint8_t>(tables | 1U << table);
   }
+  return tables;
+}
+
+void PlaceIndex::add_to_tables(std::span<const Descriptor> stored, std::size_t entry, std::uint8_t tables) {
+  for (std::size_t table = 0; table < kTables; ++table)
+    if ((tables >> table & 1) != 0) insert(table, stored, entry);
 }
 
 void PlaceIndex::remove(std::span<const Descriptor> stored, std::size_t slot, std::size_t count) {

@@ -53,6 +53,11 @@ class PlaceIndex {
   void add(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
   void remove(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
 
+  // For a map that is saved: the tables in which a descriptor is, one bit each. A descriptor that fell out of
+  // a full list is missing there. When all are added again in the same order, the lists are the same.
+  std::uint8_t tables_of(std::span<const Descriptor> stored, std::size_t entry);
+  void add_to_tables(std::span<const Descriptor> stored, std::size_t entry, std::uint8_t tables);
+
   // Writes the keyframes with the highest scores, the best first, and among equal ones the lower slot. Slots
   // with a flag in `excluded` get no vote.
   void query(std::span<const Descriptor> stored, std::span<const Descriptor> query,
@@ -66,6 +71,7 @@ class PlaceIndex {
     while (4 * n <= entries && n < (std::size_t{1} << kKeyBits)) n *= 2;
     return n;
   }
+  void insert(std::size_t table, std::span<const Descriptor> stored, std::size_t entry);
   std::uint32_t& head(std::size_t table, const Descriptor& descriptor);
   std::uint32_t& next(std::size_t table, std::size_t entry) {
     return nexts_[table * (nexts_.size() / kTables) + entry];

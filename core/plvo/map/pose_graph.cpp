@@ -58,12 +58,14 @@ void PoseGraph::clear() {
   changed_ = false;
 }
 
-std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& covariance) {
+std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& covariance,
+                                std::optional<std::uint32_t> part) {
   std::size_t slot = 0;
   while (nodes_[slot].id != 0) ++slot;
   Node& node = nodes_[slot];
   node = Node();
   node.id = next_id_++;
+  node.part = part ? *part : size_ > 0 ? at(size_ - 1).part : node.id;
   node.position = static_cast<std::uint16_t>(size_);
   if (size_ > 0) {
     const Node& previous = at(size_ - 1);
@@ -77,6 +79,13 @@ std::uint16_t PoseGraph::append(const Se3& T_previous_keyframe, const Matrix6& c
   if (size_ == 0) node.T_map_keyframe = T_previous_keyframe;
   order_[size_++] = static_cast<std::uint16_t>(slot);
   return static_cast<std::uint16_t>(slot);
+}
+
+void PoseGraph::restore(std::uint16_t slot, const Node& node) {
+  nodes_[slot] = node;
+  nodes_[slot].position = static_cast<std::uint16_t>(size_);
+  order_[size_++] = slot;
+  next_id_ = node.id + 1;
 }
 
 bool PoseGraph::has_loop(std::uint16_t a, std::uint16_t b) const {
@@ -95,6 +104,10 @@ void PoseGraph::add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, con
   loop.T_older_newer = in_order ? T_a_b : T_a_b.inverse();
   loop.covariance = in_order ? covariance : inverse_covariance(T_a_b, covariance);
   loop.covariance += kMotionFloor * Matrix6::Identity();
+  keep_loop(loop);
+}
+
+void PoseGraph::keep_loop(const Loop& loop) {
   if (loop_count_ < loops_.size()) {
     loops_[loop_count_++] = loop;
     return;
@@ -103,6 +116,31 @@ void PoseGraph::add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, con
     return l.covariance.trace() < m.covariance.trace();
   });
   if (worst->covariance.trace() > loop.covariance.trace()) *worst = loop;
+}
+
+void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance) {
+  if (nodes_[a].part == nodes_[b].part) return;
+  note_change();
+  const bool b_moves = nodes_[a].part < nodes_[b].part;
+  const Node& stays = nodes_[b_moves ? a : b];
+  Node& moves = nodes_[b_moves ? b : a];
+  const Se3 T_stays_moves = b_moves ? T_a_b : T_a_b.inverse();
+  const Matrix6 of_motion = b_moves ? covariance : inverse_covariance(T_a_b, covariance);
+  const Se3 displacement = stays.T_map_keyframe * T_stays_moves * moves.T_map_keyframe.inverse();
+  const std::uint32_t part = moves.part;
+  for (std::size_t k = 0; k < size_; ++k) {
+    Node& node = at(k);
+    if (node.part != part) continue;
+    node.part = stays.part;
+    node.T_map_keyframe = displacement * node.T_map_keyframe;
+    node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
+  }
+  moves.covariance = stays.covariance + motion_in_map(stays.T_map_keyframe, T_stays_moves, of_motion);
+  const auto motion_to = [this](std::size_t k) {
+    return motion_in_map(at(k - 1).T_map_keyframe, at(k).T_previous_keyframe, at(k).motion_covariance);
+  };
+  for (std::size_t k = size_; k-- > 1;) relax(at(k - 1), at(k), motion_to(k));
+  for (std::size_t k = 1; k < size_; ++k) relax(at(k), at(k - 1), motion_to(k));
 }
 
 PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {

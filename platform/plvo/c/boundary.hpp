@@ -9,6 +9,7 @@
 
 #include "plvo/base/status.hpp"
 #include "plvo/c/imu.h"
+#include "plvo/c/map.h"
 #include "plvo/c/plvo.h"
 #include "plvo/camera/camera_model.hpp"
 
@@ -42,6 +43,12 @@ inline constexpr std::size_t kFirstSize<plvo_result> = end_of(offsetof(plvo_resu
 template <>
 inline constexpr std::size_t kFirstSize<plvo_imu_config> = end_of(offsetof(plvo_imu_config, longest_gap_s),
                                                                   &plvo_imu_config::longest_gap_s);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_map_limits> = end_of(offsetof(plvo_map_limits, segments),
+                                                                  &plvo_map_limits::segments);
+template <>
+inline constexpr std::size_t kFirstSize<plvo_map_result> = end_of(offsetof(plvo_map_result, T_into_removed),
+                                                                  &plvo_map_result::T_into_removed);
 
 // kInvalidArgument unless the struct is there and its size one that this library knows.
 template <typename Struct>

@@ -8,17 +8,10 @@
 
 #include "plvo/c/boundary.hpp"
 #include "plvo/c/matrices.hpp"
+#include "plvo/c/odometry_handle.hpp"
 #include "plvo/c/plvo.h"
 #include "plvo/odometry/odometry.hpp"
 
-struct plvo_odometry {
-  plvo::Odometry odometry;
-  // The caller's functions, which the core's own call.
-  void (*stage_hook)(void* context, std::int32_t stage) = nullptr;
-  void* stage_hook_context = nullptr;
-  void (*executor)(void* runner, plvo_task here, plvo_task beside) = nullptr;
-  void* runner = nullptr;
-};
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
               "nobody ends it: the caller takes the memory back");
 
@@ -72,44 +65,6 @@ Status take_limits(const plvo_limits* given, plvo::Limits& limits) {
 
 constexpr std::int64_t kMostStride = std::int64_t{1} << 30;  // bytes
 constexpr const char* kNoPreset = "preset must be one of PLVO_PRESET_…";
-
-Status take_config(const plvo_config* given, plvo::Config& config) {
-  if (given == nullptr) return {};
-  plvo_config whole = default_config();
-  if (Status status = plvo::c::take_struct(given, whole, "config"); !status.ok()) return status;
-  switch (whole.preset) {
-    case PLVO_PRESET_DEFAULT: break;
-    case PLVO_PRESET_PAPER: config = plvo::Config::paper(); break;
-    case PLVO_PRESET_TINY: config = plvo::Config::tiny(); break;
-    default: return refuse("config: ").append(kNoPreset);
-  }
-  switch (whole.features) {
-    case PLVO_FEATURES_OF_PRESET: break;
-    case PLVO_FEATURES_POINTS: config.features = plvo::Features::kPoints; break;
-    case PLVO_FEATURES_LINES: config.features = plvo::Features::kLines; break;
-    case PLVO_FEATURES_BOTH: config.features = plvo::Features::kBoth; break;
-    default: return refuse("config: features must be one of PLVO_FEATURES_…");
-  }
-  using plvo::ReferencePolicy;
-  switch (whole.reference) {
-    case PLVO_REFERENCE_OF_PRESET: break;
-    case PLVO_REFERENCE_PREVIOUS: config.references.policy = ReferencePolicy::kPreviousFrame; break;
-    case PLVO_REFERENCE_KEYFRAME: config.references.policy = ReferencePolicy::kKeyframe; break;
-    case PLVO_REFERENCE_BOTH: config.references.policy = ReferencePolicy::kKeyframeAndPrevious; break;
-    case PLVO_REFERENCE_WINDOW: config.references.policy = ReferencePolicy::kWindow; break;
-    default: return refuse("config: reference must be one of PLVO_REFERENCE_…");
-  }
-  config.seed = whole.seed;
-  config.stage_clock = whole.stage_clock;
-  config.level_world = whole.level_world != 0;
-  const std::int64_t stride = whole.mask_stride_bytes != 0 ? whole.mask_stride_bytes : whole.mask_width;
-  if (stride > kMostStride) return refuse("config: the stride of mask is longer than 2^30 bytes");
-  config.mask = {whole.mask, whole.mask_width, whole.mask_height, static_cast<std::ptrdiff_t>(stride)};
-  config.budget.frame_ns = whole.frame_budget_ns;
-  if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
-  if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
-  return {};
-}
 
 // The functions of a config that was taken. Called with the handle, they call the caller's own.
 void take_functions(const plvo_config* given, plvo_odometry& handle, plvo::Config& config) {
@@ -212,6 +167,44 @@ plvo_segment segment_to_c(const plvo::SegmentView& segment) {
 
 }  // namespace
 
+plvo::Status plvo::c::take_config(const plvo_config* given, plvo::Config& config) {
+  if (given == nullptr) return {};
+  plvo_config whole = default_config();
+  if (Status status = plvo::c::take_struct(given, whole, "config"); !status.ok()) return status;
+  switch (whole.preset) {
+    case PLVO_PRESET_DEFAULT: break;
+    case PLVO_PRESET_PAPER: config = plvo::Config::paper(); break;
+    case PLVO_PRESET_TINY: config = plvo::Config::tiny(); break;
+    default: return refuse("config: ").append(kNoPreset);
+  }
+  switch (whole.features) {
+    case PLVO_FEATURES_OF_PRESET: break;
+    case PLVO_FEATURES_POINTS: config.features = plvo::Features::kPoints; break;
+    case PLVO_FEATURES_LINES: config.features = plvo::Features::kLines; break;
+    case PLVO_FEATURES_BOTH: config.features = plvo::Features::kBoth; break;
+    default: return refuse("config: features must be one of PLVO_FEATURES_…");
+  }
+  using plvo::ReferencePolicy;
+  switch (whole.reference) {
+    case PLVO_REFERENCE_OF_PRESET: break;
+    case PLVO_REFERENCE_PREVIOUS: config.references.policy = ReferencePolicy::kPreviousFrame; break;
+    case PLVO_REFERENCE_KEYFRAME: config.references.policy = ReferencePolicy::kKeyframe; break;
+    case PLVO_REFERENCE_BOTH: config.references.policy = ReferencePolicy::kKeyframeAndPrevious; break;
+    case PLVO_REFERENCE_WINDOW: config.references.policy = ReferencePolicy::kWindow; break;
+    default: return refuse("config: reference must be one of PLVO_REFERENCE_…");
+  }
+  config.seed = whole.seed;
+  config.stage_clock = whole.stage_clock;
+  config.level_world = whole.level_world != 0;
+  const std::int64_t stride = whole.mask_stride_bytes != 0 ? whole.mask_stride_bytes : whole.mask_width;
+  if (stride > kMostStride) return refuse("config: the stride of mask is longer than 2^30 bytes");
+  config.mask = {whole.mask, whole.mask_width, whole.mask_height, static_cast<std::ptrdiff_t>(stride)};
+  config.budget.frame_ns = whole.frame_budget_ns;
+  if (whole.budget_patience_frames != 0) config.budget.patience_frames = whole.budget_patience_frames;
+  if (whole.budget_spare_share != 0) config.budget.spare_share = whole.budget_spare_share;
+  return {};
+}
+
 const char* plvo_version(void) { return PLVO_VERSION; }
 
 const char* plvo_status_name(std::int32_t code) {
@@ -276,7 +269,7 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
   plvo::Limits known_limits;
   if (Status status = take_limits(limits, known_limits); !status.ok()) return to_c(status);
   plvo::Config known_config;
-  if (Status status = take_config(config, known_config); !status.ok()) return to_c(status);
+  if (Status status = plvo::c::take_config(config, known_config); !status.ok()) return to_c(status);
   plvo_camera known_camera = to_c(plvo::CameraModel());
   if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
   plvo::CameraModel model;

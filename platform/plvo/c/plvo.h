@@ -212,8 +212,8 @@ typedef struct plvo_result {
   int64_t stage_ns[5];    /* PLVO_STAGE_…; zero without plvo_config.stage_clock */
   int32_t returned;       /* 1: the pose was put right at a view from before a loss */
   int32_t feature_step;   /* of plvo_config.frame_budget_ns: 0, all the features that fit, to 8 */
-  /* 1: the colour image is that of the frame before, so the pose is predicted; the state is PLVO_TRACKING, the
-   * status PLVO_OK with a message. */
+  /* 1: the colour image is that of the frame before, so the pose is predicted; the state is PLVO_TRACKING,
+   * the status PLVO_OK with a message. */
   int32_t repeated;
 } plvo_result;
 

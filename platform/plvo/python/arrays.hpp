@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "plvo/image/frame.hpp"
-#include "plvo/math/types.hpp"
+#include "plvo/math/se3.hpp"
 
 namespace plvo::python {
 
@@ -99,6 +99,16 @@ inline DepthView depth_view(const py::array& array, double metres_per_unit) {
     refuse_array("depth", "pixels must lie at even addresses; pass a copy");
   return {static_cast<const std::uint16_t*>(array.data()), static_cast<int>(array.shape(1)),
           static_cast<int>(array.shape(0)), array.strides(0) / kBytes, metres_per_unit};
+}
+
+// T as a 4×4 matrix.
+inline py::array matrix_4x4(const Se3& T) {
+  py::array_t<double> array({4, 4});
+  auto out = array.mutable_unchecked<2>();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      out(row, column) = row == 3 ? (column == 3 ? 1.0 : 0.0) : column == 3 ? T.t(row) : T.R(row, column);
+  return array;
 }
 
 }  // namespace plvo::python

@@ -18,6 +18,7 @@ void bind_config(py::module_& module);
 void bind_result(py::module_& module);
 void bind_prior(py::module_& module);
 void bind_odometry(py::module_& module);
+void bind_map(py::module_& module);
 void bind_sequence(py::module_& module);
 
 // A class of the package. An object that __new__ made and __init__ did not is refused wherever it is used:

@@ -18,5 +18,6 @@ PYBIND11_MODULE(_plvo, module) {
   bind_result(module);
   bind_prior(module);
   bind_odometry(module);
+  bind_map(module);
   bind_sequence(module);
 }

@@ -11,15 +11,6 @@ namespace plvo::python {
 
 namespace {
 
-py::array matrix_4x4(const Se3& T) {
-  py::array_t<double> array({4, 4});
-  auto out = array.mutable_unchecked<2>();
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      out(row, column) = row == 3 ? (column == 3 ? 1.0 : 0.0) : column == 3 ? T.t(row) : T.R(row, column);
-  return array;
-}
-
 py::array quaternion(const Se3& T) {
   const Quaternion q = to_quaternion(T.R);
   const double values[] = {q.x, q.y, q.z, q.w};

@@ -39,6 +39,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_record(app, exit_code);
   add_convert(app, exit_code);
   add_info(app, exit_code);
+  add_map(app, exit_code);
   add_calibrate(app, exit_code);
   add_eval(app, exit_code);
   add_simulate(app, exit_code);

@@ -5,11 +5,11 @@ import os as _os
 import time as _time
 
 from . import _evaluation, _plvo
-from ._plvo import Camera, Config, Counts, Error, Features, Frame, Imu, MotionPrior, Odometry, RecordedImu, Result, Sequence, __version__
+from ._plvo import Camera, Config, Counts, Error, Features, Frame, Imu, Map, MapResult, MotionPrior, Odometry, RecordedImu, Result, Sequence, __version__
 
 __all__ = [
-    "Camera", "Config", "Counts", "Error", "Features", "Frame", "Imu", "MotionPrior", "Odometry", "RecordedImu", "Result",
-    "Sequence", "evaluate", "run",
+    "Camera", "Config", "Counts", "Error", "Features", "Frame", "Imu", "Map", "MapResult", "MotionPrior", "Odometry",
+    "RecordedImu", "Result", "Sequence", "evaluate", "run",
 ]
 
 

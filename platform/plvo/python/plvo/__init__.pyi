@@ -258,6 +258,62 @@ class Odometry:
     @property
     def memory_bytes(self) -> int: ...
 
+class MapResult:
+    """Where the camera is in a map, after a frame."""
+
+    @property
+    def located(self) -> bool:
+        """False after Map.load(), and in a new world of the odometry, until a place is recognised: T_map_world has no
+        meaning until then."""
+    @property
+    def recognised(self) -> bool:
+        """A place was, in this frame."""
+    @property
+    def keyframe(self) -> int:
+        """The latest one; 0: none yet."""
+    @property
+    def T_map_world(self) -> NDArray[float64]:
+        """4x4; T_map_world @ result.T_world_camera is the camera in the map."""
+    @property
+    def covariance(self) -> NDArray[float64]:
+        """6x6, of the camera in the map: position before orientation."""
+    @property
+    def T_keyframe_camera(self) -> NDArray[float64]:
+        """With Map.keyframe_pose(keyframe) of a later time, the pose of this frame with the corrections that came since."""
+    @property
+    def removed(self) -> int:
+        """A keyframe that made room in this frame, or 0."""
+    @property
+    def removed_into(self) -> int: ...
+    @property
+    def T_into_removed(self) -> NDArray[float64]:
+        """The pose of the removed keyframe relative to removed_into."""
+
+class Map:
+    """The places that the camera has seen: corrects the drift where one comes back. camera and config: those of the
+    odometry."""
+
+    def __init__(
+        self, camera: Camera, config: Config | None = None, *, keyframes: int = 256, keypoints: int = 200, segments: int = 64
+    ) -> None: ...
+    def update(self, odometry: Odometry, result: Result) -> MapResult:
+        """Right after Odometry.track(), with its result, for each frame."""
+    def settle(self) -> None:
+        """Does all the work that waits: at the end of a way."""
+    def save(self, path: _Path) -> None:
+        """After settle(). The file that was there stays until the new one is whole."""
+    def load(self, path: _Path) -> None:
+        """Replaces the map by a saved one, in which the camera then looks for its place."""
+    def keyframe_pose(self, keyframe: int) -> NDArray[float64] | None:
+        """As it is known now; None if it was removed or its place in the map is not known."""
+    @property
+    def keyframes(self) -> int: ...
+    @property
+    def loops(self) -> int:
+        """Pairs of keyframes that are joined as the same place."""
+    @property
+    def memory_bytes(self) -> int: ...
+
 class Frame(NamedTuple):
     colour: NDArray[uint8]
     depth: NDArray[uint16]

@@ -16,6 +16,7 @@ void add_live(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);
 void add_convert(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
+void add_map(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_tilt(CLI::App& app, int& exit_code);

@@ -102,8 +102,8 @@ class Run {
     summary_->image = {opened_.camera->model().width, opened_.camera->model().height, opened_.scaled_down_by};
     history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
                                             opened_.frame_count.value_or(kUnknownFrameCount));
-    for (const std::string& file :
-         {options_.report, options_.summary, options_.map.trajectory, options_.map.ply})
+    if (Status status = map_.check_outputs(); !status.ok()) return status;
+    for (const std::string& file : {options_.report, options_.summary})
       if (!file.empty())
         if (Status status = LineFile::check(file); !status.ok()) return status;
     if (!options_.overlay.empty())
@@ -174,6 +174,7 @@ class Run {
     if (const Status status = history_->evaluate(opened_); !status.ok())
       console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
+    map_.finish();
     summary_->map = map_.summary(opened_);
     if (summary_->evaluation)
       if (const std::string doubt = eval::doubt_about_scale(*summary_->evaluation); !doubt.empty())
@@ -182,7 +183,8 @@ class Run {
     if (options_.quiet) return {};
     const OutputOptions& o = options_.outputs;
     if (!takes_standard_output({o.trajectory, o.covariance, o.motions, o.stats, options_.summary,
-                                options_.report, options_.map.trajectory, options_.map.ply}))
+                                options_.report, options_.map.trajectory, options_.map.ply,
+                                options_.map.out}))
       return print(summary_->to_text());
     print_to_stderr(summary_->to_text());
     return {};
@@ -221,8 +223,7 @@ void check(const CLI::App& command, RunOptions& options) {
   options.odometry.level_world = options.outputs.base.level;
   FileRoles files;
   for (const auto& [option, path] : options.outputs.named()) files.writes(option, path);
-  files.writes("--map-trajectory", options.map.trajectory);
-  files.writes("--ply", options.map.ply);
+  add_map_files(options.map, files);
   files.writes("--json", options.summary);
   files.writes("--report", options.report);
   files.writes_folder("--overlay", options.overlay);

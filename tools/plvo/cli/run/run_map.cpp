@@ -9,13 +9,12 @@
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/map_files.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 
 namespace plvo::cli {
 namespace {
-
-constexpr std::uint64_t kLeastMapKeyframes = 8;
 
 // Vertices and edges of a PLY file, as text.
 class PlyScene {
@@ -51,9 +50,12 @@ class PlyScene {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   OptionGroup group(command, "Map");
-  group.whole("--map", options.keyframes, kLeastMapKeyframes, MapLimits::kMostKeyframes,
+  group.whole("--map", options.keyframes, MapLimits::kLeastKeyframes, MapLimits::kMostKeyframes,
               "Keep a map of up to so many keyframes, which corrects the drift where a place is seen again "
               "(24 KB each)");
+  group.path("--map-in", options.in,
+             "Begin with this map: the camera is found in it when it sees a place of it");
+  group.path("--map-out", options.out, "Save the map at the end; may be the file of --map-in");
   group.path("--map-trajectory", options.trajectory,
              "Poses of all frames in the map, with all corrections, TUM format; written at the end");
   group.path("--ply", options.ply,
@@ -62,7 +64,16 @@ void add_map_options(CLI::App& command, MapOptions& options) {
 
 void check_map_options(const CLI::App& command, const MapOptions& options) {
   if (options.keyframes == 0)
-    refuse_options(command, {"--map-trajectory", "--ply"}, "is for a map: add --map N, or leave it away");
+    refuse_options(command, {"--map-in", "--map-out", "--map-trajectory", "--ply"},
+                   "is for a map: add --map N, or leave it away");
+}
+
+// A map may take the place of the one that was read: it was read whole, and the new one comes whole.
+void add_map_files(const MapOptions& options, FileRoles& files) {
+  files.writes("--map-out", options.out);
+  files.writes("--map-trajectory", options.trajectory);
+  files.writes("--ply", options.ply);
+  if (options.in != options.out) files.reads(options.in);
 }
 
 Status RunMap::init(const MapOptions& options, const CameraModel& camera, const Config& config,
@@ -75,7 +86,19 @@ Status RunMap::init(const MapOptions& options, const CameraModel& camera, const 
   memory_.assign(Map::required_bytes(limits, camera.width, camera.height), std::byte{0});
   frames_.resize(expected_frames);
   frames_.clear();
-  return map_.init(memory_, camera, config, limits);
+  if (Status status = map_.init(memory_, camera, config, limits); !status.ok() || options.in.empty())
+    return status;
+  const Status status = load_map(options.in, map_);
+  loaded_ = map_.graph().size();
+  return status;
+}
+
+Status RunMap::check_outputs() const {
+  if (options_.keyframes == 0) return {};
+  for (const std::string& file : {options_.trajectory, options_.ply})
+    if (!file.empty())
+      if (Status status = LineFile::check(file); !status.ok()) return status;
+  return options_.out.empty() ? Status() : check_map_output(options_.out);
 }
 
 void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
@@ -84,9 +107,19 @@ void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
   const MapResult result = map_.update(odometry, record.result);
   cpu_.add(static_cast<double>(posix_thread_cpu_ns() - start_ns) * 1e-6);
   recognised_ += result.recognised ? 1 : 0;
+  located_ = result.located;
+  if (record.has_pose() && !first_stamp_ns_) first_stamp_ns_ = record.result.stamp_ns;
+  if (result.located && !located_stamp_ns_) located_stamp_ns_ = record.result.stamp_ns;
   if (result.removed != 0) removed_[result.removed] = {result.removed_into, result.T_into_removed};
   if (record.has_pose() && result.keyframe != 0)
     frames_.push_back({record.result.stamp_ns, result.keyframe, result.T_keyframe_camera});
+}
+
+void RunMap::finish() {
+  if (options_.keyframes == 0 || map_.graph().size() == 0) return;
+  if (map_.settle()) ++recognised_;
+  located_ = map_.graph().is_placed(map_.graph().last());
+  if (located_ && !located_stamp_ns_ && !frames_.empty()) located_stamp_ns_ = frames_.back().stamp_ns;
 }
 
 eval::Trajectory RunMap::trajectory() const {
@@ -107,6 +140,10 @@ eval::Trajectory RunMap::trajectory() const {
 std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   if (options_.keyframes == 0) return std::nullopt;
   MapSummary summary;
+  summary.loaded = loaded_;
+  summary.located = located_;
+  if (first_stamp_ns_ && located_stamp_ns_)
+    summary.located_after_s = 1e-9 * static_cast<double>(*located_stamp_ns_ - *first_stamp_ns_);
   summary.keyframes = map_.graph().size();
   summary.capacity = static_cast<std::size_t>(options_.keyframes);
   summary.bytes = memory_.size();
@@ -128,7 +165,9 @@ std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   return summary;
 }
 
-Status RunMap::write() const {
+Status RunMap::write() {
+  if (options_.keyframes == 0) return {};
+  Status saved = options_.out.empty() ? Status() : save_map(options_.out, map_);
   if (!options_.trajectory.empty()) {
     LineFile file;
     if (Status status = file.open(options_.trajectory, kTrajectoryHeader); !status.ok()) return status;
@@ -136,13 +175,16 @@ Status RunMap::write() const {
       if (Status status = file.write(trajectory_line(pose.stamp_ns, pose.T_world_camera)); !status.ok())
         return status;
   }
-  return options_.ply.empty() ? Status() : write_ply();
+  if (!options_.ply.empty())
+    if (Status status = write_ply(); !status.ok()) return status;
+  return saved;
 }
 
 Status RunMap::write_ply() const {
   PlyScene scene;
   for (std::size_t k = 0; k < map_.graph().size(); ++k) {
     const std::uint16_t slot = map_.graph().slot_at(k);
+    if (!map_.graph().is_placed(slot)) continue;
     const Se3& T = map_.graph().node(slot).T_map_keyframe;
     const MapFeatures features = map_.features(slot);
     for (const MapPoint& point : features.points)

@@ -25,6 +25,10 @@ SummaryRows RunSummary::rows() const {
   if (map) {
     rows.emplace_back("map", fmt::format("{} keyframes of {}, {:.1f} MB", map->keyframes, map->capacity,
                                          static_cast<double>(map->bytes) * 1e-6));
+    if (map->loaded > 0)
+      rows.emplace_back("place in the map", !map->located_after_s
+                                                ? "not known: no place of the loaded map was recognised"
+                                                : fmt::format("found after {:.2f} s", *map->located_after_s));
     rows.emplace_back("places seen again",
                       fmt::format("{} times, by {} pairs of keyframes", map->recognised, map->loops));
     rows.emplace_back("map, CPU per frame",
@@ -59,7 +63,10 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
   if (map) {
-    json["map"] = {{"keyframes", map->keyframes},
+    json["map"] = {{"loaded", map->loaded},
+                   {"located", map->located},
+                   {"located_after_s", nullptr},
+                   {"keyframes", map->keyframes},
                    {"capacity", map->capacity},
                    {"bytes", map->bytes},
                    {"removed", map->removed},
@@ -69,6 +76,7 @@ nlohmann::ordered_json RunSummary::to_json() const {
                    {"loops", map->loops},
                    {"cpu_ms", cli::to_json(map->cpu)},
                    {"ate_m", nullptr}};
+    if (map->located_after_s) json["map"]["located_after_s"] = *map->located_after_s;
     if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
   }
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
