@@ -48,30 +48,30 @@ Status check_step(const WheelStep& step) {
 
 }  // namespace
 
-Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
-                   MotionPrior& prior) {
-  prior = MotionPrior();
-  if (steps.empty()) return refuse_wheels("there must be a step at least");
+Status BaseMotion::add(const WheelStep& step, double error_s) {
+  if (Status status = check_step(step); !status.ok()) return status;
   if (!(error_s >= 0 && error_s <= 1e6)) return refuse_wheels("error_s must lie between 0 and 1e6 s");
+  const Vector3 way = step.seconds * step.twist.head<3>(), turn = step.seconds * step.twist.tail<3>();
+  const Se3 T{rotation_exp(turn), mean_exponential<3>(skew(turn)) * way};
+  const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
+  const double lasts_s = step.seconds > error_s ? step.seconds : error_s;
+  covariance_ = carried_covariance(adjoint(T.inverse()), covariance_) +
+                step.seconds * lasts_s * carried_covariance(J_r, step.covariance);
+  T_before_now_ = T_before_now_ * T;
+  moved_ = true;
+  return {};
+}
+
+Status BaseMotion::prior(const Se3& T_base_camera, MotionPrior& prior) const {
+  prior = MotionPrior();
+  if (!moved_) return refuse_wheels("there must be a step at least");
   if (!is_rotation(T_base_camera.R) || !T_base_camera.t.allFinite())
     return refuse_wheels("T_base_camera must be a rotation and a finite position");
-  Se3 T_before_now;
-  Matrix6 C = Matrix6::Zero();
-  for (const WheelStep& step : steps) {
-    if (Status status = check_step(step); !status.ok()) return status;
-    const Vector3 way = step.seconds * step.twist.head<3>(), turn = step.seconds * step.twist.tail<3>();
-    const Se3 T{rotation_exp(turn), mean_exponential<3>(skew(turn)) * way};
-    const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
-    const double lasts_s = step.seconds > error_s ? step.seconds : error_s;
-    C = carried_covariance(adjoint(T.inverse()), C) +
-        step.seconds * lasts_s * carried_covariance(J_r, step.covariance);
-    T_before_now = T_before_now * T;
-  }
   const Se3 T_camera_base = T_base_camera.inverse();
-  Se3 T_now_before = T_camera_base * T_before_now.inverse() * T_base_camera;
+  Se3 T_now_before = T_camera_base * T_before_now_.inverse() * T_base_camera;
   T_now_before.R = renormalise(T_now_before.R);
   const Matrix6 J_apart = twist_matrix(Matrix3::Identity(), -skew(T_now_before.t));
-  C = carried_covariance(J_apart.lazyProduct(adjoint(T_camera_base)), C);
+  Matrix6 C = carried_covariance(J_apart.lazyProduct(adjoint(T_camera_base)), covariance_);
   C = 0.5 * (C + Matrix6(C.transpose()));
   MotionPrior made;
   made.rotation = {T_now_before.R, C.block<3, 3>(3, 3)};
@@ -79,6 +79,15 @@ Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& 
   Status status = made.validate();
   if (status.ok()) prior = made;
   return status;
+}
+
+Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
+                   MotionPrior& prior) {
+  prior = MotionPrior();
+  BaseMotion motion;
+  for (const WheelStep& step : steps)
+    if (Status status = motion.add(step, error_s); !status.ok()) return status;
+  return motion.prior(T_base_camera, prior);
 }
 
 }  // namespace plvo

@@ -26,14 +26,28 @@ struct WheelStep {
   Matrix6 covariance = Matrix6::Identity();  // of the twist
 };
 
-// The steps since the frame before, oldest first. error_s: for how long an error of the twist lasts (slip, a
-// wheel that is larger than stated). Over a longer time errors are independent: after t seconds the variance
-// is Q error_s t. Errors of different steps are independent; an error that lasts longer than a step therefore
-// counts as larger in each of them.
-//
-// Returns kInvalidArgument for no step, numbers that are not finite, a step that is not longer than 0 s or
-// turns by more than π, and for a T_base_camera that is not a rotation; and as MotionPrior::validate(), which
-// refuses a covariance that is not positive definite.
+// The motion of the base since the frame before, step by step, oldest first.
+class BaseMotion {
+ public:
+  // error_s: for how long an error of the twist lasts (slip, a wheel that is larger than stated). After a
+  // longer time t the variance is Q error_s t. Errors of different steps are independent; an error that
+  // outlasts a step therefore counts as larger in each of them.
+  //
+  // Returns kInvalidArgument, and adds nothing, for numbers that are not finite, and a step that is not
+  // longer than 0 s or turns by more than π.
+  Status add(const WheelStep& step, double error_s);
+
+  // Returns kInvalidArgument, and an empty prior, before the first step and for a T_base_camera that is not a
+  // rotation; and as MotionPrior::validate(), which refuses a covariance that is not positive definite.
+  Status prior(const Se3& T_base_camera, MotionPrior& prior) const;
+
+ private:
+  bool moved_ = false;
+  Se3 T_before_now_;
+  Matrix6 covariance_ = Matrix6::Zero();  // of an error Exp((ρ, φ)) on the right of T_before_now_
+};
+
+// Both for all steps of a frame.
 Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
                    MotionPrior& prior);
 
