@@ -12,6 +12,7 @@
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/rosbag/containers/container_kind.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
@@ -231,8 +232,8 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   for (const fs::path& file : bag_files_in(options.sequence)) files.reads(file);
   if (is_oni_file(options.sequence) || is_bag(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
-  for (const char* name :
-       {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
+  for (const char* name : {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile,
+                           kAccelerometerFile, kWheelFile})
     files.reads(folder / name);
   for (const fs::path& file : calibration_files_in(folder)) files.reads(file);
   SequenceIndex index;
