@@ -70,10 +70,10 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
   opened.scaled_down_by = recording->whole_image().factor;
   opened.name = sequence_name(options.sequence);
   if (recording->has_ground_truth())
-    opened.ground_truth = [path = options.sequence, sequence = how.sequence, topic = options.topics.truth](
-                              const std::vector<std::int64_t>&, eval::Trajectory& truth) {
-      return read_true_poses(path, sequence, truth, topic);
+    opened.ground_truth = [recording](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
+      return recording->read_true_poses(truth);
     };
+  opened.true_poses_source = recording->true_poses_source();
   opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
   opened.camera = recording;
   return {};

@@ -83,6 +83,7 @@ struct OpenedCamera {
   // The true poses, where there are any: from a file beside the images, or from the simulator
   // at these stamps.
   std::function<Status(const std::vector<std::int64_t>& stamps_ns, eval::Trajectory& truth)> ground_truth;
+  std::string true_poses_source;  // of a recording: a topic, or the name of a file
   // What a gyro and an accelerometer beside the camera read; empty where there can be none.
   std::function<Status(ImuRecording& recording)> inertial;
 };

@@ -14,6 +14,8 @@
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/printable.hpp"
 #include "plvo/host/standard_streams.hpp"
@@ -23,6 +25,7 @@ namespace plvo::cli {
 namespace {
 
 constexpr int kRingPatience_ms = 100;
+constexpr const char* kTruthFile = "groundtruth.txt";
 constexpr const char* kRecordHelp =
     "Examples:\n"
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
@@ -36,7 +39,9 @@ constexpr const char* kConvertHelp =
     "  plvo convert walk.mcap --out walk     a new folder with PNG images; then: plvo run walk\n"
     "  plvo convert walk.bag --out walk --imu    with gyro and accelerometer\n"
     "\n"
-    "plvo run reads recordings of ROS as they are: convert makes folders for other programs.\n";
+    "The true poses of a recording of ROS become groundtruth.txt. plvo run reads such recordings as they "
+    "are:\n"
+    "convert makes folders for other programs.\n";
 
 constexpr const char* kImuText =
     "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the recording of "
@@ -77,12 +82,43 @@ int judge(const RecordOptions& options, const LiveCapture::State& state, const S
 Status check_outputs(const RecordOptions& options) {
   Status status = FrameRecording::check(options.path);
   if (status.ok() && options.imu) status = refuse_imu_files(options.path);
+  std::error_code error;
+  if (status.ok() && is_bag(options.camera.device) &&
+      std::filesystem::exists(std::filesystem::path(options.path) / kTruthFile, error))
+    return {StatusCode::kInvalidArgument,
+            fmt::format("{} has {} already: remove it or choose another folder", options.path, kTruthFile)};
   return status;
 }
 
 // All that a bag has, before anything is made.
 Status read_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
   return options.imu && is_bag(options.camera.device) ? camera.read_imu(readings) : Status();
+}
+
+struct TruePoses {
+  eval::Trajectory trajectory;
+  std::string source;  // empty: there are none
+};
+
+// What cannot be read is told, and left out.
+void read_true_poses(const RecordOptions& options, LiveCamera& camera, Log& log, TruePoses& truth) {
+  if (!is_bag(options.camera.device)) return;
+  const Status status = camera.read_true_poses(truth.trajectory, truth.source);
+  if (!status.ok()) truth.source.clear();
+  if (!status.ok() && status.code() != StatusCode::kNotFound)
+    log.write(LogLevel::kWarning, fmt::format("no groundtruth.txt is written: {}", status.message()));
+}
+
+Status write_true_poses(const std::string& folder, const TruePoses& truth) {
+  if (truth.source.empty()) return {};
+  LineFile file;
+  Status status =
+      file.open(std::filesystem::path(folder) / kTruthFile,
+                fmt::format("# timestamp tx ty tz qx qy qz qw; from {}", printable(truth.source)));
+  for (std::size_t i = 0; status.ok() && i < truth.trajectory.poses.size(); ++i)
+    status = file.write(
+        trajectory_line(truth.trajectory.poses[i].stamp_ns, truth.trajectory.poses[i].T_world_camera));
+  return status;
 }
 
 Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
@@ -108,10 +144,13 @@ int record_command(const RecordOptions& options) {
   FrameRecording recording;
   LiveAccelerometer accelerometer(console);
   Status begun = read_imu(options, *camera, readings);
+  TruePoses truth;
+  read_true_poses(options, *camera, console, truth);
   catch_interrupt();  // from here on there is something to keep whole
   if (begun.ok())
     begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);
   if (begun.ok()) begun = begin_imu(options, *camera, readings, accelerometer);
+  if (begun.ok()) begun = write_true_poses(options.path, truth);
   if (!begun.ok()) return fail(begun);
   console.write(LogLevel::kInfo, fmt::format("{}, {}x{}, into {}; Ctrl-C ends", camera->name(), model.width,
                                              model.height, options.path));
@@ -142,6 +181,9 @@ int record_command(const RecordOptions& options) {
       text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
+    if (!truth.source.empty())
+      text += fmt::format("; {} true poses of {} in {}", truth.trajectory.poses.size(),
+                          printable(truth.source), kTruthFile);
     if (Status status = print(text + fmt::format("; next: plvo run {}\n", printable(options.path)));
         !status.ok())
       return fail(status);
@@ -160,7 +202,8 @@ void check(const CLI::App& command, const RecordOptions& options) {
     if (is_bag(options.camera.device)) refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
-    for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
+    for (const char* name :
+         {"rgb.txt", "depth.txt", "calibration.txt", kTruthFile, kGyroFile, kAccelerometerFile})
       files.writes(given(command, "--out") ? "--out" : "path", std::filesystem::path(options.path) / name);
   }
   if (is_oni_file(options.camera.device))
@@ -184,7 +227,7 @@ void add_record(CLI::App& app, int& exit_code) {
   add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
   group.flag("--imu", options->imu, kImuText);
   add_limit_options(command, options->frames, options->seconds);
-  add_bag_options(command, options->camera.topics, BagImu::kKept);
+  add_bag_options(command, options->camera.topics, BagImu::kWithTruth);
   group.flag("--quiet", options->quiet, kQuietText);
   on_command(command, exit_code, [&command, options] {
     check(command, *options);
@@ -204,7 +247,7 @@ void add_convert(CLI::App& app, int& exit_code) {
   add_limit_options(command, options->frames, options->seconds);
   add_calibration_options(command, options->camera.calibration, DepthScale::kFromCamera,
                           "the calibration in the recording");
-  add_bag_options(command, options->camera.topics, BagImu::kKept);
+  add_bag_options(command, options->camera.topics, BagImu::kWithTruth);
   group.flag("--quiet", options->quiet, kQuietText);
   on_command(command, exit_code, [&command, options] {
     if (!is_recorded_device(options->camera.device))
