@@ -101,7 +101,7 @@ struct TruePoses {
 };
 
 // What cannot be read is told, and left out.
-void read_true_poses(const RecordOptions& options, LiveCamera& camera, Log& log, TruePoses& truth) {
+void take_true_poses(const RecordOptions& options, LiveCamera& camera, Log& log, TruePoses& truth) {
   if (!is_bag(options.camera.device)) return;
   const Status status = camera.read_true_poses(truth.trajectory, truth.source);
   if (!status.ok()) truth.source.clear();
@@ -145,7 +145,7 @@ int record_command(const RecordOptions& options) {
   LiveAccelerometer accelerometer(console);
   Status begun = read_imu(options, *camera, readings);
   TruePoses truth;
-  read_true_poses(options, *camera, console, truth);
+  take_true_poses(options, *camera, console, truth);
   catch_interrupt();  // from here on there is something to keep whole
   if (begun.ok())
     begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);

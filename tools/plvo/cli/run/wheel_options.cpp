@@ -20,9 +20,11 @@ void add_wheel_options(CLI::App& command, WheelOptions& options) {
   group.path("--wheels", options.file,
              "With wheel odometry: 'stamp vx vy wz' per line (m/s, rad/s of the robot's base), or also "
              "'sigma_vx sigma_vy sigma_wz'; --base-camera says where the camera sits");
-  group.number("--wheels-error", options.share, {0, 1}, "SHARE",
-               "Of lines without sigma: how far the wheels are off, as a share of the speed, slip included "
-               "(default 0.05)");
+  group.number(
+      "--wheels-error", options.share, {0, 1}, "SHARE",
+      fmt::format("Of lines without sigma: how far the wheels are off, as a share of the speed, slip "
+                  "included (default {})",
+                  WheelConfig().share));
 }
 
 void check_wheel_options(const CLI::App& command, const WheelOptions& options, const CameraOptions& camera,
