@@ -451,6 +451,34 @@ class RosRecordings(unittest.TestCase):
         self.assertEqual(told.returncode, 1)
         self.assertIn("has groundtruth.txt already", told.stderr)
 
+    def test_convert_writes_the_wheels(self):
+        begin = self.walk.frames[0][0]
+        for wire, variances in (("cdr_le", [0.04, 0.01, 0, 0, 0, 0.25]), ("ros1", [0.04, 0, 0, 0, 0, 0.25])):
+            messages = self.messages(wire)
+            for k in range(5):  # backwards, and the last twice
+                stamp = begin + (4 - max(k, 1)) * 20_000_000
+                messages.append(("/odom", "nav_msgs/Odometry", stamp, ros.pose(
+                    wire, "nav_msgs/Odometry", stamp, [9] * 3 + [0, 0, 0, 1], [0.5, 0.25, 7, 7, 7, -0.125 * max(k, 1)], variances)))
+            messages.append(("/odom", "nav_msgs/Odometry", begin, b"\0" * 9))
+            file, folder = self.folder / "a.mcap", self.folder / wire
+            containers.write_mcap(file, messages, wire=wire if wire == "ros1" else "cdr")
+            told = plvo("convert", file, "--out", folder, "--wheels-topic", "/odom", "--quiet")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertIn("2 messages on /odom left out", told.stderr)
+            self.assertFalse((folder / "groundtruth.txt").exists(), "what wheels measure is no truth")
+            header, *rows = (folder / "wheel_odometry.txt").read_text().splitlines()
+            self.assertEqual("sigma" in header, wire == "cdr_le")
+            numbers = [[float(x) for x in row.split()[1:]] for row in rows]
+            sigma = [0.2, 0.1, 0.5] if wire == "cdr_le" else []
+            self.assertEqual(numbers, [[0.5, 0.25, -0.125 * k, *sigma] for k in (4, 3, 2, 1)])
+            base = "--base-camera 0 0 0 -0.5 0.5 -0.5 0.5".split()
+            told = plvo("run", folder, "--quiet", "--wheels", folder / "wheel_odometry.txt", *base)
+            self.assertEqual((told.returncode, "no samples" in told.stderr), (0, False), told.stderr)
+            told = plvo("convert", file, "--out", self.folder / "x", "--wheels-topic", "/wheels")
+            self.assertEqual(told.returncode, 1)
+            self.assertIn("there is no odometry of wheels on /wheels; nav_msgs/Odometry is on: /odom", told.stderr)
+            self.assertFalse((self.folder / "x").exists())
+
     def test_hostile_databases(self):
         file = self.folder / "a.db3"
 

@@ -13,6 +13,7 @@
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
 #include "plvo/rosbag/bag_poses.hpp"
+#include "plvo/rosbag/bag_wheels.hpp"
 #include "plvo/rosbag/containers/open_container.hpp"
 #endif
 
@@ -171,7 +172,14 @@ Status Recording::find_true_poses_of_bag(const fs::path& path, const std::string
   return {};
 }
 
+Status Recording::read_wheels(const std::string& topic, WheelRecording& recording) const {
+  if (bag_ == nullptr) return {StatusCode::kUnsupported, "a topic of wheels is one of a recording of ROS"};
+  return read_bag_wheels(*bag_->messages(), topic, recording);
+}
+
 #else
+
+Status Recording::read_wheels(const std::string&, WheelRecording&) const { return without_bags(); }
 
 Status Recording::find_true_poses_of_bag(const fs::path&, const std::string&) { return without_bags(); }
 

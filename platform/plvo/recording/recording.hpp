@@ -16,6 +16,7 @@
 #include "plvo/replay/images/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/index/sequence_index.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo {
@@ -75,6 +76,9 @@ class Recording final : public RgbdCamera {
 
   // Reads the samples of a gyro and an accelerometer, with read_imu_files or read_bag_imu.
   Status read_imu(ImuRecording& recording) { return read_imu_(recording); }
+  // Reads wheel odometry of a bag, with read_bag_wheels; kUnsupported for a folder, whose file has a name of
+  // the user's.
+  Status read_wheels(const std::string& topic, WheelRecording& recording) const;
 
  private:
   Status open_folder(const std::filesystem::path& folder, const CalibrationChoice& choose,

@@ -74,6 +74,9 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
       return recording->read_true_poses(truth);
     };
   opened.true_poses_source = recording->true_poses_source();
+  opened.wheels = [recording](const std::string& topic, WheelRecording& samples) {
+    return recording->read_wheels(topic, samples);
+  };
   opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
   opened.camera = recording;
   return {};
