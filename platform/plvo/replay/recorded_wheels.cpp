@@ -10,8 +10,9 @@
 namespace plvo {
 namespace {
 
+// to_ns is not before from_ns; the two may be centuries apart.
 double wheel_seconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * 1e-9;
+  return static_cast<double>(static_cast<std::uint64_t>(to_ns) - static_cast<std::uint64_t>(from_ns)) * 1e-9;
 }
 
 // On the line through two samples.
