@@ -2,11 +2,13 @@
 // The functions of docs/user/c.md, compiled as C11, give the bits of C++.
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 #include "c_support.hpp"
 #include "page_functions.h"
 #include "plvo/inertial/imu_integrator.hpp"
+#include "plvo/motion/wheel_prior.hpp"
 #include "procedural_sequence.hpp"
 #include "walking_imu.hpp"
 
@@ -76,6 +78,54 @@ TEST_F(CPage, TracksWithARotation) {
     EXPECT_EQ(result.state, i == 0 ? PLVO_INITIALISING : (i == 3 ? PLVO_PREDICTED : PLVO_TRACKING));
     expect_same(odometry.track(frame, prior), result);
   }
+}
+
+TEST_F(CPage, TracksWithWheels) {
+  Matrix3 R_body_optical;
+  R_body_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Se3 T_base_camera{R_body_optical, {0.2, 0.1, 0.5}};
+  double T[12];
+  for (int k = 0; k < 12; ++k) T[k] = k % 4 == 3 ? T_base_camera.t(k / 4) : T_base_camera.R(k / 4, k % 4);
+  for (int i = 0; i < 4; ++i) {
+    const RgbdFrame frame = i == 3 ? sequence.render_dark(i) : sequence.render(i);
+    WheelStep step{1.0 / 30, Vector6::Zero(), 4e-4 * Matrix6::Identity()};
+    step.twist[0] = 0.4;
+    step.twist[5] = -0.2;
+    MotionPrior prior;
+    ASSERT_TRUE(wheel_prior({&step, 1}, 0.5, T_base_camera, prior).ok());
+    const plvo_frame view = c_frame(frame);
+    plvo_result result = {};
+    result.struct_size = sizeof result;
+    (void)track_driven(c_odometry, &view, 1.0 / 30, 0.4, -0.2, T, &result);
+    EXPECT_EQ(result.state == PLVO_PREDICTED, i == 3);
+    expect_same(odometry.track(frame, prior), result);
+  }
+}
+
+TEST_F(CPage, WheelsThatAreNoMotionAreRefusedAndChangeNothing) {
+  const double T[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  plvo_wheel_step step = {};
+  step.seconds = 0.1;
+  for (int k = 0; k < 36; k += 7) step.covariance[k] = 1e-4;
+  plvo_prior prior;
+  plvo_prior_init(&prior, sizeof prior);
+  prior.has_gravity = 1;
+  const auto refused = [&prior](const plvo_status& status, const char* word) {
+    EXPECT_EQ(status.code, PLVO_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(status.message).find(word), std::string::npos) << status.message;
+    EXPECT_EQ(prior.has_rotation + prior.has_translation, 0);
+  };
+  refused(plvo_wheel_prior(nullptr, 1, 0, T, &prior), "NULL");
+  refused(plvo_wheel_prior(&step, 1, 0, nullptr, &prior), "NULL");
+  refused(plvo_wheel_prior(&step, 0, 0, T, &prior), "a step at least");
+  refused(plvo_wheel_prior(&step, 1, -1, T, &prior), "error_s");
+  step.covariance[7] = 0;
+  refused(plvo_wheel_prior(&step, 1, 0, T, &prior), "positive definite");
+  step.covariance[7] = 1e-4;
+  EXPECT_EQ(plvo_wheel_prior(&step, 1, 0, T, &prior).code, PLVO_OK);
+  EXPECT_EQ(prior.has_rotation + prior.has_translation + prior.has_gravity, 3) << "gravity stays";
+  prior.struct_size = 1;
+  EXPECT_NE(plvo_wheel_prior(&step, 1, 0, T, &prior).code, PLVO_OK);
 }
 
 // plvo_config.level_world, which joined the struct last: the first pose waits for gravity.

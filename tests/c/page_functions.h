@@ -19,6 +19,8 @@ plvo_status start_tiny(const plvo_camera* camera, plvo_odometry** odometry);
 plvo_status track_in_time(plvo_odometry* odometry, const plvo_frame* frame, plvo_result* result);
 plvo_status track_turned(plvo_odometry* odometry, const plvo_frame* frame, const double R[9],
                          plvo_result* result);
+plvo_status track_driven(plvo_odometry* odometry, const plvo_frame* frame, double seconds, double speed,
+                         double turn_rate, const double T_base_camera[12], plvo_result* result);
 plvo_status start_imu(plvo_imu** imu);
 void on_sample(plvo_imu* imu, int64_t stamp_ns, const double rate[3], const double force[3]);
 plvo_status track_with_imu(plvo_odometry* odometry, plvo_imu* imu, const plvo_frame* frame,

@@ -57,6 +57,8 @@ TEST(CliDocumentation, EveryOptionIsInEveryText) {
   }
   EXPECT_EQ(run_command(PLVO_BINARY " completion csh").exit_code, 2);
   EXPECT_EQ(run_command(PLVO_BINARY " man fly").exit_code, 2);
+  EXPECT_NE(printed("man").find("/usr/share/doc/plvo/"), std::string::npos) << "the installed files";
+  EXPECT_NE(printed("man live").find("/etc/default/plvo\\-live"), std::string::npos);
 }
 
 TEST(CliDocumentation, HelpFitsATerminal) {

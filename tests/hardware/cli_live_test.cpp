@@ -94,13 +94,28 @@ TEST_F(CliLive, PosesOfTheRobotsBaseAreThoseOfRun) {
   EXPECT_EQ(poses, 12);
 }
 
-TEST_F(CliLive, LiveRefusesADepthCameraInTheCalibration) {
-  plvo::test::write_file(
-      path("c.txt"),
-      "262 262 159.5 119.5 1000\ndepth_fx 262\ndepth_fy 262\ndepth_cx 159.5\ndepth_cy 119.5\n");
-  const CommandResult r = plvo("live " + kSmall + "--frames 1 --calibration " + path("c.txt"));
+// Depth as a camera beside that of colour sees it.
+TEST_F(CliLive, RegistersDepthOfAnotherCameraAsRunDoes) {
+  make_walk();
+  ASSERT_EQ(plvo("run " + path("walk") + files("as_one")).exit_code, 0);
+  const std::string calibration = read_file(path("walk/calibration.txt"));
+  plvo::test::write_file(path("walk/calibration.txt"), calibration + "depth_tx 0.015\n");
+  ASSERT_EQ(plvo("run " + path("walk") + files("files")).exit_code, 0);
+  EXPECT_NE(read_file(path("files.txt")), read_file(path("as_one.txt")));
+  ASSERT_EQ(live_over_walk("--record " + path("again") + files("live")), 0) << err();
+  expect_same("files", "live", 12);
+  // The recording has registered depth.
+  ASSERT_EQ(plvo("run " + path("again") + files("again")).exit_code, 0);
+  expect_same("files", "again", 12);
+}
+
+TEST_F(CliLive, ADepthCameraForDepthThatIsRegisteredIsRefused) {
+  ASSERT_EQ(plvo("record " + path("a.oni") + " --quiet --frames 2 " + kSmall).exit_code, 0);
+  plvo::test::write_file(path("c.txt"), "262 262 159.5 119.5 1000\ndepth_tx 0.02\n");
+  const CommandResult r =
+      plvo("live --device " + path("a.oni") + " --frames 1 --calibration " + path("c.txt"));
   EXPECT_EQ(r.exit_code, 1) << r.err;
-  EXPECT_NE(r.err.find("leave them out of the calibration"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("has registered depth: leave depth_fx"), std::string::npos) << r.err;
 }
 
 TEST_F(CliLive, AnOniFileAndTheFolderMadeFromItGiveTheSamePoses) {

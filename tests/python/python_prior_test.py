@@ -130,3 +130,22 @@ def test_a_level_world_waits_for_gravity(walk, tmp_path):
     subprocess.run([PLVO, "run", walk, "--imu", "--level", "--quiet", "--out", tmp_path / "t"], check=True)
     positions = [r.position for r in plvo.run(walk, imu=True, config=plvo.Config(level_world=True)) if r.has_pose]
     assert np.allclose(positions, np.loadtxt(tmp_path / "t")[:, 1:4], atol=1e-8)
+
+
+def test_wheels_give_a_prior():
+    ahead, left = np.array([0.6, 0, 0, 0, 0, 0]), np.array([0, 0, 0, 0, 0, 0.5])
+    C = np.diag([0.02, 0.01, 0.01, 0.02, 0.02, 0.05]) ** 2
+    T_base_camera = np.array([[0, 0, 1, 0.2], [-1, 0, 0, 0], [0, -1, 0, 0.5], [0, 0, 0, 1.0]])
+    prior = plvo.MotionPrior.of_wheels([(0.1, ahead, C)], T_base_camera)
+    assert np.allclose(prior.t_now_before, [0, 0, -0.06], atol=1e-15) and np.allclose(prior.R_now_before, np.eye(3))
+    assert np.allclose(np.diag(prior.rotation_covariance), [0.002**2, 0.005**2, 0.002**2])  # pitch, heading, roll
+    turn = plvo.MotionPrior.of_wheels([(0.1, ahead, C), (0.05, left, C)], T_base_camera, error_s=0.4)
+    # To the left is about the camera's -y; the scene turns the other way.
+    assert np.isclose(turn.R_now_before[0, 2], np.sin(0.025)) and turn.translation_covariance.shape == (3, 3)
+    assert np.isclose(turn.rotation_covariance[1, 1], 0.4 * 0.15 * 0.05**2, rtol=1e-2)
+    with pytest.raises(plvo.Error, match="longer than 0 s"):
+        plvo.MotionPrior.of_wheels([(0.0, ahead, C)], T_base_camera)
+    with pytest.raises(plvo.Error, match="a step at least"):
+        plvo.MotionPrior.of_wheels([], T_base_camera)
+    with pytest.raises(ValueError, match="for each step"):
+        plvo.MotionPrior.of_wheels([(0.1, ahead)], T_base_camera)

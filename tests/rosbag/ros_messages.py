@@ -67,11 +67,12 @@ def imu(wire, stamp_ns, rate, force):
     return e.number("d", *rate).number("d", 0.01, *[0] * 8).number("d", *force).number("d", 0.01, *[0] * 8).bytes()
 
 
-def pose(wire, kind, stamp_ns, numbers):
+def pose(wire, kind, stamp_ns, numbers, twist=(0,) * 6, variances=(0,) * 6):
     """kind: 'nav_msgs/Odometry' or 'geometry_msgs/PoseStamped'; numbers: tx ty tz qx qy qz qw."""
     e = Encoder(wire).header(stamp_ns, "world")
     if kind == "nav_msgs/Odometry":
-        return e.text("base_link").number("d", *numbers).number("d", *[0] * 36).number("d", *[0] * 6).number("d", *[0] * 36).bytes()
+        return e.text("base_link").number("d", *numbers).number("d", *[0] * 36).number("d", *twist).number(
+            "d", *(variances[i] if i == j else 0.1 for i in range(6) for j in range(6))).bytes()
     return e.number("d", *numbers).bytes()
 
 

@@ -293,7 +293,7 @@ class RosRecordings(unittest.TestCase):
             file.write(f"depth_fx {fx - 3}\ndepth_fy {fy - 3}\ndepth_cx {cx + 1}\ndepth_cy {cy}\ndepth_tx {x}\n")
         return copy
 
-    def realsense(self, wire):
+    def realsense(self, wire, infrared="mono8"):
         """As the RealSense Viewer records, with infrared beside colour."""
         w, h = self.walk.width, self.walk.height
         fx, fy, cx, cy = self.walk.camera
@@ -309,9 +309,10 @@ class RosRecordings(unittest.TestCase):
             (stream[0] + "/tf/0", "geometry_msgs/Transform", begin, ros.transform(wire, identity)),
             (stream[1] + "/tf/0", "geometry_msgs/Transform", begin, ros.transform(wire, [0.015, 0, 0, 0, 0, 0, 1]))]
         for stamp, rgb, depth_stamp, units in self.walk.frames:
-            grey = rgb[:, :, 1].copy()
+            grey = rgb[:, :, 1].astype(np.uint8 if infrared == "mono8" else "<u2")
             messages += [
-                (stream[2] + "/image/data", "sensor_msgs/Image", stamp, ros.image(wire, stamp, w, h, "mono8", w, grey.tobytes(), "2")),
+                (stream[2] + "/image/data", "sensor_msgs/Image", stamp, ros.image(
+                    wire, stamp, w, h, infrared, w * grey.itemsize, grey.tobytes(), "2")),
                 (stream[0] + "/image/data", "sensor_msgs/Image", stamp,
                  ros.image(wire, depth_stamp, w, h, "mono16", 2 * w, units.astype("<u2").tobytes(), "0")),
                 (stream[1] + "/image/data", "sensor_msgs/Image", stamp, ros.image(wire, stamp, w, h, "rgb8", 3 * w, rgb.tobytes(), "1"))]
@@ -331,6 +332,37 @@ class RosRecordings(unittest.TestCase):
             if not containers.write_ros1(bag, self.realsense("ros1"), compression):
                 self.skipTest("no python3-rosbag")
             self.expect_equal(bag, poses=poses)
+
+    def test_realsense_viewer_with_infrared_of_16_bits(self):
+        """It has the encoding of depth."""
+        file = self.folder / "viewer.db3"
+        containers.write_db3(file, self.realsense("cdr_le", "mono16"))
+        self.expect_equal(file, poses=self.poses_of(self.own_depth_camera(0.015)))
+        told = plvo("run", file).stderr
+        self.assertIn("depth is taken from /device_0/sensor_0/Depth_0/image/data, and not from the infrared images on "
+                      "/device_0/sensor_0/Infrared_1/image/data (mono16)", told)
+
+    def test_two_cameras(self):
+        """Depth is that of the camera of colour, whichever comes first."""
+        messages = [(topic.replace("/camera/", "/front/"), *rest) for topic, *rest in self.messages("cdr_le")]
+        names = {topic for topic, *_ in messages}
+        colour, depth, info = (next(name for name in names if name.endswith(of.removeprefix("/camera")))
+                               for of in (COLOUR, DEPTH, INFO))
+        w, h = self.walk.width, self.walk.height
+        blank = ros.image("cdr_le", messages[0][2], w, h, "16UC1", 2 * w, bytes(2 * w * h), "camera")
+        back = [("/back/depth/image_raw", "sensor_msgs/Image", messages[0][2], blank)]
+        file = self.folder / "a.mcap"
+        for content in (back + messages, messages + back):
+            containers.write_mcap(file, content)
+            self.expect_equal(file)
+            self.assertIn(f"depth is taken from {depth}, which is of the camera of colour, and not from /back/depth/image_raw",
+                          plvo("run", file).stderr)
+        # With two whole cameras, that of the colour which was chosen.
+        rgb = ros.image("cdr_le", messages[0][2], w, h, "rgb8", 3 * w, bytes(3 * w * h), "camera")
+        back.append(("/back/rgb/image_raw", "sensor_msgs/Image", messages[0][2], rgb))
+        containers.write_mcap(file, back + messages)
+        self.assertIn("several topics could be colour", plvo("run", file).stderr)
+        self.expect_equal(file, "--colour-topic", colour, "--info-topic", info)
 
     def test_depth_of_another_frame(self):
         w, h = self.walk.width, self.walk.height
@@ -382,6 +414,70 @@ class RosRecordings(unittest.TestCase):
         self.assertEqual(made.returncode, 0, made.stderr)
         self.expect_equal(folder)
         self.assertEqual(plvo("convert", folder, "--out", self.folder / "x").returncode, 2)
+        self.assertFalse((folder / "groundtruth.txt").exists(), "there are no true poses")
+
+    def test_convert_writes_the_true_poses(self):
+        kind = "nav_msgs/Odometry"
+        messages = self.messages("cdr_le")
+        rows = [[float(x) for x in row] for row in self.walk.rows("groundtruth.txt")]
+        for topic in ("/truth", "/wheels"):
+            for row, text in zip(rows, self.walk.rows("groundtruth.txt")):
+                stamp = self.walk.ns(text[0])
+                messages.append((topic, kind, stamp, ros.pose("cdr_le", kind, stamp, row[1:])))
+        file, folder = self.folder / "a.mcap", self.folder / "converted"
+        containers.write_mcap(file, messages)
+        # Which of two is the truth nobody knows: that is said, and nothing is written.
+        told = plvo("convert", file, "--out", self.folder / "without")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn("several topics have poses: choose with --truth-topic", told.stderr)
+        self.assertFalse((self.folder / "without" / "groundtruth.txt").exists())
+        told = plvo("convert", file, "--out", folder, "--truth-topic", "/truth")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn(f"{len(rows)} true poses of /truth in groundtruth.txt", told.stdout)
+        written = (folder / "groundtruth.txt").read_text().splitlines()
+        self.assertIn("from /truth", written[0])
+        self.assertEqual(len(written), len(rows) + 1)
+        for row, line in zip(rows, written[1:]):
+            self.assertTrue(np.allclose([float(x) for x in line.split()], row, atol=2e-9, rtol=0))
+        for recording, options in ((file, ["--truth-topic", "/truth"]), (folder, [])):
+            run = plvo("run", recording, *options, "--json", self.folder / "j", "--quiet")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            ate = json.loads((self.folder / "j").read_text())["evaluation"]["ate_m"]["rmse"]
+            self.assertLess(ate, 0.05)
+        # A truth that is there already is not overwritten.
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "groundtruth.txt").write_text("1 0 0 0 0 0 0 1\n")
+        told = plvo("convert", file, "--out", self.folder / "mine")
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("has groundtruth.txt already", told.stderr)
+
+    def test_convert_writes_the_wheels(self):
+        begin = self.walk.frames[0][0]
+        for wire, variances in (("cdr_le", [0.04, 0.01, 0, 0, 0, 0.25]), ("ros1", [0.04, 0, 0, 0, 0, 0.25])):
+            messages = self.messages(wire)
+            for k in range(5):  # backwards, and the last twice
+                stamp = begin + (4 - max(k, 1)) * 20_000_000
+                messages.append(("/odom", "nav_msgs/Odometry", stamp, ros.pose(
+                    wire, "nav_msgs/Odometry", stamp, [9] * 3 + [0, 0, 0, 1], [0.5, 0.25, 7, 7, 7, -0.125 * max(k, 1)], variances)))
+            messages.append(("/odom", "nav_msgs/Odometry", begin, b"\0" * 9))
+            file, folder = self.folder / "a.mcap", self.folder / wire
+            containers.write_mcap(file, messages, wire=wire if wire == "ros1" else "cdr")
+            told = plvo("convert", file, "--out", folder, "--wheels-topic", "/odom", "--quiet")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            self.assertIn("2 messages on /odom left out", told.stderr)
+            self.assertFalse((folder / "groundtruth.txt").exists(), "what wheels measure is no truth")
+            header, *rows = (folder / "wheel_odometry.txt").read_text().splitlines()
+            self.assertEqual("sigma" in header, wire == "cdr_le")
+            numbers = [[float(x) for x in row.split()[1:]] for row in rows]
+            sigma = [0.2, 0.1, 0.5] if wire == "cdr_le" else []
+            self.assertEqual(numbers, [[0.5, 0.25, -0.125 * k, *sigma] for k in (4, 3, 2, 1)])
+            base = "--base-camera 0 0 0 -0.5 0.5 -0.5 0.5".split()
+            told = plvo("run", folder, "--quiet", "--wheels", folder / "wheel_odometry.txt", *base)
+            self.assertEqual((told.returncode, "no samples" in told.stderr), (0, False), told.stderr)
+            told = plvo("convert", file, "--out", self.folder / "x", "--wheels-topic", "/wheels")
+            self.assertEqual(told.returncode, 1)
+            self.assertIn("there is no odometry of wheels on /wheels; nav_msgs/Odometry is on: /odom", told.stderr)
+            self.assertFalse((self.folder / "x").exists())
 
     def test_hostile_databases(self):
         file = self.folder / "a.db3"

@@ -21,6 +21,15 @@ ldconfig -p | grep -q libplvo.so.0
 test -s /usr/lib/*/OpenNI2/Drivers/libPlvoFreenectDriver.so.0
 test -s /usr/lib/udev/rules.d/60-plvo-rgbd.rules
 test -s /usr/lib/systemd/system/plvo-live.service
+# The service starts what its file of options says, by words that plvo live takes.
+# shellcheck disable=SC1091  # installed just now
+. /etc/default/plvo-live
+grep -q "EnvironmentFile=-/etc/default/plvo-live" /usr/lib/systemd/system/plvo-live.service
+# shellcheck disable=SC2086  # a list of words
+if plvo live $PLVO_LIVE_OPTIONS --quiet --seconds 1 2>live.words; then exit 1; else test $? -eq 4; fi  # no sensor, but no wrong usage
+# The manual names files that are there.
+apt-get install -y -qq --no-install-recommends man-db >/dev/null 2>&1
+MANWIDTH=200 man plvo plvo-live | grep -o '^ *\(/usr\|/etc\)/[^ ,]*' | while read -r file; do test -e "$file" || exit 1; done
 
 step "command line"
 plvo --version >&2

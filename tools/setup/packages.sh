@@ -26,9 +26,30 @@ PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc
 
 say() { printf '\033[1mplvo:\033[0m %s\n' "$*" >&2; }
 
+# apt_get WORD…: runs apt-get. If another program, such as an unattended upgrade, holds a lock of apt or dpkg, it waits for up to ten
+# minutes. The lock of the package lists has no timeout of its own.
+apt_get() {
+  local log tries as_root=()
+  if [ "$(id -u)" -ne 0 ]; then as_root=(sudo); fi
+  log=$(mktemp)
+  for tries in {1..120}; do
+    if "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -o DPkg::Lock::Timeout=600 "$@" >&2 2>"$log"; then
+      cat "$log" >&2
+      rm -f "$log"
+      return
+    fi
+    if ! grep -q "Could not get lock" "$log"; then break; fi
+    if [ "$tries" -eq 1 ]; then say "waiting for another program to release apt's lock"; fi
+    sleep 5
+  done
+  cat "$log" >&2
+  rm -f "$log"
+  return 1
+}
+
 # install_packages NAME…: installs the missing packages; uses the network only if a package is missing.
 install_packages() {
-  local package missing=() root=()
+  local package missing=()
   for package in "$@"; do
     if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then missing+=("$package"); fi
   done
@@ -36,9 +57,8 @@ install_packages() {
     say "all $# packages are installed"
     return
   fi
-  if [ "$(id -u)" -ne 0 ]; then root=(sudo); fi
   say "installing ${#missing[@]} packages: ${missing[*]}"
   # A mirror under update may lack one of its lists; if a package needs that list, the installation below fails.
-  "${root[@]}" apt-get update -qq >&2 || say "not every list of packages could be fetched; going on with those that could"
-  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+  apt_get update -qq || say "not every list of packages could be fetched; going on with those that could"
+  apt_get install -y -qq --no-install-recommends "${missing[@]}"
 }

@@ -10,6 +10,7 @@
 #include "plvo/c/matrices.hpp"
 #include "plvo/c/odometry_handle.hpp"
 #include "plvo/c/plvo.h"
+#include "plvo/motion/wheel_prior.hpp"
 #include "plvo/odometry/odometry.hpp"
 
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
@@ -303,6 +304,29 @@ plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* fra
       unreadable.ok() ? odometry->odometry.track(view, prior) : odometry->odometry.track(plvo::RgbdFrame());
   give_result(tracked, result);
   return to_c(unreadable.ok() ? tracked.status : unreadable);
+}
+
+plvo_status plvo_wheel_prior(const plvo_wheel_step* steps, std::size_t count, double error_s,
+                             const double T_base_camera[12], plvo_prior* prior) {
+  plvo_prior whole;
+  std::memset(&whole, 0, sizeof whole);
+  if (Status status = plvo::c::take_struct(prior, whole, "prior"); !status.ok()) return to_c(status);
+  if (steps == nullptr || T_base_camera == nullptr) return to_c(refuse("wheels: a pointer is NULL"));
+  plvo::BaseMotion motion;
+  for (std::size_t i = 0; i < count; ++i) {
+    plvo::WheelStep step{steps[i].seconds, {}, matrix<6>(steps[i].covariance)};
+    for (int k = 0; k < 6; ++k) step.twist[k] = steps[i].twist[k];
+    if (Status status = motion.add(step, error_s); !status.ok()) return to_c(status);
+  }
+  plvo::MotionPrior made;
+  if (Status status = motion.prior(plvo::c::se3(T_base_camera), made); !status.ok()) return to_c(status);
+  whole.has_rotation = whole.has_translation = 1;
+  put(made.rotation->R_now_before, whole.R_now_before);
+  put(made.rotation->covariance, whole.rotation_covariance);
+  for (int k = 0; k < 3; ++k) whole.t_now_before[k] = made.translation->t_now_before[k];
+  put(made.translation->covariance, whole.translation_covariance);
+  plvo::c::give_struct(whole, prior);
+  return to_c(Status());
 }
 
 plvo_status plvo_frame_took(plvo_odometry* odometry, std::int64_t ns) {

@@ -261,6 +261,20 @@ typedef struct plvo_prior {
 /* Sets struct_size and says nothing. */
 PLVO_API void plvo_prior_init(plvo_prior* prior, size_t size);
 
+/* What wheel odometry measured: a twist of the robot's base that holds for `seconds`. */
+typedef struct plvo_wheel_step {
+  double seconds;
+  double twist[6];       /* vx vy vz wx wy wz, m/s and rad/s, in the axes of the base (x forward, z up) */
+  double covariance[36]; /* of the twist, row-major; wheels measure neither vz nor wx nor wy: their variances
+                          * say how much the robot bounces and tilts */
+} plvo_wheel_step;
+
+/* Rotation and translation of the prior, from the steps since the frame before; gravity stays. error_s: for
+ * how long an error of a twist lasts (slip); 0: a step. T_base_camera: where the camera sits, 3×4, row-major.
+ * prior->struct_size must be set. PLVO_INVALID_ARGUMENT, and nothing changes, for what is no motion. */
+PLVO_API plvo_status plvo_wheel_prior(const plvo_wheel_step* steps, size_t count, double error_s,
+                                      const double T_base_camera[12], plvo_prior* prior);
+
 /* plvo_track with a prior: it leads the search for features and joins the estimate. What vision leaves open
  * then has a large covariance and is no loss; a frame that shows nothing is PLVO_PREDICTED, and the status
  * says why. A prior that is no good is refused with its frame. NULL is a prior that says nothing. */

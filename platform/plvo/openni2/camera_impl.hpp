@@ -50,6 +50,7 @@ struct OpenNi2Camera::Impl {
   std::int64_t period_us = 33333;
   std::int64_t last_delivered_us = 0;
   double metres_per_unit = 0.001;
+  bool registered_by_device = true;
   bool warp = false;
   bool unplugged = false;
   bool after_gap = false;  // frames lost while the device is unplugged do not count as missing

@@ -79,7 +79,7 @@ void OpenNi2Camera::close() {
 CameraModel OpenNi2Camera::model() const { return impl_->model; }
 Status OpenNi2Camera::next(RgbdFrame& frame) { return impl_->next(frame); }
 OpenNi2DeviceInfo OpenNi2Camera::device() const { return impl_->info; }
-bool OpenNi2Camera::registered_by_device() const { return !impl_->warp; }
+bool OpenNi2Camera::registered_by_device() const { return impl_->registered_by_device; }
 int OpenNi2Camera::recorded_frames() const { return impl_->device ? impl_->device->recorded_frames() : -1; }
 
 OpenNi2Counters OpenNi2Camera::counters() const {
@@ -109,7 +109,8 @@ Status OpenNi2Camera::Impl::open() {
   tracker.reset(period_us, !device->is_file());
   metres_per_unit = depth.format == ImageFormat::kDepth100Um ? 0.0001 : 0.001;
 
-  warp = !device->registered() && options.registration != OpenNi2Registration::kNone;
+  registered_by_device = device->registered();
+  warp = !registered_by_device && options.registration != OpenNi2Registration::kNone;
   if (warp) {
     registered.resize(pixels);
     registration.reset(pinhole_from_fov(depth.width, depth.height, depth.fov_x_rad, depth.fov_y_rad), model,

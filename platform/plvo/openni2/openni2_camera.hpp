@@ -108,7 +108,8 @@ class OpenNi2Camera final : public RgbdCamera {
 
   OpenNi2Counters counters() const;
   OpenNi2DeviceInfo device() const;
-  // True if depth is registered by the device (or in the file), not by software_registration.hpp.
+  // True if depth is registered by the device (or in the file), not by software_registration.hpp or the
+  // caller.
   bool registered_by_device() const;
   // Number of pairs in the recording, or -1 for a live device.
   int recorded_frames() const;

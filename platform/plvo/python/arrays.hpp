@@ -64,6 +64,13 @@ inline void refuse_array(const std::string& name, const char* why) {
   throw py::value_error(name + ": " + why);
 }
 
+// A pose as a 4×4 matrix.
+inline Se3 se3_of(const py::handle& object, const std::string& name) {
+  const Matrix4 T = matrix_of<4, 4>(object, name);
+  if (T.row(3) != Vector4(0, 0, 0, 1).transpose()) refuse_array(name, "the last row must be 0 0 0 1");
+  return {T.block<3, 3>(0, 0), T.block<3, 1>(0, 3)};
+}
+
 // Checks that the pixels of a row lie side by side; rows may be any distance apart.
 inline void check_rows(const py::array& array, const std::string& name, py::ssize_t pixel_bytes) {
   constexpr py::ssize_t kMostPixels = py::ssize_t{1} << 20;

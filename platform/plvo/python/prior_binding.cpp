@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other sensors say of a frame, for Python: priors, and gyros and accelerometers that make them.
+// What other sensors say of a frame, for Python: priors, and gyros, accelerometers and wheels that make them.
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plvo/inertial/imu_integrator.hpp"
+#include "plvo/motion/wheel_prior.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
@@ -41,6 +42,23 @@ MotionPrior make_prior(const py::object& rotation, const py::object& translation
   if (const auto given = with_covariance<1>(gravity, "gravity"))
     prior.gravity = {given->first, given->second, gravity_offset_sigma};
   throw_unless_ok(prior.validate());
+  return prior;
+}
+
+// steps: (seconds, twist, covariance) of each.
+MotionPrior prior_of_wheels(const py::object& steps, const py::object& T_base_camera, double error_s) {
+  const Se3 T = se3_of(T_base_camera, "T_base_camera");
+  BaseMotion motion;
+  for (const py::handle& given : py::list(steps)) {
+    const py::list parts(py::reinterpret_borrow<py::object>(given));
+    if (parts.size() != 3)
+      throw py::value_error("steps: expected (seconds, twist, covariance) for each step");
+    const WheelStep step{number(parts[0], "seconds"), matrix_of<6, 1>(parts[1], "twist"),
+                         matrix_of<6, 6>(parts[2], "covariance")};
+    throw_unless_ok(motion.add(step, error_s));
+  }
+  MotionPrior prior;
+  throw_unless_ok(motion.prior(T, prior));
   return prior;
 }
 
@@ -89,6 +107,7 @@ void bind_prior(py::module_& module) {
   bind_class<MotionPrior>(module, "MotionPrior")
       .def(py::init(&make_prior), py::kw_only(), "rotation"_a = py::none(), "translation"_a = py::none(),
            "gravity"_a = py::none(), "gravity_offset_sigma"_a = 0.0)
+      .def_static("of_wheels", &prior_of_wheels, "steps"_a, "T_base_camera"_a, "error_s"_a = 0.0)
       .def_property_readonly(
           "R_now_before",
           [](Prior p) { return copy_or_none(pointer(p.rotation), &RotationPrior::R_now_before); })

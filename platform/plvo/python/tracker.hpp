@@ -106,12 +106,10 @@ class Tracker {
     odometry_.reset();
   }
   void set_pose(const py::object& T_world_camera, const py::object& covariance) {
-    const Matrix4 T = matrix_of<4, 4>(T_world_camera, "T_world_camera");
-    if (T.row(3) != Vector4(0, 0, 0, 1).transpose())
-      refuse_array("T_world_camera", "the last row must be 0 0 0 1");
+    const Se3 T = se3_of(T_world_camera, "T_world_camera");
     const Matrix6 C = covariance.is_none() ? Matrix6::Zero() : matrix_of<6, 6>(covariance, "covariance");
     const OneThread::Use use(one_thread_);
-    throw_unless_ok(odometry_.set_pose({T.block<3, 3>(0, 0), T.block<3, 1>(0, 3)}, C));
+    throw_unless_ok(odometry_.set_pose(T, C));
   }
   std::size_t memory_bytes() const { return memory_.size(); }
   // The odometry belongs to nobody else meanwhile.

@@ -6,8 +6,8 @@
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/rosbag/containers/container_kind.hpp"
 #ifdef PLVO_HAVE_ROSBAG
+#include "plvo/rosbag/bag_camera.hpp"
 #include "plvo/rosbag/bag_poses.hpp"
-#include "plvo/rosbag/containers/open_container.hpp"
 #include "plvo/rosbag/topic_choice.hpp"
 #endif
 
@@ -54,11 +54,7 @@ void describe_stamps(std::vector<std::int64_t> stamps, DescribedTopic& topic) {
 }
 
 // What `plvo run` would say of it, with the calibration in the recording.
-void describe_opening(const fs::path& path, const RecordingOptions& options,
-                      RecordingDescription& description) {
-  Recording recording;
-  const auto choose = [](const OwnCalibration& own, Calibration& calibration) { return own(calibration); };
-  description.opens = recording.open(path, choose, options);
+void describe_opening(Recording& recording, RecordingDescription& description) {
   description.remarks = recording.remarks();
   if (!description.opens.ok()) return;
   description.frames = recording.frame_count();
@@ -114,15 +110,12 @@ void describe_topic(const MessageFile& bag, std::size_t number, DescribedTopic& 
   topic.longest_gap_s = static_cast<double>(of.longest_gap_ns) * 1e-9;
 }
 
-Status describe_bag(const fs::path& path, const RecordingOptions& options,
-                    RecordingDescription& description) {
-  std::unique_ptr<MessageFile> bag;
-  if (Status status = open_messages(path, bag); !status.ok()) return status;
-  TopicChoice choice;
-  ImageConversion conversion;
-  const bool chosen = choice.choose(*bag, options.topics, conversion).ok();
+void describe_bag(const BagCamera& camera, const BagTopicNames& names, RecordingDescription& description) {
+  const MessageFile* bag = camera.messages();
+  const TopicChoice& choice = camera.topics();
+  const bool chosen = choice.chosen();
   std::size_t truth = 0;
-  const bool has_truth = choose_bag_poses(*bag, options.topics.truth, truth).ok();
+  const bool has_truth = choose_bag_poses(*bag, names.truth, truth).ok();
   std::int64_t first_ns = INT64_MAX, last_ns = INT64_MIN;
   for (std::size_t i = 0; i < bag->topics().size(); ++i) {
     DescribedTopic topic;
@@ -146,13 +139,7 @@ Status describe_bag(const fs::path& path, const RecordingOptions& options,
   }
   if (last_ns > first_ns) description.duration_s = static_cast<double>(last_ns - first_ns) * 1e-9;
   if (chosen && !choice.colour_info()) description.missing.emplace_back("no camera_info of colour");
-  return {};
 }
-
-#else
-
-// describe_opening says which packages are missing.
-Status describe_bag(const fs::path&, const RecordingOptions&, RecordingDescription&) { return {}; }
 
 #endif
 
@@ -164,10 +151,20 @@ Status describe_recording(const fs::path& path, const RecordingOptions& options,
   if (Status status = refuse_foreign_format(path); !status.ok()) return status;
   description.format = format_of(path);
   description.bytes = bytes_of(path);
-  const Status status =
-      is_bag(path) ? describe_bag(path, options, description) : describe_folder(path, options, description);
-  if (!status.ok()) return status;
-  describe_opening(path, options, description);
+  Recording recording;
+  const auto choose = [](const OwnCalibration& own, Calibration& calibration) { return own(calibration); };
+  description.opens = recording.open(path, choose, options);
+  if (!is_bag(path)) {
+    if (Status status = describe_folder(path, options, description); !status.ok()) return status;
+  }
+#ifdef PLVO_HAVE_ROSBAG
+  else if (recording.bag() == nullptr) {
+    return description.opens;
+  } else {
+    describe_bag(*recording.bag(), options.topics, description);
+  }
+#endif
+  describe_opening(recording, description);
   return {};
 }
 

@@ -13,6 +13,7 @@
 #ifdef PLVO_HAVE_ROSBAG
 #include "plvo/rosbag/bag_camera.hpp"
 #include "plvo/rosbag/bag_poses.hpp"
+#include "plvo/rosbag/bag_wheels.hpp"
 #include "plvo/rosbag/containers/open_container.hpp"
 #endif
 
@@ -100,7 +101,11 @@ Status Recording::open_folder(const fs::path& folder, const CalibrationChoice& c
     if (!sentence.empty()) remarks_.push_back(sentence);
   add_doubts_about(calibration);
   std::error_code error;
-  has_ground_truth_ = fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty();
+  true_poses_source_ = index.poses.empty() ? "groundtruth.txt" : "the poses of the frames";
+  if (fs::exists(folder / "groundtruth.txt", error) || !index.poses.empty())
+    read_true_poses_ = [folder, sequence = options.sequence](Trajectory& trajectory) {
+      return read_ground_truth(folder, sequence, trajectory);
+    };
   read_imu_ = [folder](ImuRecording& recording) { return read_imu_files(folder, recording); };
   camera_ = std::move(camera);
   return {};
@@ -118,6 +123,7 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
                            const RecordingOptions& options) {
   auto camera = std::make_shared<BagCamera>();
   Status status = camera->index(path, options.topics);
+  if (camera->messages() != nullptr) bag_ = camera;
   Calibration calibration;
   const auto own = [&camera](Calibration& found) { return camera->own_calibration(found); };
   if (status.ok()) status = choose(own, calibration);
@@ -133,19 +139,7 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   if (std::string missing = missing_of_tum(path, calibration); !missing.empty())
     remarks_.push_back(std::move(missing));
   add_doubts_about(calibration);
-  std::error_code error;
-  has_ground_truth_ = fs::exists(bag_ground_truth_file(path), error) && options.topics.truth.empty();
-  if (!has_ground_truth_) {
-    std::size_t topic = 0;
-    const Status found = choose_bag_poses(camera->messages(), options.topics.truth, topic);
-    if (!found.ok() && !options.topics.truth.empty()) return found;
-    has_ground_truth_ = found.ok();
-    if (found.ok())
-      remarks_.push_back(fmt::format("the poses on {} are taken as the true poses of the camera",
-                                     camera->messages().topics()[topic].name));
-    else if (found.code() != StatusCode::kNotFound)
-      remarks_.push_back(found.message());
-  }
+  if (status = find_true_poses_of_bag(path, options.topics.truth); !status.ok()) return status;
   read_imu_ = [camera, topics = options.topics](ImuRecording& recording) {
     return camera->read_imu(topics, recording);
   };
@@ -153,7 +147,41 @@ Status Recording::open_bag(const fs::path& path, const CalibrationChoice& choose
   return {};
 }
 
+Status Recording::find_true_poses_of_bag(const fs::path& path, const std::string& topic) {
+  std::error_code error;
+  const fs::path file = bag_ground_truth_file(path);
+  if (topic.empty() && fs::exists(file, error)) {
+    true_poses_source_ = file.filename().string();
+    read_true_poses_ = [file](Trajectory& trajectory) { return read_trajectory({file, {}, {}}, trajectory); };
+    return {};
+  }
+  MessageFile& messages = *bag_->messages();
+  std::size_t number = 0;
+  const Status found = choose_bag_poses(messages, topic, number);
+  if (!found.ok()) {
+    if (!topic.empty()) return found;
+    if (found.code() != StatusCode::kNotFound) remarks_.emplace_back(found.message());
+    return {};
+  }
+  true_poses_source_ = messages.topics()[number].name;
+  read_true_poses_ = [bag = bag_, name = true_poses_source_](Trajectory& trajectory) {
+    return read_bag_poses(*bag->messages(), name, trajectory);
+  };
+  remarks_.push_back(
+      fmt::format("the poses on {} are taken as the true poses of the camera", true_poses_source_));
+  return {};
+}
+
+Status Recording::read_wheels(const std::string& topic, WheelRecording& recording) const {
+  if (bag_ == nullptr) return {StatusCode::kUnsupported, "a topic of wheels is one of a recording of ROS"};
+  return read_bag_wheels(*bag_->messages(), topic, recording);
+}
+
 #else
+
+Status Recording::read_wheels(const std::string&, WheelRecording&) const { return without_bags(); }
+
+Status Recording::find_true_poses_of_bag(const fs::path&, const std::string&) { return without_bags(); }
 
 Status Recording::open_bag(const fs::path&, const CalibrationChoice&, const RecordingOptions&) {
   return without_bags();

@@ -16,9 +16,12 @@
 #include "plvo/replay/images/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/index/sequence_index.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo {
+
+class BagCamera;
 
 bool is_bag(const std::filesystem::path& path);
 // True for a folder, a bag, or a recording that is not read (foreign_format.hpp); false for files of other
@@ -61,28 +64,39 @@ class Recording final : public RgbdCamera {
   std::size_t unpaired_colour() const { return unpaired_colour_; }
   const Calibration& calibration() const { return calibration_; }  // in force, see FrameFit
   const WholeImage& whole_image() const { return whole_image_; }   // its width is 0 if the size is unknown
-  bool has_ground_truth() const { return has_ground_truth_; }      // see read_true_poses
+  // The true poses: see read_true_poses. true_poses_source: "/truth", or the name of a file.
+  bool has_ground_truth() const { return static_cast<bool>(read_true_poses_); }
+  Status read_true_poses(Trajectory& trajectory) const { return read_true_poses_(trajectory); }
+  const std::string& true_poses_source() const { return true_poses_source_; }
+  // The bag, also after open() failed; nullptr for a folder, and for a bag that cannot be read.
+  const BagCamera* bag() const { return bag_.get(); }
   // Hints for the user, in sentences, without the assumptions of the calibration; also valid after open()
   // failed.
   const std::vector<std::string>& remarks() const { return remarks_; }
 
   // Reads the samples of a gyro and an accelerometer, with read_imu_files or read_bag_imu.
   Status read_imu(ImuRecording& recording) { return read_imu_(recording); }
+  // Reads wheel odometry of a bag, with read_bag_wheels; kUnsupported for a folder, whose file has a name of
+  // the user's.
+  Status read_wheels(const std::string& topic, WheelRecording& recording) const;
 
  private:
   Status open_folder(const std::filesystem::path& folder, const CalibrationChoice& choose,
                      const RecordingOptions& options);
   Status open_bag(const std::filesystem::path& path, const CalibrationChoice& choose,
                   const RecordingOptions& options);
+  Status find_true_poses_of_bag(const std::filesystem::path& path, const std::string& topic);
   // calibration: of the images as recorded.
   void add_doubts_about(const Calibration& calibration);
 
   std::shared_ptr<RgbdCamera> camera_;  // not unique: shared_ptr deletes the class that it was created with
+  std::shared_ptr<BagCamera> bag_;
   std::function<Status(ImuRecording& recording)> read_imu_;
+  std::function<Status(Trajectory& trajectory)> read_true_poses_;
+  std::string true_poses_source_;
   Calibration calibration_;
   WholeImage whole_image_;
   std::size_t frame_count_ = 0, unpaired_colour_ = 0;
-  bool has_ground_truth_ = false;
   std::vector<std::string> remarks_;
 };
 

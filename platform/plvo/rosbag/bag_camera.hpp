@@ -53,7 +53,9 @@ class BagCamera final : public RgbdCamera {
   std::size_t unpaired_colour() const { return unpaired_colour_; }
   const Calibration& calibration() const { return fit_.calibration(); }
   const WholeImage& whole_image() const { return fit_.whole_image(); }
-  const MessageFile& messages() const { return *bag_; }
+  // The recording, and what was found in it, whether its topics could be chosen or not; nullptr if it cannot
+  // be read.
+  MessageFile* messages() const { return bag_.get(); }
   const TopicChoice& topics() const { return topics_; }
   // Hints for the user, in sentences. After a failure they may list the topics of the bag.
   std::vector<std::string> remarks() const;

@@ -25,8 +25,24 @@ std::string original_of(const std::string& topic) {
   return topic;
 }
 
+// Of a topic's name that tell cameras apart: the empty one before the first slash, and the next.
+constexpr std::size_t kPartsOfACamera = 2;
+
 bool is_named_registered(const std::string& topic) {
   return topic.find("aligned") != std::string::npos || topic.find("registered") != std::string::npos;
+}
+
+// Infrared of 16 bits has the encoding of depth, and a picture of the confidence that of a grey image.
+bool is_named_no_depth(const std::string& topic) {
+  return topic.find("nfra") != std::string::npos || topic.find("/ir/") != std::string::npos ||
+         topic.find("onfidence") != std::string::npos;
+}
+
+// How many parts of their names two topics have in common from the start on: those of one camera have more.
+std::size_t parts_in_common(const std::string& a, const std::string& b) {
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < a.size() && i < b.size() && a[i] == b[i]; ++i) parts += a[i] == '/' ? 1 : 0;
+  return parts;
 }
 
 }  // namespace
@@ -40,6 +56,7 @@ Status TopicChoice::choose(MessageFile& bag, const BagTopicNames& names, ImageCo
   Status status = choose_images(names.colour, false, colour_);
   if (status.ok()) status = choose_images(names.depth, true, depth_);
   if (status.ok()) status = choose_info(names.camera_info);
+  chosen_ = status.ok();
   return status;
 }
 
@@ -132,9 +149,27 @@ std::vector<std::size_t> TopicChoice::candidates(bool depth) {
   if (!depth && topics.size() == 1 && !grey.empty())
     remarks_.push_back(fmt::format("colour is taken from {}, and not from the grey images on {}",
                                    name_of(topics[0]), listed(with_encodings(grey))));
+  std::vector<std::size_t> other =
+      depth ? drop(topics, [this](std::size_t topic) { return is_named_no_depth(name_of(topic)); })
+            : std::vector<std::size_t>();
   const std::vector<std::size_t> all = topics;
   drop(topics, [&](std::size_t topic) { return is_copy(topic, all); });
+  if (topics.size() == 1 && !other.empty())
+    remarks_.push_back(fmt::format("depth is taken from {}, and not from the infrared images on {}",
+                                   name_of(topics[0]), listed(with_encodings(other))));
   if (!depth || topics.size() < 2) return topics;
+  std::size_t most = 0;
+  for (const std::size_t topic : topics)
+    most = std::max(most, parts_in_common(name_of(topic), name_of(colour_)));
+  other = drop(topics, [&](std::size_t topic) {
+    return parts_in_common(name_of(topic), name_of(colour_)) < std::min<std::size_t>(most, kPartsOfACamera);
+  });
+  if (topics.size() == 1) {
+    remarks_.push_back(
+        fmt::format("depth is taken from {}, which is of the camera of colour, and not from {}",
+                    name_of(topics[0]), listed(with_encodings(other))));
+    return topics;
+  }
   const std::string& frame = images_[colour_].frame;
   std::vector<std::size_t> dropped =
       drop(topics, [&](std::size_t topic) { return frame.empty() || images_[topic].frame != frame; });

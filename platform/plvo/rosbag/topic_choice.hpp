@@ -4,6 +4,8 @@
 // the topics with a fitting encoding, without
 //   grey images, which may be infrared, if there are others;
 //   the compressed copy of a topic that is there, too;
+//   topics named infrared or confidence, for depth;
+//   depth whose name begins otherwise than that of colour (/front/…, /device_0/…), of another camera;
 //   depth in the view of another camera than colour, if there is depth in colour's: by the frame in the
 //   headers, or by a name with "aligned" or "registered".
 // One candidate has to remain.
@@ -29,6 +31,8 @@ class TopicChoice {
 
   std::size_t colour() const { return colour_; }
   std::size_t depth() const { return depth_; }
+  // Whether choose() has succeeded.
+  bool chosen() const { return chosen_; }
   // The camera_info of colour or depth; empty if there is none.
   std::optional<std::size_t> colour_info() const { return colour_info_; }
   std::optional<std::size_t> depth_info() const { return depth_info_; }
@@ -69,6 +73,7 @@ class TopicChoice {
   std::vector<std::size_t> image_topics() const;
 
   MessageFile* bag_ = nullptr;
+  bool chosen_ = false;
   std::size_t colour_ = 0, depth_ = 0;
   std::optional<std::size_t> colour_info_, depth_info_;
   std::vector<Images> images_;  // of each topic

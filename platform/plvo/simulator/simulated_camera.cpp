@@ -15,6 +15,7 @@
 #include "plvo/simulator/sensor/film.hpp"
 #include "plvo/simulator/sensor/inertial_sensor.hpp"
 #include "plvo/simulator/sensor/kinect_depth.hpp"
+#include "plvo/simulator/sensor/wheel_sensor.hpp"
 
 namespace plvo {
 namespace {
@@ -102,6 +103,20 @@ struct SimulatedCamera::Parts {
     if (options.difficulties.comb) sensor.comb();
   }
 
+  // take(stamp_ns, t_s, index) for the samples of a sensor of this rate, from 0.1 s before the first frame
+  // until after the last one.
+  template <typename Take>
+  void each_sample(double rate_hz, Take take) const {
+    const double last_s = static_cast<double>(since_start_us(frames - 1, options.fps)) * 1e-6;
+    const double first_s = -0.1, after_s = std::max(0.01, 1 / rate_hz);
+    const auto count = static_cast<std::uint32_t>((last_s + after_s - first_s) * rate_hz) + 1;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      // Files store whole microseconds.
+      const auto at_us = static_cast<std::int64_t>((first_s + k / rate_hz) * 1e6);
+      take((kFirstStamp_us + at_us) * 1000, static_cast<double>(at_us) * 1e-6, k);
+    }
+  }
+
   // Black image of a covered lens, allocated on first use.
   const std::uint8_t* black() {
     black_pixels.resize(exact.size() * 3);
@@ -145,6 +160,7 @@ Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<
     const Status read = sim::Trajectory::from_tum(options.trajectory_file, *scene, trajectory);
     if (!read.ok()) return read;
   }
+  if (options.robot) trajectory.put_on_robot();
   if (options.still) trajectory.stop();
   auto parts = std::make_unique<Parts>(options, std::move(scene), std::move(trajectory));
   parts->frames = options.frames;
@@ -196,17 +212,19 @@ void SimulatedCamera::inertial_samples(std::vector<ImuSample>& gyro,
   const sim::InertialSensor sensor(options.inertial, options.seed, options.noise);
   gyro.clear();
   accelerometer.clear();
-  const double last_s = static_cast<double>(stamp_ns(parts_->frames - 1) - stamp_ns(0)) * 1e-9;
-  const double first_s = -0.1;
-  const auto count = static_cast<std::uint32_t>((last_s + 0.01 - first_s) * options.inertial.rate_hz) + 1;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    // Files store whole microseconds.
-    const auto since_start_us = static_cast<std::int64_t>((first_s + k / options.inertial.rate_hz) * 1e6);
-    const std::int64_t stamp = (kFirstStamp_us + since_start_us) * 1000;
-    const double t_s = static_cast<double>(since_start_us) * 1e-6;
+  parts_->each_sample(options.inertial.rate_hz, [&](std::int64_t stamp, double t_s, std::uint32_t k) {
     gyro.push_back({stamp, sensor.rate(parts_->trajectory, t_s, k)});
     accelerometer.push_back({stamp, sensor.force(parts_->trajectory, t_s, k)});
-  }
+  });
+}
+
+void SimulatedCamera::wheel_samples(std::vector<WheelSample>& samples) const {
+  const SimulatorOptions& options = parts_->options;
+  const sim::WheelSensor sensor(options.wheels, options.seed, options.noise);
+  samples.clear();
+  parts_->each_sample(options.wheels.rate_hz, [&](std::int64_t stamp, double t_s, std::uint32_t k) {
+    samples.push_back({stamp, sensor.velocity(parts_->trajectory, t_s, k), Vector3::Zero()});
+  });
 }
 
 ImageView<const float> SimulatedCamera::exact_depth() const {

@@ -11,6 +11,7 @@
 #include "plvo/image/image_view.hpp"
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/math/se3.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/simulator/simulator_options.hpp"
 
 namespace plvo {
@@ -41,6 +42,9 @@ class SimulatedCamera final : public RgbdCamera {
   // Samples of the gyro and the accelerometer beside the camera, from 0.1 s before the first frame until
   // after the last one. The stamps use the clock of the frames, the axes are those of the camera.
   void inertial_samples(std::vector<ImuSample>& gyro, std::vector<ImuSample>& accelerometer) const;
+  // Samples of the wheels of SimulatorOptions::robot, over the same time. They are about its base
+  // (robot_camera()).
+  void wheel_samples(std::vector<WheelSample>& samples) const;
   // Exact depth of the last frame's pixels (metres along the optical axis, 0: no surface) at the time of
   // their colour exposure, independent of the depth sensor and its schedule.
   ImageView<const float> exact_depth() const;

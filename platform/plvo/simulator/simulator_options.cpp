@@ -66,6 +66,12 @@ const char* to_string(LightName name) {
 Status parse_scene(std::string_view text, SceneName& name) { return parse("scene", text, kScenes, name); }
 Status parse_light(std::string_view text, LightName& name) { return parse("light", text, kLights, name); }
 
+Se3 robot_camera() {
+  Matrix3 R_body_optical;
+  R_body_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return {R_body_optical, {0.2, 0, 0.5}};
+}
+
 Status SimulatorOptions::validate() const {
   const Status calibration = camera.validate();
   if (!calibration.ok()) return calibration;
@@ -96,6 +102,10 @@ Status SimulatorOptions::validate() const {
                                     inertial.accelerometer_noise, inertial.accelerometer_offset_sigma});
   if (!(smallest >= 0 && largest <= 10))
     return invalid("noise and offsets of gyro and accelerometer must lie in 0 ... 10");
+  if (!(wheels.rate_hz >= 5 && wheels.rate_hz <= 1000))
+    return invalid("the rate of the wheels must lie in 5 ... 1000 Hz");
+  if (robot && !trajectory_file.empty())
+    return invalid("a robot drives the scene's own path, not a recorded trajectory");
   if (const Status status = difficulties.validate(); !status.ok()) return status;
   return validate_timing(depth_schedule, fps);
 }

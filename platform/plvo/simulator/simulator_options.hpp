@@ -10,6 +10,7 @@
 #include "plvo/base/status.hpp"
 #include "plvo/camera/camera_model.hpp"
 #include "plvo/camera/depth_noise.hpp"
+#include "plvo/math/se3.hpp"
 #include "plvo/simulator/difficulties.hpp"
 
 namespace plvo {
@@ -63,6 +64,20 @@ struct InertialOptions {
   double accelerometer_offset_sigma = 0.25;  // m/s², per axis; drawn once from the seed
 };
 
+// The wheel odometry of a robot (SimulatorOptions::robot). Errors as of a small indoor robot after
+// calibration.
+struct SimulatedWheels {
+  double rate_hz = 50;
+  double noise_mps = 0.005, noise_rps = 0.01;                // white, of each sample
+  double speed_scale_sigma = 0.02, turn_scale_sigma = 0.03;  // drawn once from the seed
+  double slip_share = 0.1;  // of the half seconds in which the wheels of one side slip
+  double slip = 0.2;        // by this share of the speed
+  double track_m = 0.4;     // between the wheels of both sides
+};
+
+// T_base_camera of the simulated robot: 0.2 m ahead of the base and 0.5 m above it, level, looking ahead.
+Se3 robot_camera();
+
 struct SimulatorOptions {
   SceneName scene = SceneName::kCorridor;
   LightName light = LightName::kConstant;
@@ -81,6 +96,9 @@ struct SimulatorOptions {
   // A TUM ground-truth file with the trajectory of the camera; empty: a trajectory generated from the seed.
   std::string trajectory_file;
   bool still = false;  // the camera stays at its first pose
+  // The camera stands on a robot: it keeps its height and stays level, but for the rumble of the floor.
+  bool robot = false;
+  SimulatedWheels wheels;
   Difficulties difficulties;
   int threads = 2;  // the images do not depend on it
 

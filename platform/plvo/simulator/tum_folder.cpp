@@ -2,11 +2,23 @@
 #include "plvo/simulator/tum_folder.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/tum_writer.hpp"
+#include "plvo/replay/wheel_files.hpp"
 
 namespace plvo {
+
+namespace {
+
+Status write_wheels(const SimulatedCamera& camera, const std::string& folder) {
+  WheelRecording wheels;
+  camera.wheel_samples(wheels.samples);
+  return write_wheel_file(std::filesystem::path(folder) / kWheelFile, wheels);
+}
+
+}  // namespace
 
 Status write_tum_folder(SimulatedCamera& camera, const std::string& name, const WriteProgress& progress) {
   TumWriter folder;
@@ -25,6 +37,8 @@ Status write_tum_folder(SimulatedCamera& camera, const std::string& name, const 
       ImuRecording imu;
       camera.inertial_samples(imu.gyro, imu.accelerometer);
       if (status = write_imu_files(name, imu); !status.ok()) return status;
+      if (camera.options().robot)
+        if (status = write_wheels(camera, name); !status.ok()) return status;
     }
     const Se3 T_world_camera = camera.ground_truth(frame.stamp_ns);
     if (status = folder.write(frame, &T_world_camera); !status.ok()) return status;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the frames of a simulated camera to a folder in the layout of the TUM RGB-D benchmark, using
 // replay's TumWriter. groundtruth.txt contains the exact poses; gyroscope.txt and accelerometer.txt contain
-// the samples of the inertial sensors.
+// the samples of the inertial sensors, wheel_odometry.txt those of a robot's wheels.
 #pragma once
 
 #include <functional>

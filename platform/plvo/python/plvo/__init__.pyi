@@ -174,6 +174,13 @@ class MotionPrior:
         gravity: tuple[_Array, _Array] | None = None,
         gravity_offset_sigma: float = 0.0,
     ) -> None: ...
+    @staticmethod
+    def of_wheels(
+        steps: _ListLike[tuple[float, _Array, _Array]], T_base_camera: _Array, error_s: float = 0.0
+    ) -> MotionPrior:
+        """What wheels measured since the frame before: steps of (seconds, twist, covariance), oldest first. A twist is vx vy
+        vz wx wy wz of the robot's base (m/s, rad/s, x forward, z up), with its 6x6 covariance; wheels measure neither vz nor
+        wx nor wy. T_base_camera: 4x4. error_s: for how long an error of a twist lasts (slip); 0: a step."""
     @property
     def R_now_before(self) -> NDArray[float64] | None: ...
     @property

@@ -163,6 +163,24 @@ Status parse_pose(std::string_view type, WireFormat wire, std::span<const unsign
   return {};
 }
 
+Status parse_twist(WireFormat wire, std::span<const unsigned char> bytes, TwistMessage& twist) {
+  WireReader reader(wire, bytes);
+  TwistMessage found;
+  found.stamp_ns = take_header(wire, reader).stamp_ns;
+  reader.text();  // the frame of the robot
+  constexpr std::size_t kPose = 7, kCovariance = 36;
+  reader.skip_f64(kPose + kCovariance);
+  for (int i = 0; i < 6; ++i) found.twist[i] = reader.f64();
+  for (int i = 0; i < 6; ++i) {
+    found.variance[i] = reader.f64();
+    constexpr std::size_t kToNextOnDiagonal = 6;
+    if (i < 5) reader.skip_f64(kToNextOnDiagonal);
+  }
+  if (!reader.ok()) return message_ends_early();
+  twist = found;
+  return {};
+}
+
 Status parse_transform(WireFormat wire, std::span<const unsigned char> bytes, Se3& transform) {
   WireReader reader(wire, bytes);
   Se3 found;

@@ -84,6 +84,15 @@ struct PoseMessage {
 Status parse_pose(std::string_view type, WireFormat wire, std::span<const unsigned char> bytes,
                   PoseMessage& pose);
 
+// The twist of nav_msgs/Odometry: vx vy vz wx wy wz in the frame of the robot.
+struct TwistMessage {
+  std::int64_t stamp_ns = 0;
+  Vector6 twist = Vector6::Zero(), variance = Vector6::Zero();  // m/s, rad/s, and their squares
+};
+
+// Returns kDamaged if the bytes end early.
+Status parse_twist(WireFormat wire, std::span<const unsigned char> bytes, TwistMessage& twist);
+
 // geometry_msgs/Transform. Returns kDamaged like parse_pose.
 Status parse_transform(WireFormat wire, std::span<const unsigned char> bytes, Se3& transform);
 

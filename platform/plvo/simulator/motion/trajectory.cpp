@@ -122,11 +122,21 @@ Se3 Trajectory::walk_at(double t_s) const {
   }
   Se3 T_world_body;
   T_world_body.t = start.position + (now.position - start.position) * extent_;
-  T_world_body.R =
-      look(start.yaw + (now.yaw - start.yaw) * extent_, start.pitch + (now.pitch - start.pitch) * extent_);
+  const double pitch = start.pitch + (now.pitch - start.pitch) * extent_;
+  T_world_body.R = look(start.yaw + (now.yaw - start.yaw) * extent_, on_robot_ ? 0 : pitch);
+  if (on_robot_) T_world_body.t.z() = start.position.z();
   const Vector3 turn(sway(3), sway(4), sway(5));
   const Se3 T_body_camera{rotation_exp(turn), Vector3(sway(0), sway(1), sway(2))};
   return T_world_body * T_body_camera;
+}
+
+void Trajectory::put_on_robot() {
+  on_robot_ = true;
+  constexpr std::size_t kFirstRumble = 3;  // of the bands: 3 Hz and more
+  constexpr std::array<bool, 6> kRumbles = {false, true, false, true, false, true};  // height, pitch, roll
+  for (std::size_t dof = 0; dof < 6; ++dof)
+    for (std::size_t k = 0; k < kWaves; ++k)
+      if (!kRumbles[dof] || k < kFirstRumble) waves_[dof][k].amplitude = 0;
 }
 
 Se3 Trajectory::recording_at(double t_s) const {

@@ -26,6 +26,9 @@ class Trajectory {
   // error of read_trajectory for an unreadable file, and kDamaged for rows with a NaN or a repeated stamp.
   static Status from_tum(const std::string& path, const Scene& scene, Trajectory& trajectory);
 
+  // The same path of a camera on a robot: level at the height of the first pose, without a hand's sway. The
+  // rumble of the floor is left.
+  void put_on_robot();
   // Stays at the first pose.
   void stop() { still_ = true; }
   // T_world_camera. Times outside 0 … duration_s() are clamped for a recording and wrap around for a
@@ -46,6 +49,7 @@ class Trajectory {
   Se3 recording_at(double t_s) const;
 
   bool still_ = false;
+  bool on_robot_ = false;
   double duration_s_ = 0;
   double scale_ = 1;
   // Generated trajectory:

@@ -75,13 +75,35 @@ std::string exit_codes() {
   return std::string(".SH EXIT STATUS\n.nf\n") + escaped(kExitCodeHelp) + "\n.fi\n";
 }
 
+// What the Debian packages install. Another prefix than /usr has all but those in /etc and of systemd.
+struct InstalledFile {
+  const char *path, *what;
+};
+constexpr InstalledFile kProgramFiles[] = {
+    {"/usr/share/doc/plvo/", "the pages that messages name; user/start.md is the first"},
+    {"/usr/lib/udev/rules.d/60-plvo-rgbd.rules", "gives sensors on USB to the group video"},
+    {"/usr/share/bash-completion/completions/plvo", "completion for bash; fish and zsh have their own"},
+};
+constexpr InstalledFile kLiveFiles[] = {
+    {"/usr/lib/systemd/system/plvo-live.service", "the service: systemctl enable \\-\\-now plvo\\-live"},
+    {"/etc/default/plvo-live", "its options"},
+};
+
+template <std::size_t N>
+std::string installed_files(const InstalledFile (&files)[N]) {
+  std::string text = ".SH FILES\nOf the package plvo\\-tools:\n";
+  for (const InstalledFile& file : files)
+    text += fmt::format(".TP\n\\fI{}\\fR\n{}\n", escaped(file.path), file.what);
+  return text;
+}
+
 std::string program_page(const CLI::App& app) {
   const CommandText program = describe(app);
   std::string text =
       header("plvo", program.what) + ".B plvo\n\\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH COMMANDS\n";
   for (const CommandText& command : describe_commands(app))
     text += fmt::format(".TP\n\\fBplvo\\-{}\\fR(1)\n{}\n", command.name, escaped(command.what));
-  return text + options(program) + exit_codes();
+  return text + options(program) + exit_codes() + installed_files(kProgramFiles);
 }
 
 }  // namespace
@@ -96,7 +118,7 @@ std::string man_page(const CLI::App& app, const std::string& name) {
         text += (option.required ? " \\fI" : " [\\fI") + escaped(option.names.front()) +
                 (option.required ? "\\fR" : "\\fR]");
     return text + '\n' + options(command) + notes(command.help) + exit_codes() +
-           ".SH SEE ALSO\n\\fBplvo\\fR(1)\n";
+           (name == "live" ? installed_files(kLiveFiles) : "") + ".SH SEE ALSO\n\\fBplvo\\fR(1)\n";
   }
   return {};
 }

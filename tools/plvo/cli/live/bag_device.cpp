@@ -22,6 +22,14 @@ class BagDevice final : public LiveCamera {
   bool registered_by_device() const override { return true; }
   void close() override {}
   Status read_imu(ImuRecording& recording) override { return opened_.inertial(recording); }
+  Status read_wheels(const std::string& topic, WheelRecording& recording) override {
+    return opened_.wheels(topic, recording);
+  }
+  Status read_true_poses(eval::Trajectory& poses, std::string& source) override {
+    if (!opened_.ground_truth) return {StatusCode::kNotFound, "the recording has no true poses"};
+    source = opened_.true_poses_source;
+    return opened_.ground_truth({}, poses);
+  }
 
   Status start_oni(const std::string&) override {
     return {StatusCode::kUnsupported, "OpenNI2 does not play bags: make a folder of it instead"};

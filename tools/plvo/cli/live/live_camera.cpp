@@ -10,6 +10,7 @@
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
+#include "plvo/replay/images/registered_camera.hpp"
 #include "plvo/rosbag/containers/container_kind.hpp"
 
 #ifdef PLVO_HAVE_OPENNI2
@@ -106,10 +107,22 @@ bool calibration_given(const CalibrationOptions& o) {
 
 class OpenNi2LiveCamera final : public LiveCamera {
  public:
-  Status open(const OpenNi2Options& options) { return camera_.open(options); }
+  // depth: of a sensor whose depth is to be registered by it, and not by the device.
+  Status open(const OpenNi2Options& options, const DepthCamera& depth = {}) {
+    if (Status status = camera_.open(options); !status.ok() || !depth.known) return status;
+    if (camera_.registered_by_device())
+      return {StatusCode::kInvalidArgument,
+              "this sensor or .oni file has registered depth: leave depth_fx, depth_fy and what goes with "
+              "them out of "
+              "the calibration"};
+    registered_.emplace(camera_, depth);
+    return {};
+  }
 
   CameraModel model() const override { return camera_.model(); }
-  Status next(RgbdFrame& frame) override { return camera_.next(frame); }
+  Status next(RgbdFrame& frame) override {
+    return registered_ ? registered_->next(frame) : camera_.next(frame);
+  }
   std::string uri() const override { return camera_.device().uri; }
   std::string name() const override {
     const OpenNi2DeviceInfo info = camera_.device();
@@ -143,27 +156,25 @@ class OpenNi2LiveCamera final : public LiveCamera {
 
  private:
   OpenNi2Camera camera_;
+  std::optional<RegisteredCamera> registered_;
   OpenNi2Recorder recorder_;
   bool wanted_ = false;
 };
 
 // The user's calibration for images of this size.
-Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model) {
+Status calibrate(const CalibrationOptions& from, int width, int height, std::optional<CameraModel>& model,
+                 DepthCamera& depth) {
   if (!calibration_given(from)) return {};
   Calibration calibration;
   const auto none = [](Calibration&) { return Status(StatusCode::kNotFound, "no recording"); };
   Status status = find_calibration(from, none, calibration);
   if (status.ok()) status = calibration.validate(width, height);
-  if (status.ok() && calibration.depth_camera.known)
-    status = {
-        StatusCode::kInvalidArgument,
-        "depth_fx, depth_fy and what goes with them are for recordings; a live sensor registers its depth, "
-        "so leave them out of the calibration, or name a camera model without them"};
   // A file that is not there is no missing sensor.
   if (!status.ok()) return {StatusCode::kInvalidArgument, status.message()};
   calibration.camera.width = width;
   calibration.camera.height = height;
   model = calibration.camera;
+  depth = calibration.depth_camera;
   return {};
 }
 
@@ -185,11 +196,13 @@ Status open_sensor(const LiveCameraOptions& options, Log& log, std::unique_ptr<L
   settings.height = mode.height;
   settings.fps = mode.fps;
   settings.readout_s = options.calibration.readout_s;
-  Status status = calibrate(options.calibration, mode.width, mode.height, settings.model);
+  DepthCamera depth;
+  Status status = calibrate(options.calibration, mode.width, mode.height, settings.model, depth);
   if (status.ok() && settings.model)
     for (const std::string& sentence : doubts_about(*settings.model, mode.width, mode.height))
       log.write(LogLevel::kWarning, sentence);
-  if (status.ok()) status = opened->open(settings);
+  if (depth.known) settings.registration = OpenNi2Registration::kNone;
+  if (status.ok()) status = opened->open(settings, depth);
   if (status.ok()) camera = std::move(opened);
   return status;
 }

@@ -127,7 +127,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   if (options_.max_rate_hz > 0)
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.max_rate_hz), posix_monotonic_ns());
-  block_.track(frame, accelerometer_.until(frame.stamp_ns, arrival_ns), record_);
+  block_.track(frame, accelerometer_.until(frame.stamp_ns, arrival_ns), MotionPrior(), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;

@@ -30,7 +30,6 @@ void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu) {
   bag.add("--accelerometer-topic", "TOPIC",
           "Of sensor_msgs/Imu, for --imu (default the only one with accelerations)",
           read_topic(topics.accelerometer));
-  if (imu == BagImu::kKept) return;
   bag.add("--truth-topic", "TOPIC",
           "Of nav_msgs/Odometry or geometry_msgs/PoseStamped, the true poses (default the only one)",
           read_topic(topics.truth));

@@ -10,9 +10,8 @@
 namespace plvo::cli {
 
 inline constexpr const char* kBagGroup = "ROS bag";
-// kKept: the topics of gyro and accelerometer can be chosen too, for --imu. kWithTruth: that of the true
-// poses, too.
-enum class BagImu : std::uint8_t { kPassedOver, kKept, kWithTruth };
+// kWithTruth: the topics of gyro and accelerometer, for --imu, and that of the true poses can be chosen too.
+enum class BagImu : std::uint8_t { kPassedOver, kWithTruth };
 void add_bag_options(CLI::App& command, BagTopicNames& topics, BagImu imu);
 // Where no recording is a bag.
 void refuse_bag_options(const CLI::App& command);

@@ -12,6 +12,7 @@
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/calibration/sequence_calibration.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/rosbag/containers/container_kind.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
@@ -69,10 +70,13 @@ Status open_recording(const CameraOptions& options, Log& log, OpenedCamera& open
   opened.scaled_down_by = recording->whole_image().factor;
   opened.name = sequence_name(options.sequence);
   if (recording->has_ground_truth())
-    opened.ground_truth = [path = options.sequence, sequence = how.sequence, topic = options.topics.truth](
-                              const std::vector<std::int64_t>&, eval::Trajectory& truth) {
-      return read_true_poses(path, sequence, truth, topic);
+    opened.ground_truth = [recording](const std::vector<std::int64_t>&, eval::Trajectory& truth) {
+      return recording->read_true_poses(truth);
     };
+  opened.true_poses_source = recording->true_poses_source();
+  opened.wheels = [recording](const std::string& topic, WheelRecording& samples) {
+    return recording->read_wheels(topic, samples);
+  };
   opened.inertial = [recording](ImuRecording& samples) { return recording->read_imu(samples); };
   opened.camera = recording;
   return {};
@@ -231,8 +235,8 @@ void add_inputs(const CameraOptions& options, FileRoles& files) {
   for (const fs::path& file : bag_files_in(options.sequence)) files.reads(file);
   if (is_oni_file(options.sequence) || is_bag(options.sequence)) return files.reads(options.sequence);
   const fs::path folder = options.sequence;
-  for (const char* name :
-       {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
+  for (const char* name : {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", kGyroFile,
+                           kAccelerometerFile, kWheelFile})
     files.reads(folder / name);
   for (const fs::path& file : calibration_files_in(folder)) files.reads(file);
   SequenceIndex index;

@@ -21,6 +21,7 @@
 #include "plvo/replay/images/image_reduction.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "plvo/replay/index/sequence_index.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/rosbag/bag_topics.hpp"
 
 namespace plvo::cli {
@@ -83,6 +84,9 @@ struct OpenedCamera {
   // The true poses, where there are any: from a file beside the images, or from the simulator
   // at these stamps.
   std::function<Status(const std::vector<std::int64_t>& stamps_ns, eval::Trajectory& truth)> ground_truth;
+  std::string true_poses_source;  // of a recording: a topic, or the name of a file
+  // The odometry of wheels on a topic; empty where there can be none.
+  std::function<Status(const std::string& topic, WheelRecording& recording)> wheels;
   // What a gyro and an accelerometer beside the camera read; empty where there can be none.
   std::function<Status(ImuRecording& recording)> inertial;
 };

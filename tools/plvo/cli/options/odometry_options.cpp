@@ -110,10 +110,12 @@ std::int64_t OdometryBlock::cpu_ns() const {
   return posix_thread_cpu_ns() + (pair_ != nullptr ? pair_->cpu_ns() : 0);
 }
 
-void OdometryBlock::track(const RgbdFrame& frame, ImuIntegrator* imu, FrameRecord& record) {
+void OdometryBlock::track(const RgbdFrame& frame, ImuIntegrator* imu, const MotionPrior& wheels,
+                          FrameRecord& record) {
   const std::int64_t start_ns = posix_monotonic_ns();
   const std::int64_t cpu_before_ns = cpu_ns();
-  record.result = imu != nullptr ? odometry_.track(frame, *imu) : odometry_.track(frame);
+  record.result =
+      imu != nullptr ? odometry_.track(frame, *imu, wheels.translation) : odometry_.track(frame, wheels);
   record.cpu_ns = cpu_ns() - cpu_before_ns;
   record.elapsed_ns = posix_monotonic_ns() - start_ns;
   odometry_.frame_took(record.cpu_ns);

@@ -93,6 +93,10 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
               return {};
             });
   group.flag("--still", arguments.still, "The camera stays at its first pose");
+  group.flag("--robot", arguments.robot,
+             "The camera stands level on a robot, 0.2 m ahead of its base and 0.5 m above it (--base-camera "
+             "0.2 0 0.5 "
+             "-0.5 0.5 -0.5 0.5); plvo simulate writes its wheel_odometry.txt, too");
   group.path("--trajectory", arguments.trajectory,
              "TUM trajectory along which the camera moves, instead of the seeded walk");
   group.whole("--threads", arguments.threads, 1, 256,
@@ -115,6 +119,7 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   options.depth.scale_error = arguments.depth_scale_error;
   options.difficulties = arguments.difficulties;
   options.still = arguments.still;
+  options.robot = arguments.robot;
   options.covered_first = arguments.covered_first;
   options.covered_end = arguments.covered_end;
   if (arguments.width > 0) {

@@ -26,6 +26,7 @@ struct SimulatorArguments {
   int covered_first = 0, covered_end = 0;
   Difficulties difficulties;
   bool still = false;
+  bool robot = false;
   std::string trajectory;
   bool clean = false;
   int threads = 2;

@@ -14,15 +14,19 @@
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/bag_options.hpp"
+#include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/printable.hpp"
 #include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
+#include "plvo/replay/wheel_files.hpp"
 
 namespace plvo::cli {
 namespace {
 
 constexpr int kRingPatience_ms = 100;
+constexpr const char* kTruthFile = "groundtruth.txt";
 constexpr const char* kRecordHelp =
     "Examples:\n"
     "  plvo record walk                      a new folder with PNG images; then: plvo run walk\n"
@@ -36,7 +40,8 @@ constexpr const char* kConvertHelp =
     "  plvo convert walk.mcap --out walk     a new folder with PNG images; then: plvo run walk\n"
     "  plvo convert walk.bag --out walk --imu    with gyro and accelerometer\n"
     "\n"
-    "plvo run reads recordings of ROS as they are: convert makes folders for other programs.\n";
+    "The true poses of a recording of ROS become groundtruth.txt. plvo run reads such recordings as\n"
+    "they are: convert makes folders for other programs.\n";
 
 constexpr const char* kImuText =
     "Keep accelerometer.txt and gyroscope.txt, too: of a Kinect v1's accelerometer, or of the recording of "
@@ -49,6 +54,7 @@ struct RecordOptions {
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
   double seconds = std::numeric_limits<double>::infinity();
   bool imu = false;
+  std::string wheels_topic;
   bool quiet = false;
 };
 
@@ -77,18 +83,72 @@ int judge(const RecordOptions& options, const LiveCapture::State& state, const S
 Status check_outputs(const RecordOptions& options) {
   Status status = FrameRecording::check(options.path);
   if (status.ok() && options.imu) status = refuse_imu_files(options.path);
+  std::error_code error;
+  if (status.ok() && is_bag(options.camera.device) &&
+      std::filesystem::exists(std::filesystem::path(options.path) / kTruthFile, error))
+    return {StatusCode::kInvalidArgument,
+            fmt::format("{} has {} already: remove it or choose another folder", options.path, kTruthFile)};
   return status;
 }
 
-// All that a bag has, before anything is made.
-Status read_imu(const RecordOptions& options, LiveCamera& camera, ImuRecording& readings) {
-  return options.imu && is_bag(options.camera.device) ? camera.read_imu(readings) : Status();
+// What a recording of ROS has beside the images.
+struct BesideImages {
+  ImuRecording imu;
+  WheelRecording wheels;
+  eval::Trajectory truth;
+  std::string truth_source;  // empty: there is no truth
+};
+
+// True poses that cannot be read are told, and left out. So is a topic that was named as that of the wheels.
+void take_true_poses(const RecordOptions& options, LiveCamera& camera, Log& log, BesideImages& beside) {
+  const Status status = camera.read_true_poses(beside.truth, beside.truth_source);
+  if (!status.ok() || beside.truth_source == options.wheels_topic) beside.truth_source.clear();
+  if (!status.ok() && status.code() != StatusCode::kNotFound)
+    log.write(LogLevel::kWarning, fmt::format("no groundtruth.txt is written: {}", status.message()));
 }
 
-Status begin_imu(const RecordOptions& options, const LiveCamera& camera, const ImuRecording& readings,
-                 LiveAccelerometer& accelerometer) {
+// All that a recording has, before anything is made.
+Status read_beside_images(const RecordOptions& options, LiveCamera& camera, Log& log, BesideImages& beside) {
+  if (!is_bag(options.camera.device)) return {};
+  Status status;
+  if (options.imu) status = camera.read_imu(beside.imu);
+  if (status.ok() && !options.wheels_topic.empty())
+    status = camera.read_wheels(options.wheels_topic, beside.wheels);
+  if (!status.ok()) return status;
+  if (beside.wheels.ignored > 0)
+    log.write(
+        LogLevel::kWarning,
+        fmt::format("{} messages on {} left out: damaged, not finite, or of a stamp that was there already",
+                    beside.wheels.ignored, options.wheels_topic));
+  take_true_poses(options, camera, log, beside);
+  return {};
+}
+
+Status write_true_poses(const std::string& folder, const BesideImages& beside) {
+  LineFile file;
+  Status status =
+      file.open(std::filesystem::path(folder) / kTruthFile,
+                fmt::format("# timestamp tx ty tz qx qy qz qw; from {}", printable(beside.truth_source)));
+  for (std::size_t i = 0; status.ok() && i < beside.truth.poses.size(); ++i)
+    status =
+        file.write(trajectory_line(beside.truth.poses[i].stamp_ns, beside.truth.poses[i].T_world_camera));
+  return status;
+}
+
+Status write_beside_images(const RecordOptions& options, const BesideImages& beside) {
+  Status status;
+  if (options.imu) status = write_imu_files(options.path, beside.imu, ImuAxes::kSensor);
+  if (status.ok() && !options.wheels_topic.empty())
+    status = write_wheel_file(std::filesystem::path(options.path) / kWheelFile, beside.wheels);
+  if (status.ok() && !beside.truth_source.empty()) status = write_true_poses(options.path, beside);
+  return status;
+}
+
+// Of the sensor or the recording.
+Status begin_beside_images(const RecordOptions& options, const LiveCamera& camera, const BesideImages& beside,
+                           LiveAccelerometer& accelerometer) {
+  if (is_bag(options.camera.device)) return write_beside_images(options, beside);
   if (!options.imu) return {};
-  if (is_bag(options.camera.device)) return write_imu_files(options.path, readings, ImuAxes::kSensor);
   accelerometer.keep_in(options.path);
   return accelerometer.start(camera, false);
 }
@@ -104,14 +164,14 @@ int record_command(const RecordOptions& options) {
   // Here the ring only says that frames come: the recording has one of its own.
   const CameraModel model = camera->model();
   FrameRing ring(model.width, model.height, 3, RingPolicy::kNewest);
-  ImuRecording readings;
+  BesideImages beside;
   FrameRecording recording;
   LiveAccelerometer accelerometer(console);
-  Status begun = read_imu(options, *camera, readings);
+  Status begun = read_beside_images(options, *camera, console, beside);
   catch_interrupt();  // from here on there is something to keep whole
   if (begun.ok())
     begun = recording.open(options.path, *camera, is_recorded_device(options.camera.device), options.frames);
-  if (begun.ok()) begun = begin_imu(options, *camera, readings, accelerometer);
+  if (begun.ok()) begun = begin_beside_images(options, *camera, beside, accelerometer);
   if (!begun.ok()) return fail(begun);
   console.write(LogLevel::kInfo, fmt::format("{}, {}x{}, into {}; Ctrl-C ends", camera->name(), model.width,
                                              model.height, options.path));
@@ -142,6 +202,9 @@ int record_command(const RecordOptions& options) {
       text += fmt::format(
           "; {} dropped, for the disk or the processor is too slow: try --mode 320x240 or an .oni file",
           recording.dropped());
+    if (!beside.truth_source.empty())
+      text += fmt::format("; {} true poses of {} in {}", beside.truth.poses.size(),
+                          printable(beside.truth_source), kTruthFile);
     if (Status status = print(text + fmt::format("; next: plvo run {}\n", printable(options.path)));
         !status.ok())
       return fail(status);
@@ -160,7 +223,8 @@ void check(const CLI::App& command, const RecordOptions& options) {
     if (is_bag(options.camera.device)) refuse("path", "a ROS bag is kept as a folder, not as an .oni file");
     files.writes("path", options.path);
   } else {
-    for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", kGyroFile, kAccelerometerFile})
+    for (const char* name :
+         {"rgb.txt", "depth.txt", "calibration.txt", kTruthFile, kGyroFile, kAccelerometerFile, kWheelFile})
       files.writes(given(command, "--out") ? "--out" : "path", std::filesystem::path(options.path) / name);
   }
   if (is_oni_file(options.camera.device))
@@ -184,7 +248,7 @@ void add_record(CLI::App& app, int& exit_code) {
   add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
   group.flag("--imu", options->imu, kImuText);
   add_limit_options(command, options->frames, options->seconds);
-  add_bag_options(command, options->camera.topics, BagImu::kKept);
+  add_bag_options(command, options->camera.topics, BagImu::kWithTruth);
   group.flag("--quiet", options->quiet, kQuietText);
   on_command(command, exit_code, [&command, options] {
     check(command, *options);
@@ -201,14 +265,20 @@ void add_convert(CLI::App& app, int& exit_code) {
                      "DIR|FILE"));
   require(group.path("--out", options->path, "A new folder for the sequence", "DIR"));
   group.flag("--imu", options->imu, kImuText);
+  group.path("--wheels-topic", options->wheels_topic,
+             "Write wheel_odometry.txt, too: the twist of the nav_msgs/Odometry on this topic, which is that "
+             "of the wheels",
+             "TOPIC");
   add_limit_options(command, options->frames, options->seconds);
   add_calibration_options(command, options->camera.calibration, DepthScale::kFromCamera,
                           "the calibration in the recording");
-  add_bag_options(command, options->camera.topics, BagImu::kKept);
+  add_bag_options(command, options->camera.topics, BagImu::kWithTruth);
   group.flag("--quiet", options->quiet, kQuietText);
   on_command(command, exit_code, [&command, options] {
     if (!is_recorded_device(options->camera.device))
       refuse("recording", "is no recording of ROS and no .oni file; a folder of images needs no conversion");
+    if (!options->wheels_topic.empty() && is_oni_file(options->camera.device))
+      refuse("--wheels-topic", "is for a recording of ROS");
     if (is_oni_file(options->path)) refuse("--out", "is a folder, not an .oni file");
     check(command, *options);
     return record_command(*options);

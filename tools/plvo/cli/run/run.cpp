@@ -23,6 +23,7 @@
 #include "plvo/cli/run/run_map.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
 #include "plvo/cli/run/run_summary.hpp"
+#include "plvo/cli/run/wheel_options.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/prefetched_camera.hpp"
 #include "plvo/host/standard_streams.hpp"
@@ -52,6 +53,7 @@ struct RunOptions {
   Pace pace = Pace::kFast;
   bool quiet = false;
   ImuOptions imu;
+  WheelOptions wheels;
   MapOptions map;
 };
 
@@ -90,6 +92,8 @@ class Run {
       return status;
     if (Status status = open_imu(options_.imu, opened_, options_.outputs.base.level, console_, imu_);
         !status.ok())
+      return status;
+    if (Status status = open_wheels(options_.wheels, options_.outputs.base, console_, wheels_); !status.ok())
       return status;
     if (Status status = map_.init(options_.map, opened_.camera->model(), block_.config(),
                                   opened_.frame_count.value_or(kUnknownFrameCount));
@@ -140,7 +144,8 @@ class Run {
                          fmt::format("frame {} skipped: {}", record.number, record.camera_status.message()));
       } else {
         tell(check_.add(frame));
-        block_.track(frame, imu_ ? &imu_->until(frame.stamp_ns) : nullptr, record);
+        const MotionPrior wheels = wheels_ ? wheels_->prior(frame.stamp_ns) : MotionPrior();
+        block_.track(frame, imu_ ? &imu_->until(frame.stamp_ns) : nullptr, wheels, record);
       }
       if (!record.damaged()) map_.add(block_.odometry(), record);
       summary_->add(record);
@@ -171,6 +176,9 @@ class Run {
     summary_->arena_bytes = block_.odometry().memory_used();
     summary_->arena_peak = block_.odometry().memory_peak();
     tell(check_.finish());
+    if (wheels_ && wheels_->priors() == 0 && summary_->frames() > 1)
+      console_.write(LogLevel::kWarning,
+                     "the wheels have no samples at the stamps of the images: are both on one clock?");
     if (const Status status = history_->evaluate(opened_); !status.ok())
       console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
@@ -202,6 +210,7 @@ class Run {
   OpenedCamera opened_;
   OdometryBlock block_;
   std::optional<RecordedImu> imu_;
+  std::optional<RecordedWheels> wheels_;
   FrameCheck check_;
   RunMap map_;
   RunOutputs outputs_;
@@ -218,7 +227,8 @@ void check(const CLI::App& command, RunOptions& options) {
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
   check_map_options(command, options.map);
-  check_base_option(options.outputs.base, options.outputs.has_poses());
+  check_base_option(options.outputs.base, options.outputs.has_poses() || !options.wheels.file.empty());
+  check_wheel_options(command, options.wheels, options.camera, options.outputs.base);
   check_level_option(command, options.imu.used);
   options.odometry.level_world = options.outputs.base.level;
   FileRoles files;
@@ -229,6 +239,7 @@ void check(const CLI::App& command, RunOptions& options) {
   files.writes_folder("--overlay", options.overlay);
   add_inputs(options.camera, files);
   files.reads(options.odometry.mask);
+  files.reads(options.wheels.file);
   files.check();
 }
 
@@ -243,6 +254,7 @@ void add_run(CLI::App& app, int& exit_code) {
       Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}},
       "As fast as it goes (default), as the stamps say, or a frame for each Enter");
   add_imu_options(command, options->imu);
+  add_wheel_options(command, options->wheels);
   add_map_options(command, options->map);
   add_output_options(command, options->outputs);
   OptionGroup base(command, kOutputGroup);

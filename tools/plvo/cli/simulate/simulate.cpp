@@ -16,6 +16,7 @@
 #include "plvo/host/printable.hpp"
 #include "plvo/host/standard_streams.hpp"
 #include "plvo/replay/imu_files.hpp"
+#include "plvo/replay/wheel_files.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 #include "plvo/simulator/tum_folder.hpp"
 
@@ -57,8 +58,8 @@ int simulate_command(const SimulateOptions& options) {
 
 void check(const SimulateOptions& options) {
   FileRoles files;
-  for (const char* name :
-       {"rgb.txt", "depth.txt", "calibration.txt", "groundtruth.txt", kGyroFile, kAccelerometerFile})
+  for (const char* name : {"rgb.txt", "depth.txt", "calibration.txt", "groundtruth.txt", kGyroFile,
+                           kAccelerometerFile, kWheelFile})
     files.writes("--out", std::filesystem::path(options.folder) / name);
   files.reads(options.simulator.trajectory);
   files.check();

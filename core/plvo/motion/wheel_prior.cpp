@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plvo/motion/wheel_prior.hpp"
+
+#include "plvo/math/trigonometry.hpp"
+
+namespace plvo {
+namespace {
+
+// ∫₀¹ exp(A u) du = Σ Aᵏ / (k + 1)!. For A = [ω]× it turns v into the translation of Exp((v, ω)), for
+// A = −ad(ξ) it is the right Jacobian at ξ. With |ω| ≤ π the terms left out are below 1e-9 of the sum.
+template <int Size>
+Matrix<Size, Size> mean_exponential(const Matrix<Size, Size>& A) {
+  constexpr int kTerms = 20;
+  Matrix<Size, Size> term = Matrix<Size, Size>::Identity();
+  Matrix<Size, Size> sum = term;
+  for (int k = 1; k < kTerms; ++k) {
+    term = Matrix<Size, Size>(term.lazyProduct(A)) / (k + 1);
+    sum += term;
+  }
+  return sum;
+}
+
+Matrix6 twist_matrix(const Matrix3& diagonal, const Matrix3& corner) {
+  Matrix6 J = Matrix6::Zero();
+  J.block<3, 3>(0, 0) = diagonal;
+  J.block<3, 3>(0, 3) = corner;
+  J.block<3, 3>(3, 3) = diagonal;
+  return J;
+}
+
+Matrix6 adjoint(const Se3& T) { return twist_matrix(T.R, skew(T.t) * T.R); }
+
+Matrix6 carried_covariance(const Matrix6& J, const Matrix6& C) {
+  return J.lazyProduct(C).eval().lazyProduct(J.transpose());
+}
+
+Status refuse_wheels(const char* why) { return Status(StatusCode::kInvalidArgument, "wheels: ").append(why); }
+
+Status check_step(const WheelStep& step) {
+  if (!(step.seconds > 0 && step.seconds <= 1e6)) return refuse_wheels("a step must be longer than 0 s");
+  if (!step.twist.allFinite() || !step.covariance.allFinite())
+    return refuse_wheels("twist and covariance must be finite");
+  const double angle_squared = step.twist.tail<3>().squaredNorm() * step.seconds * step.seconds;
+  if (!(angle_squared <= kPi * kPi))
+    return refuse_wheels("a step must turn by at most pi; give shorter ones");
+  return {};
+}
+
+}  // namespace
+
+Status BaseMotion::add(const WheelStep& step, double error_s) {
+  if (Status status = check_step(step); !status.ok()) return status;
+  if (!(error_s >= 0 && error_s <= 1e6)) return refuse_wheels("error_s must lie between 0 and 1e6 s");
+  const Vector3 way = step.seconds * step.twist.head<3>(), turn = step.seconds * step.twist.tail<3>();
+  const Se3 T{rotation_exp(turn), mean_exponential<3>(skew(turn)) * way};
+  const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
+  const double lasts_s = step.seconds > error_s ? step.seconds : error_s;
+  covariance_ = carried_covariance(adjoint(T.inverse()), covariance_) +
+                step.seconds * lasts_s * carried_covariance(J_r, step.covariance);
+  T_before_now_ = T_before_now_ * T;
+  moved_ = true;
+  return {};
+}
+
+Status BaseMotion::prior(const Se3& T_base_camera, MotionPrior& prior) const {
+  prior = MotionPrior();
+  if (!moved_) return refuse_wheels("there must be a step at least");
+  if (!is_rotation(T_base_camera.R) || !T_base_camera.t.allFinite())
+    return refuse_wheels("T_base_camera must be a rotation and a finite position");
+  const Se3 T_camera_base = T_base_camera.inverse();
+  Se3 T_now_before = T_camera_base * T_before_now_.inverse() * T_base_camera;
+  T_now_before.R = renormalise(T_now_before.R);
+  const Matrix6 J_apart = twist_matrix(Matrix3::Identity(), -skew(T_now_before.t));
+  Matrix6 C = carried_covariance(J_apart.lazyProduct(adjoint(T_camera_base)), covariance_);
+  C = 0.5 * (C + Matrix6(C.transpose()));
+  MotionPrior made;
+  made.rotation = {T_now_before.R, C.block<3, 3>(3, 3)};
+  made.translation = {T_now_before.t, C.block<3, 3>(0, 0)};
+  Status status = made.validate();
+  if (status.ok()) prior = made;
+  return status;
+}
+
+Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
+                   MotionPrior& prior) {
+  prior = MotionPrior();
+  BaseMotion motion;
+  for (const WheelStep& step : steps)
+    if (Status status = motion.add(step, error_s); !status.ok()) return status;
+  return motion.prior(T_base_camera, prior);
+}
+
+}  // namespace plvo

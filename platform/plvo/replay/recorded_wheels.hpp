@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the samples of recorded wheels the priors of the frames (plvo/motion/wheel_prior.hpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "plvo/motion/motion_prior.hpp"
+#include "plvo/replay/wheel_files.hpp"
+
+namespace plvo {
+
+// How far off the twist is, as standard deviations. For samples that have their own, only the last four are
+// used.
+struct WheelConfig {
+  Se3 T_base_camera;
+
+  double share = 0.05;   // of the speed, and of the turn rate: slip, and the size of the wheels
+  double track_m = 0.5;  // between the wheels: that share of the speed on one side is a turn
+  double least_mps = 0.005, least_rps = 0.01;  // at rest
+  double bounce_mps = 0.02, tilt_rps = 0.05;   // what wheels do not measure: vz; ωx, ωy
+  double error_s = 0.5;                        // how long an error lasts (wheel_prior.hpp)
+  double longest_gap_s = 0.25;                 // between samples; over a longer one there is no prior
+
+  // Returns kInvalidArgument, naming the entry and its range.
+  Status validate() const;
+};
+
+class RecordedWheels {
+ public:
+  // Returns the error of WheelConfig::validate.
+  Status init(WheelRecording recording, const WheelConfig& config);
+
+  // Prior of the frame at this stamp, since the frame of the previous call. Velocities are linear between
+  // samples. It is empty at the first call, where samples are missing, and where the motion is none
+  // (wheel_prior.hpp).
+  MotionPrior prior(std::int64_t stamp_ns);
+
+  std::size_t priors() const { return priors_; }  // that were not empty
+  // The largest speed (m/s) and turn rate (rad/s) of the samples.
+  double largest_speed() const;
+  double largest_turn_rate() const;
+
+ private:
+  Matrix6 covariance_between(const WheelSample& a, const WheelSample& b, const Vector3& velocity) const;
+  bool covers(std::size_t first, std::int64_t from_ns, std::int64_t to_ns) const;
+
+  WheelRecording recording_;
+  WheelConfig config_;
+  std::size_t next_ = 0;  // no sample before it is needed any more
+  std::size_t priors_ = 0;
+  std::optional<std::int64_t> before_ns_;
+};
+
+}  // namespace plvo
