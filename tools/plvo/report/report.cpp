@@ -9,9 +9,9 @@
 
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/report/base64.hpp"
-#include "plvo/report/depth_palette.hpp"
 #include "plvo/report/drawing.hpp"
 #include "plvo/report/page.hpp"
+#include "plvo/report/palette.hpp"
 
 namespace plvo::report {
 namespace {
