@@ -19,6 +19,7 @@
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/eval/ranking.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/stderr_log.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
@@ -35,8 +36,7 @@ constexpr const char* kEvalHelp =
     "  plvo eval --gt chess/seq-01 --est trajectory.txt     the poses of numbered frames\n"
     "  plvo eval --gt walk.bag --est trajectory.txt         walk-groundtruth.txt beside the bag\n"
     "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n"
-    "  plvo eval --gt walk/groundtruth.txt --est a.txt b.txt c.txt --plot walk.svg     ranked, in one "
-    "picture\n";
+    "  plvo eval --gt walk/groundtruth.txt --est a.txt b.txt --plot walk.svg   ranked, one picture\n";
 
 constexpr int kMostEstimates = 100;
 
@@ -188,6 +188,9 @@ int eval_command(EvalOptions options) {
   int exit_code = kExitSuccess;
   for (const Status& written : {reported, plotted, result})
     if (!written.ok()) exit_code = fail(written);
+  StderrLog log;
+  tell_written(log, {reported.ok() ? options.report : "", plotted.ok() ? options.plot : "",
+                     result.ok() ? options.json : ""});
   return exit_code;
 }
 

@@ -203,6 +203,9 @@ int LiveSession::judge() {
   if (!options_.summary.empty()) {
     if (Status status = write_json(options_.summary, summary_.to_json()); !status.ok()) return fail(status);
   }
+  std::vector<std::string> written = {options_.record, options_.summary};
+  for (const auto& [option, path] : options_.outputs.files.named()) written.push_back(path);
+  tell_written(console_, written);
   if (!summary_failure_.ok()) return fail(summary_failure_);
   const LiveCapture::State& capture = summary_.capture;
   if (!capture.end.ok()) {
