@@ -161,7 +161,8 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
                "--reference: both and window do not apply to --preset tiny");
   expect_usage("run x --report-frames 3", "--report-frames: is for a report");
   expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
-  expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");
+  expect_usage("live --device x.oni --every-frame",
+               "--every-frame: is what a recording and the simulated camera do anyway");
   expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
   expect_usage("record x.oni --imu", "--imu: an .oni file keeps no readings of it; record a folder instead");
   expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
@@ -243,6 +244,7 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
       {"--report", 3},       // a page; its content depends on the command
       {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
+      {"--pace", 2},         // live has a pace of its own without a sensor, and no steps
   };
   return flags;
 }

@@ -64,7 +64,7 @@ bool LiveSession::keeps_imu() const {
 
 // Everything else that can be wrong is found before the first file is made.
 Status LiveSession::open() {
-  const bool every = options_.every_frame || is_recorded_device(options_.camera.device);
+  const bool every = options_.every_frame || is_played(options_.camera);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
