@@ -70,7 +70,7 @@ TEST(CliUsage, NumbersHaveReadableLimits) {
     expect_usage(base + "0.1 0 x 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'x'");
     expect_usage(base + "nan 0 0 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'nan'");
     expect_usage(std::string(command) + " --base-camera 0 0 0 -0.5 0.5 -0.5 0.5",
-                 "changes what is written: add --out, --covariance, --motions or --stream");
+                 "changes what is written: add --out, --covariance, --motions, --mavlink or --stream");
   }
   for (const char* factor : {"0", "-1", "17", "1.5", "half"})
     expect_usage("run x --scale " + std::string(factor),
@@ -244,6 +244,7 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
       {"--report", 3},       // a page; its content depends on the command
       {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
+      {"--camera", 2},       // the simulated camera; the length of its walk depends on the command
       {"--pace", 2},         // live has a pace of its own without a sensor, and no steps
   };
   return flags;

@@ -94,6 +94,7 @@ void check(const CLI::App& command, LiveOptions& options) {
   if (options.outputs.view.empty())
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   LiveOutputOptions& outputs = options.outputs;
+  check_output_options(command);
   check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
   check_level_option(command, options.imu);
   options.odometry.level_world = outputs.files.base.level;

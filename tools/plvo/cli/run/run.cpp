@@ -227,6 +227,7 @@ void check(const CLI::App& command, RunOptions& options) {
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
   check_map_options(command, options.map);
+  check_output_options(command);
   check_base_option(options.outputs.base, options.outputs.has_poses());
   check_level_option(command, options.imu.used);
   options.odometry.level_world = options.outputs.base.level;
