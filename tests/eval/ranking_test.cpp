@@ -10,7 +10,7 @@ namespace plvo::eval {
 namespace {
 
 // An estimate whose every step is `error_m` too long, at `frames` frames a tenth of a second apart.
-NamedEvaluation estimate(const std::string& name, double error_m, int frames = 100) {
+NamedEvaluation named_estimate(const std::string& name, double error_m, int frames = 100) {
   Trajectory truth, poses;
   for (int i = 0; i < 100; ++i) {
     truth.poses.push_back({i * 100'000'000LL, {Matrix3::Identity(), Vector3(0.1 * i, 0, 0)}});
@@ -30,7 +30,8 @@ std::string order_of(const std::vector<NamedEvaluation>& estimates) {
 }
 
 TEST(Ranking, SortsByTheErrorOverASecond) {
-  std::vector<NamedEvaluation> estimates = {estimate("b", 0.002), estimate("c", 0.003), estimate("a", 0.001)};
+  std::vector<NamedEvaluation> estimates = {named_estimate("b", 0.002), named_estimate("c", 0.003),
+                                            named_estimate("a", 0.001)};
   rank(estimates);
   EXPECT_EQ(order_of(estimates), "abc");
   const std::string text = ranking_text(estimates);
@@ -46,14 +47,15 @@ TEST(Ranking, SortsByTheErrorOverASecond) {
 }
 
 TEST(Ranking, AnEstimateWithoutPairsIsLast) {
-  std::vector<NamedEvaluation> estimates = {estimate("short", 0, 5), estimate("long", 0.01)};
+  std::vector<NamedEvaluation> estimates = {named_estimate("short", 0, 5), named_estimate("long", 0.01)};
   rank(estimates);
   EXPECT_EQ(order_of(estimates), "longshort");
   EXPECT_NE(ranking_text(estimates).find(" - "), std::string::npos);
 }
 
 TEST(Ranking, AnEstimateThatLeavesOutAPartIsNamed) {
-  const std::vector<NamedEvaluation> estimates = {estimate("half", 0, 50), estimate("whole", 0.01)};
+  const std::vector<NamedEvaluation> estimates = {named_estimate("half", 0, 50),
+                                                  named_estimate("whole", 0.01)};
   const std::vector<std::string> doubts = doubts_about_ranking(estimates);
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(
