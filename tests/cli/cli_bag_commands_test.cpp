@@ -131,9 +131,11 @@ TEST_F(CliBagCommands, LivePlaysEveryFrame) {
 TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   const std::string device = " --device " + path("walk.bag");
   expect_refused("record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder, not as an .oni file");
-  expect_refused("live --record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder");
+  expect_refused("live --record " + path("x.oni") + device, 2,
+                 "a ROS bag and the simulated camera are kept as a folder");
   expect_refused("live --mode 320x240" + device, 2, "--mode: does not apply to a recording");
-  expect_refused("live --every-frame" + device, 2, "--every-frame: is what a recording does anyway");
+  expect_refused("live --every-frame" + device, 2,
+                 "--every-frame: is what a recording and the simulated camera do anyway");
   expect_refused("live --imu" + device, 2, "--imu: is for a live Kinect");
   expect_refused("live --colour-topic /x", 2, "--colour-topic: is for a ROS bag");
   expect_refused("record " + path("x") + " --gyro-topic /imu" + device, 2, "--gyro-topic: is for --imu");

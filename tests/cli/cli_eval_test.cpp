@@ -342,6 +342,55 @@ TEST_F(CliEvalFiles, FilesOfTwoClocksAreNamedWithBoth) {
       << r.err;
 }
 
+// Files of one name in two folders, ranked in one picture; what is for one estimate is refused.
+TEST_F(CliEvalFiles, SeveralEstimatesAreRanked) {
+  std::string worse, half;
+  for (int i = 0; i < 50; ++i) {
+    const Se3 T{rotation_exp(Vector3(0, 0.01 * i, 0)), Vector3(0.011 * i, 0, 0)};
+    worse += trajectory_line(i * 33'000'000LL, T) + '\n';
+    if (i < 25) half += trajectory_line(i * 33'000'000LL, T) + '\n';
+  }
+  std::filesystem::create_directory(folder_ / "other");
+  write_file(folder_ / "other/est.txt", worse);
+  write_file(folder_ / "half.txt", half);
+  const std::string gt = "eval --gt " + (folder_ / "gt.txt").string();
+  const std::string more = gt + " --est " + (folder_ / "half.txt").string() + ' ' +
+                           (folder_ / "other/est.txt").string() + ' ' + (folder_ / "est.txt").string();
+  const std::string plot = (folder_ / "plot.svg").string();
+  const CommandResult r = run_plvo(more + " --plot " + plot);
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  const std::size_t first = r.out.find("   1  " + (folder_ / "est.txt").string());
+  const std::size_t second = r.out.find("   2  " + (folder_ / "other/est.txt").string());
+  const std::size_t third = r.out.find("   3  " + (folder_ / "half.txt").string());
+  EXPECT_TRUE(first < second && second < third && third != std::string::npos) << r.out;
+  EXPECT_NE(r.err.find("half.txt covers 0.8 s, another estimate 1.6 s"), std::string::npos) << r.err;
+  const std::string svg = test::read_file(plot);
+  EXPECT_EQ(svg.substr(0, 5), "<?xml");
+  EXPECT_NE(svg.find("other/est.txt: ATE"), std::string::npos);
+  const auto json = nlohmann::json::parse(run_plvo(more + " --json -").out);
+  ASSERT_EQ(json["estimates"].size(), 3u);
+  EXPECT_EQ(json["estimates"][0]["estimate"], (folder_ / "est.txt").string());
+  for (const char* option :
+       {"--report r.html", "--est-covariance c.txt", "--est-motions m.txt", "--fit-truth"}) {
+    const CommandResult refused = run_plvo(more + ' ' + option);
+    EXPECT_EQ(refused.exit_code, 2) << option;
+    EXPECT_NE(refused.err.find("leave it away"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(run_plvo(more + " --plot " + (folder_ / "est.txt").string()).exit_code, 2) << "an input";
+  EXPECT_EQ(run_plvo(more + " --plot /nowhere/plot.svg").exit_code, 1);
+  write_file(folder_ / "late.txt", trajectory_line(90'000'000'000LL, Se3()) + '\n');
+  const CommandResult late = run_plvo(more + ' ' + (folder_ / "late.txt").string());
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_NE(late.err.find("late.txt: only 0 of 1 poses have ground truth"), std::string::npos) << late.err;
+}
+
+TEST_F(CliEvalFiles, OneEstimateHasAPicture) {
+  const CommandResult r = eval("--plot -");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_EQ(r.out.substr(0, 5), "<?xml");
+  EXPECT_NE(r.err.find("RPE per frame"), std::string::npos) << "the text steps aside";
+}
+
 TEST_F(CliEvalFiles, MissingAndDamagedFilesAreOneLine) {
   for (const char* more : {"--est-covariance /nowhere", "--est-motions /nowhere", "--est /nowhere"}) {
     const CommandResult r =

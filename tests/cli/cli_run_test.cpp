@@ -64,7 +64,8 @@ TEST_F(CliRun, WritesAllOutputsOfATrackedSequence) {
   const CommandResult r = run("--out " + path("t.txt") + " --covariance " + path("c.txt") + " --motions " +
                               path("m.txt") + " --stats " + path("s.csv") + " --json " + path("j.json"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_TRUE(r.err.empty()) << r.err;
+  EXPECT_EQ(r.err, "plvo: wrote " + path("t.txt") + ", " + path("c.txt") + ", " + path("m.txt") + ", " +
+                       path("s.csv") + ", " + path("j.json") + '\n');
   for (const char* words :
        {"tracked", "CPU per frame", "matching", "arena", "resident memory", "against the ground truth"})
     EXPECT_TRUE(contains(r.out, words)) << words << '\n' << r.out;
@@ -254,6 +255,17 @@ TEST_F(CliRun, StepEndsWithItsInput) {
       run("--pace step --out " + path("t.txt"));  // standard input is empty: no frame is released
   EXPECT_EQ(r.exit_code, 3);
   EXPECT_TRUE(contains(r.err, "no frame could be tracked")) << r.err;
+}
+
+TEST_F(CliRun, StepSaysWhatItWaitsForAndShowsTheFrames) {
+  const CommandResult r = test::run_command("sh -c 'printf \"\\n\\n\" | " + test::kPlvo + " run " +
+                                            sequence_.string() + " --pace step'");
+  EXPECT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_TRUE(contains(r.err, "plvo: --pace step: Enter tracks the next frame, Ctrl-D ends the run\n"))
+      << r.err;
+  EXPECT_TRUE(contains(r.err, "plvo: frame 1/6 initialising")) << r.err;
+  EXPECT_TRUE(contains(r.err, "plvo: frame 2/6 tracking")) << r.err;
+  EXPECT_FALSE(contains(r.err, "frame 3/6")) << r.err;
 }
 
 TEST_F(CliRun, OverlayAndReportAreWritten) {

@@ -70,7 +70,7 @@ TEST(CliUsage, NumbersHaveReadableLimits) {
     expect_usage(base + "0.1 0 x 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'x'");
     expect_usage(base + "nan 0 0 0 0 0 1", "--base-camera: expected a number from -1000 to 1000, not 'nan'");
     expect_usage(std::string(command) + " --base-camera 0 0 0 -0.5 0.5 -0.5 0.5",
-                 "changes what is written: add --out, --covariance, --motions or --stream");
+                 "changes what is written: add --out, --covariance, --motions, --mavlink or --stream");
   }
   for (const char* factor : {"0", "-1", "17", "1.5", "half"})
     expect_usage("run x --scale " + std::string(factor),
@@ -162,7 +162,8 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
                "--reference: both and window do not apply to --preset tiny");
   expect_usage("run x --report-frames 3", "--report-frames: is for a report");
   expect_usage("live --device x.oni --mode 320x240@30", "--mode: does not apply to a recording");
-  expect_usage("live --device x.oni --every-frame", "--every-frame: is what a recording does anyway");
+  expect_usage("live --device x.oni --every-frame",
+               "--every-frame: is what a recording and the simulated camera do anyway");
   expect_usage("record x.oni --camera-model tum-fr1", "an .oni file keeps no calibration");
   expect_usage("record x.oni --imu", "--imu: an .oni file keeps no readings of it; record a folder instead");
   expect_usage("doctor --no-capture --seconds 2", "--seconds: is for the capture");
@@ -244,6 +245,8 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
       {"--report", 3},       // a page; its content depends on the command
       {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
+      {"--camera", 2},       // the simulated camera; the length of its walk depends on the command
+      {"--pace", 2},         // live has a pace of its own without a sensor, and no steps
   };
   return flags;
 }

@@ -148,8 +148,18 @@ def look(browser, address, control, screenshots):
     check(browser.value(page, "path.points.length") >= 9, "no trajectory is drawn")
     check(last["points"] and last["segments"], "no features are drawn")
     turned = browser.value(page, """(() => { const before = space.toDataURL();
-        eye.held = true; eye.yaw += 1; drawSpace(); return space.toDataURL() !== before; })()""")
+        eye.touched = true; eye.yaw += 1; drawSpace(); return space.toDataURL() !== before; })()""")
     check(turned, "the trajectory does not turn")
+    pinched = browser.value(page, """(() => {
+        space.setPointerCapture = () => {};
+        const press = (type, pointerId, clientX) => space.dispatchEvent(new PointerEvent(type, { pointerId, clientX, clientY: 200 }));
+        press("pointerdown", 1, 700); press("pointerdown", 2, 800); press("pointermove", 2, 900);
+        press("pointerup", 1, 700); press("pointerup", 2, 900);
+        return eye.zoom; })()""")
+    check(abs(pinched - 2) < 1e-9, f"fingers twice as far apart magnify {pinched} times")
+    fitted = browser.value(page, """(() => { space.dispatchEvent(new MouseEvent("dblclick"));
+        return [eye.zoom, eye.right, eye.down]; })()""")
+    check(fitted == [1, 0, 0], f"a double tap does not fit the view: {fitted}")
     if screenshots:
         browser.screenshot(page, os.path.join(screenshots, "live.png"))
     # On a phone, no element is wider than the screen.

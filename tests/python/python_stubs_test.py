@@ -40,7 +40,7 @@ def runtime_parameters(function):
 def test_the_parameters_are_those_of_the_functions():
     checked = 0
     for node in STUB.body:
-        if not isinstance(node, ast.ClassDef):
+        if not isinstance(node, ast.ClassDef) or getattr(plvo, node.name).__module__ == "plvo":  # written in Python
             continue
         for method in node.body:
             if not isinstance(method, ast.FunctionDef) or method.decorator_list or method.name not in ("__init__", "track"):
@@ -49,7 +49,7 @@ def test_the_parameters_are_those_of_the_functions():
             assert stub == runtime_parameters(getattr(getattr(plvo, node.name), method.name)), (node.name, method.name)
             checked += 1
     assert checked == 8
-    for name in ("run", "evaluate"):
+    for name in ("run", "evaluate", "to_dataframe"):
         node = next(n for n in STUB.body if isinstance(n, ast.FunctionDef) and n.name == name)
         stub = [a.arg for a in node.args.args + node.args.kwonlyargs]
         assert stub == list(inspect.signature(getattr(plvo, name)).parameters)

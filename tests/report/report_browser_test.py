@@ -63,11 +63,28 @@ async function probe() {
   }
   const turn = document.querySelector("canvas.turn"), flat = print(turn);
   turn.setPointerCapture = () => {};
-  const drag = new PointerEvent("pointermove", { buttons: 1, bubbles: true });
-  Object.defineProperty(drag, "movementX", { value: 60 });
-  Object.defineProperty(drag, "movementY", { value: 20 });
-  turn.dispatchEvent(drag);
+  const press = (type, pointerId, clientX, clientY) => turn.dispatchEvent(new PointerEvent(type, { pointerId, clientX, clientY, bubbles: true }));
+  press("pointerdown", 1, 100, 100); press("pointermove", 1, 160, 120); press("pointerup", 1, 160, 120);
   found.turned = print(turn) !== flat;
+  const before = print(turn);
+  press("pointerdown", 1, 100, 100); press("pointerdown", 2, 140, 100); press("pointermove", 2, 220, 100);
+  press("pointerup", 1, 100, 100); press("pointerup", 2, 220, 100);
+  found.pinched = print(turn) !== before;
+  turn.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+  press("pointerdown", 1, 160, 120); press("pointermove", 1, 100, 100); press("pointerup", 1, 100, 100);
+  found.fitted = print(turn) === flat;
+  const scene = document.getElementById("scene");
+  if (data.scene) {
+    found.scene = [data.scene.points.length / 3, data.scene.lines.length / 6];
+    const fit = document.getElementById("fit");
+    const choose = value => { fit.value = value; fit.dispatchEvent(new Event("change")); return print(turn); };
+    const whole = choose("scene");
+    found.sceneFitted = whole !== flat;
+    scene.click();
+    found.sceneShown = print(turn) !== whole;
+    scene.click();
+    choose("path");
+  }
   const choice = document.querySelector("#trajectory select"), fitted = print(turn);
   choice.value = "first";
   choice.dispatchEvent(new Event("change"));
@@ -116,6 +133,8 @@ def check_common(found, wanted):
         check(any(t.startswith(title) for t in found["titles"]), f"no part '{title}'", found)
     check(not found["blank"], "an empty chart or picture", found)
     check(found["turned"], "the 3D view does not turn", found)
+    check(found["pinched"], "two fingers do not magnify the 3D view", found)
+    check(found["fitted"], "a double click and the drag back do not give the first view", found)
     check(found["truthMoved"], "the ground truth is laid the same way by both choices", found)
     check(found["tiles"] and not any("NaN" in t or "undefined" in t for t in found["tiles"]), "a key figure is missing", found)
     check(found["width"] <= found["window"] + 1, "the page is wider than its window", found)
@@ -140,6 +159,8 @@ def main():
             check(found["title"] == HOSTILE, "the folder's name is another on the page", found)
             check_common(found, parts + ["Frames", "Run", "Points", "Lines", "CPU time by stage", "Brightness"])
             check(all(found["scrubbed"]), "the scrubber changes nothing", found)
+            check(min(found["scene"]) >= 10, "hardly any points and lines in 3D", found)
+            check(found["sceneShown"] and found["sceneFitted"], "the scene is not drawn, or not fitted", found)
             check(found["pictureColours"] > 50, "no image under the features", found)
             check(found["toggles"][0] and found["toggles"][2], "the boxes switch nothing", found)
         check_common(look(browser, eval_page, folder, "1280,900"), parts)

@@ -10,6 +10,7 @@
 
 #include "plvo/report/base64.hpp"
 #include "plvo/report/drawing.hpp"
+#include "plvo/report/palette.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo::report {
@@ -69,12 +70,12 @@ TEST(Report, WriteFailureIsAStatus) { EXPECT_EQ(write_report("/dev/full", {}).co
 
 TEST(Drawing, MissingDepthIsBlack) {
   std::vector<std::uint16_t> depth(16, 0);
-  depth[0] = 2000;   // 0.4 m: red
-  depth[2] = 25000;  // 5 m: blue
+  depth[0] = 2000;   // 0.4 m: near
+  depth[2] = 25000;  // 5 m: far
   const Picture picture = draw_depth({depth.data(), 4, 4, 4, 1.0 / 5000});
   ASSERT_EQ(picture.rgb.size(), 12u);
   EXPECT_EQ((std::vector<std::uint8_t>(picture.rgb.begin(), picture.rgb.begin() + 6)),
-            (std::vector<std::uint8_t>{255, 0, 0, 0, 0, 255}));
+            (std::vector<std::uint8_t>{240, 228, 66, 60, 30, 100}));
   EXPECT_EQ((std::vector<std::uint8_t>(picture.rgb.begin() + 6, picture.rgb.end())),
             std::vector<std::uint8_t>(6, 0));
 }
@@ -117,8 +118,8 @@ TEST(Drawing, OverlayDrawsInsideTheImageOnly) {
   view.point_tracks = tracks;
   const Picture picture = draw_overlay(view);
   ASSERT_EQ(picture.rgb.size(), 192u);
-  EXPECT_EQ(picture.rgb[0], 61);  // the green stroke to the upper left passes through the corner
-  EXPECT_EQ(picture.rgb[1], 220);
+  EXPECT_EQ(picture.rgb[0], kPointColour.r);  // the stroke to the upper left passes through the corner
+  EXPECT_EQ(picture.rgb[1], kPointColour.g);
   EXPECT_EQ(picture.rgb[3 * 7], 70) << "the image is dimmed where nothing is drawn";
 }
 
@@ -134,8 +135,9 @@ TEST(Drawing, StrokesAreAsWideAsTheirPen) {
   for (const auto* segments : {&across, &down, &slanted}) {
     view.segments = view.reference_segments = *segments;
     const Picture picture = draw_overlay(view);
-    double covered = 0;  // red is 255 where an orange stroke covers a pixel
-    for (std::size_t i = 0; i < picture.rgb.size(); i += 3) covered += picture.rgb[i] / 255.0;
+    double covered = 0;  // full blue of the colour where the stroke covers a pixel
+    for (std::size_t i = 2; i < picture.rgb.size(); i += 3)
+      covered += static_cast<double>(picture.rgb[i]) / kLineColour.b;
     const SegmentView& s = segments->front();
     const double length = std::hypot(s.b_u - s.a_u, s.b_v - s.a_v);
     EXPECT_NEAR(covered, 3 * length + 9 * 3.14159 / 4, 0.05 * 3 * length);

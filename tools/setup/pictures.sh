@@ -13,8 +13,9 @@ if [ $# -ne 1 ]; then
 fi
 recording=$(realpath "$1")
 install_packages imagemagick chromium fonts-liberation
+# What was built here, else what a package installed.
 plvo=build/release/bin/plvo
-if [ ! -x "$plvo" ]; then say "build it first: tools/setup/demo.sh"; exit 1; fi
+if [ ! -x "$plvo" ]; then plvo=$(command -v plvo) || { say "build it first: tools/setup/demo.sh"; exit 1; }; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

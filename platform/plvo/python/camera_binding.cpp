@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras for Python: a Calibration, which is a camera model and the unit of depth.
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
 #include "plvo/camera/camera_info.hpp"
+#include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
 
@@ -48,6 +51,25 @@ Calibration read_camera(const py::object& path) {
   return camera;
 }
 
+py::array intrinsic_matrix(const Calibration& c) {
+  const Pinhole& p = c.camera.pinhole;
+  py::array_t<double> K({3, 3});
+  auto out = K.mutable_unchecked<2>();
+  const double rows[3][3] = {{p.fx, 0, p.cx}, {0, p.fy, p.cy}, {0, 0, 1}};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) out(row, column) = rows[row][column];
+  return K;
+}
+
+std::string describe_camera(const Calibration& c) {
+  const Pinhole& p = c.camera.pinhole;
+  const std::string size = c.has_size ? fmt::format("{}x{}, ", c.camera.width, c.camera.height) : "";
+  return fmt::format("<plvo.Camera {}fx={:g} fy={:g} cx={:g} cy={:g}, {}, {:g} units of depth per metre>",
+                     size, p.fx, p.fy, p.cx, p.cy,
+                     c.camera.distortion.is_zero() ? "no distortion" : lens_model_name(c.camera.distortion),
+                     c.depth_units_per_metre);
+}
+
 }  // namespace
 
 void bind_camera(py::module_& module) {
@@ -65,6 +87,8 @@ void bind_camera(py::module_& module) {
       .def_property_readonly("fy", [](const Calibration& c) { return c.camera.pinhole.fy; })
       .def_property_readonly("cx", [](const Calibration& c) { return c.camera.pinhole.cx; })
       .def_property_readonly("cy", [](const Calibration& c) { return c.camera.pinhole.cy; })
+      .def_property_readonly("K", &intrinsic_matrix)
+      .def("__repr__", &describe_camera)
       .def_property_readonly("distortion",
                              [](const Calibration& c) {
                                const Distortion& lens = c.camera.distortion;

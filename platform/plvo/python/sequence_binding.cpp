@@ -54,6 +54,7 @@ class Sequence {
 
   // False at the end. Damaged pairs of images are warned of, and left out.
   bool next(RgbdFrame& frame) {
+    if (closed_) throw py::value_error("the with block of this sequence has ended; open it again");
     for (;;) {
       Status status;
       {
@@ -86,10 +87,13 @@ class Sequence {
     throw_unless_ok(imu->init(std::move(samples), config));
     return imu;
   }
+  // Frames that were handed out are views of the recording, which therefore stays.
+  void close() { closed_ = true; }
   std::size_t length() const { return recording_.frame_count(); }
 
  private:
   Recording recording_;
+  bool closed_ = false;
   OneThread one_thread_{"Sequence"};
   FrameCheck check_;
 };
@@ -104,6 +108,8 @@ void bind_sequence(py::module_& module) {
       .def_property_readonly("camera", &Sequence::calibration)
       .def("imu", &Sequence::imu, py::kw_only(), "R_camera_imu"_a = py::none())
       .def("__len__", &Sequence::length)
+      .def("__enter__", [](Sequence& sequence) { return py::cast(&sequence); })
+      .def("__exit__", [](Sequence& sequence, const py::args&) { sequence.close(); })
       .def("__iter__", [](Sequence& sequence) { return py::cast(&sequence); })
       .def("__next__", [frame_type](const py::object& self) {
         RgbdFrame frame;

@@ -9,10 +9,10 @@
 #include <span>
 
 #include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/host/motion_twist.hpp"
 #include "plvo/host/robot_base.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/images/frame_fit.hpp"
-#include "plvo/ros1/motion_twist.hpp"
 #include "plvo/rosbag/messages/image_conversion.hpp"
 #include "plvo/rosbag/messages/messages.hpp"
 

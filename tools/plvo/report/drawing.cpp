@@ -4,21 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plvo/report/depth_palette.hpp"
+#include "plvo/report/palette.hpp"
 
 namespace plvo::report {
 namespace {
 
-struct Colour {
-  std::uint8_t r, g, b;
-};
-
-// Keep the colours, widths and dimming equal to those of the page (page/frames.js).
-constexpr Colour kGrey = {154, 163, 173};
-constexpr Colour kGreen = {61, 220, 109};
-constexpr Colour kOrange = {255, 166, 38};
-constexpr Colour kBlue = {92, 164, 240};
-constexpr Colour kRed = {255, 77, 60};
+// Keep widths and dimming equal to those of the page (page/frames.js).
 constexpr double kDimming = 0.7;  // factor for the image; the drawing stands out
 
 struct Pen {
@@ -28,12 +19,12 @@ struct Pen {
 
 Pen segment_pen(FeatureKind kind) {
   switch (kind) {
-    case FeatureKind::kPlain: return {kGrey, 1.2};
-    case FeatureKind::kWith3d: return {kBlue, 1.6};
-    case FeatureKind::kOutlier: return {kRed, 2};
+    case FeatureKind::kPlain: return {kSeenColour, 1.2};
+    case FeatureKind::kWith3d: return {kLine3dColour, 1.6};
+    case FeatureKind::kOutlier: return {kRejectedColour, 2};
     case FeatureKind::kInlier: break;
   }
-  return {kOrange, 3};
+  return {kLineColour, 3};
 }
 
 std::uint8_t* pixel_at(Picture& picture, int x, int y) {
@@ -97,7 +88,7 @@ Picture draw_overlay(const FeatureView& f) {
   for (int y = 0; y < f.image.height; ++y)
     for (int x = 0; x < f.image.width; ++x)
       picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(kDimming * f.image.at(x, y) + 0.5));
-  for (const Keypoint& k : f.keypoints) draw_stroke(picture, k.u, k.v, k.u, k.v, {kGrey, 2.5});
+  for (const Keypoint& k : f.keypoints) draw_stroke(picture, k.u, k.v, k.u, k.v, {kSeenColour, 2.5});
   const std::vector<SegmentFate> lines = segment_fates(f);
   for (const bool matched : {false, true}) {  // matched segments lie on top
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -107,7 +98,7 @@ Picture draw_overlay(const FeatureView& f) {
     }
   }
   for (const PointTrackView& t : f.point_tracks) {
-    const Colour colour = t.inlier ? kGreen : kRed;
+    const Colour colour = t.inlier ? kPointColour : kRejectedColour;
     draw_stroke(picture, t.u, t.v, t.u_reference, t.v_reference, {colour, 1.2});
     draw_stroke(picture, t.u, t.v, t.u, t.v, {colour, 3.5});
   }
@@ -121,8 +112,7 @@ Picture draw_depth(const DepthView& depth) {
     for (int x = 0; x < picture.width; ++x) {
       const double d = depth.data[2 * y * depth.stride + 2 * x] * depth.metres_per_unit;
       if (d <= 0) continue;
-      const auto [r, g, b] = depth_colour(d);
-      blend(picture, x, y, {r, g, b}, 1);
+      blend(picture, x, y, depth_colour(d), 1);
     }
   }
   return picture;

@@ -36,12 +36,11 @@ struct SegmentFate {
 };
 std::vector<SegmentFate> segment_fates(const FeatureView& features);
 
-// Draws over the dimmed undistorted image. Points: grey as detected; green if matched, with a stroke to the
-// position in the reference; red if rejected. Segments: grey as detected; blue with 3D; orange if matched;
-// red if the match was rejected.
+// Draws over the dimmed undistorted image in the colours of palette.hpp; a matched point has a stroke to its
+// position in the reference.
 Picture draw_overlay(const FeatureView& features);
 
-// Uses the colours of depth_palette.hpp, black without depth; half the size in each direction.
+// Uses the colours of palette.hpp, black without depth; half the size in each direction.
 Picture draw_depth(const DepthView& depth);
 
 }  // namespace plvo::report

@@ -9,9 +9,9 @@
 
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/report/base64.hpp"
-#include "plvo/report/depth_palette.hpp"
 #include "plvo/report/drawing.hpp"
 #include "plvo/report/page.hpp"
+#include "plvo/report/palette.hpp"
 
 namespace plvo::report {
 namespace {
@@ -38,6 +38,7 @@ class Writer {
   Json data() const {
     Json json = {{"title", input_.title}, {"subtitle", input_.subtitle}};
     json["trajectory"] = trajectory();
+    if (!input_.scene.points.empty() || !input_.scene.lines.empty()) json["scene"] = scene();
     if (!input_.series.empty()) json["series"] = series();
     if (!input_.frames.empty()) {
       json["frames"] = frames();
@@ -62,6 +63,21 @@ class Writer {
     for (const eval::StampedPose& pose : input_.trajectory.poses) {
       json["t"].push_back(seconds(pose.stamp_ns));
       append_position(json["p"], pose.T_world_camera.t);
+    }
+    return json;
+  }
+
+  // To the millimetre, which a screen does not show.
+  static void append_rounded(Json& list, const Vector3& p) {
+    for (int k = 0; k < 3; ++k) list.push_back(std::round(p[k] * 1e3) / 1e3);
+  }
+
+  Json scene() const {
+    Json json = {{"points", Json::array()}, {"lines", Json::array()}};
+    for (const Vector3& p : input_.scene.points) append_rounded(json["points"], p);
+    for (const auto& [a, b] : input_.scene.lines) {
+      append_rounded(json["lines"], a);
+      append_rounded(json["lines"], b);
     }
     return json;
   }
@@ -173,8 +189,8 @@ std::string script_json(const Json& data) {
 
 std::string make_report(const ReportInput& input) {
   std::string page = k_page_html;
-  fill(page, "@SCRIPT@", std::string(k_charts_js) + k_paths_js + k_frames_js + k_main_js);
-  fill(page, "@STYLE@", k_style_css);
+  fill(page, "@SCRIPT@", std::string(k_charts_js) + k_turntable_js + k_paths_js + k_frames_js + k_main_js);
+  fill(page, "@STYLE@", palette_css() + k_style_css);
   const Json data = Writer(input).data();
   fill(page, "@DATA@", script_json(data));
   return page;

@@ -13,6 +13,7 @@
 #include "plvo/eval/evaluation.hpp"
 #include "plvo/report/frame_recorder.hpp"
 #include "plvo/report/run_series.hpp"
+#include "plvo/report/scene_recorder.hpp"
 
 namespace plvo::report {
 
@@ -22,6 +23,7 @@ struct ReportInput {
   std::optional<eval::Evaluation> evaluation;                // if there is ground truth
   std::vector<RunSample> series;                             // of a run
   std::vector<RecordedFrame> frames;                         // of a run
+  Scene scene;                                               // of a run
   std::vector<std::pair<std::string, std::string>> summary;  // rows of two columns
 };
 

@@ -17,6 +17,8 @@
 #include "plvo/host/background.hpp"
 #include "plvo/host/posix_clock.hpp"
 #include "plvo/host/stream/tcp_listener.hpp"
+#include "plvo/report/page.hpp"
+#include "plvo/report/palette.hpp"
 #include "plvo/view/connection_table.hpp"
 #include "plvo/view/host_names.hpp"
 #include "plvo/view/page.hpp"
@@ -55,6 +57,19 @@ struct Request {
   bool judged = false;
   std::optional<std::string> reply;  // set when it may be answered; for /update the text
 };
+
+// The page, with what it shares with the report: the colours, and how a view in space is turned.
+const std::string& live_page() {
+  static const std::string page = [] {
+    std::string text = kViewPage;
+    for (const auto& [mark, content] :
+         {std::pair<std::string, std::string>("@PALETTE@", report::palette_css()),
+          {"@TURNTABLE@", report::k_turntable_js}})
+      text.replace(text.find(mark), mark.size(), content);
+    return text;
+  }();
+  return page;
+}
 
 std::string machine_at(MHD_Connection* connection) {
   return machine_of(*MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr);
@@ -178,7 +193,7 @@ void ViewServer::Impl::wait(Request& request, std::string_view path) {
       ask.viewer = viewer;
     }
   } else if (path == "/") {
-    waiting.bytes = static_cast<std::int64_t>(std::strlen(kViewPage));
+    waiting.bytes = static_cast<std::int64_t>(live_page().size());
   }
   MHD_suspend_connection(connection);
   waiting.is_over = [this, descriptor = socket_of(connection)] { return table.is_over(descriptor); };
@@ -195,7 +210,8 @@ MHD_Result ViewServer::Impl::answer(Request& request, std::string_view path) {
     wait(request, path);
     return MHD_YES;
   }
-  if (path == "/") return send_constant(connection, MHD_HTTP_OK, "text/html; charset=utf-8", kViewPage);
+  if (path == "/")
+    return send_constant(connection, MHD_HTTP_OK, "text/html; charset=utf-8", live_page().c_str());
   if (path == "/favicon.ico") return send_constant(connection, MHD_HTTP_NO_CONTENT, "", "");
   if (path == "/update") return send_update(connection, std::move(*request.reply));
   return send_constant(connection, MHD_HTTP_NOT_FOUND, "text/plain", "There is only the page itself: /\n");

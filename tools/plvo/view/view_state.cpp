@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "plvo/report/depth_palette.hpp"
+#include "plvo/report/palette.hpp"
 
 namespace plvo {
 namespace {
@@ -83,8 +83,11 @@ void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, i
           snapshot.depth[static_cast<std::size_t>(2 * y) * static_cast<std::size_t>(snapshot.depth_width) +
                          static_cast<std::size_t>(2 * x)];
       if (raw == 0) continue;
-      const auto colour = report::depth_colour(raw * snapshot.metres_per_unit);
-      std::copy(colour.begin(), colour.end(), rgb.begin() + (static_cast<std::ptrdiff_t>(y) * width + x) * 3);
+      const report::Colour colour = report::depth_colour(raw * snapshot.metres_per_unit);
+      std::uint8_t* pixel = rgb.data() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
+      pixel[0] = colour.r;
+      pixel[1] = colour.g;
+      pixel[2] = colour.b;
     }
   }
 }

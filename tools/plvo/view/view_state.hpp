@@ -72,8 +72,7 @@ class ViewPath {
   std::uint64_t epoch_ = 0;
 };
 
-// Paints depth in the colours of report/depth_palette.hpp, every second pixel of every second row; black: no
-// depth.
+// Paints depth in the colours of report/palette.hpp, every second pixel of every second row; black: no depth.
 void paint_depth(const ViewSnapshot& snapshot, std::vector<std::uint8_t>& rgb, int& width, int& height);
 
 }  // namespace plvo

@@ -3,7 +3,7 @@ from collections.abc import Iterable, Iterator, Sequence as _ListLike
 from os import PathLike
 from typing import Any, Literal, NamedTuple
 
-from numpy import bool_, float32, float64, uint8, uint16
+from numpy import bool_, float32, float64, int64, uint8, uint16
 from numpy.typing import NDArray
 
 __version__: str
@@ -56,6 +56,9 @@ class Camera:
     def cx(self) -> float: ...
     @property
     def cy(self) -> float: ...
+    @property
+    def K(self) -> NDArray[float64]:
+        """The intrinsic matrix, 3x3, in pixels: fx 0 cx, 0 fy cy, 0 0 1. A copy."""
     @property
     def distortion(self) -> tuple[float, ...]: ...
     @property
@@ -338,8 +341,31 @@ class Sequence:
     def imu(self, *, R_camera_imu: _Array | None = None) -> RecordedImu:
         """gyroscope.txt and accelerometer.txt of the folder, or sensor_msgs/Imu of the bag."""
     def __len__(self) -> int: ...
+    def __enter__(self) -> Sequence: ...
+    def __exit__(self, *args: object) -> None:
+        """Ends the reading: a further frame is a ValueError. Frames that were handed out stay."""
     def __iter__(self) -> Iterator[Frame]: ...
     def __next__(self) -> Frame: ...
+
+class Trajectory:
+    """The poses of results, lost frames left out."""
+
+    def __init__(self, results: Iterable[Result]) -> None: ...
+    @property
+    def stamps_ns(self) -> NDArray[int64]:
+        """Shape (N,), nanoseconds."""
+    @property
+    def positions(self) -> NDArray[float64]:
+        """Shape (N, 3), metres, in the world."""
+    @property
+    def quaternions(self) -> NDArray[float64]:
+        """Shape (N, 4), x y z w: camera to world."""
+    def __len__(self) -> int: ...
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes the form of TUM: stamp tx ty tz qx qy qz qw, one pose a line. OSError where the file cannot be written."""
+
+def to_dataframe(results: Iterable[Result]) -> Any:
+    """A pandas.DataFrame, a row for each result. ImportError without pandas, which plvo itself does not need."""
 
 def run(
     recording: _Path,

@@ -31,4 +31,11 @@ Status write_result(const std::string& file, const nlohmann::ordered_json& json,
   return written.ok() ? printed : written;
 }
 
+void tell_written(Log& log, const std::vector<std::string>& files) {
+  std::string list;
+  for (const std::string& file : files)
+    if (!file.empty() && !is_standard_output(file)) list += (list.empty() ? "wrote " : ", ") + file;
+  if (!list.empty()) log.write(LogLevel::kInfo, list);
+}
+
 }  // namespace plvo::cli

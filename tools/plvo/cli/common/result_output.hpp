@@ -6,9 +6,11 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "plvo/base/status.hpp"
 #include "plvo/cli/options/arguments.hpp"
+#include "plvo/hal/log.hpp"
 
 namespace plvo::cli {
 
@@ -22,5 +24,9 @@ Status write_json(const std::string& file, const nlohmann::ordered_json& json);
 // one of the two cannot be written, the other still is.
 Status write_result(const std::string& file, const nlohmann::ordered_json& json,
                     const std::function<std::string()>& page, bool aside = false);
+
+// Names the files that a command wrote, in one line; standard output and options that were not given ("") are
+// left out. Nothing is said where no file is left.
+void tell_written(Log& log, const std::vector<std::string>& files);
 
 }  // namespace plvo::cli

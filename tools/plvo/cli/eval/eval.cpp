@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo eval: an estimate against the ground truth.
+// plvo eval: one or several estimates against the ground truth.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,10 +17,13 @@
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/camera_options.hpp"
 #include "plvo/eval/evaluation.hpp"
+#include "plvo/eval/ranking.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/stderr_log.hpp"
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/recording/recording.hpp"
 #include "plvo/replay/index/numbered_index.hpp"
+#include "plvo/report/plot.hpp"
 #include "plvo/report/report.hpp"
 #include "plvo/rosbag/containers/container_kind.hpp"
 
@@ -32,11 +35,16 @@ constexpr const char* kEvalHelp =
     "  plvo eval --gt walk/groundtruth.txt --est trajectory.txt\n"
     "  plvo eval --gt chess/seq-01 --est trajectory.txt     the poses of numbered frames\n"
     "  plvo eval --gt walk.bag --est trajectory.txt         walk-groundtruth.txt beside the bag\n"
-    "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n";
+    "  plvo eval --gt walk/groundtruth.txt --est t.txt --est-covariance c.txt --report comparison.html\n"
+    "  plvo eval --gt walk/groundtruth.txt --est a.txt b.txt --plot walk.svg   ranked, one picture\n";
+
+constexpr int kMostEstimates = 100;
 
 struct EvalOptions {
-  eval::TrajectorySource ground_truth, estimate;
-  std::string covariance, motions, report;
+  eval::TrajectorySource ground_truth;
+  std::vector<std::filesystem::path> estimates;
+  eval::TrajectoryFormat estimate_format = eval::TrajectoryFormat::kAuto;
+  std::string covariance, motions, report, plot;
   std::vector<std::string> kitti_times;  // one for both, or of the truth and of the estimate
   eval::GroundTruthSampling sampling = eval::GroundTruthSampling::kInterpolated;
   double max_difference_s = 0.02;
@@ -55,27 +63,41 @@ bool stamps_are_moderate(const eval::Trajectory& trajectory) {
   });
 }
 
-Status read_inputs(const EvalOptions& options, eval::Trajectory& ground_truth, eval::Trajectory& estimate,
-                   std::vector<eval::StampedCovariance>& covariances,
-                   std::vector<eval::UncertainMotion>& motions) {
+std::string ignored_rows_of(const std::string& file, const eval::Trajectory& trajectory) {
+  return fmt::format("{}: {} poses with a NaN, an infinity or a repeated stamp were ignored", file,
+                     trajectory.ignored_rows);
+}
+
+struct EvalInputs {
+  eval::Trajectory ground_truth;
+  std::vector<eval::Trajectory> estimates;
+  std::vector<eval::StampedCovariance> covariances;
+  std::vector<eval::UncertainMotion> motions;
+};
+
+Status read_inputs(const EvalOptions& options, EvalInputs& inputs) {
   const std::filesystem::path& truth = options.ground_truth.path;
-  Status status = is_recording(truth) ? read_true_poses(truth, options.folder, ground_truth)
-                                      : read_trajectory(options.ground_truth, ground_truth);
-  if (status.ok()) status = read_trajectory(options.estimate, estimate);
-  if (status.ok() && !stamps_are_moderate(estimate))
-    status = {StatusCode::kInvalidArgument, options.estimate.path.string() + " has stamps beyond 146 years"};
+  Status status = is_recording(truth) ? read_true_poses(truth, options.folder, inputs.ground_truth)
+                                      : read_trajectory(options.ground_truth, inputs.ground_truth);
+  bool kitti = inputs.ground_truth.format == eval::TrajectoryFormat::kKitti;
+  for (const std::filesystem::path& path : options.estimates) {
+    eval::TrajectorySource source{path, options.estimate_format, {}};
+    if (!options.kitti_times.empty()) source.kitti_times = options.kitti_times.back();
+    eval::Trajectory& estimate = inputs.estimates.emplace_back();
+    if (status.ok()) status = read_trajectory(source, estimate);
+    if (status.ok() && !stamps_are_moderate(estimate))
+      status = {StatusCode::kInvalidArgument, path.string() + " has stamps beyond 146 years"};
+    kitti = kitti || estimate.format == eval::TrajectoryFormat::kKitti;
+  }
   if (status.ok() && !options.covariance.empty())
-    status = eval::read_covariances(options.covariance, covariances);
-  if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, motions);
-  const bool kitti = ground_truth.format == eval::TrajectoryFormat::kKitti ||
-                     estimate.format == eval::TrajectoryFormat::kKitti;
+    status = eval::read_covariances(options.covariance, inputs.covariances);
+  if (status.ok() && !options.motions.empty()) status = eval::read_motions(options.motions, inputs.motions);
   if (status.ok() && !options.kitti_times.empty() && !kitti)
-    refuse_command(
-        "--kitti-times is for KITTI's rows of 12 numbers, and neither file has them; leave it away");
+    refuse_command("--kitti-times is for KITTI's rows of 12 numbers, and no file has them; leave it away");
   return status;
 }
 
-int eval_command(EvalOptions options) {
+eval::EvaluationOptions settings_of(const EvalOptions& options) {
   eval::EvaluationOptions settings;
   settings.sampling.method = options.sampling;
   settings.sampling.max_difference_ns = static_cast<std::int64_t>(options.max_difference_s * 1e9);
@@ -83,44 +105,92 @@ int eval_command(EvalOptions options) {
   settings.deltas = options.deltas;
   if (!options.sigma.empty()) settings.truth_sigma = {options.sigma[0], options.sigma[1] * kPi / 180};
   settings.fit_truth = options.fit_truth;
-  if (!options.kitti_times.empty()) {
-    options.ground_truth.kitti_times = options.kitti_times.front();
-    options.estimate.kitti_times = options.kitti_times.back();
-  }
+  return settings;
+}
 
-  eval::Trajectory ground_truth, estimate;
-  std::vector<eval::StampedCovariance> covariances;
-  std::vector<eval::UncertainMotion> motions;
-  eval::Evaluation evaluation;
-  Status status = read_inputs(options, ground_truth, estimate, covariances, motions);
-  for (const std::string& file : {options.report, options.json})
-    if (status.ok() && !file.empty()) status = LineFile::check(file);
-  if (status.ok()) status = evaluate(ground_truth, estimate, covariances, motions, settings, evaluation);
-  if (!status.ok()) return fail(status);
-  std::vector<std::string> warnings;
-  for (const auto& [trajectory, source] :
-       {std::pair(&ground_truth, &options.ground_truth), std::pair(&estimate, &options.estimate)})
-    if (trajectory->ignored_rows > 0)
-      warnings.push_back(fmt::format("{}: {} poses with a NaN, an infinity or a repeated stamp were ignored",
-                                     source->path.string(), trajectory->ignored_rows));
-  for (std::string& sentence : doubts_about(evaluation)) warnings.push_back(std::move(sentence));
-  for (const std::string& sentence : warnings) warn(sentence);
-  if (!options.report.empty()) {
-    report::ReportInput input;
-    input.title = options.estimate.path.filename().string();
-    input.subtitle = "plvo " PLVO_VERSION ": compared with " + options.ground_truth.path.string() +
-                     (options.fit_truth ? ", turned and shifted to fit" : "");
-    input.trajectory = estimate;
-    input.evaluation = evaluation;
-    status = report::write_report(options.report, input);
+// Evaluates each estimate; ranked, best first.
+Status evaluate_all(const EvalOptions& options, const EvalInputs& inputs,
+                    std::vector<eval::NamedEvaluation>& results) {
+  const eval::EvaluationOptions settings = settings_of(options);
+  for (std::size_t i = 0; i < inputs.estimates.size(); ++i) {
+    eval::NamedEvaluation& result = results.emplace_back();
+    result.name = options.estimates[i].string();
+    const Status status = evaluate(inputs.ground_truth, inputs.estimates[i], inputs.covariances,
+                                   inputs.motions, settings, result.evaluation);
+    if (!status.ok() && inputs.estimates.size() > 1)
+      return {status.code(), fmt::format("{}: {}", result.name, status.message())};
+    if (!status.ok()) return status;
+    if (inputs.estimates[i].ignored_rows > 0)
+      result.warnings.push_back(ignored_rows_of(result.name, inputs.estimates[i]));
+    for (std::string& sentence : doubts_about(result.evaluation))
+      result.warnings.push_back(std::move(sentence));
   }
-  nlohmann::ordered_json json = to_json(evaluation);
+  eval::rank(results);
+  return {};
+}
+
+Status write_comparison_report(const EvalOptions& options, const EvalInputs& inputs,
+                               const eval::NamedEvaluation& result) {
+  report::ReportInput input;
+  input.title = options.estimates[0].filename().string();
+  input.subtitle = "plvo " PLVO_VERSION ": compared with " + options.ground_truth.path.string() +
+                   (options.fit_truth ? ", turned and shifted to fit" : "");
+  input.trajectory = inputs.estimates[0];
+  input.evaluation = result.evaluation;
+  return report::write_report(options.report, input);
+}
+
+// The legend has the figure that ranks.
+Status write_comparison_plot(const EvalOptions& options, const std::vector<eval::NamedEvaluation>& results) {
+  std::vector<report::PlottedEstimate> plotted;
+  for (const eval::NamedEvaluation& result : results) {
+    const eval::RpeResult& rpe = result.evaluation.rpe.back();
+    std::string label =
+        fmt::format("{}: ATE {:.1f} mm", result.name, 1e3 * result.evaluation.ate.position_m.rmse);
+    if (rpe.estimate.translation_m.count > 0)
+      label += fmt::format(", RPE over {} {:.1f} mm, {:.2f}°", rpe.delta.text,
+                           1e3 * rpe.estimate.translation_m.rmse, rpe.estimate.rotation_deg.rmse);
+    plotted.push_back({label, &result.evaluation});
+  }
+  return report::write_plot(options.plot, "compared with " + options.ground_truth.path.string(), plotted);
+}
+
+int eval_command(EvalOptions options) {
+  if (!options.kitti_times.empty()) options.ground_truth.kitti_times = options.kitti_times.front();
+  EvalInputs inputs;
+  Status status = read_inputs(options, inputs);
+  for (const std::string& file : {options.report, options.plot, options.json})
+    if (status.ok() && !file.empty()) status = LineFile::check(file);
+  std::vector<eval::NamedEvaluation> results;
+  if (status.ok()) status = evaluate_all(options, inputs, results);
+  if (!status.ok()) return fail(status);
+
+  const bool several = results.size() > 1;
+  std::vector<std::string> warnings;
+  if (inputs.ground_truth.ignored_rows > 0)
+    warnings.push_back(ignored_rows_of(options.ground_truth.path.string(), inputs.ground_truth));
+  if (several)
+    for (std::string& sentence : eval::doubts_about_ranking(results)) warnings.push_back(std::move(sentence));
+  for (const std::string& sentence : warnings) warn(sentence);
+  for (const eval::NamedEvaluation& result : results)
+    for (const std::string& sentence : result.warnings)
+      warn(several && sentence.rfind(result.name, 0) != 0 ? result.name + ": " + sentence : sentence);
+
+  const Status reported =
+      options.report.empty() ? Status() : write_comparison_report(options, inputs, results[0]);
+  const Status plotted = options.plot.empty() ? Status() : write_comparison_plot(options, results);
+  nlohmann::ordered_json json = several ? ranking_json(results) : to_json(results[0].evaluation);
+  if (!several) warnings.insert(warnings.end(), results[0].warnings.begin(), results[0].warnings.end());
   json["warnings"] = warnings;
   const Status result = write_result(
-      options.json, json, [&] { return to_text(evaluation); }, is_standard_output(options.report));
+      options.json, json, [&] { return several ? ranking_text(results) : to_text(results[0].evaluation); },
+      is_standard_output(options.report) || is_standard_output(options.plot));
   int exit_code = kExitSuccess;
-  for (const Status& written : {status, result})
+  for (const Status& written : {reported, plotted, result})
     if (!written.ok()) exit_code = fail(written);
+  StderrLog log;
+  tell_written(log, {reported.ok() ? options.report : "", plotted.ok() ? options.plot : "",
+                     result.ok() ? options.json : ""});
   return exit_code;
 }
 
@@ -135,11 +205,20 @@ void check(const CLI::App& command, const EvalOptions& options) {
   const std::filesystem::path& truth = options.ground_truth.path;
   if (is_recording(truth))
     refuse_options(command, {"--gt-format"}, "is for a trajectory, and --gt names a recording");
-  if (is_bag(options.estimate.path))
+  if (std::any_of(options.estimates.begin(), options.estimates.end(), is_bag))
     refuse("--est", "a ROS bag is a recording; name the trajectory that plvo run --out made of it");
+  if (options.estimates.size() > 1) {
+    refuse_options(command, {"--est-covariance", "--est-motions", "--report"},
+                   "is for one estimate, and --est names several; leave it away, or compare each by itself");
+    refuse_options(
+        command, {"--fit-truth"},
+        "fits the truth to one estimate, so that each would be compared with another truth; leave it "
+        "away where several are ranked");
+  }
   if (!is_numbered_folder(truth)) refuse_options(command, {"--rate"}, "is for a folder of numbered frames");
   FileRoles files;
   files.writes("--report", options.report);
+  files.writes("--plot", options.plot);
   files.writes("--json", options.json);
   files.reads(is_bag(truth) ? bag_ground_truth_file(truth) : truth / "groundtruth.txt");
   for (const std::filesystem::path& file : bag_files_in(truth)) files.reads(file);
@@ -147,9 +226,10 @@ void check(const CLI::App& command, const EvalOptions& options) {
   if (is_numbered_folder(truth) && read_sequence_index(truth, options.folder, index).ok())
     for (const StampedFile& pose : index.poses) files.reads(truth / pose.file);
   for (const std::filesystem::path& path :
-       {options.ground_truth.path, options.estimate.path, std::filesystem::path(options.covariance),
+       {options.ground_truth.path, std::filesystem::path(options.covariance),
         std::filesystem::path(options.motions)})
     files.reads(path);
+  for (const std::filesystem::path& path : options.estimates) files.reads(path);
   for (const std::string& path : options.kitti_times) files.reads(path);
   files.check();
 }
@@ -165,14 +245,21 @@ void add_inputs(CLI::App& command, EvalOptions& options) {
   require(file("--gt", options.ground_truth.path,
                "Ground truth: a trajectory in the form of TUM, EuRoC or KITTI, or the folder or bag of a "
                "sequence"));
-  require(file("--est", options.estimate.path, "The estimate: a trajectory in one of these forms"));
+  CLI::Option* estimates =
+      group.add("--est", "FILE", "The estimate: a trajectory in one of these forms; several are ranked",
+                [&options](const std::string& text) -> std::string {
+                  options.estimates.emplace_back(text);
+                  return text.empty() ? "expected a path, not an empty word" : "";
+                });
+  require(estimates);
+  takes_values(estimates, 1, kMostEstimates);
   const std::vector<std::pair<std::string, eval::TrajectoryFormat>> formats = {
       {"auto", eval::TrajectoryFormat::kAuto},
       {"tum", eval::TrajectoryFormat::kTum},
       {"euroc", eval::TrajectoryFormat::kEuroc},
       {"kitti", eval::TrajectoryFormat::kKitti}};
   group.choice("--gt-format", options.ground_truth.format, formats, "auto: told by the content (default)");
-  group.choice("--est-format", options.estimate.format, formats, "auto: told by the content (default)");
+  group.choice("--est-format", options.estimate_format, formats, "auto: told by the content (default)");
   add_rate_option(group, options.folder.frames_per_s);
   takes_values(
       group.add("--kitti-times", "FILE",
@@ -230,6 +317,8 @@ void add_eval(CLI::App& app, int& exit_code) {
         options->deltas.push_back(delta);
         return {};
       }));
+  group.path("--plot", options->plot,
+             "A picture as SVG: the trajectories, their errors over time and over the distance travelled");
   group.path("--report", options->report, "A page that shows the comparison: one HTML file, no network");
   add_json_option(command, options->json);
   on_command(command, exit_code, [&command, options] {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // plvo live: a sensor in, poses out, while it happens.
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -22,6 +23,7 @@ constexpr const char* kLiveHelp =
     "  plvo live --out poses.txt --record walk    keep the poses and the images\n"
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
     "  plvo live --device walk.oni --out t.txt    a recording, every frame of it; walk.bag, too\n"
+    "  plvo live --camera sim --size 320x240 --view 8080    no sensor needed\n"
     "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"
     "\n"
     "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
@@ -81,16 +83,18 @@ void add_outputs(CLI::App& command, LiveOptions& options) {
 void check(const CLI::App& command, LiveOptions& options) {
   check_live_camera_options(command, options.camera);
   check_odometry_options(options.odometry);
-  if (is_recorded_device(options.camera.device)) {
-    refuse_options(command, {"--every-frame"}, "is what a recording does anyway; leave it away");
+  if (is_played(options.camera)) {
+    refuse_options(command, {"--every-frame"},
+                   "is what a recording and the simulated camera do anyway; leave it away");
     refuse_options(command, {"--imu"},
                    "is for a live Kinect; plvo run FILE.bag --imu takes a bag's readings");
   }
-  if (is_bag(options.camera.device) && is_oni_file(options.record))
-    refuse("--record", "a ROS bag is kept as a folder, not as an .oni file");
+  if ((is_bag(options.camera.device) || options.camera.simulated) && is_oni_file(options.record))
+    refuse("--record", "a ROS bag and the simulated camera are kept as a folder, not as an .oni file");
   if (options.outputs.view.empty())
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   LiveOutputOptions& outputs = options.outputs;
+  check_output_options(command);
   check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
   check_level_option(command, options.imu);
   options.odometry.level_world = outputs.files.base.level;
@@ -113,6 +117,7 @@ void add_live(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App& command = add_command(app, "live", "Track what a sensor sees, now", kLiveHelp);
   add_live_camera_options(command, options->camera, PlayedFiles::kOniAndBags);
+  add_played_camera_options(command, options->camera);
   OptionGroup group(command);
   group.flag(
       "--imu", options->imu,
@@ -126,6 +131,9 @@ void add_live(CLI::App& app, int& exit_code) {
   add_odometry_options(command, options->odometry);
   on_command(command, exit_code, [&command, options] {
     check(command, *options);
+    if (given(command, "--frames"))
+      options->camera.simulated_frames =
+          static_cast<int>(std::min<std::uint64_t>(options->frames, kMostSimulatedFrames));
     return LiveSession(*options).run();
   });
 }

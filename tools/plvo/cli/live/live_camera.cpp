@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "plvo/cli/common/exit_code.hpp"
-#include "plvo/cli/live/bag_device.hpp"
+#include "plvo/cli/live/played_camera.hpp"
 #include "plvo/cli/options/bag_options.hpp"
 #include "plvo/recording/foreign_format.hpp"
 #include "plvo/replay/checks/calibration_check.hpp"
@@ -48,8 +48,28 @@ void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, Play
                           "the field of view that the sensor states, with a warning");
 }
 
+void add_played_camera_options(CLI::App& command, LiveCameraOptions& options) {
+  OptionGroup group(command);
+  group.choice("--camera", options.simulated, Choices<bool>{{"sim", true}},
+               "The simulated camera, instead of a sensor: a walk of a minute, or of --frames N");
+  options.pace = Pace::kRealtime;
+  group.choice("--pace", options.pace, Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}},
+               "Of a recording and the simulated camera: as the stamps say (default), or as fast as it goes");
+  add_simulator_options(command, options.simulator);
+}
+
 void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options) {
   check_calibration_options(command);
+  if (options.simulated) {
+    const char* why = "is for a sensor or a recording, not for the simulated camera";
+    refuse_options(command, {"--device", "--mode"}, why);
+    refuse_group(command, kCalibrationGroup, why);
+    refuse_group(command, kBagGroup, why);
+    return;
+  }
+  refuse_group(command, kSimulatorGroup, "is for the simulated camera: add --camera sim, or leave it away");
+  if (!is_played(options))
+    refuse_options(command, {"--pace"}, "is for a recording or the simulated camera; a sensor has its own");
   if (is_recorded_device(options.device))
     refuse_options(command, {"--mode"},
                    "does not apply to a recording, which has a size and a rate of its own");
@@ -58,6 +78,7 @@ void check_live_camera_options(const CLI::App& command, const LiveCameraOptions&
 
 void add_inputs(const LiveCameraOptions& options, FileRoles& files) {
   files.reads(options.calibration.file);
+  files.reads(options.simulator.trajectory);
   if (is_recorded_device(options.device)) files.reads(options.device);
   for (const std::filesystem::path& file : bag_files_in(options.device)) files.reads(file);
 }
@@ -84,6 +105,10 @@ bool parse_video_mode(const std::string& text, VideoMode& mode) {
 }
 
 bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
+bool is_played(const LiveCameraOptions& options) {
+  return options.simulated || is_recorded_device(options.device);
+}
+
 bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag(path); }
 
 int exit_code_of_camera(const Status& status, const std::string& device) {
@@ -232,7 +257,11 @@ Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); 
 
 Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
   if (Status status = refuse_foreign_format(options.device); !status.ok()) return status;
-  return is_bag(options.device) ? open_bag_device(options, log, camera) : open_sensor(options, log, camera);
+  const bool by_file = options.simulated || is_bag(options.device);
+  Status status = by_file ? open_played_camera(options, log, camera) : open_sensor(options, log, camera);
+  if (status.ok() && is_played(options) && options.pace == Pace::kRealtime)
+    camera = at_own_pace(std::move(camera));
+  return status;
 }
 
 }  // namespace plvo::cli

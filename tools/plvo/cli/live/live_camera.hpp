@@ -11,17 +11,24 @@
 #include "plvo/hal/log.hpp"
 #include "plvo/hal/rgbd_camera.hpp"
 #include "plvo/openni2/openni2_camera.hpp"
+#include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
 
 struct LiveCameraOptions {
   std::string device;  // an OpenNI2 URI, an .oni file or a recording of ROS; empty: the first sensor
+  bool simulated = false;
+  SimulatorArguments simulator;
+  int simulated_frames = 1800;  // a minute
+  Pace pace = Pace::kFast;      // of what is played instead of a sensor
   std::string mode = "640x480@30";
   BagTopicNames topics;
   CalibrationOptions calibration;
 };
 enum class PlayedFiles : std::uint8_t { kOni, kOniAndBags };  // in the place of a sensor
 void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, PlayedFiles files);
+// The simulated camera in the place of a sensor, and the pace of what is played.
+void add_played_camera_options(CLI::App& command, LiveCameraOptions& options);
 // Refuses what does not apply to the device that was named.
 void check_live_camera_options(const CLI::App& command, const LiveCameraOptions& options);
 void add_inputs(const LiveCameraOptions& options, FileRoles& files);
@@ -39,6 +46,9 @@ bool parse_video_mode(const std::string& text, VideoMode& mode);
 bool is_oni_file(const std::string& path);
 // An .oni file or a ROS bag instead of a sensor: every frame of it is wanted, and it waits for whoever reads.
 bool is_recorded_device(const std::string& path);
+
+// A recording, or the simulated camera.
+bool is_played(const LiveCameraOptions& options);
 
 class LiveCamera : public RgbdCamera {
  public:

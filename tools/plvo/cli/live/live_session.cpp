@@ -64,7 +64,7 @@ bool LiveSession::keeps_imu() const {
 
 // Everything else that can be wrong is found before the first file is made.
 Status LiveSession::open() {
-  const bool every = options_.every_frame || is_recorded_device(options_.camera.device);
+  const bool every = options_.every_frame || is_played(options_.camera);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
@@ -203,6 +203,9 @@ int LiveSession::judge() {
   if (!options_.summary.empty()) {
     if (Status status = write_json(options_.summary, summary_.to_json()); !status.ok()) return fail(status);
   }
+  std::vector<std::string> written = {options_.record, options_.summary};
+  for (const auto& [option, path] : options_.outputs.files.named()) written.push_back(path);
+  tell_written(console_, written);
   if (!summary_failure_.ok()) return fail(summary_failure_);
   const LiveCapture::State& capture = summary_.capture;
   if (!capture.end.ok()) {

@@ -76,8 +76,17 @@ class Run {
     console_.clear();
     // An output that fails does not take the others with it.
     int exit_code = summary_->failure.ok() ? kExitSuccess : fail(summary_->failure);
-    for (const Status& status : {finish(), write_report(), write_summary(), map_.write()})
+    const Status finished = finish(), reported = write_report(), summarised = write_summary(),
+                 mapped = map_.write();
+    for (const Status& status : {finished, reported, summarised, mapped})
       if (!status.ok()) exit_code = fail(status);
+    std::vector<std::string> written;
+    for (const auto& [option, path] : options_.outputs.named()) written.push_back(path);
+    if (reported.ok()) written.push_back(options_.report);
+    if (summarised.ok()) written.push_back(options_.summary);
+    if (mapped.ok()) written.insert(written.end(), {options_.map.trajectory, options_.map.ply});
+    written.push_back(options_.overlay);
+    tell_written(console_, written);
     if (exit_code != kExitSuccess || !summary_->failed()) return exit_code;
     fail(summary_->why_failed());
     return kExitNothingTracked;
@@ -121,6 +130,8 @@ class Run {
     if (!options_.camera.simulated) prefetched.emplace(*opened_.camera);
     RgbdCamera& source = prefetched ? static_cast<RgbdCamera&>(*prefetched) : *opened_.camera;
     PacedCamera camera(source, options_.pace, clock_, wait_for_enter);
+    if (options_.pace == Pace::kStep)
+      console_.write(LogLevel::kInfo, "--pace step: Enter tracks the next frame, Ctrl-D ends the run");
     prefault_program();
     if (prefetched) prefetched->wait_until_ahead();
     summary_->resident_start = resident_memory();
@@ -153,7 +164,8 @@ class Run {
       if (Status status = outputs_.write(record); !status.ok()) return status;
       if (!record.damaged())
         if (Status status = overlay_.write(record.number, block_.odometry()); !status.ok()) return status;
-      if (console_.wants_line()) show_line(record);
+      if (options_.pace == Pace::kStep) console_.write(LogLevel::kInfo, line_of(record));
+      if (console_.wants_line()) console_.show_line(line_of(record));
     }
     return {};
   }
@@ -162,13 +174,12 @@ class Run {
     for (const std::string& sentence : findings) console_.write(LogLevel::kWarning, sentence);
   }
 
-  void show_line(const FrameRecord& record) {
+  std::string line_of(const FrameRecord& record) const {
     const TrackResult& result = record.result;
-    console_.show_line(
-        fmt::format("frame {}{} {}  points {}  lines {}  {:.1f} ms  lost {}", record.number + 1,
-                    opened_.frame_count ? fmt::format("/{}", *opened_.frame_count) : "",
-                    record.damaged() ? "damaged" : to_string(result.state), result.points.inliers,
-                    result.lines.inliers, static_cast<double>(record.cpu_ns) * 1e-6, summary_->lost()));
+    return fmt::format("frame {}{} {}  points {}  lines {}  {:.1f} ms  lost {}", record.number + 1,
+                       opened_.frame_count ? fmt::format("/{}", *opened_.frame_count) : "",
+                       record.damaged() ? "damaged" : to_string(result.state), result.points.inliers,
+                       result.lines.inliers, static_cast<double>(record.cpu_ns) * 1e-6, summary_->lost());
   }
 
   Status finish() {
@@ -227,6 +238,7 @@ void check(const CLI::App& command, RunOptions& options) {
   if (options.report.empty())
     refuse_options(command, {"--report-frames"}, "is for a report: add --report FILE, or leave it away");
   check_map_options(command, options.map);
+  check_output_options(command);
   check_base_option(options.outputs.base, options.outputs.has_poses() || !options.wheels.file.empty());
   check_wheel_options(command, options.wheels, options.camera, options.outputs.base);
   check_level_option(command, options.imu.used);

@@ -34,7 +34,9 @@ void RunHistory::add(const FrameRecord& record, const RgbdFrame* frame, const Od
   }
   if (!with_report_) return;
   report_.series.push_back(report::make_sample(result, record.damaged(), record.cpu_ns));
-  if (frame != nullptr) recorder_.offer(record.number, *frame, result, odometry);
+  if (frame == nullptr) return;
+  recorder_.offer(record.number, *frame, result, odometry);
+  scene_.offer(odometry);
 }
 
 Status RunHistory::evaluate(const OpenedCamera& camera) {
@@ -56,6 +58,7 @@ Status RunHistory::write_report(const std::string& path, const RunSummary& summa
   report_.subtitle = fmt::format("plvo {}: {} frames, {} lost, {} damaged", PLVO_VERSION, summary.frames(),
                                  summary.lost(), summary.damaged());
   report_.frames = recorder_.frames();
+  report_.scene = scene_.scene();
   report_.summary = summary.rows();
   return report::write_report(path, report_);
 }

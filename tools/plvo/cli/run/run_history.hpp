@@ -33,6 +33,7 @@ class RunHistory {
  private:
   bool with_report_;
   report::FrameRecorder recorder_;
+  report::SceneRecorder scene_;
   report::ReportInput report_;
   std::vector<eval::StampedCovariance> covariances_;
   std::vector<eval::UncertainMotion> motions_;

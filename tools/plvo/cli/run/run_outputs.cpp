@@ -9,6 +9,7 @@
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/host/files/stamp_text.hpp"
 #include "plvo/host/printable.hpp"
+#include "plvo/host/stream/tcp_listener.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -37,7 +38,25 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
   group.path("--motions", options.motions,
              "Motion from the reference of each frame, with its 6x6 covariance");
   group.path("--stats", options.stats, "CSV: a row for each frame, lost and damaged ones with the reason");
+  group.add("--mavlink", "[HOST:]PORT",
+            "MAVLink's ODOMETRY of the robot's base to an autopilot, over UDP; needs --base-camera",
+            [&options](const std::string& text) -> std::string {
+              std::string host;
+              int port = 0;
+              options.mavlink = text;
+              return split_address(text, host, port) && port > 0
+                         ? ""
+                         : expected("[HOST:]PORT, such as 127.0.0.1:14550", text);
+            });
   add_base_option(group, options.base);
+}
+
+void check_output_options(const CLI::App& command) {
+  if (!given(command, "--base-camera"))
+    refuse_options(
+        command, {"--mavlink"},
+        "is of the robot's base: add --base-camera (0 0 0 -0.5 0.5 -0.5 0.5 for a camera that looks "
+        "ahead)");
 }
 
 bool takes_standard_output(const std::vector<std::string>& paths) {
@@ -52,6 +71,7 @@ Status RunOutputs::open(const OutputOptions& options) {
   if (!options.trajectory.empty()) status = trajectory_.open(options.trajectory, frames);
   if (status.ok() && !options.covariance.empty()) status = covariance_.open(options.covariance, frames);
   if (status.ok() && !options.motions.empty()) status = motions_.open(options.motions, frames);
+  if (status.ok() && !options.mavlink.empty()) status = mavlink_.open(options.mavlink);
   if (status.ok() && !options.stats.empty()) status = stats_.open(options.stats, stats_header());
   return status;
 }
@@ -63,6 +83,7 @@ Status RunOutputs::write(const FrameRecord& record) {
     status = trajectory_.write(result);
     if (status.ok()) status = covariance_.write(result);
     if (status.ok()) status = motions_.write(result);
+    if (status.ok() && mavlink_.is_open()) status = mavlink_.write(result);
   }
   return status.ok() ? stats_.write(stats_row(record)) : status;
 }

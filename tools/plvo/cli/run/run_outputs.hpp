@@ -12,20 +12,25 @@
 #include "plvo/cli/options/base_option.hpp"
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
+#include "plvo/host/stream/mavlink_stream.hpp"
 
 namespace plvo::cli {
 
 struct OutputOptions {
   std::string trajectory, covariance, motions, stats;
-  BaseOption base;  // what the first three, and pose streams, are about
+  std::string mavlink;  // address
+  BaseOption base;      // what the first three, and pose streams, are about
 
   // For each: how the user names it, and its path.
   std::vector<std::pair<std::string, std::string>> named() const {
     return {{"--out", trajectory}, {"--covariance", covariance}, {"--motions", motions}, {"--stats", stats}};
   }
-  bool has_poses() const { return !trajectory.empty() || !covariance.empty() || !motions.empty(); }
+  bool has_poses() const {
+    return !trajectory.empty() || !covariance.empty() || !motions.empty() || !mavlink.empty();
+  }
 };
 void add_output_options(CLI::App& command, OutputOptions& options);
+void check_output_options(const CLI::App& command);
 
 inline constexpr const char* kOutputGroup = "Outputs (a FILE may be -, standard output)";
 
@@ -44,6 +49,7 @@ class RunOutputs {
   CovarianceFile covariance_;
   MotionFile motions_;
   LineFile stats_;
+  MavlinkStream mavlink_;
   BaseOption base_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time series. All charts share one cursor; a tap moves it, and the frames below follow.
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const palette = ["#0b7fd6", "#e07b1a", "#2a9d4a", "#c2378f", "#7a5cd6", "#8a8f98"];
+const palette = [0, 1, 2, 3, 4, 5].map(i => css(`--curve-${i}`));
 
 function element(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
@@ -88,12 +88,14 @@ function chart(title, unit, x, series, marks = [], kind = "") {
     context.globalAlpha = 1;
   }
   function drawBand(context, s) {
-    context.fillStyle = css("--band");
+    context.fillStyle = s.colour;
+    context.globalAlpha = 0.18;
     context.beginPath();
     const indices = [...x.keys()].filter(i => s.band[i] !== null && s.band[i] !== undefined);
     indices.forEach((i, k) => context[k ? "lineTo" : "moveTo"](px(x[i]), py(s.band[i])));
     indices.reverse().forEach(i => context.lineTo(px(x[i]), py(-s.band[i])));
     context.fill();
+    context.globalAlpha = 1;
   }
   function drawAxes(context) {
     context.font = "11px system-ui, sans-serif";

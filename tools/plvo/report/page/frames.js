@@ -2,8 +2,9 @@
 // The recorded frames with their features drawn on top, and their depth, selected by a slider. Rows, lengths in tenths of a
 // pixel: keypoints u, v, level; tracks u, v, reference u, reference v, inlier; segments au, av, bu, bv, kind and the same
 // four of the reference. Kinds: 0 plain, 1 segment with 3D, 2 outlier, 3 inlier.
-const pens = {  // as in drawing.cpp
-  plain: ["#9aa3ad", 1.2], with3d: ["#5ca4f0", 1.6], outlier: ["#ff4d3c", 2], inlier: ["#ffa626", 3], followed: ["#3ddc6d", 1.2],
+const pens = {  // widths as in drawing.cpp
+  plain: [css("--seen"), 1.2], with3d: [css("--line-3d"), 1.6], outlier: [css("--rejected"), 2], inlier: [css("--line"), 3],
+  followed: [css("--point"), 1.2],
 };
 const segmentPens = [pens.plain, pens.with3d, pens.outlier, pens.inlier];
 const legendTexts = [["followed", "point, with a stroke to where it was in the reference"], ["inlier", "matched line"],
@@ -62,7 +63,7 @@ function framesLegend() {
 function framesSection(data) {
   const frames = data.frames;
   const canvas = element("canvas", { role: "img", "aria-label": "Image with keypoints, segments and matches", id: "frame" });
-  const depth = element("img", { alt: "Depth: near is red, far is blue, none is black", id: "depth" });
+  const depth = element("img", { alt: "Depth: near is light, far is dark, none is black", id: "depth" });
   const slider = element("input", { type: "range", min: 0, max: frames.length - 1, value: 0, step: 1, id: "scrubber",
     "aria-label": "Frame" });
   const text = element("div", { class: "readout", id: "frame-text" });

@@ -14,22 +14,32 @@ function pathBounds(paths) {
   return { centre, size, radius };
 }
 
-// Draws the paths through `project`, which maps a point relative to the centre to right and up, in metres.
-function pathView(name, paths, times, project, turning) {
+// The box around the middle 96 % of the points in each direction: a few far ones do not make the rest small.
+function sceneBounds(points) {
+  const sides = [0, 1, 2].map(k => {
+    const values = points.map(p => p[k]).sort((a, b) => a - b);
+    return [0.02, 0.98].map(share => values[Math.round(share * (values.length - 1))]);
+  });
+  const size = Math.max(...sides.map(([low, high]) => high - low), 0.02);
+  return { centre: sides.map(([low, high]) => (low + high) / 2), size, radius: 0.5 * Math.hypot(...sides.map(([low, high]) => high - low)) };
+}
+
+// Draws the paths through `project`, which maps a point relative to the centre to right and up, in metres; without it, in
+// space: the view is turned by hand, and the scene is drawn behind the paths.
+function pathView(name, paths, times, project, scene) {
   const canvas = element("canvas", { role: "img", "aria-label": `Trajectory, ${name}` });
   const colours = { estimate: "--estimate", truth: "--truth" };
-  let yaw = 0.6, pitch = 0.45;
-  const rotated = ([x, y, z]) => {
-    const a = Math.cos(yaw) * x + Math.sin(yaw) * z, b = -Math.sin(yaw) * x + Math.cos(yaw) * z;
-    return [a, -y * Math.cos(pitch) + b * Math.sin(pitch)];
-  };
-  const map = turning ? rotated : project;
-  if (turning) yaw = widestYaw();
+  const view = project ? null : turntable(canvas, () => draw());
+  const map = project || (p => { const [right, down] = view.turned(p); return [right, -down]; });
+  if (view) {
+    canvas.className = "turn";
+    view.yaw = widestYaw();
+  }
   // Returns the angle, of six, at which the paths fill most of the view.
   function widestYaw() {
     const area = angle => {
-      yaw = angle;
-      const seen = paths.flatMap(path => path.points.map(rotated));
+      view.yaw = angle;
+      const seen = paths.flatMap(path => path.points.map(map));
       const extent = k => Math.max(...seen.map(p => p[k])) - Math.min(...seen.map(p => p[k]));
       return extent(0) * extent(1);
     };
@@ -38,16 +48,18 @@ function pathView(name, paths, times, project, turning) {
     return angles[areas.indexOf(Math.max(...areas))] ?? 0.6;
   }
   function draw() {
-    const { centre, size, radius } = pathBounds(paths);
+    const { centre, size, radius } = view && scene.fitted() ? scene.bounds : pathBounds(paths);
     const side = canvas.clientWidth || 240;
     const context = prepare(canvas, side, side);
-    const scale = turning ? side * 0.47 / radius : side * 0.84 / size;
+    const scale = view ? side * 0.47 / radius * view.zoom : side * 0.84 / size;
+    const middle = view ? [side * (0.5 + view.right), side * (0.5 + view.down)] : [side / 2, side / 2];
     const at = p => {
       const [right, up] = map(p.map((v, k) => v - centre[k]));
-      return [side / 2 + right * scale, side / 2 - up * scale];
+      return [middle[0] + right * scale, middle[1] - up * scale];
     };
+    if (view && scene.shown()) drawScene(context, at);
     drawRuler(context, side, scale);
-    if (turning) drawAxes(context, at, 0.18 * size);
+    if (view) drawAxes(context, at, 0.18 * size);
     for (const path of paths) {
       context.strokeStyle = css(colours[path.name]);
       context.lineWidth = path.name === "truth" ? 3 : 1.8;
@@ -85,21 +97,25 @@ function pathView(name, paths, times, project, turning) {
     const origin = paths[0].points[0] || [0, 0, 0];
     ["x", "y", "z"].forEach((label, k) => {
       const end = origin.map((v, i) => v + (i === k ? length : 0));
-      context.strokeStyle = context.fillStyle = ["#d64545", "#2a9d4a", "#3b78e7"][k];
+      context.strokeStyle = context.fillStyle = palette[[1, 2, 0][k]];
       context.lineWidth = 1.5;
       context.beginPath(); context.moveTo(...at(origin)); context.lineTo(...at(end)); context.stroke();
       context.fillText(label, at(end)[0] + 3, at(end)[1]);
     });
   }
-  if (turning) {
-    canvas.className = "turn";
-    canvas.addEventListener("pointerdown", event => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener("pointermove", event => {
-      if (!event.buttons) return;
-      yaw += event.movementX * 0.01;
-      pitch = Math.max(-1.5, Math.min(1.5, pitch + event.movementY * 0.01));
-      draw();
-    });
+  function drawScene(context, at) {
+    context.globalAlpha = 0.55;
+    context.fillStyle = css("--seen");
+    for (const p of scene.points) {
+      const [x, y] = at(p);
+      context.fillRect(x - 0.6, y - 0.6, 1.2, 1.2);
+    }
+    context.strokeStyle = css("--line");
+    context.lineWidth = 1;
+    context.beginPath();
+    for (const [a, b] of scene.lines) { context.moveTo(...at(a)); context.lineTo(...at(b)); }
+    context.stroke();
+    context.globalAlpha = 1;
   }
   cursor.listeners.push(draw);
   keepDrawn(canvas, draw);
@@ -126,10 +142,19 @@ function trajectorySection(data) {
   const paths = [{ name: "estimate", points: triples(data.trajectory.p) }];
   const truth = data.truth && { name: "truth", points: triples(data.truth.best) };
   if (truth) paths.push(truth);
+  const box = element("input", { type: "checkbox", checked: "", id: "scene" });
+  const fit = element("select", { "aria-label": "The view in space fits", id: "fit" }, element("option", { value: "path" }, "fits the path"),
+    element("option", { value: "scene" }, "fits the scene"));
+  const ends = data.scene ? triples(data.scene.lines) : [];
+  const scene = { points: data.scene ? triples(data.scene.points) : [], lines: [], shown: () => box.checked,
+    fitted: () => fit.value === "scene" };
+  for (let i = 0; i < ends.length; i += 2) scene.lines.push([ends[i], ends[i + 1]]);
+  scene.bounds = scene.points.length ? sceneBounds(scene.points) : pathBounds(paths);
+  for (const control of [box, fit]) control.addEventListener("change", () => cursor.move(cursor.time));
   const views = element("div", { class: "views" },
-    pathView("above: x \u2192, z \u2191", paths, data.trajectory.t, ([x, , z]) => [x, z], false),
-    pathView("side: z \u2192, y \u2193", paths, data.trajectory.t, ([, y, z]) => [z, -y], false),
-    pathView("in space: drag to turn", paths, data.trajectory.t, null, true));
+    pathView("above: x \u2192, z \u2191", paths, data.trajectory.t, ([x, , z]) => [x, z]),
+    pathView("side: z \u2192, y \u2193", paths, data.trajectory.t, ([, y, z]) => [z, -y]),
+    pathView("in space: drag, wheel, pinch", paths, data.trajectory.t, null, scene));
   const legend = element("div", { class: "legend" });
   for (const path of paths) {
     const swatch = element("i");
@@ -137,5 +162,6 @@ function trajectorySection(data) {
     legend.append(element("span", {}, swatch, path.name === "truth" ? "ground truth, laid " : "estimate"));
   }
   if (truth) legend.append(truthChoice(data, truth));
+  if (data.scene) legend.append(element("label", {}, box, ` ${scene.points.length} points and ${scene.lines.length} lines of the keyframes`), fit);
   return element("section", { class: "wide", id: "trajectory" }, element("h2", {}, "Trajectory"), views, legend);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/ros1/motion_twist.hpp"
+#include "plvo/host/motion_twist.hpp"
 
 namespace plvo {
 namespace {
