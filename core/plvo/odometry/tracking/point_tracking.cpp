@@ -146,7 +146,7 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
   };
   const std::size_t n = reference.keypoints.size();
   if (!view.executor) return track(0, n, tracks);
-  const std::size_t middle = n / 2;
+  const std::size_t middle = n / 2 / stride * stride;
   PointTracks later = from(tracks, middle);
   view.executor.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
   append(later, tracks);
