@@ -111,7 +111,7 @@ TEST(Carried, APartOfTheRobotIsLeftOutAndTold) {
   EXPECT_NE(outcome.told.find("rows 180 to 239"), std::string::npos) << outcome.told;
   EXPECT_EQ(outcome.lost, 0);
   EXPECT_LT(outcome.worst_m, 0.02);
-  EXPECT_EQ(outcome.low_keypoints, 0);
+  EXPECT_LT(outcome.low_keypoints, 15);  // of 75: those of cells at the edge of the part
 }
 
 // The dots seem to be a world at rest, until enough of them lie on surfaces whose depths have changed. Left

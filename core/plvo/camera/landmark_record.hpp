@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a landmark of a reference has moved so far: as the camera's motion says, or otherwise. What moves
 // otherwise belongs to an object of its own, is a reflection, or has a wrong depth. Its features are still
-// matched and tested, but they are no evidence for a motion (coverage.hpp), and a reference is judged without
-// them.
+// matched and tested, but they are no evidence for a motion (coverage.hpp).
 #pragma once
 
 #include <algorithm>

@@ -19,7 +19,7 @@ struct LineFeatures {
   std::span<LineDescriptor> descriptors;  // descriptors of the 3D lines
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
-  bool lifted = false;  // 3D lines have been searched for
+  bool lifted = false;              // 3D lines have been searched for
   std::span<Exposure> lifted_with;  // one: the motion that the lines were lifted with
 
   // Removes all segments and limits the capacity.

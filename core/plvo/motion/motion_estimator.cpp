@@ -151,7 +151,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     Se3 other = T;
     estimate.is_other = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
                         approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus() &&
-                        ransac.covered() > covered;
+                        ransac.covered() > covered && ransac.consensus_fixes_motion(seed);
     if (!estimate.is_other) {
       status = approach_from(first, scale);
       if (status != StatusCode::kOk) return status;

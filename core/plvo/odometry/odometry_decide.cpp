@@ -121,14 +121,13 @@ Window::Kept Odometry::still_good() const {
   return kept;
 }
 
-// Whether the last estimate found this share of the frame's trusted features; the frame was its reference of
-// this index.
+// Whether the last estimate found this share of the frame's features; the frame was its reference of this
+// index.
 bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   const FrameFeatures& features = window_[slot].features;
-  std::size_t available = 0;
-  for (const Line3d& line : features.lines.lines_3d()) available += line.record.trusted() ? 1 : 0;
+  std::size_t available = features.lines.count_3d;
   for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
-    available += point.p.z() > 0 && point.record.trusted() ? 1 : 0;
+    available += point.p.z() > 0 ? 1 : 0;
   return memory_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
 }
 

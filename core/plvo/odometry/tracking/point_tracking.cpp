@@ -131,8 +131,8 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
 }
 
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,
-                     std::span<const Point3d> reference_points, const Se3& T_current_reference, std::size_t stride,
-                     PointTracks& tracks) {
+                     std::span<const Point3d> reference_points, const Se3& T_current_reference,
+                     std::size_t stride, PointTracks& tracks) {
   tracks.matches.clear();
   const auto track = [&](std::size_t begin, std::size_t end, PointTracks& found) {
     found.matches.clear();
@@ -146,7 +146,7 @@ void track_by_motion(const TrackingView& view, const PointFeatures& reference,
   };
   const std::size_t n = reference.keypoints.size();
   if (!view.executor) return track(0, n, tracks);
-  const std::size_t middle = n / 2;
+  const std::size_t middle = n / 2 / stride * stride;
   PointTracks later = from(tracks, middle);
   view.executor.both([&] { track(0, middle, tracks); }, [&] { track(middle, n, later); });
   append(later, tracks);

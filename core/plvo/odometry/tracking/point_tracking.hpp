@@ -64,8 +64,8 @@ void track_by_descriptor(const TrackingView& view, const PointFeatures& referenc
 // Tracks every stride-th keypoint by registration alone, from the positions that T_current_reference
 // predicts.
 void track_by_motion(const TrackingView& view, const PointFeatures& reference,
-                     std::span<const Point3d> reference_points, const Se3& T_current_reference, std::size_t stride,
-                     PointTracks& tracks);
+                     std::span<const Point3d> reference_points, const Se3& T_current_reference,
+                     std::size_t stride, PointTracks& tracks);
 
 // Reserves the scratch of track_by_descriptor.
 constexpr void reserve_tracking(Arena& memory, int keypoints, int width, int height) {
