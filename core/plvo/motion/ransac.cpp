@@ -26,7 +26,7 @@ constexpr int kDegeneracyDraws = 200;
 // test for RANSAC consensus scoring", BMVC 2005).
 constexpr double kShareBeside = 0.4;
 constexpr std::size_t kTested = 16;
-constexpr int kLeastAgreeing = 5;
+constexpr int kLeastPromising = 5;
 constexpr double kInlierProbability = 0.99;  // that a true match of any kind passes the χ² test
 constexpr double kRansacConfidence = 0.999;  // that a set of true matches was drawn before stopping
 
@@ -154,7 +154,7 @@ bool Ransac::is_promising(const Se3& T) const {
     if (set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold)
       ++agreeing;
   }
-  return agreeing >= kLeastAgreeing;
+  return agreeing >= kLeastPromising;
 }
 
 // Moves the candidates that may form minimal sets and are no inliers to the front. Returns their number.
