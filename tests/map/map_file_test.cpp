@@ -140,7 +140,7 @@ TEST(MapFile, ACameraInAnotherRoomDoesNotKnowWhereItIs) {
 // Every compiler, optimisation level and processor must give these bytes. If a change of the odometry, of the
 // map or of the format alters them on purpose, the new number stands in the message.
 TEST(MapFile, GivesTheSameBytesEverywhere) {
-  constexpr std::uint64_t kGolden = 18209694041051815834U;
+  constexpr std::uint64_t kGolden = 15266196347577581284U;
   MappedCamera camera(12);
   camera.walk(0, kFar);
   camera.walk(kFar, 0);
