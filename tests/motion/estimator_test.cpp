@@ -144,7 +144,7 @@ struct DrawnPair {
 };
 
 TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
-  DrawnPair pair(17, 200, 40, 0.1);
+  DrawnPair pair(17, 200, 40, 0.2);
   ASSERT_EQ(pair.drawn.status, StatusCode::kOk);
   Vector6 off;
   off << 3e-3, -2e-3, 2e-3, 2e-3, -1e-3, 1e-3;
