@@ -63,7 +63,8 @@ TEST_F(CliScale, RecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
   ASSERT_EQ(run("small", "--quiet --out " + path("s")).exit_code, 0);
   const CommandResult r = run("large", "--scale 2 --out " + path("l") + " --json " + path("j"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_EQ(r.err, "") << "nothing that nobody asked for";
+  EXPECT_EQ(r.err, "plvo: wrote " + path("l") + ", " + path("j") + "\n")
+      << "and nothing that nobody asked for";
   EXPECT_NE(r.out.find("images                 320x240, scaled down by 2\n"), std::string::npos) << r.out;
   const auto json = nlohmann::json::parse(read_file(folder_ / "j"));
   EXPECT_EQ(json["image"], (nlohmann::json{{"width", 320}, {"height", 240}, {"scaled_down_by", 2}}));
