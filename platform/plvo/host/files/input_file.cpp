@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Descriptor {
+class OwnedDescriptor {
  public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
+  explicit OwnedDescriptor(int number) : number_(number) {}
+  OwnedDescriptor(const OwnedDescriptor&) = delete;
+  OwnedDescriptor& operator=(const OwnedDescriptor&) = delete;
+  ~OwnedDescriptor() {
     if (number_ >= 0) ::close(number_);
   }
   int get() const { return number_; }
@@ -90,7 +90,7 @@ Status read_input_file(const fs::path& path, std::uintmax_t limit_bytes, std::ve
   // meanwhile, and files of the kernel that wait for news, must not hold us.
   if (::stat(path.c_str(), &facts) != 0) return failed(path, errno);
   if (Status status = judge(path, facts, limit_bytes); !status.ok()) return status;
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const OwnedDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (file.get() < 0 || ::fstat(file.get(), &facts) != 0) return failed(path, errno);
   if (Status status = judge(path, facts, limit_bytes); !status.ok()) return status;
   bytes.resize(static_cast<std::size_t>(facts.st_size));
