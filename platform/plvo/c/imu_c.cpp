@@ -27,7 +27,7 @@ constexpr std::size_t kHandleBytes = align_up(sizeof(plvo_imu));
 constexpr std::int32_t kMostSamples = 1000000;
 constexpr const char* kNoImu = "imu is NULL: plvo_imu_init comes first";
 
-plvo_imu_config default_config() {
+plvo_imu_config default_imu_config() {
   const ImuConfig defaults;
   plvo_imu_config config;
   std::memset(&config, 0, sizeof config);
@@ -50,7 +50,7 @@ bool can_wait(std::int32_t samples) { return samples == 0 || (samples >= 2 && sa
 
 // whole: with the defaults for what the caller does not know.
 Status take_config(const plvo_imu_config* given, plvo_imu_config& whole, ImuConfig& config) {
-  whole = default_config();
+  whole = default_imu_config();
   if (given != nullptr)
     if (Status status = take_struct(given, whole, "imu_config"); !status.ok()) return status;
   if (!can_wait(whole.gyro_samples) || !can_wait(whole.accelerometer_samples))
@@ -135,7 +135,7 @@ using plvo::c::to_c;
 void plvo_imu_config_init(plvo_imu_config* config, std::size_t size) {
   config->struct_size = static_cast<std::uint32_t>(size);
   if (plvo::c::check_struct(config, "imu_config").ok())
-    plvo::c::give_struct(plvo::c::default_config(), config);
+    plvo::c::give_struct(plvo::c::default_imu_config(), config);
 }
 
 std::size_t plvo_imu_required_bytes(const plvo_imu_config* given) {
