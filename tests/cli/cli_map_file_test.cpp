@@ -15,7 +15,6 @@ namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using test::CommandResult;
 using test::read_file;
 
@@ -58,7 +57,7 @@ class CliMapFile : public test::PlvoCommand {
   CommandResult second_session(const std::string& more) const {
     return plvo("run " + desk("varying") + " --frames 90:200 --map 64 " + more);
   }
-  json read_json(const char* name) const { return json::parse(read_file(path(name))); }
+  json read_json(const char* name) const { return nlohmann::json::parse(read_file(path(name))); }
 };
 
 TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
@@ -71,7 +70,7 @@ TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
                      " --map-trajectory " + path("map.txt") + " --json " + path("run.json"));
   ASSERT_EQ(second.exit_code, 0) << second.err;
   EXPECT_NE(second.out.find("place in the map       found after"), std::string::npos) << second.out;
-  const json summary = read_json("run.json").at("map");
+  const nlohmann::json summary = read_json("run.json").at("map");
   EXPECT_TRUE(summary.at("located"));
   EXPECT_LE(summary.at("located_after_s"), 1.0);
   EXPECT_EQ(summary.at("loaded"), read_json("before.json").at("keyframes"));
@@ -92,7 +91,7 @@ TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
   const CommandResult page = plvo("map " + path("desk.map") + " --json " + path("after.json"));
   ASSERT_EQ(page.exit_code, 0) << page.err;
   EXPECT_NE(page.out.find("extent of the way"), std::string::npos) << page.out;
-  const json after = read_json("after.json");
+  const nlohmann::json after = read_json("after.json");
   EXPECT_EQ(after.at("keyframes"), summary.at("keyframes"));
   EXPECT_EQ(after.at("placed_keyframes"), after.at("keyframes"));
   EXPECT_EQ(after.at("bytes"), fs::file_size(path("desk.map")));
