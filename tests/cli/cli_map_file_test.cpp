@@ -57,7 +57,7 @@ class CliMapFile : public test::PlvoCommand {
   CommandResult second_session(const std::string& more) const {
     return plvo("run " + desk("varying") + " --frames 90:200 --map 64 " + more);
   }
-  json read_json(const char* name) const { return nlohmann::json::parse(read_file(path(name))); }
+  nlohmann::json read_json(const char* name) const { return nlohmann::json::parse(read_file(path(name))); }
 };
 
 TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
