@@ -130,7 +130,7 @@ bool read_line(MapReader& reader, LineDescriptor& descriptor, MapLine& line) {
   read(line.a, kMostReach_m);
   read(line.b, kMostReach_m);
   read(line.across, kMostLineVariance_m2);
-  for (const std::size_t variance : {0, 2, 5, 9}) possible = possible && line.across[variance] >= 0;
+  for (const unsigned variance : {0U, 2U, 5U, 9U}) possible = possible && line.across[variance] >= 0;
   return possible && line.a != line.b;
 }
 
