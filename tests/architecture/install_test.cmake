@@ -14,7 +14,7 @@ run(${CMAKE_COMMAND} -E env --unset=DESTDIR ${CMAKE_COMMAND} --install ${BUILD} 
 
 # The installed headers must be the public ones and those that they include.
 set(include ${WORK}/prefix/include)
-set(reached plvo/odometry/odometry.hpp plvo/map/map.hpp plvo/inertial/imu_integrator.hpp plvo/camera/camera_info.hpp plvo/hal/clock.hpp
+set(reached plvo/odometry/odometry.hpp plvo/map/map.hpp plvo/motion/wheel_prior.hpp plvo/inertial/imu_integrator.hpp plvo/camera/camera_info.hpp plvo/hal/clock.hpp
   plvo/hal/log.hpp plvo/hal/pose_sink.hpp plvo/hal/rgbd_camera.hpp plvo/hal/task_pair.hpp)
 if(C_EXAMPLE)
   list(APPEND reached plvo/c/imu.h plvo/c/map.h plvo/c/plvo.h plvo/c/sequence.h plvo/c/thread_pair.h)
