@@ -90,23 +90,19 @@ bool Ransac::run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummar
   start(Gain::kMatch, summary);
   Se3 best;
   if (prediction != nullptr && prediction->is_finite()) consider(*prediction, best, summary);
-  const auto share = [&] { return static_cast<double>(inliers_) / static_cast<double>(usable_); };
-  const Matrix3 R_expected = prediction != nullptr ? prediction->R : Matrix3::Identity();
-  sample(seed, samplable_, R_expected, share, best, summary);
+  sample(seed, samplable_, prediction != nullptr ? prediction->R : Matrix3::Identity(), best, summary);
   if (!(summary.score > 0)) return false;
   T = best;
   return true;
 }
 
 bool Ransac::run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary) {
-  tested_first_ = move_inliers_back();
+  const std::size_t rest = move_inliers_back();
   start(Gain::kEvidence, summary);
   Se3 best;
   rate(T, best, summary);
   bool found = prediction != nullptr && prediction->is_finite() && consider(*prediction, best, summary);
-  const auto share = [] { return kShareBeside; };
-  if (sample(seed, tested_first_, T.R, share, best, summary)) found = true;
-  tested_first_ = 0;
+  if (sample(seed, rest, T.R, best, summary)) found = true;
   if (found) T = best;
   return found;
 }
@@ -118,15 +114,14 @@ void Ransac::start(Gain gain, RansacSummary& summary) {
   inliers_ = 0;
 }
 
-// Draws minimal sets from the first n candidates, until one of true matches alone was probably among them:
-// share() of the matches are true. Returns true if a hypothesis became the best.
-template <typename Share>
-bool Ransac::sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, const Share& share,
-                    Se3& best, RansacSummary& summary) {
+// Draws minimal sets from the first n candidates, until one of true matches alone was probably among them.
+// Returns true if a hypothesis became the best.
+bool Ransac::sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, Se3& best,
+                    RansacSummary& summary) {
   if (n < 3) return false;
   Random random(seed);
   bool found = false;
-  int needed = iterations_needed(share());
+  int needed = iterations_needed();
   while (summary.iterations < needed && summary.draws < 4 * config_.max_ransac_iterations) {
     ++summary.draws;
     Se3 hypothesis;
@@ -135,20 +130,21 @@ bool Ransac::sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected
     if (status == MinimalSetStatus::kDegenerate) continue;
     ++summary.iterations;
     if (status == MinimalSetStatus::kInconsistent || !hypothesis.is_finite()) continue;
-    if (!is_promising(hypothesis) || !consider(hypothesis, best, summary)) continue;
+    if (gain_ == Gain::kEvidence && !is_promising(hypothesis, n)) continue;
+    if (!consider(hypothesis, best, summary)) continue;
     found = true;
-    needed = iterations_needed(share());
+    needed = iterations_needed();
   }
   return found;
 }
 
-// The bail-out test.
-bool Ransac::is_promising(const Se3& T) const {
-  if (tested_first_ < kTested) return true;
+// The bail-out test, by some of the first n candidates.
+bool Ransac::is_promising(const Se3& T, std::size_t n) const {
+  if (n < kTested) return true;
   const MotionsToCurrent motions = motions_to_current(T, references_);
   int agreeing = 0;
   for (std::size_t k = 0; k < kTested; ++k) {
-    const RansacCandidate& candidate = candidates_[k * tested_first_ / kTested];
+    const RansacCandidate& candidate = candidates_[k * n / kTested];
     const ConstraintSet& set = *sets_[candidate.set];
     const double threshold = kFreshScale * threshold_[candidate.set];
     if (set.mahalanobis_squared(candidate.index, motions[set.reference()], threshold) <= threshold)
@@ -295,9 +291,11 @@ void Ransac::judge(const Se3& T, double scale, std::size_t stride) {
   }
 }
 
-int Ransac::iterations_needed(double share) const {
-  // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches.
-  const double all_good = share * share * share;
+int Ransac::iterations_needed() const {
+  // 1 − (1 − w³)^k ≥ confidence, where w is the share of inliers among the matches that sets are drawn from.
+  const double w =
+      gain_ == Gain::kMatch ? static_cast<double>(inliers_) / static_cast<double>(usable_) : kShareBeside;
+  const double all_good = w * w * w;
   if (!(all_good > 1e-9)) return config_.max_ransac_iterations;
   if (all_good > 1 - 1e-9) return 1;
   const double k = log(1 - kRansacConfidence) / log(1 - all_good);

@@ -78,16 +78,15 @@ class Ransac {
  private:
   // What an inlier adds to the score is in proportion to this.
   enum class Gain : std::uint8_t {
-    kMatch,     // every match counts the same
-    kEvidence,  // by its evidence
+    kMatch,     // run(): every match counts the same
+    kEvidence,  // run_beside(): by its evidence
   };
   void weigh();
   void start(Gain gain, RansacSummary& summary);
-  template <typename Share>
-  bool sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, const Share& share, Se3& best,
+  bool sample(std::uint64_t seed, std::size_t n, const Matrix3& R_expected, Se3& best,
               RansacSummary& summary);
   std::size_t move_inliers_back();
-  bool is_promising(const Se3& T) const;
+  bool is_promising(const Se3& T, std::size_t n) const;
   double gain(const RansacCandidate& candidate) const {
     return gain_ == Gain::kMatch ? 1 : static_cast<double>(candidate.evidence);
   }
@@ -99,7 +98,7 @@ class Ransac {
   void refine(Se3& T);
   // Judges every stride-th match and clears the flags of the others.
   void judge(const Se3& T, double scale, std::size_t stride);
-  int iterations_needed(double share) const;
+  int iterations_needed() const;
 
   std::span<ConstraintSet* const> sets_;
   const CostTerms& terms_;
@@ -113,8 +112,7 @@ class Ransac {
   int inliers_ = 0;
   double evidence_ = 0;  // of all candidates
   Gain gain_ = Gain::kMatch;
-  std::size_t tested_first_ = 0;  // the bail-out test is by so many candidates; 0: it is not made
-  double fresh_to_beat_ = 0;      // score that the next hypothesis must exceed to be refined
+  double fresh_to_beat_ = 0;  // score that the next hypothesis must exceed to be refined
   std::array<double, kMaxConstraintSets> threshold_{};
 };
 

@@ -47,16 +47,18 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
   if (!tracked.returned) show_tracks();
-  if (!kept.recent && !tracked.returned)
-    vote_for_carried(frame, frame.predicted.all_references[0], memory_.tracking.tracks(0),
-                     motion.T_current_reference, carried_);
-  const std::span<const Reference> references = frame.predicted.references();
-  if (!tracked.returned)
-    for (std::size_t r = 0; r < references.size(); ++r)
-      if (FrameFeatures* features = window_.find(references[r].features); features != nullptr)
-        note_records(memory_.tracking.tracks(r), *features);
-  if (!kept.recent) make_reference(frame, tracked.exposure, !kept.keyframe);
-  if (!kept.recent && !tracked.returned) inherit_records(references, memory_.tracking, frame);
+  // A frame that has come back to an earlier keyframe was not matched with the references.
+  const std::span<const Reference> matched =
+      tracked.returned ? std::span<const Reference>() : frame.predicted.references();
+  for (std::size_t r = 0; r < matched.size(); ++r)
+    if (FrameFeatures* features = window_.find(matched[r].features); features != nullptr)
+      note_records(memory_.tracking.tracks(r), *features);
+  if (!kept.recent) {
+    if (!matched.empty())
+      vote_for_carried(frame, matched[0], memory_.tracking.tracks(0), motion.T_current_reference, carried_);
+    make_reference(frame, tracked.exposure, !kept.keyframe);
+    inherit_records(matched, memory_.tracking, frame);
+  }
   window_.remove_carried(carried_);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;

@@ -123,11 +123,12 @@ bool is_findable(const Reference& reference) {
     Explained explained;
   } best;
   bool last_is_best = false;  // nothing was tried since
-  const auto explain = [&](const Se3& start) {
+  // times: how much more than the best before it has to explain, to become the best.
+  const auto explain = [&](const Se3& start, double times = 1) {
     Explained explained;
     if (refine(start))
       explained = explained_by(tracked.motion.T_current_reference, references, tracking, context.camera);
-    last_is_best = explained.evidence > best.explained.evidence;
+    last_is_best = explained.evidence > times * best.explained.evidence;
     if (last_is_best) best = {start, tracked.motion.T_current_reference, explained};
     return explained;
   };
@@ -169,9 +170,7 @@ bool is_findable(const Reference& reference) {
     const Explained found = explain(start);
     if (found.share >= kAcceptedShareByImage) {
       if (!compare && tracked.motion.explained < kWorldAtRest) {
-        // The prediction has to explain clearly more than what was found first.
-        best.explained.evidence /= kPreferredShare;
-        explain(by_prediction);
+        explain(by_prediction, 1 / kPreferredShare);
         take_best();
       }
       return;

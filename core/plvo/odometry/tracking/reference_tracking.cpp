@@ -276,10 +276,11 @@ void ReferenceTracking::associate_by_motion(std::span<const Reference> reference
     match_predicted_lines(camera.pinhole, exposure, reference.features->lines, features.reference_lines,
                           current.features.lines, motions[r], LineMatchConfig::guided(), context.scratch,
                           tracks_[r].lines);
-    tracks_[r].surfaces.clear();
     if (is_whole)
       track_surfaces(depth, camera.pinhole, context.noise.surfaces, features.reference_surfaces, motions[r],
                      tracks_[r].surfaces);
+    else
+      tracks_[r].surfaces.clear();
   }
 }
 
