@@ -67,7 +67,7 @@ TEST(SimulatedWheels, NoiseAndSlipAreAsStated) {
   double squares = 0;
   int quiet = 0, slipping = 0, all = 0;
   const SimulatedWheels stated;
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const auto noisy = robot(true, SceneName::kHall, seed), exact = robot(false, SceneName::kHall, seed);
     const std::vector<WheelSample> a = wheels_of(*noisy), b = wheels_of(*exact);
     ASSERT_EQ(a.size(), b.size());
