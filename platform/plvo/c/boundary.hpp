@@ -86,6 +86,14 @@ void give_struct(Struct whole, Struct* caller) {
   std::memcpy(caller, &whole, caller->struct_size);
 }
 
+// What every plvo_…_init of a struct does. A struct of another size is left alone but for its size, by which
+// the next function refuses it.
+template <typename Struct>
+void init_struct(const Struct& defaults, Struct* caller, std::size_t size) {
+  caller->struct_size = static_cast<std::uint32_t>(size);
+  if (check_struct(caller, "").ok()) give_struct(defaults, caller);
+}
+
 inline plvo_status to_c(const Status& status) {
   plvo_status result;
   static_assert(sizeof result.message >= Status::kCapacity && sizeof result == 256);

@@ -133,9 +133,7 @@ using plvo::c::refuse;
 using plvo::c::to_c;
 
 void plvo_imu_config_init(plvo_imu_config* config, std::size_t size) {
-  config->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(config, "imu_config").ok())
-    plvo::c::give_struct(plvo::c::default_imu_config(), config);
+  plvo::c::init_struct(plvo::c::default_imu_config(), config, size);
 }
 
 std::size_t plvo_imu_required_bytes(const plvo_imu_config* given) {

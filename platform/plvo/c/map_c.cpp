@@ -115,9 +115,7 @@ using plvo::c::refuse;
 using plvo::c::to_c;
 
 void plvo_map_limits_init(plvo_map_limits* limits, std::size_t size) {
-  limits->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(limits, "map_limits").ok())
-    plvo::c::give_struct(plvo::c::limits_to_c(plvo::MapLimits()), limits);
+  plvo::c::init_struct(plvo::c::limits_to_c(plvo::MapLimits()), limits, size);
 }
 
 std::size_t plvo_map_required_bytes(const plvo_camera* camera, const plvo_map_limits* limits) {

@@ -222,18 +222,14 @@ const char* plvo_state_name(std::int32_t state) {
   return plvo::to_string(static_cast<plvo::TrackState>(state));
 }
 
-// A struct of another size is left alone but for its size, by which the next function refuses it.
 void plvo_camera_init(plvo_camera* camera, std::size_t size) {
-  camera->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(camera, "camera").ok()) plvo::c::give_struct(to_c(plvo::CameraModel()), camera);
+  plvo::c::init_struct(to_c(plvo::CameraModel()), camera, size);
 }
 void plvo_limits_init(plvo_limits* limits, std::size_t size) {
-  limits->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(limits, "limits").ok()) plvo::c::give_struct(to_c(plvo::Limits()), limits);
+  plvo::c::init_struct(to_c(plvo::Limits()), limits, size);
 }
 void plvo_config_init(plvo_config* config, std::size_t size) {
-  config->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
+  plvo::c::init_struct(default_config(), config, size);
 }
 
 plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
@@ -246,8 +242,7 @@ plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
 void plvo_prior_init(plvo_prior* prior, std::size_t size) {
   plvo_prior nothing;
   std::memset(&nothing, 0, sizeof nothing);
-  prior->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(prior, "prior").ok()) plvo::c::give_struct(nothing, prior);
+  plvo::c::init_struct(nothing, prior, size);
 }
 
 void plvo_quaternion(const double T[12], double xyzw[4]) {
