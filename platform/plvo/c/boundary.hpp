@@ -12,6 +12,7 @@
 #include "plvo/c/map.h"
 #include "plvo/c/plvo.h"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/odometry/track_result.hpp"
 
 namespace plvo::c {
 
@@ -111,10 +112,14 @@ Status too_small(const char* for_what, std::size_t needed, std::size_t bytes);
 // Of the caller's block, from the first address that the core likes on. bytes: more than kArenaAlignment.
 std::span<std::byte> aligned_part(void* memory, std::size_t bytes);
 
-// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
-Status from_c(const plvo_camera& camera, CameraModel& model);
 plvo_camera to_c(const CameraModel& model);
+// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
+Status take_camera(const plvo_camera* given, CameraModel& model);
 // As give_struct; kInvalidArgument where the caller's struct has no room for the lens.
 Status give_camera(const plvo_camera& whole, plvo_camera* caller);
+
+// State, stamps, poses and covariances of what plvo_track gave. kInvalidArgument for a state that is none;
+// the numbers are unchecked.
+Status take_result(const plvo_result* given, TrackResult& result);
 
 }  // namespace plvo::c

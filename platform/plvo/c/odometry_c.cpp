@@ -266,10 +266,8 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
   if (Status status = take_limits(limits, known_limits); !status.ok()) return to_c(status);
   plvo::Config known_config;
   if (Status status = plvo::c::take_config(config, known_config); !status.ok()) return to_c(status);
-  plvo_camera known_camera = to_c(plvo::CameraModel());
-  if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
   plvo::CameraModel model;
-  if (Status status = plvo::c::from_c(known_camera, model); !status.ok()) return to_c(status);
+  if (Status status = plvo::c::take_camera(camera, model); !status.ok()) return to_c(status);
   const std::size_t needed = plvo_required_bytes(limits);
   if (bytes < needed) return to_c(plvo::c::too_small("for these limits", needed, bytes));
 
