@@ -139,7 +139,7 @@ plvo_status plvo_map_init(void* memory, std::size_t bytes, const plvo_camera* ca
 plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_status* status,
                             const plvo_result* result, plvo_map_result* in_map) {
   if (map == nullptr) return to_c(refuse(plvo::c::kNoMap));
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (status == nullptr) return to_c(refuse("status is NULL: it is what plvo_track returned"));
   if (plvo::Status known = plvo::c::check_struct(in_map, "map_result"); !known.ok()) return to_c(known);
   plvo::TrackResult tracked;

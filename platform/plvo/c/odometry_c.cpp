@@ -286,7 +286,7 @@ plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_re
 
 plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* frame, const plvo_prior* given,
                                   plvo_result* result) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (Status status = plvo::c::check_struct(result, "result"); !status.ok()) return to_c(status);
   // A frame that cannot be read is tracked as one without images: refused, and the pose is the last one.
   plvo::RgbdFrame view;
@@ -323,19 +323,19 @@ plvo_status plvo_wheel_prior(const plvo_wheel_step* steps, std::size_t count, do
 }
 
 plvo_status plvo_frame_took(plvo_odometry* odometry, std::int64_t ns) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   odometry->odometry.frame_took(ns);
   return to_c(Status());
 }
 
 plvo_status plvo_reset(plvo_odometry* odometry) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   odometry->odometry.reset();
   return to_c(Status());
 }
 
 plvo_status plvo_set_pose(plvo_odometry* odometry, const double T[12], const double values[36]) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (T == nullptr || values == nullptr) return to_c(refuse("the pose or its covariance is NULL"));
   return to_c(odometry->odometry.set_pose(plvo::c::se3(T), matrix<6>(values)));
 }
