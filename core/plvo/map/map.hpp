@@ -116,6 +116,8 @@ class Map {
 
   const PoseGraph& graph() const { return memory_.graph; }
   MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
+  // As in the result of the latest frame, with what settle() found since.
+  bool located() const { return follows_camera_ && memory_.graph.is_placed(memory_.graph.last()); }
   // The pose of a keyframe as it is known now; nothing if it was removed, or if its place in the map is not
   // known.
   std::optional<Se3> keyframe_pose(std::uint32_t id) const;
