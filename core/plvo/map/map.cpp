@@ -146,6 +146,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     view.T_world_camera, result.pose_covariance);
   }
   if (!is_judged_) judge(out);
+  // Taken before a keyframe makes room, which may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || unseen;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
