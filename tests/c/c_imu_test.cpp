@@ -43,10 +43,6 @@ void expect_says(const plvo_status& status, const char* words) {
   EXPECT_NE(std::strstr(status.message, words), nullptr) << status.message;
 }
 
-void expect_same_rotation(const Matrix3& matrix, const double (&c)[9]) {
-  for (int k = 0; k < 9; ++k) EXPECT_TRUE(same_bits(matrix(k / 3, k % 3), c[k])) << k;
-}
-
 TEST_F(CImu, GivesThePriorsOfCpp) {
   plvo_imu_config c = default_imu_config();
   ImuConfig config;
@@ -89,11 +85,11 @@ TEST_F(CImu, GivesThePriorsOfCpp) {
     EXPECT_EQ(given.has_translation, 0);
     ASSERT_TRUE(prior.gravity && given.has_gravity == 1);
     if (prior.rotation) {
-      expect_same_rotation(prior.rotation->R_now_before, given.R_now_before);
-      expect_same_rotation(prior.rotation->covariance, given.rotation_covariance);
+      expect_same(prior.rotation->R_now_before, given.R_now_before);
+      expect_same(prior.rotation->covariance, given.rotation_covariance);
     }
-    for (int k = 0; k < 3; ++k) EXPECT_TRUE(same_bits(prior.gravity->down[k], given.down[k]));
-    expect_same_rotation(prior.gravity->covariance, given.gravity_covariance);
+    expect_same(prior.gravity->down, given.down);
+    expect_same(prior.gravity->covariance, given.gravity_covariance);
     EXPECT_TRUE(same_bits(prior.gravity->offset_sigma, given.gravity_offset_sigma));
   }
 }

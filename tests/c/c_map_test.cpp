@@ -162,6 +162,8 @@ TEST_F(CMap, TheFunctionsOfThePageSaveAndLoadAFile) {
   ASSERT_EQ(load_map(map_, path.c_str()).code, PLVO_OK);
   EXPECT_EQ(plvo_map_saved_bytes(map_), std::filesystem::file_size(path));
   expect_says(load_map(map_, (path + ".part").c_str()), PLVO_IO, "cannot open the file");
+  expect_says(save_map(map_, folder.path().c_str(), (path + ".part").c_str()), PLVO_IO,
+              "cannot write the file");
 }
 
 TEST_F(CMap, NonsenseIsAnsweredWithWords) {

@@ -42,10 +42,11 @@ inline void expect_same(const Se3& T, const double (&c)[12]) {
     EXPECT_TRUE(same_bits(T.t(row), c[4 * row + 3]));
   }
 }
-inline void expect_same(const Matrix6& matrix, const double (&c)[36]) {
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column)
-      EXPECT_TRUE(same_bits(matrix(row, column), c[6 * row + column]));
+template <int Rows, int Columns>
+void expect_same(const Matrix<Rows, Columns>& matrix, const double (&c)[Rows * Columns]) {
+  for (int row = 0; row < Rows; ++row)
+    for (int column = 0; column < Columns; ++column)
+      EXPECT_TRUE(same_bits(matrix(row, column), c[Columns * row + column]));
 }
 inline void expect_same(const FeatureCounts& counts, const plvo_counts& c) {
   EXPECT_EQ(counts.detected, c.detected);

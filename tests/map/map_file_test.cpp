@@ -99,6 +99,7 @@ TEST(MapFile, ACameraThatIsSwitchedOnFindsItsPlace) {
   for (const int start : {10, 30, 50}) {
     MappedCamera second(64);
     ASSERT_TRUE(load(bytes, second.map).ok());
+    EXPECT_FALSE(second.map.located()) << "no frame was seen";
     int frames = 0;
     for (int view = start; view < start + 30 && !second.in_map.located; ++view, ++frames) second.see(view);
     ASSERT_TRUE(second.in_map.located) << start;
@@ -106,6 +107,7 @@ TEST(MapFile, ACameraThatIsSwitchedOnFindsItsPlace) {
                 1e3 * second.error_m(start + frames - 1));
     EXPECT_LT(second.error_m(start + frames - 1), 0.1);
     EXPECT_LT(std::sqrt(second.in_map.pose_covariance(0, 0)), 0.1);
+    EXPECT_TRUE(second.map.located());
     second.settle(start + frames);
     EXPECT_LT(second.error_m(start + frames), 0.1);
     EXPECT_EQ(second.wrong_loops(), 0);

@@ -100,7 +100,7 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
   const PoseGraph::Node& latest = memory_.graph.node(memory_.graph.last());
   if (view.features != nullptr && view.features->stamp_ns == keyframe_stamp_ns_)
     T_world_keyframe_ = view.T_world_camera;
-  out.located = memory_.graph.is_placed(memory_.graph.last());
+  out.located = located();
   out.keyframe = latest.id;
   out.T_map_world = latest.T_map_keyframe * T_world_keyframe_.inverse();
   out.T_map_world.R = renormalise(out.T_map_world.R);
@@ -146,6 +146,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     view.T_world_camera, result.pose_covariance);
   }
   if (!is_judged_) judge(out);
+  // Taken before a keyframe makes room, which may be the latest one.
   const bool begins_part = memory_.graph.size() == 0 || unseen;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;

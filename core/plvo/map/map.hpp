@@ -38,9 +38,8 @@
 namespace plvo {
 
 struct MapResult {
-  // Whether it is known where the camera is in the map. It is not where nothing is known of the motion since:
-  // after load(), and in a new world of the odometry, until a place is recognised. T_map_world has no meaning
-  // until then.
+  // Whether the map knows where the camera is. After load(), and in a new world of the odometry, it does not
+  // until a place is recognised; T_map_world has no meaning until then.
   bool located = false;
   Se3 T_map_world;
   // Covariance of T_map_world · T_world_camera, of its ⊞-perturbation in the axes of the map. Large until a
@@ -102,12 +101,13 @@ class Map {
   // Takes the result of a frame right after Odometry::track(). Does a bounded part of the work that waits.
   MapResult update(const Odometry& odometry, const TrackResult& result);
 
-  // Does all the work that waits, however long it takes: at the end of a way. Returns whether a place was
+  // Does all the work that waits, however long it takes; for the end of a run. Returns whether a place was
   // recognised.
   bool settle();
 
-  // Writes the map, after settle(). kNotFound: it holds no keyframe yet. map_file.hpp has the format.
+  // Calls settle(), then writes the map. kNotFound: it holds no keyframe yet. map_file.hpp has the format.
   Status save(ByteSink& sink);
+  // Bytes that save() writes. After settle() it is exact; before, loops may join.
   std::size_t saved_bytes() const;
   // Replaces the map by a saved one, which behaves as that one did: the same bits, if the limits are the
   // same. The camera is not located until it sees a place of the map; its keyframes join the same graph.
@@ -116,6 +116,8 @@ class Map {
 
   const PoseGraph& graph() const { return memory_.graph; }
   MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
+  // As in the result of the latest frame, with what settle() found since.
+  bool located() const { return follows_camera_ && memory_.graph.is_placed(memory_.graph.last()); }
   // The pose of a keyframe as it is known now; nothing if it was removed, or if its place in the map is not
   // known.
   std::optional<Se3> keyframe_pose(std::uint32_t id) const;

@@ -2,6 +2,7 @@
 #include "plvo/c/boundary.hpp"
 
 #include "plvo/base/arena.hpp"
+#include "plvo/c/matrices.hpp"
 
 namespace plvo::c {
 
@@ -20,7 +21,9 @@ std::span<std::byte> aligned_part(void* memory, std::size_t bytes) {
   return {static_cast<std::byte*>(memory) + start, bytes - start};
 }
 
-Status from_c(const plvo_camera& camera, CameraModel& model) {
+Status take_camera(const plvo_camera* given, CameraModel& model) {
+  plvo_camera camera = to_c(CameraModel());
+  if (Status status = take_struct(given, camera, "camera"); !status.ok()) return status;
   const double* k = camera.distortion;
   const double* more = camera.distortion_more;
   if (camera.lens == PLVO_LENS_EQUIDISTANT) {
@@ -76,6 +79,22 @@ Status give_camera(const plvo_camera& whole, plvo_camera* caller) {
         "for "
         "this plvo, which sets it to sizeof(plvo_camera)");
   give_struct(whole, caller);
+  return {};
+}
+
+Status take_result(const plvo_result* given, TrackResult& result) {
+  plvo_result whole;
+  std::memset(&whole, 0, sizeof whole);
+  if (Status status = take_struct(given, whole, "result"); !status.ok()) return status;
+  if (whole.state < PLVO_INITIALISING || whole.state > PLVO_PREDICTED)
+    return refuse("result: state must be one of PLVO_TRACKING …");
+  result.state = static_cast<TrackState>(whole.state);
+  result.stamp_ns = whole.stamp_ns;
+  result.reference_stamp_ns = whole.reference_stamp_ns;
+  result.T_world_camera = se3(whole.T_world_camera);
+  result.pose_covariance = matrix<6>(whole.pose_covariance);
+  result.T_camera_reference = se3(whole.T_camera_reference);
+  result.motion_covariance = matrix<6>(whole.motion_covariance);
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "plvo/c/map.h"
 #include "plvo/c/plvo.h"
 #include "plvo/camera/camera_model.hpp"
+#include "plvo/odometry/track_result.hpp"
 
 namespace plvo::c {
 
@@ -86,6 +87,14 @@ void give_struct(Struct whole, Struct* caller) {
   std::memcpy(caller, &whole, caller->struct_size);
 }
 
+// What every plvo_…_init of a struct does. A struct of another size is left alone but for its size, by which
+// the next function refuses it.
+template <typename Struct>
+void init_struct(const Struct& defaults, Struct* caller, std::size_t size) {
+  caller->struct_size = static_cast<std::uint32_t>(size);
+  if (check_struct(caller, "").ok()) give_struct(defaults, caller);
+}
+
 inline plvo_status to_c(const Status& status) {
   plvo_status result;
   static_assert(sizeof result.message >= Status::kCapacity && sizeof result == 256);
@@ -103,10 +112,14 @@ Status too_small(const char* for_what, std::size_t needed, std::size_t bytes);
 // Of the caller's block, from the first address that the core likes on. bytes: more than kArenaAlignment.
 std::span<std::byte> aligned_part(void* memory, std::size_t bytes);
 
-// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
-Status from_c(const plvo_camera& camera, CameraModel& model);
 plvo_camera to_c(const CameraModel& model);
+// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
+Status take_camera(const plvo_camera* given, CameraModel& model);
 // As give_struct; kInvalidArgument where the caller's struct has no room for the lens.
 Status give_camera(const plvo_camera& whole, plvo_camera* caller);
+
+// State, stamps, poses and covariances of what plvo_track gave. kInvalidArgument for a state that is none;
+// the numbers are unchecked.
+Status take_result(const plvo_result* given, TrackResult& result);
 
 }  // namespace plvo::c

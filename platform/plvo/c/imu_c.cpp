@@ -107,19 +107,10 @@ void give_prior(const MotionPrior& prior, plvo_prior* caller) {
   give_struct(whole, caller);
 }
 
-Status take_result(std::int32_t code, const plvo_result* given, std::optional<ObservedRotation>& observed) {
-  plvo_result whole;
-  std::memset(&whole, 0, sizeof whole);
-  if (Status status = take_struct(given, whole, "result"); !status.ok()) return status;
-  if (whole.state < PLVO_INITIALISING || whole.state > PLVO_PREDICTED)
-    return refuse("result: state must be one of PLVO_TRACKING …");
+Status take_rotation(std::int32_t code, const plvo_result* given, std::optional<ObservedRotation>& observed) {
   TrackResult result;
-  result.state = static_cast<TrackState>(whole.state);
+  if (Status status = take_result(given, result); !status.ok()) return status;
   if (code != PLVO_OK) result.status = refuse("not tracked");
-  result.stamp_ns = whole.stamp_ns;
-  result.reference_stamp_ns = whole.reference_stamp_ns;
-  result.T_camera_reference = se3(whole.T_camera_reference);
-  result.motion_covariance = matrix<6>(whole.motion_covariance);
   if (!result.T_camera_reference.R.allFinite() || !result.motion_covariance.allFinite())
     return refuse("result: a number is not finite");
   observed = observed_rotation(result);
@@ -133,9 +124,7 @@ using plvo::c::refuse;
 using plvo::c::to_c;
 
 void plvo_imu_config_init(plvo_imu_config* config, std::size_t size) {
-  config->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(config, "imu_config").ok())
-    plvo::c::give_struct(plvo::c::default_imu_config(), config);
+  plvo::c::init_struct(plvo::c::default_imu_config(), config, size);
 }
 
 std::size_t plvo_imu_required_bytes(const plvo_imu_config* given) {
@@ -185,7 +174,7 @@ plvo_status plvo_imu_prior(plvo_imu* imu, std::int64_t stamp_ns, plvo_prior* pri
 plvo_status plvo_imu_learn(plvo_imu* imu, std::int32_t code, const plvo_result* result) {
   if (imu == nullptr) return to_c(refuse(plvo::c::kNoImu));
   std::optional<plvo::ObservedRotation> observed;
-  if (plvo::Status status = plvo::c::take_result(code, result, observed); !status.ok()) return to_c(status);
+  if (plvo::Status status = plvo::c::take_rotation(code, result, observed); !status.ok()) return to_c(status);
   if (observed) imu->integrator.correct(*observed);
   return to_c(plvo::Status());
 }

@@ -58,7 +58,7 @@ PLVO_API plvo_status plvo_map_init(void* memory, size_t bytes, const plvo_camera
 PLVO_API plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_status* status,
                                      const plvo_result* result, plvo_map_result* in_map);
 
-/* Does all the work that waits, however long it takes: at the end of a way. */
+/* Does all the work that waits, however long it takes; for the end of a run. */
 PLVO_API plvo_status plvo_map_settle(plvo_map* map);
 
 /* The pose of a keyframe as it is known now: T_map_keyframe. Returns 0, and writes nothing, if it was removed
@@ -74,9 +74,9 @@ PLVO_API size_t plvo_map_loops(const plvo_map* map);
 typedef int32_t (*plvo_map_write)(void* context, const void* bytes, size_t count);
 typedef int32_t (*plvo_map_read)(void* context, void* bytes, size_t count);
 
-/* Writes the map in pieces, after plvo_map_settle; plvo_map_saved_bytes in all. The bytes are the same on
- * every platform. PLVO_NOT_FOUND: it holds no keyframe yet. Write to a new file, and rename it when it is
- * whole. */
+/* Settles the map, then writes it in pieces. plvo_map_saved_bytes says how many bytes that is: exactly after
+ * plvo_map_settle; before, pairs may join. The bytes are the same on every platform. PLVO_NOT_FOUND: it holds
+ * no keyframe yet. Write to a new file, and rename it when it is whole. */
 PLVO_API plvo_status plvo_map_save(plvo_map* map, plvo_map_write write, void* context);
 PLVO_API size_t plvo_map_saved_bytes(const plvo_map* map);
 

@@ -33,11 +33,9 @@ Status take_map_limits(const plvo_map_limits* given, MapLimits& limits) {
   return limits.validate();
 }
 
-Status take_camera(const plvo_camera* given, CameraModel& model) {
-  plvo_camera whole = to_c(CameraModel());
-  if (Status status = take_struct(given, whole, "camera"); !status.ok()) return status;
-  if (Status status = from_c(whole, model); !status.ok()) return status;
-  return model.validate();
+Status take_map_camera(const plvo_camera* given, CameraModel& model) {
+  const Status status = take_camera(given, model);
+  return status.ok() ? model.validate() : status;
 }
 
 std::size_t map_bytes_for(const MapLimits& limits, const CameraModel& camera) {
@@ -46,21 +44,10 @@ std::size_t map_bytes_for(const MapLimits& limits, const CameraModel& camera) {
 
 // What Map::update looks at.
 Status take_tracked(const plvo_status& status, const plvo_result* given, TrackResult& result) {
-  plvo_result whole;
-  std::memset(&whole, 0, sizeof whole);
-  if (Status taken = take_struct(given, whole, "result"); !taken.ok()) return taken;
-  if (whole.state < PLVO_INITIALISING || whole.state > PLVO_PREDICTED)
-    return refuse("result: state must be one of PLVO_TRACKING …");
+  if (Status taken = take_result(given, result); !taken.ok()) return taken;
   const std::size_t length = strnlen(status.message, sizeof status.message);
   result.status = Status(status.code == PLVO_OK ? StatusCode::kOk : StatusCode::kInvalidArgument,
                          std::string_view(status.message, length));
-  result.state = static_cast<TrackState>(whole.state);
-  result.stamp_ns = whole.stamp_ns;
-  result.reference_stamp_ns = whole.reference_stamp_ns;
-  result.T_world_camera = se3(whole.T_world_camera);
-  result.pose_covariance = matrix<6>(whole.pose_covariance);
-  result.T_camera_reference = se3(whole.T_camera_reference);
-  result.motion_covariance = matrix<6>(whole.motion_covariance);
   return make_sound(result) ? Status() : refuse("result: a number is not finite, or a matrix is no rotation");
 }
 
@@ -115,15 +102,13 @@ using plvo::c::refuse;
 using plvo::c::to_c;
 
 void plvo_map_limits_init(plvo_map_limits* limits, std::size_t size) {
-  limits->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(limits, "map_limits").ok())
-    plvo::c::give_struct(plvo::c::limits_to_c(plvo::MapLimits()), limits);
+  plvo::c::init_struct(plvo::c::limits_to_c(plvo::MapLimits()), limits, size);
 }
 
 std::size_t plvo_map_required_bytes(const plvo_camera* camera, const plvo_map_limits* limits) {
   plvo::MapLimits known_limits;
   plvo::CameraModel model;
-  if (!plvo::c::take_map_limits(limits, known_limits).ok() || !plvo::c::take_camera(camera, model).ok())
+  if (!plvo::c::take_map_limits(limits, known_limits).ok() || !plvo::c::take_map_camera(camera, model).ok())
     return 0;
   return plvo::c::map_bytes_for(known_limits, model);
 }
@@ -137,7 +122,7 @@ plvo_status plvo_map_init(void* memory, std::size_t bytes, const plvo_camera* ca
   plvo::CameraModel model;
   plvo::Config known_config;
   for (const plvo::Status& status :
-       {plvo::c::take_map_limits(limits, known_limits), plvo::c::take_camera(camera, model),
+       {plvo::c::take_map_limits(limits, known_limits), plvo::c::take_map_camera(camera, model),
         plvo::c::take_config(config, known_config)})
     if (!status.ok()) return to_c(status);
   const std::size_t needed = plvo::c::map_bytes_for(known_limits, model);
@@ -154,7 +139,7 @@ plvo_status plvo_map_init(void* memory, std::size_t bytes, const plvo_camera* ca
 plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_status* status,
                             const plvo_result* result, plvo_map_result* in_map) {
   if (map == nullptr) return to_c(refuse(plvo::c::kNoMap));
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (status == nullptr) return to_c(refuse("status is NULL: it is what plvo_track returned"));
   if (plvo::Status known = plvo::c::check_struct(in_map, "map_result"); !known.ok()) return to_c(known);
   plvo::TrackResult tracked;

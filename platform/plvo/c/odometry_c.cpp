@@ -222,18 +222,14 @@ const char* plvo_state_name(std::int32_t state) {
   return plvo::to_string(static_cast<plvo::TrackState>(state));
 }
 
-// A struct of another size is left alone but for its size, by which the next function refuses it.
 void plvo_camera_init(plvo_camera* camera, std::size_t size) {
-  camera->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(camera, "camera").ok()) plvo::c::give_struct(to_c(plvo::CameraModel()), camera);
+  plvo::c::init_struct(to_c(plvo::CameraModel()), camera, size);
 }
 void plvo_limits_init(plvo_limits* limits, std::size_t size) {
-  limits->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(limits, "limits").ok()) plvo::c::give_struct(to_c(plvo::Limits()), limits);
+  plvo::c::init_struct(to_c(plvo::Limits()), limits, size);
 }
 void plvo_config_init(plvo_config* config, std::size_t size) {
-  config->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(config, "config").ok()) plvo::c::give_struct(default_config(), config);
+  plvo::c::init_struct(default_config(), config, size);
 }
 
 plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
@@ -246,8 +242,7 @@ plvo_status plvo_limits_of_preset(std::int32_t preset, plvo_limits* limits) {
 void plvo_prior_init(plvo_prior* prior, std::size_t size) {
   plvo_prior nothing;
   std::memset(&nothing, 0, sizeof nothing);
-  prior->struct_size = static_cast<std::uint32_t>(size);
-  if (plvo::c::check_struct(prior, "prior").ok()) plvo::c::give_struct(nothing, prior);
+  plvo::c::init_struct(nothing, prior, size);
 }
 
 void plvo_quaternion(const double T[12], double xyzw[4]) {
@@ -271,10 +266,8 @@ plvo_status plvo_init(void* memory, std::size_t bytes, const plvo_camera* camera
   if (Status status = take_limits(limits, known_limits); !status.ok()) return to_c(status);
   plvo::Config known_config;
   if (Status status = plvo::c::take_config(config, known_config); !status.ok()) return to_c(status);
-  plvo_camera known_camera = to_c(plvo::CameraModel());
-  if (Status status = plvo::c::take_struct(camera, known_camera, "camera"); !status.ok()) return to_c(status);
   plvo::CameraModel model;
-  if (Status status = plvo::c::from_c(known_camera, model); !status.ok()) return to_c(status);
+  if (Status status = plvo::c::take_camera(camera, model); !status.ok()) return to_c(status);
   const std::size_t needed = plvo_required_bytes(limits);
   if (bytes < needed) return to_c(plvo::c::too_small("for these limits", needed, bytes));
 
@@ -293,7 +286,7 @@ plvo_status plvo_track(plvo_odometry* odometry, const plvo_frame* frame, plvo_re
 
 plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* frame, const plvo_prior* given,
                                   plvo_result* result) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (Status status = plvo::c::check_struct(result, "result"); !status.ok()) return to_c(status);
   // A frame that cannot be read is tracked as one without images: refused, and the pose is the last one.
   plvo::RgbdFrame view;
@@ -330,19 +323,19 @@ plvo_status plvo_wheel_prior(const plvo_wheel_step* steps, std::size_t count, do
 }
 
 plvo_status plvo_frame_took(plvo_odometry* odometry, std::int64_t ns) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   odometry->odometry.frame_took(ns);
   return to_c(Status());
 }
 
 plvo_status plvo_reset(plvo_odometry* odometry) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   odometry->odometry.reset();
   return to_c(Status());
 }
 
 plvo_status plvo_set_pose(plvo_odometry* odometry, const double T[12], const double values[36]) {
-  if (odometry == nullptr) return to_c(refuse("odometry is NULL: plvo_init comes first"));
+  if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
   if (T == nullptr || values == nullptr) return to_c(refuse("the pose or its covariance is NULL"));
   return to_c(odometry->odometry.set_pose(plvo::c::se3(T), matrix<6>(values)));
 }

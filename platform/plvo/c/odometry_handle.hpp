@@ -18,6 +18,8 @@ struct plvo_odometry {
 
 namespace plvo::c {
 
+inline constexpr const char* kNoOdometry = "odometry is NULL: plvo_init comes first";
+
 // All of a config but its functions. NULL: the default stays.
 Status take_config(const plvo_config* given, Config& config);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// NumPy arrays as the library's views, and the library's memory as NumPy arrays; neither way copies.
+// NumPy arrays as the library's views, and the library's memory as NumPy arrays. Images and views are not
+// copied; matrices that are taken, and those of copy_of, are.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -28,6 +29,18 @@ py::array matrix_view(const Matrix<Rows, Columns>& matrix, py::handle owner) {
   const py::ssize_t step = sizeof(double);
   if constexpr (Columns == 1) return view(py::dtype::of<double>(), {Rows}, {step}, matrix.data(), owner);
   return view(py::dtype::of<double>(), {Rows, Columns}, {step, step * Rows}, matrix.data(), owner);
+}
+
+// A column becomes one-dimensional.
+template <int Rows, int Columns>
+py::array copy_of(const Matrix<Rows, Columns>& matrix) {
+  std::vector<py::ssize_t> shape{Rows};
+  if (Columns > 1) shape.push_back(Columns);
+  py::array_t<double> array(shape);
+  for (int row = 0; row < Rows; ++row)
+    for (int column = 0; column < Columns; ++column)
+      array.mutable_data()[row * Columns + column] = matrix(row, column);
+  return array;
 }
 
 // One row for each of `structs`: `columns` neighbouring members of a type, from `first` on; 0: an array
@@ -64,11 +77,18 @@ inline void refuse_array(const std::string& name, const char* why) {
   throw py::value_error(name + ": " + why);
 }
 
-// A pose as a 4×4 matrix.
+// Of a 4×4 matrix.
 inline Se3 se3_of(const py::handle& object, const std::string& name) {
   const Matrix4 T = matrix_of<4, 4>(object, name);
   if (T.row(3) != Vector4(0, 0, 0, 1).transpose()) refuse_array(name, "the last row must be 0 0 0 1");
   return {T.block<3, 3>(0, 0), T.block<3, 1>(0, 3)};
+}
+
+inline py::array matrix_4x4(const Se3& T) {
+  Matrix4 matrix = Matrix4::Identity();
+  matrix.block<3, 3>(0, 0) = T.R;
+  matrix.block<3, 1>(0, 3) = T.t;
+  return copy_of(matrix);
 }
 
 // Checks that the pixels of a row lie side by side; rows may be any distance apart.
@@ -106,16 +126,6 @@ inline DepthView depth_view(const py::array& array, double metres_per_unit) {
     refuse_array("depth", "pixels must lie at even addresses; pass a copy");
   return {static_cast<const std::uint16_t*>(array.data()), static_cast<int>(array.shape(1)),
           static_cast<int>(array.shape(0)), array.strides(0) / kBytes, metres_per_unit};
-}
-
-// T as a 4×4 matrix.
-inline py::array matrix_4x4(const Se3& T) {
-  py::array_t<double> array({4, 4});
-  auto out = array.mutable_unchecked<2>();
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      out(row, column) = row == 3 ? (column == 3 ? 1.0 : 0.0) : column == 3 ? T.t(row) : T.R(row, column);
-  return array;
 }
 
 }  // namespace plvo::python

@@ -53,12 +53,9 @@ Calibration read_camera(const py::object& path) {
 
 py::array intrinsic_matrix(const Calibration& c) {
   const Pinhole& p = c.camera.pinhole;
-  py::array_t<double> K({3, 3});
-  auto out = K.mutable_unchecked<2>();
-  const double rows[3][3] = {{p.fx, 0, p.cx}, {0, p.fy, p.cy}, {0, 0, 1}};
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) out(row, column) = rows[row][column];
-  return K;
+  Matrix3 K;
+  K << p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1;
+  return copy_of(K);
 }
 
 std::string describe_camera(const Calibration& c) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map for Python, in a block of its own; other threads run while it is read from a file or written.
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,26 +36,8 @@ class OwnedMap {
     const py::gil_scoped_release others_may_run;
     (void)map_.settle();
   }
-  void save(const py::object& path) {
-    const std::string file = path_bytes(path);
-    const OneThread::Use use(one_thread_);
-    Status status;
-    {
-      const py::gil_scoped_release others_may_run;
-      status = save_map(file, map_);
-    }
-    throw_unless_ok(status);
-  }
-  void load(const py::object& path) {
-    const std::string file = path_bytes(path);
-    const OneThread::Use use(one_thread_);
-    Status status;
-    {
-      const py::gil_scoped_release others_may_run;
-      status = load_map(file, map_);
-    }
-    throw_unless_ok(status);
-  }
+  void save(const py::object& path) { with_file(save_map, path); }
+  void load(const py::object& path) { with_file(load_map, path); }
   py::object keyframe_pose(std::uint32_t keyframe) {
     const OneThread::Use use(one_thread_);
     const std::optional<Se3> pose = map_.keyframe_pose(keyframe);
@@ -71,6 +54,17 @@ class OwnedMap {
   std::size_t memory_bytes() const { return memory_.size(); }
 
  private:
+  void with_file(Status (*save_or_load)(const std::filesystem::path&, Map&), const py::object& path) {
+    const std::string file = path_bytes(path);
+    const OneThread::Use use(one_thread_);
+    Status status;
+    {
+      const py::gil_scoped_release others_may_run;
+      status = save_or_load(file, map_);
+    }
+    throw_unless_ok(status);
+  }
+
   std::vector<std::byte> memory_;
   Map map_;
   OneThread one_thread_{"Map"};

@@ -78,17 +78,6 @@ class Imu {
   ImuIntegrator integrator_;
 };
 
-template <int Rows, int Columns>
-py::object copy_of(const Matrix<Rows, Columns>& matrix) {
-  std::vector<py::ssize_t> shape{Rows};
-  if (Columns > 1) shape.push_back(Columns);
-  py::array_t<double> array(shape);
-  for (int row = 0; row < Rows; ++row)
-    for (int column = 0; column < Columns; ++column)
-      array.mutable_data()[row * Columns + column] = matrix(row, column);
-  return array;
-}
-
 template <int Rows, int Columns, typename Of>
 py::object copy_or_none(const Of* part, Matrix<Rows, Columns> Of::*member) {
   if (part == nullptr) return py::none();

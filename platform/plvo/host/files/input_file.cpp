@@ -11,24 +11,12 @@
 #include <cstring>
 #include <string_view>
 
+#include "plvo/host/files/owned_descriptor.hpp"
+
 namespace plvo {
 namespace {
 
 namespace fs = std::filesystem;
-
-class OwnedDescriptor {
- public:
-  explicit OwnedDescriptor(int number) : number_(number) {}
-  OwnedDescriptor(const OwnedDescriptor&) = delete;
-  OwnedDescriptor& operator=(const OwnedDescriptor&) = delete;
-  ~OwnedDescriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  int get() const { return number_; }
-
- private:
-  int number_;
-};
 
 Status failed(const fs::path& path, int reason) {
   const StatusCode code = reason == ENOENT || reason == ENOTDIR ? StatusCode::kNotFound

@@ -11,9 +11,7 @@ namespace plvo {
 Status LineFile::open(const std::filesystem::path& path) {
   close();
   path_ = path;
-  descriptor_ = is_standard_output(path)
-                    ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
-                    : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = open_output(path);
   return descriptor_ >= 0 ? Status() : output_failed("create", path_, errno);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/host/files/map_files.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 
 #include "plvo/host/files/input_file.hpp"
 #include "plvo/host/files/line_file.hpp"
+#include "plvo/host/files/owned_descriptor.hpp"
 #include "plvo/host/files/whole_write.hpp"
 
 namespace plvo {
@@ -37,39 +37,27 @@ struct MapTarget {
 
 class DescriptorSink final : public ByteSink {
  public:
-  explicit DescriptorSink(const MapTarget& target) : path_(target.is_file ? target.part : target.name) {
-    number_ = is_standard_output(path_)
-                  ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
-                  : ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (number_ < 0) reason_ = errno;
-  }
-  DescriptorSink(const DescriptorSink&) = delete;
-  DescriptorSink& operator=(const DescriptorSink&) = delete;
-  ~DescriptorSink() {
-    if (number_ >= 0) ::close(number_);
-  }
-
-  Status created() const { return number_ >= 0 ? Status() : output_failed("create", path_, reason_); }
+  DescriptorSink(int descriptor, const fs::path& path) : descriptor_(descriptor), path_(path) {}
   Status write(std::span<const std::byte> piece) override {
     const int reason =
-        write_whole(number_, std::string_view(reinterpret_cast<const char*>(piece.data()), piece.size()));
+        write_whole(descriptor_, std::string_view(reinterpret_cast<const char*>(piece.data()), piece.size()));
     return reason == 0 ? Status() : output_failed("write", path_, reason);
-  }
-  // On the disk, not only with the operating system: the new name must not come first.
-  Status reach_the_disk() const {
-    return ::fsync(number_) == 0 ? Status() : output_failed("write", path_, errno);
   }
 
  private:
-  fs::path path_;
-  int number_ = -1, reason_ = 0;
+  int descriptor_;
+  const fs::path& path_;
 };
 
 Status write_to(const MapTarget& target, Map& map) {
-  DescriptorSink sink(target);
-  if (Status status = sink.created(); !status.ok()) return status;
+  const fs::path& path = target.is_file ? target.part : target.name;
+  const OwnedDescriptor file(open_output(path));
+  if (file.get() < 0) return output_failed("create", path, errno);
+  DescriptorSink sink(file.get(), path);
   if (Status status = map.save(sink); !status.ok()) return status;
-  return target.is_file ? sink.reach_the_disk() : Status();
+  // On the disk, not only with the operating system: the new name must not come first.
+  if (target.is_file && ::fsync(file.get()) != 0) return output_failed("write", path, errno);
+  return {};
 }
 
 Status of_file(const fs::path& path, const Status& status) {

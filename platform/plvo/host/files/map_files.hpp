@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Saved maps (map/map_file.hpp) as files. A map is written to PATH.part and then takes the name PATH, so that
 // an older map is there until the new one is whole. What is no regular file (standard output, a pipe, a
-// device) is written at once.
+// device) is written directly.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 namespace plvo {
 
-// What save_map() would say of the path, without a map; for one that is written at the end of a long run.
+// What save_map() would say of the path. A long run, which saves its map at the end, asks before it begins.
 Status check_map_output(const std::filesystem::path& path);
 
-// The status of Map::save, or kIo. The file that was there stays as it is where it fails.
+// The status of Map::save, or kIo. On failure the file that was there stays as it is.
 Status save_map(const std::filesystem::path& path, Map& map);
 
 // The statuses of read_input_file and Map::load; all name the path.

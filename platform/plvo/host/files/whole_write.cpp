@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/host/files/whole_write.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -31,6 +32,11 @@ const char* advice(int reason) {
 }
 
 }  // namespace
+
+int open_output(const std::filesystem::path& path) {
+  return is_standard_output(path) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                  : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+}
 
 int write_whole(int descriptor, std::string_view text) {
   std::size_t done = 0;

@@ -50,17 +50,19 @@ def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02,
     return _json.loads(text)
 
 
+def _checked(results):
+    for result in results:
+        if not isinstance(result, Result):
+            raise TypeError(f"results: expected plvo.Result objects, got {type(result).__name__}")
+        yield result
+
+
 class Trajectory:
     """The poses of results, lost frames left out: stamps_ns (N,) int64, positions (N, 3) in metres, quaternions (N, 4) with w
     last."""
 
     def __init__(self, results):
-        posed = []
-        for result in results:
-            if not isinstance(result, Result):
-                raise TypeError(f"results: expected plvo.Result objects, got {type(result).__name__}")
-            if result.has_pose:
-                posed.append(result)
+        posed = [result for result in _checked(results) if result.has_pose]
         self._stamps_ns = _np.array([r.stamp_ns for r in posed], dtype=_np.int64)
         self._positions = _np.array([r.position for r in posed], dtype=float).reshape(-1, 3)
         self._quaternions = _np.array([r.quaternion for r in posed], dtype=float).reshape(-1, 4)
@@ -100,9 +102,7 @@ def to_dataframe(results):
     except ImportError as error:
         raise ImportError("plvo.to_dataframe needs pandas: sudo apt install python3-pandas, or pip install pandas") from error
     rows = []
-    for result in results:
-        if not isinstance(result, Result):
-            raise TypeError(f"results: expected plvo.Result objects, got {type(result).__name__}")
+    for result in _checked(results):
         pose = (*result.position.ravel(), *result.quaternion) if result.has_pose else (_np.nan,) * 7
         sigma = _np.sqrt(_np.diag(result.covariance)) if result.has_pose else (_np.nan,) * 6
         row = {"stamp_ns": result.stamp_ns, "state": result.state, "message": result.message}

@@ -309,9 +309,9 @@ class Map:
     def update(self, odometry: Odometry, result: Result) -> MapResult:
         """Right after Odometry.track(), with its result, for each frame."""
     def settle(self) -> None:
-        """Does all the work that waits: at the end of a way."""
+        """Does all the work that waits; for the end of a run."""
     def save(self, path: _Path) -> None:
-        """After settle(). The file that was there stays until the new one is whole."""
+        """Settles the map, then writes it. The file that was there stays until the new one is whole."""
     def load(self, path: _Path) -> None:
         """Replaces the map by a saved one, in which the camera then looks for its place."""
     def keyframe_pose(self, keyframe: int) -> NDArray[float64] | None:

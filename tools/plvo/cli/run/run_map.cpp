@@ -107,7 +107,6 @@ void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
   const MapResult result = map_.update(odometry, record.result);
   cpu_.add(static_cast<double>(posix_thread_cpu_ns() - start_ns) * 1e-6);
   recognised_ += result.recognised ? 1 : 0;
-  located_ = result.located;
   if (record.has_pose() && !first_stamp_ns_) first_stamp_ns_ = record.result.stamp_ns;
   if (result.located && !located_stamp_ns_) located_stamp_ns_ = record.result.stamp_ns;
   if (result.removed != 0) removed_[result.removed] = {result.removed_into, result.T_into_removed};
@@ -118,8 +117,7 @@ void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
 void RunMap::finish() {
   if (options_.keyframes == 0 || map_.graph().size() == 0) return;
   if (map_.settle()) ++recognised_;
-  located_ = map_.graph().is_placed(map_.graph().last());
-  if (located_ && !located_stamp_ns_ && !frames_.empty()) located_stamp_ns_ = frames_.back().stamp_ns;
+  if (map_.located() && !located_stamp_ns_ && !frames_.empty()) located_stamp_ns_ = frames_.back().stamp_ns;
 }
 
 eval::Trajectory RunMap::trajectory() const {
@@ -141,7 +139,7 @@ std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   if (options_.keyframes == 0) return std::nullopt;
   MapSummary summary;
   summary.loaded = loaded_;
-  summary.located = located_;
+  summary.located = map_.located();
   if (first_stamp_ns_ && located_stamp_ns_)
     summary.located_after_s = 1e-9 * static_cast<double>(*located_stamp_ns_ - *first_stamp_ns_);
   summary.keyframes = map_.graph().size();

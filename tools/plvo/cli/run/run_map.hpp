@@ -76,7 +76,6 @@ class RunMap {
   std::vector<Anchored> frames_;
   std::map<std::uint32_t, Removed> removed_;
   std::size_t loaded_ = 0;
-  bool located_ = false;
   std::optional<std::int64_t> first_stamp_ns_, located_stamp_ns_;
   int recognised_ = 0;
   DurationHistogram cpu_;
