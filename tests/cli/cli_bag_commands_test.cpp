@@ -128,6 +128,17 @@ TEST_F(CliBagCommands, LivePlaysEveryFrame) {
   EXPECT_EQ(bytes, bytes_of(path("kept")));
 }
 
+TEST_F(CliBagCommands, LiveEndsInAGapOfTheRecording) {
+  std::vector<RecordedMessage> messages = test::published(walk(), true);
+  // The second byte of the stamp's seconds, behind the four bytes of the sequence number: 256 s later.
+  for (std::size_t i = messages.size() / 2; i < messages.size(); ++i) ++messages[i].data[5];
+  write_file(folder_ / "gap.bag", test::bag_of(messages, "none"));
+  const CommandResult r =
+      plvo("live --quiet --seconds 1 --json " + path("own.json") + " --device " + path("gap.bag"));
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_LT(nlohmann::json::parse(read_file(path("own.json")))["seconds"].get<double>(), 200);
+}
+
 TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   const std::string device = " --device " + path("walk.bag");
   expect_refused("record " + path("x.oni") + device, 2, "a ROS bag is kept as a folder, not as an .oni file");

@@ -70,6 +70,9 @@ TEST_F(CliMapFile, TheSecondSessionFindsItsPlaceInTheMapOfTheFirst) {
                      " --map-trajectory " + path("map.txt") + " --json " + path("run.json"));
   ASSERT_EQ(second.exit_code, 0) << second.err;
   EXPECT_NE(second.out.find("place in the map       found after"), std::string::npos) << second.out;
+  EXPECT_NE(second.err.find("wrote " + path("run.json") + ", " + path("desk.map") + ", " + path("map.txt")),
+            std::string::npos)
+      << second.err;
   const nlohmann::json summary = read_json("run.json").at("map");
   EXPECT_TRUE(summary.at("located"));
   EXPECT_LE(summary.at("located_after_s"), 1.0);

@@ -30,14 +30,17 @@ std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch
 std::vector<Tracked> tracked;
 std::atomic<int> tracks{0};
 }  // namespace
-plvo::TrackResult real_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
-    "__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
-plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
-    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
-plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) {
-  tracked.push_back({frame.stamp_ns, now_ns(), {}});
+plvo::TrackResult real_track(
+    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
+plvo::TrackResult wrapped_track(
+    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+                                const plvo::MotionPrior& prior) {
+  tracked.push_back({frame.stamp_ns, now_ns(), prior});
   ++tracks;
-  return real_track(odometry, frame);
+  return real_track(odometry, frame, prior);
 }
 // Takes the prior itself, to record it. Without a gyro there is no offset to correct.
 plvo::TrackResult
@@ -46,10 +49,7 @@ wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame, plvo::ImuI
     "13ImuIntegratorERKSt8optionalINS_16TranslationPriorEE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 plvo::ImuIntegrator& imu, const std::optional<plvo::TranslationPrior>&) {
-  const plvo::MotionPrior prior = imu.prior(frame.stamp_ns);
-  tracked.push_back({frame.stamp_ns, now_ns(), prior});
-  ++tracks;
-  return odometry->track(frame, prior);
+  return wrapped_track(odometry, frame, imu.prior(frame.stamp_ns));
 }
 
 namespace plvo_test {

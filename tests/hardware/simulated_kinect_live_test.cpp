@@ -24,13 +24,16 @@
 namespace {
 std::atomic<std::int64_t> tracks{0}, allocations{0};
 }
-plvo::TrackResult real_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
-    "__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
-plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) asm(
-    "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameE");
-plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame) {
+plvo::TrackResult real_track(
+    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
+plvo::TrackResult wrapped_track(
+    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
+plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
+                                const plvo::MotionPrior& prior) {
   const plvo::AllocationGuard guard;
-  plvo::TrackResult result = real_track(odometry, frame);
+  plvo::TrackResult result = real_track(odometry, frame, prior);
   allocations += guard.calls();
   ++tracks;
   return result;

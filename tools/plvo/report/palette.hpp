@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colours of every drawing: overlay, report, live page, plots. They are those of Okabe and Ito (Color
-// Universal Design, 2008), which people with any kind of colour blindness can tell apart; palette_test
-// computes how far apart they are for each kind.
+// Universal Design, 2008), which stay apart in protanopia, deuteranopia and tritanopia; palette_test computes
+// how far apart they are in each.
 #pragma once
 
 #include <algorithm>

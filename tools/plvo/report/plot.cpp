@@ -117,7 +117,7 @@ PlotCurve curve_of(std::size_t estimate) {
   return curve;
 }
 
-// The two axes of the world in which the way is longest, in increasing order.
+// The two axes of the world along which the truth extends furthest, in increasing order.
 std::array<int, 2> widest_axes(const std::vector<Se3>& truth) {
   Vector3 low = truth.front().t, high = low;
   for (const Se3& T : truth) {

@@ -16,9 +16,9 @@ struct PlottedEstimate {
   const eval::Evaluation* evaluation = nullptr;
 };
 
-// Returns an SVG with five charts. Trajectory: the two coordinates of the truth's world in which the way is
-// longest, the estimates aligned to the truth as for the ATE. Over time: errors of position and orientation,
-// truth and estimate starting alike. Over the distance travelled: relative errors of translation and
+// Returns an SVG with five charts. Trajectory: the two coordinates of the truth's world in which it extends
+// furthest, the estimates aligned to the truth as for the ATE. Over time: errors of position and orientation,
+// truth and estimate sharing the first pose. Over the distance travelled: relative errors of translation and
 // rotation. A curve is broken where frames are lost.
 std::string make_plot(const std::string& title, const std::vector<PlottedEstimate>& estimates);
 

@@ -41,7 +41,8 @@ Status MavlinkStream::open(const std::string& address) {
 }
 
 Status MavlinkStream::write(const TrackResult& result) {
-  if (const auto message = odometry_.message(result); message && is_open())
+  if (!is_open()) return {};
+  if (const auto message = odometry_.message(result))
     (void)::send(socket_, message->data(), message->size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   return {};
 }

@@ -105,11 +105,10 @@ bool parse_video_mode(const std::string& text, VideoMode& mode) {
 }
 
 bool is_oni_file(const std::string& path) { return path.ends_with(".oni"); }
+bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag(path); }
 bool is_played(const LiveCameraOptions& options) {
   return options.simulated || is_recorded_device(options.device);
 }
-
-bool is_recorded_device(const std::string& path) { return is_oni_file(path) || is_bag(path); }
 
 int exit_code_of_camera(const Status& status, const std::string& device) {
   switch (status.code()) {
@@ -132,14 +131,13 @@ bool calibration_given(const CalibrationOptions& o) {
 
 class OpenNi2LiveCamera final : public LiveCamera {
  public:
-  // depth: of a sensor whose depth is to be registered by it, and not by the device.
+  // depth: the depth camera, where its images are registered here and not by the device.
   Status open(const OpenNi2Options& options, const DepthCamera& depth = {}) {
     if (Status status = camera_.open(options); !status.ok() || !depth.known) return status;
     if (camera_.registered_by_device())
       return {StatusCode::kInvalidArgument,
               "this sensor or .oni file has registered depth: leave depth_fx, depth_fy and what goes with "
-              "them out of "
-              "the calibration"};
+              "them out of the calibration"};
     registered_.emplace(camera_, depth);
     return {};
   }
@@ -257,11 +255,8 @@ Status list_live_cameras(std::vector<OpenNi2DeviceInfo>&) { return not_built(); 
 
 Status open_live_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
   if (Status status = refuse_foreign_format(options.device); !status.ok()) return status;
-  const bool by_file = options.simulated || is_bag(options.device);
-  Status status = by_file ? open_played_camera(options, log, camera) : open_sensor(options, log, camera);
-  if (status.ok() && is_played(options) && options.pace == Pace::kRealtime)
-    camera = at_own_pace(std::move(camera));
-  return status;
+  if (options.simulated || is_bag(options.device)) return open_played_camera(options, log, camera);
+  return open_sensor(options, log, camera);
 }
 
 }  // namespace plvo::cli

@@ -3,9 +3,15 @@
 
 #include <fmt/format.h>
 
-#include "plvo/host/posix_clock.hpp"
+#include <algorithm>
 
 namespace plvo::cli {
+
+void LiveCapture::StoppableClock::sleep_until_ns(std::int64_t until_ns) {
+  constexpr std::int64_t kSlice_ns = 100'000'000;
+  for (std::int64_t now = monotonic_ns(); now < until_ns && !stop_; now = monotonic_ns())
+    clock_.sleep_until_ns(std::min(until_ns, now + kSlice_ns));
+}
 
 void LiveCapture::start() {
   thread_ = std::thread([this] { run(); });
@@ -41,7 +47,7 @@ LiveCapture::State LiveCapture::state() const {
 void LiveCapture::run() {
   while (!stop_) {
     RgbdFrame frame;
-    const Status status = camera_.next(frame);
+    const Status status = paced_.next(frame);
     if (status.ok()) {
       on_frame(frame);
     } else if (!stop_) {  // a silence that nobody waits for any more is none

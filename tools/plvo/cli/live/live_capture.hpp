@@ -16,7 +16,9 @@
 #include "plvo/cli/live/rate_meter.hpp"
 #include "plvo/cli/record/frame_recording.hpp"
 #include "plvo/host/frame_ring.hpp"
+#include "plvo/host/posix_clock.hpp"
 #include "plvo/replay/checks/frame_check.hpp"
+#include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
 
@@ -37,32 +39,50 @@ class LiveCapture {
     const char* word() const;
   };
 
-  // All are borrowed.
-  LiveCapture(LiveCamera& camera, FrameRing& ring, FrameRecording& recording, Console& console)
-      : camera_(camera), ring_(ring), recording_(recording), console_(console) {}
+  // All are borrowed. pace: kRealtime delivers a frame no earlier than its stamp says.
+  LiveCapture(LiveCamera& camera, Pace pace, FrameRing& ring, FrameRecording& recording, Console& console)
+      : camera_(camera),
+        paced_(camera, pace, clock_, nullptr),
+        ring_(ring),
+        recording_(recording),
+        console_(console) {}
   ~LiveCapture() { stop(); }
   LiveCapture(const LiveCapture&) = delete;
   LiveCapture& operator=(const LiveCapture&) = delete;
 
   void start();
-  // Returns within the camera's time limit.
+  // Returns within the camera's time limit, also where it waits for the stamp of a frame.
   void stop();
   State state() const;
 
  private:
+  // Looks every tenth of a second whether the capture is to stop: a recording may have a gap of minutes.
+  class StoppableClock final : public Clock {
+   public:
+    explicit StoppableClock(const std::atomic<bool>& stop) : stop_(stop) {}
+    std::int64_t monotonic_ns() const override { return clock_.monotonic_ns(); }
+    void sleep_until_ns(std::int64_t until_ns) override;
+
+   private:
+    const std::atomic<bool>& stop_;
+    PosixClock clock_;
+  };
+
   void run();
   void on_frame(const RgbdFrame& frame);
   void on_trouble(const Status& status);
   void poll_recording();
   void tell(const std::vector<std::string>& findings);
 
+  std::atomic<bool> stop_{false};
   LiveCamera& camera_;
+  StoppableClock clock_{stop_};
+  PacedCamera paced_;
   FrameRing& ring_;
   FrameRecording& recording_;
   Console& console_;
   FrameCheck check_;  // of the thread
   std::thread thread_;
-  std::atomic<bool> stop_{false};
 
   mutable std::mutex mutex_;  // state_, meter_ and the three times
   State state_;

@@ -80,7 +80,8 @@ Status LiveSession::open() {
   }
   summary_.camera_name = camera_->name();
   summary_.recording = options_.record;
-  capture_ = std::make_unique<LiveCapture>(*camera_, *ring_, recording_, console_);
+  const Pace pace = is_played(options_.camera) ? options_.camera.pace : Pace::kFast;
+  capture_ = std::make_unique<LiveCapture>(*camera_, pace, *ring_, recording_, console_);
   prefault_program();
   console_.write(LogLevel::kInfo,
                  fmt::format("{}, {}x{}; Ctrl-C ends", summary_.camera_name, model.width, model.height));

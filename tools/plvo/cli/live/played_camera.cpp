@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/cli/live/played_camera.hpp"
 
-#include <algorithm>
 #include <utility>
-
-#include "plvo/cli/common/interrupt.hpp"
-#include "plvo/host/posix_clock.hpp"
-#include "plvo/replay/paced_camera.hpp"
 
 namespace plvo::cli {
 namespace {
@@ -48,49 +43,6 @@ class PlayedCamera final : public LiveCamera {
   OpenNi2Counters counters_;
 };
 
-// Looks every tenth of a second whether a signal came: a recording may have a gap of minutes.
-class PatientClock final : public Clock {
- public:
-  std::int64_t monotonic_ns() const override { return clock_.monotonic_ns(); }
-  void sleep_until_ns(std::int64_t until_ns) override {
-    constexpr std::int64_t kSlice_ns = 100'000'000;
-    for (std::int64_t now = monotonic_ns(); now < until_ns && !interrupted(); now = monotonic_ns())
-      clock_.sleep_until_ns(std::min(until_ns, now + kSlice_ns));
-  }
-
- private:
-  PosixClock clock_;
-};
-
-class CameraAtOwnPace final : public LiveCamera {
- public:
-  explicit CameraAtOwnPace(std::unique_ptr<LiveCamera> camera)
-      : camera_(std::move(camera)), paced_(*camera_, Pace::kRealtime, clock_, nullptr) {}
-
-  CameraModel model() const override { return camera_->model(); }
-  Status next(RgbdFrame& frame) override { return paced_.next(frame); }
-  std::string name() const override { return camera_->name(); }
-  std::string uri() const override { return camera_->uri(); }
-  OpenNi2Counters counters() const override { return camera_->counters(); }
-  bool registered_by_device() const override { return camera_->registered_by_device(); }
-  Status read_imu(ImuRecording& recording) override { return camera_->read_imu(recording); }
-  Status read_wheels(const std::string& topic, WheelRecording& recording) override {
-    return camera_->read_wheels(topic, recording);
-  }
-  Status read_true_poses(eval::Trajectory& poses, std::string& source) override {
-    return camera_->read_true_poses(poses, source);
-  }
-  void close() override { camera_->close(); }
-  Status start_oni(const std::string& path) override { return camera_->start_oni(path); }
-  Status poll_oni() override { return camera_->poll_oni(); }
-  void stop_oni() override { camera_->stop_oni(); }
-
- private:
-  std::unique_ptr<LiveCamera> camera_;
-  PatientClock clock_;
-  PacedCamera paced_;
-};
-
 }  // namespace
 
 Status open_played_camera(const LiveCameraOptions& options, Log& log, std::unique_ptr<LiveCamera>& camera) {
@@ -106,10 +58,6 @@ Status open_played_camera(const LiveCameraOptions& options, Log& log, std::uniqu
   const std::string name = options.simulated ? opened.name : options.device;
   camera = std::make_unique<PlayedCamera>(name, std::move(opened));
   return {};
-}
-
-std::unique_ptr<LiveCamera> at_own_pace(std::unique_ptr<LiveCamera> camera) {
-  return std::make_unique<CameraAtOwnPace>(std::move(camera));
 }
 
 }  // namespace plvo::cli

@@ -175,7 +175,7 @@ int record_command(const RecordOptions& options) {
   if (!begun.ok()) return fail(begun);
   console.write(LogLevel::kInfo, fmt::format("{}, {}x{}, into {}; Ctrl-C ends", camera->name(), model.width,
                                              model.height, options.path));
-  LiveCapture capture(*camera, ring, recording, console);
+  LiveCapture capture(*camera, Pace::kFast, ring, recording, console);
   const std::int64_t start_ns = posix_monotonic_ns();
   const auto seconds = [start_ns] { return static_cast<double>(posix_monotonic_ns() - start_ns) * 1e-9; };
   capture.start();

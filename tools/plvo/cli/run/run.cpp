@@ -84,7 +84,8 @@ class Run {
     for (const auto& [option, path] : options_.outputs.named()) written.push_back(path);
     if (reported.ok()) written.push_back(options_.report);
     if (summarised.ok()) written.push_back(options_.summary);
-    if (mapped.ok()) written.insert(written.end(), {options_.map.trajectory, options_.map.ply});
+    if (mapped.ok())
+      written.insert(written.end(), {options_.map.out, options_.map.trajectory, options_.map.ply});
     written.push_back(options_.overlay);
     tell_written(console_, written);
     if (exit_code != kExitSuccess || !summary_->failed()) return exit_code;

@@ -83,7 +83,7 @@ Status RunOutputs::write(const FrameRecord& record) {
     status = trajectory_.write(result);
     if (status.ok()) status = covariance_.write(result);
     if (status.ok()) status = motions_.write(result);
-    if (status.ok() && mavlink_.is_open()) status = mavlink_.write(result);
+    if (status.ok()) status = mavlink_.write(result);
   }
   return status.ok() ? stats_.write(stats_row(record)) : status;
 }
