@@ -49,7 +49,7 @@ class BaseMotion {
   Matrix6 covariance_ = Matrix6::Zero();  // of T_before_now_, as in se3.hpp
 };
 
-// Both for all steps of a frame.
+// The prior of these steps: BaseMotion::add for each, then BaseMotion::prior.
 Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
                    MotionPrior& prior);
 
