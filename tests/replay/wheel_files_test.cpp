@@ -160,6 +160,7 @@ TEST(RecordedWheels, RefuseAConfigurationThatIsNone) {
   refused([](WheelConfig& c) { c.share = -1; }, "share");
   refused([](WheelConfig& c) { c.track_m = 0; }, "track_m");
   refused([](WheelConfig& c) { c.tilt_rps = 0; }, "standard deviation");
+  refused([](WheelConfig& c) { c.tilt_rps = std::nan(""); }, "standard deviation");
   refused([](WheelConfig& c) { c.error_s = std::nan(""); }, "error_s");
   refused([](WheelConfig& c) { c.longest_gap_s = 0; }, "longest_gap_s");
 }

@@ -478,6 +478,12 @@ class RosRecordings(unittest.TestCase):
             self.assertEqual(told.returncode, 1)
             self.assertIn("there is no odometry of wheels on /wheels; nav_msgs/Odometry is on: /odom", told.stderr)
             self.assertFalse((self.folder / "x").exists())
+        # Wheels that are there already are not overwritten.
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "wheel_odometry.txt").write_text("1 0 0 0\n")
+        told = plvo("convert", file, "--out", self.folder / "mine", "--wheels-topic", "/odom")
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("has wheel_odometry.txt already", told.stderr)
 
     def test_hostile_databases(self):
         file = self.folder / "a.db3"

@@ -28,12 +28,6 @@ Matrix6 twist_matrix(const Matrix3& diagonal, const Matrix3& corner) {
   return J;
 }
 
-Matrix6 adjoint(const Se3& T) { return twist_matrix(T.R, skew(T.t) * T.R); }
-
-Matrix6 carried_covariance(const Matrix6& J, const Matrix6& C) {
-  return J.lazyProduct(C).eval().lazyProduct(J.transpose());
-}
-
 Status refuse_wheels(const char* why) { return Status(StatusCode::kInvalidArgument, "wheels: ").append(why); }
 
 Status check_step(const WheelStep& step) {
@@ -53,10 +47,12 @@ Status BaseMotion::add(const WheelStep& step, double error_s) {
   if (!(error_s >= 0 && error_s <= 1e6)) return refuse_wheels("error_s must lie between 0 and 1e6 s");
   const Vector3 way = step.seconds * step.twist.head<3>(), turn = step.seconds * step.twist.tail<3>();
   const Se3 T{rotation_exp(turn), mean_exponential<3>(skew(turn)) * way};
+  // J_r: an error of the twist to one in the axes of the base after the step; T.R: to those before it.
   const Matrix6 J_r = mean_exponential<6>(twist_matrix(-skew(turn), -skew(way)));
+  const Matrix6 J = twist_matrix(T.R, Matrix3::Zero()).lazyProduct(J_r);
+  const Matrix6 C_per_s2 = J.lazyProduct(step.covariance).eval().lazyProduct(J.transpose());
   const double lasts_s = step.seconds > error_s ? step.seconds : error_s;
-  covariance_ = carried_covariance(adjoint(T.inverse()), covariance_) +
-                step.seconds * lasts_s * carried_covariance(J_r, step.covariance);
+  covariance_ = compose_covariance(T_before_now_, covariance_, T, step.seconds * lasts_s * C_per_s2);
   T_before_now_ = T_before_now_ * T;
   moved_ = true;
   return {};
@@ -67,11 +63,14 @@ Status BaseMotion::prior(const Se3& T_base_camera, MotionPrior& prior) const {
   if (!moved_) return refuse_wheels("there must be a step at least");
   if (!is_rotation(T_base_camera.R) || !T_base_camera.t.allFinite())
     return refuse_wheels("T_base_camera must be a rotation and a finite position");
-  const Se3 T_camera_base = T_base_camera.inverse();
-  Se3 T_now_before = T_camera_base * T_before_now_.inverse() * T_base_camera;
+  const Se3 T_camera_base = T_base_camera.inverse(), T_base_before = T_before_now_.inverse();
+  const Se3 T_camera_before = T_camera_base * T_base_before;
+  Se3 T_now_before = T_camera_before * T_base_camera;
   T_now_before.R = renormalise(T_now_before.R);
-  const Matrix6 J_apart = twist_matrix(Matrix3::Identity(), -skew(T_now_before.t));
-  Matrix6 C = carried_covariance(J_apart.lazyProduct(adjoint(T_camera_base)), covariance_);
+  const Matrix6 exact = Matrix6::Zero();
+  Matrix6 C = inverse_covariance(T_before_now_, covariance_);
+  C = compose_covariance(T_camera_base, exact, T_base_before, C);
+  C = compose_covariance(T_camera_before, C, T_base_camera, exact);
   C = 0.5 * (C + Matrix6(C.transpose()));
   MotionPrior made;
   made.rotation = {T_now_before.R, C.block<3, 3>(3, 3)};

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns the twist of a robot's base, as wheel odometry measures it, into the prior of a frame.
 //
-// A twist ξ = (v, ω) holds for s seconds: T_before_now = Exp(s ξ), the exponential of SE(3). Several steps
-// are composed: T = T_1 … T_n. An error e of a twist, with covariance Q, moves the end of its step by
-// J_r(s ξ) s e in the axes of the base there, where J_r is the right Jacobian of SE(3). A later step carries
-// an error along by the adjoint of its inverse:
-//   C ← Ad(T_i⁻¹) C Ad(T_i⁻¹)ᵀ + s max(s, error_s) J_r Q J_rᵀ.
-// The camera sits at T_base_camera: T_now_before = T_base_camera⁻¹ T⁻¹ T_base_camera, and its error is that
-// of the base, carried by Ad(T_base_camera⁻¹). MotionPrior wants the errors of rotation and position apart:
-// (v, ω) = (ρ − [t_now_before]× φ, φ) for an error Exp((ρ, φ)) on the left. The prior has no correlation of
-// the two; it is left out.
+// A twist ξ = (v, ω) that holds for s seconds moves the base by Exp(s ξ), the exponential of SE(3). The
+// motion over several steps is the product of theirs: T_before_now = T_1 … T_n. An error e of a twist, with
+// covariance Q, turns the motion T of its step into T Exp(s J_r(s ξ) e), where J_r is the right Jacobian of
+// SE(3). As a small motion of se3.hpp that is s J e with J = diag(R, R) J_r(s ξ), where R is the rotation of
+// T. The step's covariance is therefore
+//   C = s max(s, error_s) J Q Jᵀ,
+// and compose_covariance joins the steps.
+//
+// The camera sits at T_base_camera, which counts as exact: T_now_before = T_base_camera⁻¹ T_before_now⁻¹
+// T_base_camera. inverse_covariance and compose_covariance carry the covariance along. MotionPrior has no
+// place for the correlation of rotation and position: it is left out.
 #pragma once
 
 #include <span>
@@ -44,10 +46,10 @@ class BaseMotion {
  private:
   bool moved_ = false;
   Se3 T_before_now_;
-  Matrix6 covariance_ = Matrix6::Zero();  // of an error Exp((ρ, φ)) on the right of T_before_now_
+  Matrix6 covariance_ = Matrix6::Zero();  // of T_before_now_, as in se3.hpp
 };
 
-// Both for all steps of a frame.
+// The prior of these steps: BaseMotion::add for each, then BaseMotion::prior.
 Status wheel_prior(std::span<const WheelStep> steps, double error_s, const Se3& T_base_camera,
                    MotionPrior& prior);
 

@@ -110,9 +110,11 @@ void describe_topic(const MessageFile& bag, std::size_t number, DescribedTopic& 
   topic.longest_gap_s = static_cast<double>(of.longest_gap_ns) * 1e-9;
 }
 
-void describe_bag(const BagCamera& camera, const BagTopicNames& names, RecordingDescription& description) {
-  const MessageFile* bag = camera.messages();
-  const TopicChoice& choice = camera.topics();
+Status describe_bag(const Recording& recording, const BagTopicNames& names,
+                    RecordingDescription& description) {
+  if (recording.bag() == nullptr) return description.opens;
+  const MessageFile* bag = recording.bag()->messages();
+  const TopicChoice& choice = recording.bag()->topics();
   const bool chosen = choice.chosen();
   std::size_t truth = 0;
   const bool has_truth = choose_bag_poses(*bag, names.truth, truth).ok();
@@ -139,7 +141,13 @@ void describe_bag(const BagCamera& camera, const BagTopicNames& names, Recording
   }
   if (last_ns > first_ns) description.duration_s = static_cast<double>(last_ns - first_ns) * 1e-9;
   if (chosen && !choice.colour_info()) description.missing.emplace_back("no camera_info of colour");
+  return {};
 }
+
+#else
+
+// description.opens says which packages are missing.
+Status describe_bag(const Recording&, const BagTopicNames&, RecordingDescription&) { return {}; }
 
 #endif
 
@@ -154,16 +162,9 @@ Status describe_recording(const fs::path& path, const RecordingOptions& options,
   Recording recording;
   const auto choose = [](const OwnCalibration& own, Calibration& calibration) { return own(calibration); };
   description.opens = recording.open(path, choose, options);
-  if (!is_bag(path)) {
-    if (Status status = describe_folder(path, options, description); !status.ok()) return status;
-  }
-#ifdef PLVO_HAVE_ROSBAG
-  else if (recording.bag() == nullptr) {
-    return description.opens;
-  } else {
-    describe_bag(*recording.bag(), options.topics, description);
-  }
-#endif
+  const Status status = is_bag(path) ? describe_bag(recording, options.topics, description)
+                                     : describe_folder(path, options, description);
+  if (!status.ok()) return status;
   describe_opening(recording, description);
   return {};
 }

@@ -181,8 +181,6 @@ Status Recording::read_wheels(const std::string& topic, WheelRecording& recordin
 
 Status Recording::read_wheels(const std::string&, WheelRecording&) const { return without_bags(); }
 
-Status Recording::find_true_poses_of_bag(const fs::path&, const std::string&) { return without_bags(); }
-
 Status Recording::open_bag(const fs::path&, const CalibrationChoice&, const RecordingOptions&) {
   return without_bags();
 }

@@ -76,8 +76,8 @@ class Recording final : public RgbdCamera {
 
   // Reads the samples of a gyro and an accelerometer, with read_imu_files or read_bag_imu.
   Status read_imu(ImuRecording& recording) { return read_imu_(recording); }
-  // Reads wheel odometry of a bag, with read_bag_wheels; kUnsupported for a folder, whose file has a name of
-  // the user's.
+  // Reads wheel odometry of a bag, with read_bag_wheels; kUnsupported for a folder: there the user
+  // names the file.
   Status read_wheels(const std::string& topic, WheelRecording& recording) const;
 
  private:

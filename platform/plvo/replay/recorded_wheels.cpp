@@ -33,9 +33,8 @@ Status WheelConfig::validate() const {
     return refuse_wheel_config("T_base_camera", "within 1000 m, and be a rotation");
   if (!within(share, 0, 10)) return refuse_wheel_config("share", "between 0 and 10");
   if (!within(track_m, 0.01, 100)) return refuse_wheel_config("track_m", "between 0.01 and 100 m");
-  if (!within(std::min({least_mps, least_rps, bounce_mps, tilt_rps}), 1e-6, 100) ||
-      !within(std::max({least_mps, least_rps, bounce_mps, tilt_rps}), 1e-6, 100))
-    return refuse_wheel_config("a standard deviation", "between 1e-6 and 100");
+  for (const double sigma : {least_mps, least_rps, bounce_mps, tilt_rps})
+    if (!within(sigma, 1e-6, 100)) return refuse_wheel_config("a standard deviation", "between 1e-6 and 100");
   if (!within(error_s, 0, 1000)) return refuse_wheel_config("error_s", "between 0 and 1000 s");
   if (!within(longest_gap_s, 1e-3, 100))
     return refuse_wheel_config("longest_gap_s", "between 0.001 and 100 s");
@@ -85,7 +84,6 @@ MotionPrior RecordedWheels::prior(std::int64_t stamp_ns) {
   for (std::size_t i = next_; samples[i].stamp_ns < stamp_ns; ++i) {
     const WheelSample &a = samples[i], &b = samples[i + 1];
     const std::int64_t begin_ns = std::max(a.stamp_ns, *before_ns), end_ns = std::min(b.stamp_ns, stamp_ns);
-    if (begin_ns >= end_ns) continue;
     const Vector3 v = 0.5 * (velocity_at(a, b, begin_ns) + velocity_at(a, b, end_ns));
     WheelStep step{wheel_seconds(begin_ns, end_ns), Vector6::Zero(), covariance_between(a, b, v)};
     step.twist << v.x(), v.y(), 0, 0, 0, v.z();

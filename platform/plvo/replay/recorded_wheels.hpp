@@ -33,8 +33,8 @@ class RecordedWheels {
   Status init(WheelRecording recording, const WheelConfig& config);
 
   // Prior of the frame at this stamp, since the frame of the previous call. Velocities are linear between
-  // samples. It is empty at the first call, where samples are missing, and where the motion is none
-  // (wheel_prior.hpp).
+  // samples. It is empty at the first call, where samples are missing, and where wheel_prior.hpp refuses the
+  // motion.
   MotionPrior prior(std::int64_t stamp_ns);
 
   std::size_t priors() const { return priors_; }  // that were not empty

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "plvo/host/files/stamp_text.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/replay/index/stamp_order.hpp"
 #include "plvo/replay/index/stamp_pairs.hpp"
 #include "plvo/rosbag/containers/open_container.hpp"
@@ -48,15 +49,10 @@ Status BagCamera::of_topic(std::size_t topic, const Status& status) const {
 
 Status BagCamera::in_order(std::size_t topic, Messages& messages) {
   messages = bag_->messages(topic);
-  std::stable_sort(messages.begin(), messages.end(),
-                   [](const BagMessage& a, const BagMessage& b) { return a.stamp_ns < b.stamp_ns; });
-  if (messages.size() > 1 && messages.front().stamp_ns == messages.back().stamp_ns)
-    return not_stamped("images", messages.size(), bag_->topics()[topic].name, messages.front().stamp_ns);
-  const auto end =
-      std::unique(messages.begin(), messages.end(),
-                  [](const BagMessage& a, const BagMessage& b) { return a.stamp_ns == b.stamp_ns; });
-  repeated_ += static_cast<std::size_t>(messages.end() - end);
-  messages.erase(end, messages.end());
+  const std::size_t repeated = keep_first_of_each_stamp(messages);
+  if (repeated > 0 && messages.size() == 1)
+    return not_stamped("images", repeated + 1, bag_->topics()[topic].name, messages.front().stamp_ns);
+  repeated_ += repeated;
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plvo/host/files/reader_limits.hpp"
+#include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/rosbag/listing.hpp"
 #include "plvo/rosbag/messages/messages.hpp"
 
@@ -98,13 +99,9 @@ Status choose(const MessageFile& bag, std::vector<ImuTopic>& topics, const Senso
 Status take_in_order(Samples& from, const std::string& topic, Samples& samples, std::size_t& left_out) {
   const std::size_t all = from.size();
   std::erase_if(from, [](const ImuSample& s) { return !s.value.allFinite(); });
-  std::stable_sort(from.begin(), from.end(),
-                   [](const ImuSample& a, const ImuSample& b) { return a.stamp_ns < b.stamp_ns; });
-  if (from.size() > 1 && from.front().stamp_ns == from.back().stamp_ns)
-    return not_stamped("readings", from.size(), topic, from.front().stamp_ns);
-  from.erase(std::unique(from.begin(), from.end(),
-                         [](const ImuSample& a, const ImuSample& b) { return a.stamp_ns == b.stamp_ns; }),
-             from.end());
+  const std::size_t repeated = keep_first_of_each_stamp(from);
+  if (repeated > 0 && from.size() == 1)
+    return not_stamped("readings", repeated + 1, topic, from.front().stamp_ns);
   left_out += all - from.size();
   samples = std::move(from);
   return {};

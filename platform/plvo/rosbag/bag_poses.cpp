@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "plvo/host/files/reader_limits.hpp"
@@ -59,12 +58,7 @@ Status read_bag_poses(MessageFile& bag, const std::string& wanted, Trajectory& t
   if (!status.ok()) return status;
   if (found.poses.empty())
     return {StatusCode::kDamaged, fmt::format("no pose on {} can be read", bag.topics()[chosen].name)};
-  sort_by_stamp(found.poses);
-  const auto end =
-      std::unique(found.poses.begin(), found.poses.end(),
-                  [](const StampedPose& a, const StampedPose& b) { return a.stamp_ns == b.stamp_ns; });
-  found.ignored_rows += static_cast<std::size_t>(found.poses.end() - end);
-  found.poses.erase(end, found.poses.end());
+  found.ignored_rows += keep_first_of_each_stamp(found.poses);
   trajectory = std::move(found);
   return {};
 }

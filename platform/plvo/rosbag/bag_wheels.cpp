@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "plvo/host/files/reader_limits.hpp"
@@ -63,12 +63,7 @@ Status read_bag_wheels(MessageFile& bag, const std::string& wanted, WheelRecordi
   if (!status.ok()) return status;
   if (samples.empty())
     return {StatusCode::kDamaged, fmt::format("no odometry of wheels on {} can be read", wanted)};
-  sort_by_stamp(samples);
-  const auto end =
-      std::unique(samples.begin(), samples.end(),
-                  [](const WheelSample& a, const WheelSample& b) { return a.stamp_ns == b.stamp_ns; });
-  found.ignored += static_cast<std::size_t>(samples.end() - end);
-  samples.erase(end, samples.end());
+  found.ignored += keep_first_of_each_stamp(samples);
   recording = std::move(found);
   return {};
 }

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "plvo/math/types.hpp"
+
 namespace plvo::sim {
 
 constexpr std::uint32_t hash(std::uint32_t x) {
@@ -16,6 +18,11 @@ constexpr std::uint32_t hash(std::uint32_t x) {
 constexpr std::uint32_t hash(std::uint32_t x, std::uint32_t y) { return hash(x + hash(y)); }
 constexpr std::uint32_t hash(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return hash(x + hash(y + hash(z)));
+}
+
+// The seed of one sensor's random numbers.
+constexpr std::uint32_t sensor_seed(std::uint64_t seed, std::uint32_t sensor) {
+  return hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), sensor);
 }
 
 // [0, 1), a multiple of 2^-24.
@@ -33,6 +40,13 @@ constexpr float gaussian(std::uint32_t a, std::uint32_t b) {
   return (static_cast<float>(sum) - 1020.0F) * (1.0F / 209.0207F);
 }
 constexpr float gaussian(std::uint32_t h) { return gaussian(h, hash(h ^ 0x9e3779b9U)); }
+// Three of them, one for each axis.
+inline Vector3 gaussian_vector(std::uint32_t a, std::uint32_t b, std::uint32_t seed) {
+  Vector3 values;
+  for (std::uint32_t axis = 0; axis < 3; ++axis)
+    values(axis) = static_cast<double>(gaussian(hash(a, hash(b, axis), seed)));
+  return values;
+}
 
 // Smooth noise in [−1, 1] over the plane: hashed values on the integer lattice with cubic interpolation.
 inline float value_noise(float x, float y, std::uint32_t seed) {

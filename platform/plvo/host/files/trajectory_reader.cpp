@@ -165,13 +165,7 @@ Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory) {
       each_row(source.path, kMaxTextBytes, [&rows](const TableRow& row) { return rows.take(row); });
   if (status.ok()) status = rows.end();
   if (!status.ok()) return status;
-  auto& poses = trajectory.poses;
-  sort_by_stamp(poses);
-  const auto end = std::unique(poses.begin(), poses.end(), [](const StampedPose& a, const StampedPose& b) {
-    return a.stamp_ns == b.stamp_ns;
-  });
-  trajectory.ignored_rows += static_cast<std::size_t>(poses.end() - end);
-  poses.erase(end, poses.end());
+  trajectory.ignored_rows += keep_first_of_each_stamp(trajectory.poses);
   return {};
 }
 

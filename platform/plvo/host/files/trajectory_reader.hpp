@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -49,6 +50,17 @@ template <typename Stamped>
 void sort_by_stamp(std::vector<Stamped>& rows) {
   std::stable_sort(rows.begin(), rows.end(),
                    [](const Stamped& a, const Stamped& b) { return a.stamp_ns < b.stamp_ns; });
+}
+
+// Sorts by stamp and keeps the first row of each. Returns how many were dropped.
+template <typename Stamped>
+std::size_t keep_first_of_each_stamp(std::vector<Stamped>& rows) {
+  sort_by_stamp(rows);
+  const auto end = std::unique(rows.begin(), rows.end(),
+                               [](const Stamped& a, const Stamped& b) { return a.stamp_ns == b.stamp_ns; });
+  const auto dropped = static_cast<std::size_t>(rows.end() - end);
+  rows.erase(end, rows.end());
+  return dropped;
 }
 
 // A pose from columns first … first + 6 of a row: "tx ty tz qx qy qz qw". kDamaged as above; a pose with a

@@ -8,9 +8,7 @@
 namespace plvo::sim {
 
 DepthClock::DepthClock(const DepthSchedule& timing, double colour_fps, std::uint64_t seed)
-    : timing_(timing),
-      colour_fps_(colour_fps),
-      seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x54U)) {}
+    : timing_(timing), colour_fps_(colour_fps), seed_(sensor_seed(seed, 0x54U)) {}
 
 DepthClock::Moment DepthClock::nearest(int frame, std::int64_t colour_us) const {
   Moment moment;

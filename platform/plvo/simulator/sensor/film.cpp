@@ -39,10 +39,7 @@ std::uint8_t srgb(double linear) {
 }  // namespace
 
 Film::Film(const CameraModel& camera, std::uint64_t seed, bool noise, int threads)
-    : camera_(camera),
-      seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x46U)),
-      noise_(noise),
-      threads_(threads) {
+    : camera_(camera), seed_(sensor_seed(seed, 0x46U)), noise_(noise), threads_(threads) {
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   blurred_.resize(pixels);
   pixels_.resize(3 * pixels);

@@ -13,28 +13,20 @@ namespace {
 constexpr double kDifference_s = 5e-4;
 constexpr std::uint32_t kGyro = 0x47U, kAccelerometer = 0x41U, kOffset = 0x4fU;
 
-Vector3 three(std::uint32_t a, std::uint32_t b, std::uint32_t seed) {
-  Vector3 values;
-  for (std::uint32_t axis = 0; axis < 3; ++axis)
-    values(axis) = static_cast<double>(gaussian(hash(a, hash(b, axis), seed)));
-  return values;
-}
-
 }  // namespace
 
 InertialSensor::InertialSensor(const InertialOptions& options, std::uint64_t seed, bool noise)
-    : options_(options),
-      seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x49U)),
-      noisy_(noise) {
+    : options_(options), seed_(sensor_seed(seed, 0x49U)), noisy_(noise) {
   if (!noise) return;
-  gyro_offset_ = options.gyro_offset_sigma * three(kOffset, kGyro, seed_);
-  accelerometer_offset_ = options.accelerometer_offset_sigma * three(kOffset, kAccelerometer, seed_);
+  gyro_offset_ = options.gyro_offset_sigma * gaussian_vector(kOffset, kGyro, seed_);
+  accelerometer_offset_ =
+      options.accelerometer_offset_sigma * gaussian_vector(kOffset, kAccelerometer, seed_);
 }
 
 // White noise of this density, sampled at the rate of the sensor.
 Vector3 InertialSensor::noise(std::uint32_t sample, std::uint32_t sensor, double density) const {
   if (!noisy_) return Vector3::Zero();
-  return density * std::sqrt(options_.rate_hz) * three(sample, sensor, seed_);
+  return density * std::sqrt(options_.rate_hz) * gaussian_vector(sample, sensor, seed_);
 }
 
 Vector3 InertialSensor::rate(const Trajectory& trajectory, double t_s, std::uint32_t sample) const {

@@ -37,7 +37,7 @@ KinectDepth::KinectDepth(const Scene& scene, const CameraModel& camera, const De
                          std::uint64_t seed, int threads)
     : scene_(scene),
       options_(options),
-      seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x44U)),
+      seed_(sensor_seed(seed, 0x44U)),
       width_(camera.width),
       height_(camera.height),
       threads_(threads),

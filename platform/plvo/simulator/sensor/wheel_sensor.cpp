@@ -15,9 +15,7 @@ constexpr std::uint32_t kWheelScale = 0x53U, kWheelSlip = 0x50U, kWheelNoise = 0
 }  // namespace
 
 WheelSensor::WheelSensor(const SimulatedWheels& options, std::uint64_t seed, bool noise)
-    : options_(options),
-      seed_(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0x57U)),
-      noisy_(noise) {
+    : options_(options), seed_(sensor_seed(seed, 0x57U)), noisy_(noise) {
   if (!noise) return;
   speed_scale_ += options.speed_scale_sigma * static_cast<double>(gaussian(hash(kWheelScale, 0, seed_)));
   turn_scale_ += options.turn_scale_sigma * static_cast<double>(gaussian(hash(kWheelScale, 1, seed_)));
@@ -44,9 +42,8 @@ Vector3 WheelSensor::velocity(const Trajectory& trajectory, double t_s, std::uin
     v.x() += 0.5 * more_mps;
     v.z() += side * more_mps / options_.track_m;
   }
-  for (std::uint32_t axis = 0; axis < 3; ++axis)
-    v[axis] += (axis == 2 ? options_.noise_rps : options_.noise_mps) *
-               static_cast<double>(gaussian(hash(kWheelNoise, hash(sample, axis), seed_)));
+  const Vector3 sigma(options_.noise_mps, options_.noise_mps, options_.noise_rps);
+  v += sigma.cwiseProduct(gaussian_vector(kWheelNoise, sample, seed_));
   return v;
 }
 

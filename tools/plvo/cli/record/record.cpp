@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/exit_code.hpp"
@@ -83,11 +84,14 @@ int judge(const RecordOptions& options, const LiveCapture::State& state, const S
 Status check_outputs(const RecordOptions& options) {
   Status status = FrameRecording::check(options.path);
   if (status.ok() && options.imu) status = refuse_imu_files(options.path);
+  std::vector<const char*> names;
+  if (is_bag(options.camera.device)) names.push_back(kTruthFile);
+  if (!options.wheels_topic.empty()) names.push_back(kWheelFile);
   std::error_code error;
-  if (status.ok() && is_bag(options.camera.device) &&
-      std::filesystem::exists(std::filesystem::path(options.path) / kTruthFile, error))
-    return {StatusCode::kInvalidArgument,
-            fmt::format("{} has {} already: remove it or choose another folder", options.path, kTruthFile)};
+  for (std::size_t i = 0; status.ok() && i < names.size(); ++i)
+    if (std::filesystem::exists(std::filesystem::path(options.path) / names[i], error))
+      return {StatusCode::kInvalidArgument,
+              fmt::format("{} has {} already: remove it or choose another folder", options.path, names[i])};
   return status;
 }
 
@@ -99,7 +103,7 @@ struct BesideImages {
   std::string truth_source;  // empty: there is no truth
 };
 
-// True poses that cannot be read are told, and left out. So is a topic that was named as that of the wheels.
+// There is no truth if it cannot be read, which is told, or if it is the topic of the wheels.
 void take_true_poses(const RecordOptions& options, LiveCamera& camera, Log& log, BesideImages& beside) {
   const Status status = camera.read_true_poses(beside.truth, beside.truth_source);
   if (!status.ok() || beside.truth_source == options.wheels_topic) beside.truth_source.clear();
@@ -126,9 +130,8 @@ Status read_beside_images(const RecordOptions& options, LiveCamera& camera, Log&
 
 Status write_true_poses(const std::string& folder, const BesideImages& beside) {
   LineFile file;
-  Status status =
-      file.open(std::filesystem::path(folder) / kTruthFile,
-                fmt::format("# timestamp tx ty tz qx qy qz qw; from {}", printable(beside.truth_source)));
+  Status status = file.open(std::filesystem::path(folder) / kTruthFile,
+                            fmt::format("{}; from {}", kTrajectoryHeader, printable(beside.truth_source)));
   for (std::size_t i = 0; status.ok() && i < beside.truth.poses.size(); ++i)
     status =
         file.write(trajectory_line(beside.truth.poses[i].stamp_ns, beside.truth.poses[i].T_world_camera));

@@ -17,8 +17,7 @@ struct WheelOptions {
   double share = WheelConfig().share;
 };
 void add_wheel_options(CLI::App& command, WheelOptions& options);
-// Refuses what does not apply to the camera of the command line, and wheels of a robot whose camera sits
-// nobody knows where.
+// Refuses what does not apply to the camera of the command line, and --wheels without --base-camera.
 void check_wheel_options(const CLI::App& command, const WheelOptions& options, const CameraOptions& camera,
                          const BaseOption& base);
 
