@@ -24,7 +24,8 @@ constexpr int kMostRegistrations = 3;
 constexpr double kSameStart = 4.0 / 525;
 // The estimates of two glances are different motions if they differ by more than this in the plane z = 1 (2
 // px of a Kinect). The one from the prediction is then preferred if it explains this share of what the other
-// one does: a camera goes on as it moved.
+// one does: a camera goes on as it moved. If they are the same motion, the image is nearer to it than a
+// prediction that is 4 px off, unless the other estimate explains more by as much.
 constexpr double kOtherMotion = 2.0 / 525;
 constexpr double kPreferredShare = 0.8;
 // When tracking fails, features are searched this far from their old positions, whatever the prediction.
@@ -161,11 +162,16 @@ bool is_findable(const Reference& reference) {
     Se3 start = aligned * latest.pose.T_reference_base;
     const bool compare = distance_between(aligned, latest.T_current_predicted, *latest.features) > kSameStart;
     if (compare) {
-      const Explained predicted = glance(by_prediction);
-      const Se3 motion = tracked.motion.T_current_reference;
       const Explained by_image = glance(start);
-      const bool is_other = !tracked.ok() || is_other_motion(motion, tracked.motion.T_current_reference);
-      if (predicted.evidence > (is_other ? kPreferredShare : 1) * by_image.evidence) start = motion;
+      const bool image_leads = tracked.ok();
+      if (image_leads) start = tracked.motion.T_current_reference;
+      const Explained predicted = glance(by_prediction);
+      const Se3& motion = tracked.motion.T_current_reference;
+      if (tracked.ok()) {
+        const bool is_other = !image_leads || is_other_motion(start, motion);
+        const double least = is_other ? kPreferredShare : 1 / kPreferredShare;
+        if (predicted.evidence > least * by_image.evidence) start = motion;
+      }
     }
     const Explained found = explain(start);
     if (found.share >= kAcceptedShareByImage) {
