@@ -334,7 +334,7 @@ TEST(CApi, WhatStampsErrIsThatOfCpp) {
   plvo_camera camera = c_camera(model);
   EXPECT_EQ(camera.stamp_sigma_s, 0.002);
   CameraModel back;
-  ASSERT_TRUE(c::from_c(camera, back).ok());
+  ASSERT_TRUE(c::take_camera(&camera, back).ok());
   EXPECT_EQ(back.stamp_sigma_s, 0.002);
   // A program that was compiled before there was such a thing has exact stamps, whatever lies behind.
   camera.struct_size = static_cast<std::uint32_t>(offsetof(plvo_camera, stamp_sigma_s));
@@ -363,7 +363,7 @@ TEST(CApi, LensesAreThoseOfCpp) {
   EXPECT_EQ(camera.lens, PLVO_LENS_EQUIDISTANT);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(camera.distortion[i], 0.1 * (i + 1)) << "ROS's order";
   CameraModel back;
-  ASSERT_TRUE(c::from_c(camera, back).ok());
+  ASSERT_TRUE(c::take_camera(&camera, back).ok());
   EXPECT_TRUE(back.distortion.k1 == 0.1 && back.distortion.k2 == 0.2 && back.distortion.k3 == 0.1 * 3 &&
               back.distortion.k4 == 0.4 && back.distortion.model == LensModel::kEquidistant);
   EXPECT_EQ(init(camera).code, PLVO_OK) << init(camera).message;
@@ -377,7 +377,7 @@ TEST(CApi, LensesAreThoseOfCpp) {
 
   model.distortion = {1, 2, 3, 4, 5, 6, 7, 8};
   camera = c_camera(model);
-  ASSERT_TRUE(c::from_c(camera, back).ok());
+  ASSERT_TRUE(c::take_camera(&camera, back).ok());
   EXPECT_EQ(camera.distortion_more[2], 8);
   EXPECT_TRUE(back.distortion.p1 == 3 && back.distortion.k3 == 5 && back.distortion.k4 == 6 &&
               back.distortion.k6 == 8 && back.distortion.model == LensModel::kRational);
