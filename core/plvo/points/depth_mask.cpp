@@ -33,7 +33,7 @@ constexpr int kHoleReach = kSurfaceReach + 2 * kHole;
 constexpr int kHoleColumns = kSurfaceColumns + 4 * kHole;
 constexpr int kHoleRows = kSurfaceRows + 4 * kHole;
 using WideRow = std::uint32_t;
-static_assert(kHoleColumns <= 32);
+static_assert(kHoleColumns == 16);
 
 // The depths that belong to the keypoint's surface, in units of the image. 0 means no depth.
 struct Range {
@@ -47,26 +47,31 @@ Range range_around(double units) {
 
 #ifndef PLVO_SIMD_LOOPS
 
-// Returns one bit for each of eight readings, `step` apart. A bit is set if the reading is in the range.
-// missing: its lanes become −1 where a reading is 0.
-std::uint32_t own_of_eight(const std::uint16_t* readings, int step, const Range& range, Int16x8& missing) {
-  Int16x8 units;
+// Eight readings, `step` apart.
+void load_eight(const std::uint16_t* readings, int step, Int16x8& units) {
   if (step == 1)
     std::memcpy(&units, readings, sizeof units);
   else
     for (int i = 0; i < 8; ++i) units[i] = static_cast<std::int16_t>(readings[i * step]);
-  missing |= units == 0;
-  // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
-  const auto first = static_cast<std::int16_t>(range.first - 32768);
-  const auto last = static_cast<std::int16_t>(range.last - 32768);
-  units ^= std::numeric_limits<std::int16_t>::min();
-  const Int16x8 own = (units >= first) & (units <= last) & 1;
+}
+
+// Returns one bit for each lane, which is set where the lane is −1 and not where it is 0.
+std::uint32_t bits_of(const Int16x8& lanes) {
   std::uint8_t bytes[8];
-  store_bytes(own, bytes);
+  store_bytes(lanes & 1, bytes);
   std::uint64_t together;
   std::memcpy(&together, bytes, sizeof together);
   static_assert(std::endian::native == std::endian::little);
   return static_cast<std::uint32_t>((together * 0x0102040810204080) >> 56);  // byte i to bit 56 + i
+}
+
+// Returns one bit for each of eight readings, which is set if the reading is in the range.
+std::uint32_t own_of_eight(const Int16x8& units, const Range& range) {
+  // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
+  const auto first = static_cast<std::int16_t>(range.first - 32768);
+  const auto last = static_cast<std::int16_t>(range.last - 32768);
+  const Int16x8 shifted = units ^ std::numeric_limits<std::int16_t>::min();
+  return bits_of((shifted >= first) & (shifted <= last));
 }
 
 #endif
@@ -150,6 +155,22 @@ SurfaceBits fill_holes(const LevelReadings& readings, const Range& range) {
   std::array<WideRow, kHoleRows> own{}, other{};
   for (int r = 0; r < kHoleRows; ++r) {
     const std::uint16_t* const row = readings.row(r - kHoleReach, kHoleReach);
+#ifndef PLVO_SIMD_LOOPS
+    if (row != nullptr) {
+      for (int c = 0; c < kHoleColumns; c += 8) {
+        Int16x8 units;
+        load_eight(row + c * readings.step(), readings.step(), units);
+        if (readings.step() > 1 && bits_of(units == 0) != 0)
+          for (int i = 0; i < 8; ++i)
+            if (units[i] == 0)
+              units[i] = static_cast<std::int16_t>(readings.covered(c + i - kHoleReach, r - kHoleReach));
+        const std::uint32_t in_range = own_of_eight(units, range);
+        own[static_cast<std::size_t>(r)] |= in_range << c;
+        other[static_cast<std::size_t>(r)] |= (bits_of(units != 0) & ~in_range) << c;
+      }
+      continue;
+    }
+#endif
     for (int c = 0; c < kHoleColumns; ++c) {
       std::int32_t units = row != nullptr ? row[c * readings.step()] : 0;
       if (units == 0 && (row == nullptr || readings.step() > 1))
@@ -193,8 +214,12 @@ WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double d
 #ifndef PLVO_SIMD_LOOPS
     if (whole) {
       const std::uint16_t* const row = depth.raw(left, top + r * step);
-      bits = own_of_eight(row, step, range, missing) |
-             own_of_eight(row + (kSurfaceColumns - 8) * step, step, range, missing) << (kSurfaceColumns - 8);
+      for (const int c : {0, kSurfaceColumns - 8}) {
+        Int16x8 units;
+        load_eight(row + c * step, step, units);
+        missing |= units == 0;
+        bits |= own_of_eight(units, range) << c;
+      }
     }
 #endif
     for (int c = kSurfaceColumns; !whole && c-- > 0;) {
