@@ -94,11 +94,13 @@ def row(plvo, folder, case, aid):
                    check=True, stderr=subprocess.DEVNULL)
     run = json.loads(summary.read_text())
     found = run["evaluation"]
-    second = next(of for of in found["rpe"] if of["delta"] == "1s")["translation_m"]["rmse"]
+    second = next(of for of in found["rpe"] if of["delta"] == "1s")
+    rpe = f"{1000 * second['translation_m']['rmse']:.1f}" if second["pairs"] else "–"
     end = found["end_drift"]["translation_m"]
     name = f"{case}, {aid}" if aid else case
-    return (f"| {name} | {run['lost']} | {1000 * second:.1f} | {1000 * found['ate_m']['rmse']:.1f} | "
-            f"{1000 * end:.0f} ± {end_sd_mm(covariances):.0f} | {found['nees_pose']['mean']:.1f} | "
+    nees = found["nees_pose"]["mean"]
+    return (f"| {name} | {run['lost']} | {rpe} | {1000 * found['ate_m']['rmse']:.1f} | "
+            f"{1000 * end:.0f} ± {end_sd_mm(covariances):.0f} | {nees:.{0 if nees >= 100 else 1}f} | "
             f"{100 * found['nees_pose']['inside_95_percent_bound']:.0f} % |")
 
 
