@@ -34,6 +34,8 @@ CASES = [
     ("burnt-in digits", "--with clock", None),
     ("dots of a projector", "--with dots", None),
     ("a mirror", "--with mirror", None),
+    ("a mirror before a robot", "--robot --with mirror", None),
+    ("a mirror before a robot", "--robot --with mirror", WHEELS),
     ("frozen depth", "--with frozen-depth", None),
     ("repeated frames", "--with repeated-frames", None),
     ("depth with holes", "--with comb", None),
