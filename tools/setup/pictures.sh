@@ -1,23 +1,52 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Creates the images of the front page from plvo's own output: the overlays of a recorded and a simulated frame, a report in
-# a browser, and the simulated scenes. The recording is TUM's freiburg1_rpy from frame 100 on.
-# usage: tools/setup/pictures.sh FOLDER
+# Creates the images of the pages from plvo's own output: the overlays of a recorded and a simulated frame, a report in a browser, the
+# simulated scenes, and overlays of hard sequences. The recording is TUM's freiburg1_rpy from frame 100 on. Without it, the hard
+# sequences alone.
+# usage: tools/setup/pictures.sh [FOLDER]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source tools/setup/packages.sh
 
-if [ $# -ne 1 ]; then
-  say "usage: tools/setup/pictures.sh FOLDER   (freiburg1_rpy from its frame 100 on, as a TUM folder)"
+if [ $# -gt 1 ]; then
+  say "usage: tools/setup/pictures.sh [FOLDER]   (freiburg1_rpy from its frame 100 on, as a TUM folder)"
   exit 2
 fi
-recording=$(realpath "$1")
-install_packages imagemagick chromium fonts-liberation
+install_packages imagemagick
 # What was built here, else what a package installed.
 plvo=build/release/bin/plvo
 if [ ! -x "$plvo" ]; then plvo=$(command -v plvo) || { say "build it first: tools/setup/demo.sh"; exit 1; }; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+
+# show WORDS FRAME...: the overlays of these frames of a sequence of tools/plvo/bench/studies/moving_world.py join the next picture.
+pictures=()
+show() {
+  local folder="$work/hard$1" frame
+  if [ ! -d "$folder" ]; then
+    # shellcheck disable=SC2086
+    "$plvo" simulate --scene corridor --size 320x240 --frames 80 --seed 5 $1 --quiet --out "$folder"
+    "$plvo" run "$folder" --quiet --overlay "$folder/overlay" 2> "$work/log"
+  fi
+  for frame in "${@:2}"; do pictures+=("$folder/overlay/$(printf %06d "$frame").png"); done
+}
+# save NAME: writes the picture: what was shown, side by side.
+save() {
+  convert "${pictures[@]}" -bordercolor white -border 1x0 +append -quality 75 "docs/images/$1.jpg"
+  pictures=()
+}
+
+show "--with board" 24 40 50; save moving_board
+show "--still --with person" 40; show "--with person" 40; show "--with person-ahead" 50; save moving_person
+show "--with bumper" 5 20; show "--with clock" 40; save moving_bumper
+show "--with dots" 6 7 40; save moving_dots
+show "--with mirror" 20 40 70; save moving_mirror
+show "--with comb" 20; show "--with frozen-depth" 26 30; save moving_depth
+show "--fps 5" 11; show "--covered 40:70" 45 70; save moving_views
+say "written: docs/images/moving_*.jpg"
+if [ $# -eq 0 ]; then exit; fi
+recording=$(realpath "$1")
+install_packages chromium fonts-liberation
 
 "$plvo" run "$recording" --camera-model tum-fr1 --quiet --overlay "$work/real" --report "$work/report.html"
 "$plvo" run --camera sim --scene corridor --light varying --seed 3 --frames 0:51 --quiet --overlay "$work/simulated"

@@ -15,7 +15,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 FR1, FR3, CORRIDORS = "fr1_rpy_150=tum-fr1", "fr3_notexture_120=tum-fr3", "corridor_constant corridor_varying"
 
-# page -> (title, command; names of sequences are those of folders in --data, {work} is a folder for what is measured)
+# page -> (title, command; names of sequences are those of folders in --data, {work} is a folder for what is measured, {bin} that of
+# the programs; a script is one of tools/plvo/bench/studies)
 # What PEERS names is a row of the page: without it the program was built without that peer.
 PEERS = {"recordings": "opencv-rgbd", "table2": "opencv-rgbd", "lighting": "opencv-rgbd", "detectors": "EDLines"}
 PAGES = {
@@ -26,6 +27,7 @@ PAGES = {
     "stages": ("Instructions and time of each stage", f"plvo_bench stages {FR1} --instructions --out {{work}}/stages"),
     "growth": ("How the cost of a frame grows", f"plvo_bench growth {FR1} {CORRIDORS} --out {{work}}/growth"),
     "detectors": ("Detectors beside those of OpenCV", f"plvo_bench detectors {FR1} {FR3} --out {{work}}/detectors"),
+    "moving_world": ("A world that moves, mirrors and lies", "moving_world.py {bin}/plvo {work}/moving_world"),
 }
 
 
@@ -54,19 +56,20 @@ def page(title, stamp, text):
 def measure(name, bench, data, work):
     """Runs the program and returns the page."""
     title, command = PAGES[name]
-    program, *words = command.format(work=work).split()
-    run = subprocess.run([str(bench / program), *words], cwd=data, stdout=subprocess.PIPE, text=True, check=True)
+    program, *words = command.format(work=work, bin=bench).split()
+    start = [sys.executable, str(ROOT / "tools/plvo/bench/studies" / program)] if program.endswith(".py") else [str(bench / program)]
+    run = subprocess.run([*start, *words], cwd=data, stdout=subprocess.PIPE, text=True, check=True)
     if (peer := PEERS.get(name, "")) not in run.stdout:
         sys.exit(f"update_results.py: {name}: {program} measured no {peer}: build it where OpenCV with contrib is installed "
                  "(sudo apt install libopencv-contrib-dev); the page stays as it was")
     stamp = {"commit": commit(), "date": datetime.date.today().isoformat(), "machine": machine(),
-             "command": f"`{command.format(work='results')}`", "written": "by `tools/plvo/bench/update_results.py`"}
+             "command": f"`{command.format(work='results', bin='bin')}`", "written": "by `tools/plvo/bench/update_results.py`"}
     return page(title, stamp, run.stdout)
 
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--bench", type=pathlib.Path, required=True, help="folder of plvo_bench")
+    parser.add_argument("--bench", type=pathlib.Path, required=True, help="folder of plvo_bench and plvo")
     parser.add_argument("--data", type=pathlib.Path, required=True, help="folder of the recorded sequences")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for what is measured")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/results", help="folder of the pages")
