@@ -11,8 +11,8 @@
 
 namespace plvo {
 
-// A velocity describes the motion over which it was measured, and the motion that follows, where each takes no
-// longer than this.
+// A velocity describes the motion over which it was measured, and the motion that follows, where each takes
+// no longer than this.
 inline constexpr std::int64_t kVelocityLasts_ns = 300'000'000;
 inline bool is_brief(std::int64_t interval_ns) { return interval_ns > 0 && interval_ns <= kVelocityLasts_ns; }
 
