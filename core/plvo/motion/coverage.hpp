@@ -21,6 +21,13 @@ namespace plvo {
 // matches: in four frames of five of recordings, and in each frame of three rendered rooms.
 inline constexpr double kWorldAtRest = 0.75;
 
+// Evidence does not tell which of two motions is the camera's if the one explains this share of what the
+// other does.
+inline constexpr double kComparableShare = 0.8;
+constexpr bool are_comparable(double evidence, double other) {
+  return evidence > kComparableShare * other && other > kComparableShare * evidence;
+}
+
 // The part of the scene that a feature stands for: its place in camera coordinates, z > 0, and the length of
 // its image in the plane z = 1 (0 for a point).
 struct Extent {

@@ -147,17 +147,23 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     status = approach_from(first, scale);
     if (status != StatusCode::kOk) return status;
   }
+  Vector6 apart = Vector6::Zero();
   if (const double covered = ransac.covered(); start.others && covered < kWorldAtRest) {
+    apart = boxminus(T, first);
     Se3 other = T;
-    estimate.is_other = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
-                        approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus() &&
-                        ransac.covered() > covered && ransac.consensus_fixes_motion(seed);
+    const bool found = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
+                       approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus();
+    const double covered_by_other = found ? ransac.covered() : 0;
+    apart = boxminus(T, first) - apart;
+    if (!are_comparable(covered, covered_by_other)) apart.setZero();
+    estimate.is_other = covered_by_other > covered && ransac.consensus_fixes_motion(seed);
     if (!estimate.is_other) {
       status = approach_from(first, scale);
       if (status != StatusCode::kOk) return status;
     }
   }
   estimate.explained = ransac.covered();
+  estimate.evidence = estimate.explained * ransac.evidence();
   status = refine(lm);
   if (status != StatusCode::kOk) return status;
   for (std::size_t i = 0; i < terms.size() && i < kInformedTerms; ++i)
@@ -170,6 +176,7 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   // kStalled counts as converged: no step lowers the cost any further.
   if (!converged(estimate.lm.status) && estimate.lm.status != LmStatus::kStalled)
     return StatusCode::kNotConverged;
+  estimate.contain(apart);
   estimate.T_current_reference = T;
   estimate.motions = motions_to_current(T, solving.references);
   return StatusCode::kOk;

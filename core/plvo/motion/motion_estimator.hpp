@@ -27,13 +27,14 @@ struct MotionEstimate {
   // the status; unless it is kOk, T is the identity and C_H is kUnknownVariance on the diagonal.
   StatusCode status = StatusCode::kTooFewFeatures;
   Se3 T_current_reference;  // X' = R X + t, equation (11)
-  // Share of the evidence of all matches (coverage.hpp) that the motion explains.
+  // Evidence (coverage.hpp) that the motion explains, in m, and its share of that of all matches.
+  double evidence = 0;
   double explained = 0;
   // Whether another motion than the first one with a consensus was taken, because it has more evidence.
   bool is_other = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
-  // Σ⁻¹ J)⁻¹; m², m rad, rad².
+  // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
   // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19), …; their
   // sum is C_H⁻¹ (26). Zero for an empty term.
@@ -44,6 +45,9 @@ struct MotionEstimate {
   std::array<int, kMaxConstraintSets> usable{};
   RansacSummary ransac;
   LmSummary lm;
+
+  // Of another motion that explains nearly as much (are_comparable). apart: ⊞-perturbation between the two.
+  void contain(const Vector6& apart) { C_H += apart.lazyProduct(apart.transpose()); }
 
   static constexpr double kUnknownVariance = 1e6;
 };

@@ -69,6 +69,8 @@ class Ransac {
   int inliers() const { return inliers_; }
   // Share of the evidence of all usable matches that the flagged inliers have.
   double covered() const;
+  // Of all matches, in m.
+  double evidence() const { return evidence_; }
 
   // Returns false if no minimal set drawn from the flagged inliers determines the motion, and no other term
   // does: all lines parallel, all points on a line. The covariance does not reveal this, since noise in the

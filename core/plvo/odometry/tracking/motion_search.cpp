@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/odometry/tracking/motion_search.hpp"
 
+#include <utility>
+
 #include "plvo/math/trigonometry.hpp"
 #include "plvo/motion/coverage.hpp"
 
@@ -23,11 +25,10 @@ constexpr int kMostRegistrations = 3;
 // registration finds the same features from both.
 constexpr double kSameStart = 4.0 / 525;
 // The estimates of two glances are different motions if they differ by more than this in the plane z = 1 (2
-// px of a Kinect). The one from the prediction is then preferred if it explains this share of what the other
-// one does: a camera goes on as it moved. If they are the same motion, the image is nearer to it than a
-// prediction that is 4 px off, unless the other estimate explains more by as much.
+// px of a Kinect). Of comparable ones that from the prediction is taken, because a camera goes on as it
+// moved. If they are the same motion, the image is nearer to it than a prediction that is 4 px off, unless
+// the other estimate explains more and they are not comparable.
 constexpr double kOtherMotion = 2.0 / 525;
-constexpr double kPreferredShare = 0.8;
 // When tracking fails, features are searched this far from their old positions, whatever the prediction.
 constexpr double kWideSearch_px = 120;
 
@@ -161,22 +162,27 @@ bool is_findable(const Reference& reference) {
     const Se3 by_prediction = latest.T_current_predicted * latest.pose.T_reference_base;
     Se3 start = aligned * latest.pose.T_reference_base;
     const bool compare = distance_between(aligned, latest.T_current_predicted, *latest.features) > kSameStart;
+    Se3 rival = start;
+    bool has_rival = false;
     if (compare) {
       const Explained by_image = glance(start);
       const bool image_leads = tracked.ok();
       if (image_leads) start = tracked.motion.T_current_reference;
       const Explained predicted = glance(by_prediction);
-      const Se3& motion = tracked.motion.T_current_reference;
       if (tracked.ok()) {
-        const bool is_other = !image_leads || is_other_motion(start, motion);
-        const double least = is_other ? kPreferredShare : 1 / kPreferredShare;
-        if (predicted.evidence > least * by_image.evidence) start = motion;
+        rival = tracked.motion.T_current_reference;
+        const bool is_other = !image_leads || is_other_motion(start, rival);
+        const double least = is_other ? kComparableShare : 1 / kComparableShare;
+        if (predicted.evidence > least * by_image.evidence) std::swap(start, rival);
+        has_rival = is_other && are_comparable(predicted.evidence, by_image.evidence);
       }
     }
     const Explained found = explain(start);
+    if (has_rival && tracked.ok() && is_other_motion(rival, tracked.motion.T_current_reference))
+      tracked.motion.contain(boxminus(rival, tracked.motion.T_current_reference));
     if (found.share >= kAcceptedShareByImage) {
       if (!compare && tracked.motion.explained < kWorldAtRest) {
-        explain(by_prediction, 1 / kPreferredShare);
+        explain(by_prediction, 1 / kComparableShare);
         take_best();
       }
       return;

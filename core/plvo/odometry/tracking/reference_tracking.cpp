@@ -302,24 +302,27 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
 }
 
 // Where the points that stayed at their pixels may mislead the estimate, looks for a motion of the other
-// matches. If there is one among them, those points travel with the camera.
+// matches. If there is one among them, those points travel with the camera. If it explains more than the
+// estimate does, it is taken, and the covariance contains both if they are comparable.
 [[gnu::noinline]] void ReferenceTracking::look_beside_stayed(std::span<const Reference> references,
                                                              const CurrentFrame& current,
                                                              const Association& association,
-                                                             const MotionStart& start,
-                                                             TrackedMotion& tracked) {
+                                                             MotionStart& start, TrackedMotion& tracked) {
   CarriedCells& carried = current.context.carried;
   const auto tracks = std::span(tracks_).first(references.size());
   const StayedMatches stayed = count_stayed(references, tracks, carried);
   if (!may_be_misled(stayed)) return;
   std::array<std::size_t, kMaxReferences> sizes{};
   for (std::size_t r = 0; r < references.size(); ++r) sizes[r] = leave_stayed_out(references[r], tracks[r]);
-  MotionStart anew = start;
-  anew.estimated = false;
-  estimate(association, current, anew, kFineSolve, tracked);
-  if (tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried)) {
+  const double evidence = tracked.motion.evidence;
+  const Se3 motion = tracked.motion.T_current_reference;
+  start.estimated = false;
+  estimate(association, current, start, kFineSolve, tracked);
+  const bool agree =
+      tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried);
+  if (agree) carried.convict(stayed.cells);
+  if (agree || kComparableShare * tracked.motion.evidence > evidence) {
     tracked.motion.is_other = true;
-    carried.convict(stayed.cells);
     return;
   }
   if (depth_contradicts(stayed)) {
@@ -327,8 +330,13 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     tracked.motion.status = StatusCode::kNoConsensus;
     return;
   }
+  Vector6 apart = Vector6::Zero();
+  if (tracked.ok() && are_comparable(evidence, tracked.motion.evidence))
+    apart = boxminus(tracked.motion.T_current_reference, motion);
   for (std::size_t r = 0; r < references.size(); ++r) tracks[r].points.matches.resize(sizes[r]);
+  start.estimated = true;
   estimate(association, current, start, kFineSolve, tracked);
+  if (tracked.ok()) tracked.motion.contain(apart);
 }
 
 void ReferenceTracking::glance(std::span<const Reference> references, const CurrentFrame& current,
@@ -351,7 +359,7 @@ void ReferenceTracking::refine(std::span<const Reference> references, const Curr
   const std::size_t latest = association.latest;
   const NuisanceParameters shared =
       nuisance_parameters(context.config.noise, association.features[latest].current_exposure, context.noise);
-  const MotionStart start{&T_current_base, shared, true};
+  MotionStart start{&T_current_base, shared, true};
   estimate(association, current, start, kFineSolve, tracked);
   if (tracked.ok()) look_beside_stayed(references, current, association, start, tracked);
   if (tracked.ok())

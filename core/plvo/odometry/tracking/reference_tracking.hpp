@@ -129,7 +129,7 @@ class ReferenceTracking {
   void associate_by_motion(std::span<const Reference> references, const CurrentFrame& current,
                            const Se3& T_current_base, Association& association, bool is_whole);
   void look_beside_stayed(std::span<const Reference> references, const CurrentFrame& current,
-                          const Association& association, const MotionStart& start, TrackedMotion& tracked);
+                          const Association& association, MotionStart& start, TrackedMotion& tracked);
   void estimate(const Association& association, const CurrentFrame& current, const MotionStart& start,
                 const LmOptions& lm, TrackedMotion& tracked);
 
