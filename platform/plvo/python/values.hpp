@@ -119,8 +119,8 @@ void restore(const py::handle& state, Value& value) {
 // A class of the package whose objects are values. They cannot be changed, so that they have a hash. A
 // pickled one is read by the version that wrote it.
 template <typename Value>
-py::class_<Value> bind_value(py::module_& module, const char* name) {
-  py::class_<Value> type = bind_class<Value>(module, name);
+Documented<Value> bind_value(py::module_& module, const char* name) {
+  Documented<Value> type = bind_class<Value>(module, name);
   type.def("__eq__",
            [](const Value& value, const py::object& other) -> py::object {
              if (!py::isinstance<Value>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);

@@ -32,7 +32,7 @@ class Camera:
     Parameters
     ----------
     width, height : int
-        Size of the images, px; 64 to 4096.
+        Size of the images, px. An Odometry takes 64 to 2047.
     fx, fy : float
         Focal lengths, px.
     cx, cy : float
@@ -461,7 +461,7 @@ class Imu:
     ValueError
         `R_camera_imu` has another shape.
     plvo.Error
-        "invalid_argument": a number is out of range, or `R_camera_imu` is no rotation.
+        "invalid_argument": a number is out of range, or `R_camera_imu` is neither a rotation nor a reflection.
     """
 
     def __init__(
@@ -595,7 +595,7 @@ class Odometry:
     TypeError, ValueError
         `mask` has another type or shape.
     plvo.Error
-        "invalid_argument": a limit is out of range, or does not fit the config; the message names it.
+        "invalid_argument": a limit is out of range or does not fit the config, or the mask has not the size of the camera's images.
     """
 
     def __init__(
@@ -872,7 +872,7 @@ class Sequence:
         Parameters
         ----------
         R_camera_imu : array_like or None
-            Turns the axes of the sensor into those of the camera, (3, 3). None: as the recording says, or the same.
+            Turns the axes of the sensor into those of the camera, (3, 3). None: they are the same.
 
         Returns
         -------
