@@ -15,7 +15,8 @@ foreach(way subdirectory fetch)
   file(WRITE ${folder}/CMakeLists.txt "${text}")
   file(COPY ${PAGE}/track_own_camera.cpp DESTINATION ${folder})
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${folder} -B ${folder}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 COMMAND_ERROR_IS_FATAL ANY)
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12
+    COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${CMAKE_COMMAND} --build ${folder}/build COMMAND_ERROR_IS_FATAL ANY)
   # Without a stream of frames it ends at once.
   execute_process(COMMAND ${folder}/build/track_own_camera INPUT_FILE /dev/null COMMAND_ERROR_IS_FATAL ANY)

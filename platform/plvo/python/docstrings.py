@@ -25,11 +25,11 @@ def docstrings(body, prefix=""):
 
 def main():
     stub, out = map(pathlib.Path, sys.argv[1:])
-    entries = "".join(f'{{"{name}", R"doc({text}\n)doc"}},\n' for name, text in docstrings(ast.parse(stub.read_text()).body))
+    entries = "".join(f'{{"{name}", R"doc({text}\n)doc"}},\n' for name, text in docstrings(ast.parse(stub.read_text("utf-8")).body))
     out.write_text(f"""#include "plvo/python/bindings.hpp"
 const std::map<std::string, const char*> plvo::python::kDocstrings{{
 {entries}}};
-""")
+""", "utf-8")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The members of an aggregate, in their order, without a list of them: a member that joins the struct cannot
-// be forgotten. C++20 tells how many members there are by how many initialisers are accepted, and structured
-// bindings name them. A count that is wrong does not compile.
+// The members of an aggregate in their order, without a list of their names: a member that joins the struct
+// cannot be forgotten. The number of members is the largest number of initialisers that the aggregate
+// accepts. Structured bindings then refer to them; with a wrong number they do not compile.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct AnyMember {
 };
 
 template <typename Aggregate, typename... Given>
-consteval std::size_t member_count() {
+constexpr std::size_t member_count() {
   if constexpr (requires { Aggregate{Given{}..., AnyMember{}}; })
     return member_count<Aggregate, Given..., AnyMember>();
   else
