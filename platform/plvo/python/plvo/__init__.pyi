@@ -491,7 +491,7 @@ class Imu:
         Returns
         -------
         bool
-            False if it was refused: not later than the sample before, or not finite.
+            False if the sample was refused: it is not later than the one before, or not finite.
 
         Raises
         ------
@@ -511,7 +511,7 @@ class Imu:
         Returns
         -------
         bool
-            False if it was refused: not later than the sample before, or not finite.
+            False if the sample was refused: it is not later than the one before, or not finite.
 
         Raises
         ------
@@ -561,7 +561,7 @@ class RecordedImu:
         Returns
         -------
         MotionPrior
-            As of Imu.prior.
+            As from Imu.prior.
         """
     def learn(self, result: Result) -> None:
         """Corrects the gyro's offset by what the odometry measured in the frame of the last prior.
@@ -578,7 +578,7 @@ class Odometry:
     Parameters
     ----------
     camera : Camera
-        Of the images.
+        The camera of the images.
     config : Config or None
         None: Config().
     keypoints, segments, references, line_bands, kept_keyframes, surfaces : int or None
@@ -656,17 +656,17 @@ class Odometry:
             Another thread is using it.
         """
     def frame_took(self, ns: int) -> None:
-        """Says how long the last track took, for Config's budget. The same words give the same bits.
+        """Says how long the last track took, for the budget of Config. The same times give the same bits.
 
         Parameters
         ----------
         ns : int
-            By any clock, ns.
+            The time by any clock, ns.
         """
     def reset(self) -> None:
         """Forgets everything: the next usable frame starts a new world."""
     def set_pose(self, T_world_camera: _Array, covariance: _Array | None = None) -> None:
-        """Says where the last frame that has a pose is, or before the first one, where that will be.
+        """Sets the pose of the last frame that has one, or, before the first frame, that of the first usable one.
 
         Parameters
         ----------
@@ -757,7 +757,7 @@ class Map:
         self, camera: Camera, config: Config | None = None, *, keyframes: int = 256, keypoints: int = 200, segments: int = 64
     ) -> None: ...
     def update(self, odometry: Odometry, result: Result) -> MapResult:
-        """Takes a frame, right after Odometry.track. Call it for each frame.
+        """Adds a frame. Call it right after each Odometry.track.
 
         Parameters
         ----------
@@ -772,7 +772,7 @@ class Map:
             Where the camera is in the map.
         """
     def settle(self) -> None:
-        """Does all the work that waits, for the end of a run."""
+        """Finishes all work that is pending. Call it at the end of a run."""
     def save(self, path: _Path) -> None:
         """Settles the map, then writes it. A file that was there stays until the new one is whole.
 
@@ -847,7 +847,7 @@ class Sequence:
     camera : Camera, str, bytes, os.PathLike or None
         A camera, the name of one, or a calibration file. None: that of the recording.
     topics : dict or None
-        Of a recording of ROS with several topics that could be meant: names for "colour", "depth", "camera_info", "gyro" and
+        For a recording of ROS with several topics that could be meant: the topics of "colour", "depth", "camera_info", "gyro" and
         "accelerometer".
 
     Raises
@@ -967,21 +967,21 @@ def run(
     Parameters
     ----------
     recording : str, bytes or os.PathLike
-        As of Sequence.
+        See Sequence.
     camera : Camera, str, bytes, os.PathLike or None
-        As of Sequence.
+        See Sequence.
     config : Config or None
         None: Config(). Its budget is held against the processor time of this thread; results then depend on the machine.
     imu : bool
         Uses the gyro and the accelerometer of the recording.
     R_camera_imu : array_like or None
-        As of Sequence.imu.
+        See Sequence.imu.
     cores : int
-        As of Odometry.
+        See Odometry.
     topics : dict or None
-        As of Sequence.
+        See Sequence.
     mask : ndarray or None
-        As of Odometry.
+        See Odometry.
 
     Returns
     -------
@@ -991,7 +991,7 @@ def run(
     Raises
     ------
     plvo.Error
-        As of Sequence and Odometry, at the call; for a recording that breaks off, from the iterator.
+        Those of Sequence and Odometry, at the call. An error while reading comes from the iterator.
     """
 
 def evaluate(
@@ -1021,11 +1021,11 @@ def evaluate(
     offset_s : float
         Added to the stamps of the estimate, s.
     rpe_deltas : iterable of str
-        Over what the relative errors are: frames, seconds or metres, as "1f", "0.5s", "2m".
+        The lengths over which relative errors are computed, in frames, seconds or metres: "1f", "0.5s", "2m".
     truth_sigma : (float, float)
-        How far a true pose is off, in each axis, m and rad; joins the covariances in the NEES.
+        Standard deviation of a true pose along each axis, m and rad. The NEES adds it to the covariances.
     fit_truth : bool
-        Compares with the truth turned, and its clock shifted, as explains the estimate best.
+        Rotates the truth and shifts its clock so that it fits the estimate best, before it compares them.
 
     Returns
     -------
