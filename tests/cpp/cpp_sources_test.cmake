@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The project of docs/user/cpp.md with the sources of plvo inside: once with the page's add_subdirectory, once with its FetchContent.
-# Both are configured: each target that is linked must exist. architecture_embedding compiles the core in another project.
+# Both are compiled and linked, in a unity build without optimisation, which takes the least time.
 # cmake -DPLVO=<source> -DPAGE=<folder with the page's programs> -DWORK=<folder> -DGENERATOR=<generator> -DCOMPILER=<c++> -P …
 file(READ ${PAGE}/CMakeLists.txt project)
 foreach(way subdirectory fetch)
@@ -15,7 +15,11 @@ foreach(way subdirectory fetch)
   file(WRITE ${folder}/CMakeLists.txt "${text}")
   file(COPY ${PAGE}/track_own_camera.cpp DESTINATION ${folder})
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${folder} -B ${folder}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
-    -DCMAKE_BUILD_TYPE=Debug COMMAND_ERROR_IS_FATAL ANY)
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12
+    COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${folder}/build COMMAND_ERROR_IS_FATAL ANY)
+  # Without a stream of frames it ends at once.
+  execute_process(COMMAND ${folder}/build/track_own_camera INPUT_FILE /dev/null COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
 if(EXISTS ${WORK}/fetch/build/_deps/plvo-build/tests OR EXISTS ${WORK}/fetch/build/_deps/plvo-build/tools)
   message(FATAL_ERROR "more than the core was taken in")

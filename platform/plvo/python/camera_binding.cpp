@@ -8,6 +8,7 @@
 #include "plvo/camera/camera_info.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/values.hpp"
 #include "plvo/replay/calibration/calibration.hpp"
 
 namespace plvo::python {
@@ -71,7 +72,7 @@ std::string describe_camera(const Calibration& c) {
 
 void bind_camera(py::module_& module) {
   const CameraModel model;
-  bind_class<Calibration>(module, "Camera")
+  bind_value<Calibration>(module, "Camera")
       .def(py::init(&make_camera), "width"_a, "height"_a, "fx"_a, "fy"_a, "cx"_a, "cy"_a,
            "distortion"_a = py::tuple(), "depth_units_per_metre"_a = 1000.0, "readout_s"_a = model.readout_s,
            "depth_delay_s"_a = py::none(), "depth_readout_s"_a = model.depth_timing.readout_s,
@@ -99,6 +100,13 @@ void bind_camera(py::module_& module) {
       .def_property_readonly("distortion_model",
                              [](const Calibration& c) { return lens_model_name(c.camera.distortion); })
       .def_property_readonly("readout_s", [](const Calibration& c) { return c.camera.readout_s; })
+      .def_property_readonly("depth_delay_s",
+                             [](const Calibration& c) -> py::object {
+                               const DepthTiming& timing = c.camera.depth_timing;
+                               return timing.known ? py::object(py::float_(timing.delay_s)) : py::none();
+                             })
+      .def_property_readonly("depth_readout_s",
+                             [](const Calibration& c) { return c.camera.depth_timing.readout_s; })
       .def_property_readonly("stamp_sigma_s", [](const Calibration& c) { return c.camera.stamp_sigma_s; })
       .def_readonly("depth_units_per_metre", &Calibration::depth_units_per_metre);
 }

@@ -14,9 +14,8 @@ namespace plvo::python {
 namespace py = pybind11;
 
 // In the module that has the type.
-inline void make_error_type(py::module_& module) {
-  PyObject* type = PyErr_NewExceptionWithDoc(
-      "plvo.Error", "What went wrong, and what to do; `code` names it.", PyExc_Exception, nullptr);
+inline void make_error_type(py::module_& module, const char* docstring) {
+  PyObject* type = PyErr_NewExceptionWithDoc("plvo.Error", docstring, PyExc_Exception, nullptr);
   if (type == nullptr) throw py::error_already_set();
   module.add_object("Error", py::reinterpret_steal<py::object>(type));
 }

@@ -12,6 +12,7 @@
 #include "plvo/python/one_thread.hpp"
 #include "plvo/python/settings.hpp"
 #include "plvo/python/tracker.hpp"
+#include "plvo/python/values.hpp"
 
 namespace plvo::python {
 
@@ -73,7 +74,7 @@ class OwnedMap {
 }  // namespace
 
 void bind_map(py::module_& module) {
-  bind_class<MapResult>(module, "MapResult")
+  bind_value<MapResult>(module, "MapResult")
       .def_readonly("located", &MapResult::located)
       .def_readonly("recognised", &MapResult::recognised)
       .def_readonly("keyframe", &MapResult::keyframe)
@@ -89,7 +90,8 @@ void bind_map(py::module_& module) {
       .def_readonly("removed", &MapResult::removed)
       .def_readonly("removed_into", &MapResult::removed_into)
       .def_property_readonly("T_into_removed",
-                             [](const MapResult& r) { return matrix_4x4(r.T_into_removed); });
+                             [](const MapResult& r) { return matrix_4x4(r.T_into_removed); })
+      .def("__repr__", shown_by({"located", "recognised", "keyframe", "removed"}));
   const MapLimits defaults;
   bind_class<OwnedMap>(module, "Map")
       .def(py::init([](const Calibration& camera, const py::object& config, int keyframes, int keypoints,

@@ -11,6 +11,7 @@
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/values.hpp"
 #include "plvo/replay/recorded_imu.hpp"
 
 namespace plvo::python {
@@ -89,11 +90,19 @@ const Part* pointer(const std::optional<Part>& part) {
   return part ? &*part : nullptr;
 }
 
+std::string describe_prior(const MotionPrior& prior) {
+  std::string parts;
+  if (prior.rotation) parts += " rotation";
+  if (prior.translation) parts += " translation";
+  if (prior.gravity) parts += " gravity";
+  return "<plvo.MotionPrior" + (parts.empty() ? " without a part" : " of" + parts) + ">";
+}
+
 }  // namespace
 
 void bind_prior(py::module_& module) {
   using Prior = const MotionPrior&;
-  bind_class<MotionPrior>(module, "MotionPrior")
+  bind_value<MotionPrior>(module, "MotionPrior")
       .def(py::init(&make_prior), py::kw_only(), "rotation"_a = py::none(), "translation"_a = py::none(),
            "gravity"_a = py::none(), "gravity_offset_sigma"_a = 0.0)
       .def_static("of_wheels", &prior_of_wheels, "steps"_a, "T_base_camera"_a, "error_s"_a = 0.0)
@@ -111,9 +120,12 @@ void bind_prior(py::module_& module) {
           [](Prior p) { return copy_or_none(pointer(p.translation), &TranslationPrior::covariance); })
       .def_property_readonly("down",
                              [](Prior p) { return copy_or_none(pointer(p.gravity), &GravityPrior::down); })
-      .def_property_readonly("gravity_covariance", [](Prior p) {
-        return copy_or_none(pointer(p.gravity), &GravityPrior::covariance);
-      });
+      .def_property_readonly(
+          "gravity_covariance",
+          [](Prior p) { return copy_or_none(pointer(p.gravity), &GravityPrior::covariance); })
+      .def_property_readonly("gravity_offset_sigma",
+                             [](Prior p) { return p.gravity ? p.gravity->offset_sigma : 0.0; })
+      .def("__repr__", &describe_prior);
 
   bind_class<Imu>(module, "Imu")
       .def(py::init([](const py::object& R_camera_imu, double gyro_noise, double gyro_offset_sigma,

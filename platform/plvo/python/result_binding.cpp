@@ -6,6 +6,7 @@
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/python/arrays.hpp"
 #include "plvo/python/bindings.hpp"
+#include "plvo/python/values.hpp"
 
 namespace plvo::python {
 
@@ -24,16 +25,6 @@ std::string describe(const TrackResult& result) {
   return text + ">";
 }
 
-py::tuple values_of(const FeatureCounts& c) {
-  return py::make_tuple(c.detected, c.dropped, c.with_depth, c.matched, c.inliers);
-}
-
-std::string describe_counts(const FeatureCounts& c) {
-  return "<plvo.Counts detected=" + std::to_string(c.detected) + " dropped=" + std::to_string(c.dropped) +
-         " with_depth=" + std::to_string(c.with_depth) + " matched=" + std::to_string(c.matched) +
-         " inliers=" + std::to_string(c.inliers) + ">";
-}
-
 const TrackResult& result_of(const py::object& self) {
   return argument<const TrackResult&>(self, "self", "a plvo.Result");
 }
@@ -41,35 +32,19 @@ const TrackResult& result_of(const py::object& self) {
 }  // namespace
 
 void bind_result(py::module_& module) {
-  bind_class<FeatureCounts>(module, "Counts")
+  bind_value<FeatureCounts>(module, "Counts")
       .def_readonly("detected", &FeatureCounts::detected)
       .def_readonly("dropped", &FeatureCounts::dropped)
       .def_readonly("with_depth", &FeatureCounts::with_depth)
       .def_readonly("matched", &FeatureCounts::matched)
       .def_readonly("inliers", &FeatureCounts::inliers)
-      .def("__repr__", &describe_counts)
-      .def("__eq__",
-           [](const FeatureCounts& counts, const py::object& other) -> py::object {
-             if (!py::isinstance<FeatureCounts>(other))
-               return py::reinterpret_borrow<py::object>(Py_NotImplemented);
-             const auto& o = argument<const FeatureCounts&>(other, "other", "a plvo.Counts");
-             return py::bool_(values_of(counts).equal(values_of(o)));
-           })
-      .def("__hash__", [](const FeatureCounts& counts) { return py::hash(values_of(counts)); })
-      .def(py::pickle(&values_of, [](const py::tuple& values) {
-        if (values.size() != 5) throw py::value_error("these are no counts of plvo");
-        FeatureCounts counts;
-        int* const members[] = {&counts.detected, &counts.dropped, &counts.with_depth, &counts.matched,
-                                &counts.inliers};
-        for (std::size_t i = 0; i < 5; ++i) *members[i] = values[i].cast<int>();
-        return counts;
-      }));
+      .def("__repr__", shown_by({"detected", "dropped", "with_depth", "matched", "inliers"}));
 
   const auto covariance = [](Matrix6 TrackResult::*member) {
     return py::cpp_function(
         [member](const py::object& self) { return matrix_view<6, 6>(result_of(self).*member, self); });
   };
-  bind_class<TrackResult>(module, "Result")
+  bind_value<TrackResult>(module, "Result")
       .def_property_readonly("state", [](const TrackResult& r) { return to_string(r.state); })
       .def_property_readonly("has_pose", &has_pose)
       .def_property_readonly("code", [](const TrackResult& r) { return to_string(r.status.code()); })

@@ -15,12 +15,17 @@ __all__ = [
 ]
 
 
+def _documented(thing):
+    """Gives a function, or a class and its members, the docstrings of __init__.pyi."""
+    thing.__doc__ = _plvo._docstring(thing.__name__)
+    for name, member in vars(thing).items() if isinstance(thing, type) else ():
+        if not name.startswith("_"):
+            member.__doc__ = _plvo._docstring(f"{thing.__name__}.{name}")
+    return thing
+
+
+@_documented
 def run(recording, camera=None, config=None, *, imu=False, R_camera_imu=None, cores=1, topics=None, mask=None):
-    """Tracks a recorded folder or recording of ROS: a Result for each frame. A missing file is an error of this call. imu: with the folder's gyroscope.txt and
-    accelerometer.txt, or the bag's sensor_msgs/Imu, turned into the camera's axes by R_camera_imu. topics: of a bag, where
-    plvo cannot choose by itself; a dictionary with colour, depth, camera_info, gyro or accelerometer. cores: 2 for a second
-    thread; the same bits. mask: False or 0 where a pixel must not be used, as in Odometry. A budget of config's is held against the processor time of this thread; results then depend on
-    the machine."""
     sequence = Sequence(recording, camera, topics=topics)
     odometry = Odometry(sequence.camera, config, cores=cores, mask=mask)
     readings = sequence.imu(R_camera_imu=R_camera_imu) if imu else None
@@ -37,12 +42,9 @@ def _results(sequence, odometry, readings):
         yield result
 
 
+@_documented
 def evaluate(truth, estimate, *, sampling="interpolated", max_difference_s=0.02, offset_s=0.0, rpe_deltas=("1f", "1s"),
              truth_sigma=(0.0, 0.0), fit_truth=False):
-    """Errors of an estimate, which is a file or an iterable of Result, against the true poses, which are a file, or those of
-    a recorded folder or recording of ROS (FILE-groundtruth.txt beside FILE.bag, or its topic of poses): what `plvo eval
-    --json` says, as a dictionary. truth_sigma: how far a true pose is off, in each axis (m, rad); joins the covariances in
-    the NEES. fit_truth: compare with the truth turned and its clock shifted as explains the estimate best."""
     if isinstance(estimate, (str, bytes, _os.PathLike)):
         estimate = _os.fsencode(estimate)
     text = _evaluation.evaluate(truth, estimate, sampling, max_difference_s, offset_s, list(rpe_deltas),
@@ -57,10 +59,8 @@ def _checked(results):
         yield result
 
 
+@_documented
 class Trajectory:
-    """The poses of results, lost frames left out: stamps_ns (N,) int64, positions (N, 3) in metres, quaternions (N, 4) with w
-    last."""
-
     def __init__(self, results):
         posed = [result for result in _checked(results) if result.has_pose]
         self._stamps_ns = _np.array([r.stamp_ns for r in posed], dtype=_np.int64)
@@ -86,7 +86,6 @@ class Trajectory:
     __hash__ = None
 
     def save(self, path):
-        """Writes the form of TUM, as `plvo run --out`: stamp tx ty tz qx qy qz qw, one pose a line."""
         with open(path, "w", encoding="ascii") as file:
             file.write("# timestamp tx ty tz qx qy qz qw\n")
             for stamp, p, q in zip(self.stamps_ns.tolist(), self.positions, self.quaternions):
@@ -94,9 +93,8 @@ class Trajectory:
                 file.write(f"{seconds}.{rest:09d} " + " ".join(f"{value:.9f}" for value in (*p, *q)) + "\n")
 
 
+@_documented
 def to_dataframe(results):
-    """A pandas.DataFrame with a row for each result: state, message, stamp_ns, tx … qw (NaN without a pose), the standard
-    deviations sigma_x … sigma_rz (m, rad), and the counts of points and lines. ImportError without pandas."""
     try:
         import pandas
     except ImportError as error:
