@@ -320,14 +320,14 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   estimate(association, current, start, kFineSolve, tracked);
   const bool agree =
       tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried);
-  if (agree) carried.convict(stayed.cells);
-  if (agree || kComparableShare * tracked.motion.evidence > evidence) {
-    tracked.motion.is_other = true;
+  const bool contradicted = !agree && depth_contradicts(stayed);
+  if (agree || contradicted) carried.convict(stayed.cells);
+  if (contradicted) {
+    tracked.motion.status = StatusCode::kNoConsensus;
     return;
   }
-  if (depth_contradicts(stayed)) {
-    carried.convict(stayed.cells);
-    tracked.motion.status = StatusCode::kNoConsensus;
+  if (agree || kComparableShare * tracked.motion.evidence > evidence) {
+    tracked.motion.is_other = true;
     return;
   }
   Vector6 apart = Vector6::Zero();
