@@ -2,8 +2,12 @@
 // Tests `plvo live` without a sensor: the simulated camera in its place, at its own pace.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
 
+#include "plvo/math/se3.hpp"
 #include "plvo_command.hpp"
 
 namespace plvo {
@@ -67,6 +71,61 @@ TEST_F(CliLiveSim, TheMapIsThatOfARun) {
   const nlohmann::json next_map = nlohmann::json::parse(read_file(path("next.json"))).at("map");
   EXPECT_EQ(next_map.at("loaded"), live_map.at("keyframes"));
   EXPECT_TRUE(next_map.at("located"));
+}
+
+// The pose in the map, by the stream alone.
+class CliLiveMapStream : public CliLiveSim {
+ protected:
+  static std::vector<nlohmann::json> stream_of(const std::string& more) {
+    const CommandResult live = plvo("live --pace fast --quiet --stream -" + more);
+    EXPECT_EQ(live.exit_code, 0) << live.err;
+    std::vector<nlohmann::json> lines;
+    std::istringstream text(live.out);
+    for (std::string line; std::getline(text, line);)
+      if (nlohmann::json json = nlohmann::json::parse(line); json.contains("stamp_ns")) lines.push_back(json);
+    return lines;
+  }
+  static Se3 pose_of(const nlohmann::json& json) {
+    const auto t = json["position"].get<std::array<double, 3>>();
+    const auto q = json["orientation_xyzw"].get<std::array<double, 4>>();
+    return {to_rotation({q[0], q[1], q[2], q[3]}), {t[0], t[1], t[2]}};
+  }
+};
+
+TEST_F(CliLiveMapStream, TellsWhereTheCameraIsInTheMap) {
+  const std::string walk = " --camera sim --scene desk --size 160x120 --frames 150";
+  ASSERT_EQ(plvo("run --quiet --map 32" + walk + " --map-out " + path("desk.map")).exit_code, 0);
+  const std::string map = " --map 32 --map-in " + path("desk.map");
+  const std::string mount = " --base-camera 0.2 0.1 0.5 -0.5 0.5 -0.5 0.5";
+  const Se3 T_base_camera = {to_rotation({-0.5, 0.5, -0.5, 0.5}), {0.2, 0.1, 0.5}};
+  const auto without = stream_of(walk), of_camera = stream_of(walk + map),
+             of_base = stream_of(walk + map + mount);
+  ASSERT_EQ(without.size(), 150U);
+  ASSERT_EQ(of_camera.size(), 150U);
+  ASSERT_EQ(of_base.size(), 150U);
+  int located = 0;
+  for (std::size_t i = 0; i < 150; ++i) {
+    EXPECT_FALSE(without[i].contains("map"));
+    nlohmann::json rest = of_camera[i];
+    rest.erase("map");
+    EXPECT_EQ(rest, without[i]) << "the map changes no other member";
+    const nlohmann::json& in_map = of_camera[i]["map"];
+    EXPECT_EQ(in_map["located"], of_base[i]["map"]["located"]);
+    if (!in_map["located"].get<bool>()) {
+      EXPECT_TRUE(in_map["position"].is_null());
+      EXPECT_EQ(located, 0) << "it stays located";
+      continue;
+    }
+    ++located;
+    // The same walk again: the map's frame is the world.
+    EXPECT_LT(pose_of(in_map).t.norm(), 0.03) << i;
+    EXPECT_LT(in_map["covariance"][0].get<double>(), 1e-3);
+    const Se3 T_map_camera = pose_of(in_map) * pose_of(of_camera[i]);
+    const Se3 T_map_base = pose_of(of_base[i]["map"]) * pose_of(of_base[i]);
+    EXPECT_LT(boxminus(T_map_base, T_base_camera * T_map_camera * T_base_camera.inverse()).norm(), 1e-6) << i;
+  }
+  EXPECT_GT(located, 100);
+  EXPECT_GT(of_camera.back()["map"]["loops"], 0);
 }
 
 TEST_F(CliLiveSim, WhatDoesNotApplyIsRefused) {

@@ -136,7 +136,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;
   summary_.add(record_, latency_ms_);
-  outputs_.write(record_, frame, block_.odometry(), view_status());
+  outputs_.write(record_, frame, block_.odometry(), map_, view_status());
   ++record_.number;
   if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
 }
@@ -158,6 +158,7 @@ ViewStatus LiveSession::view_status() const {
   status.frames = summary_.frames();
   status.lost = summary_.lost();
   status.dropped = ring_->counters().dropped;
+  if (map_.latest()) status.map = {map_.latest()->located, map_.map().counts().loops};
   return status;
 }
 
@@ -166,6 +167,8 @@ void LiveSession::show_line(const ViewStatus& status, const TrackResult& result)
       "{}  camera {:.1f} Hz  odometry {:.1f} Hz  latency {:.0f} ms  points {}  lines {}  lost {}  dropped {}",
       summary_.frames() > 0 ? to_string(result.state) : "waiting", status.camera_hz, status.odometry_hz,
       status.latency_ms, result.points.inliers, result.lines.inliers, status.lost, status.dropped);
+  if (status.map)
+    line += fmt::format("  {}, loops {}", status.map->located ? "located" : "not located", status.map->loops);
   if (recording_.wanted()) line += fmt::format("  recorded {}", recording_.frames());
   if (status.silent) line += "  " + status.camera;
   console_.show_line(line);

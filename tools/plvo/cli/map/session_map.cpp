@@ -118,6 +118,15 @@ void SessionMap::add(const Odometry& odometry, const FrameRecord& record) {
   if (result.keyframe != 0) anchors_.add_frame(stamp_ns, result.keyframe, result.T_keyframe_camera);
 }
 
+void SessionMap::way_in_world(std::vector<Vector3>& positions) const {
+  positions.clear();
+  if (!latest_ || !latest_->located) return;
+  const Se3 T_world_map = latest_->T_map_world.inverse();
+  for (std::size_t k = 0; k < map_.graph().size(); ++k)
+    if (const std::uint16_t slot = map_.graph().slot_at(k); map_.graph().is_placed(slot))
+      positions.push_back(T_world_map * map_.graph().node(slot).T_map_keyframe.t);
+}
+
 void SessionMap::finish() {
   if (!latest_ || map_.graph().size() == 0) return;
   if (map_.settle()) ++recognised_;

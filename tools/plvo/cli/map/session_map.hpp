@@ -40,6 +40,9 @@ class SessionMap {
   // Of the latest frame; nothing without a map.
   const std::optional<MapResult>& latest() const { return latest_; }
   const Map& map() const { return map_; }
+  // Positions of the keyframes as the map corrects them, in the world of the odometry, where the camera has
+  // its pose; none while the camera is not located.
+  void way_in_world(std::vector<Vector3>& positions) const;
 
   // After the last frame.
   void finish();
