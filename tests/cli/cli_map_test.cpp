@@ -93,6 +93,10 @@ TEST_F(CliMap, RefusesFilesOfAMapWithoutOneAndSizesThatItCannotHave) {
   expect_refused(run("--map-trajectory " + file("map.txt")), 2, "add --map N");
   expect_refused(run("--map 7"), 2, "8");
   expect_refused(run("--map 513"), 2, "512");
+  EXPECT_EQ(test::run_command("TMPDIR=" + file("none") + " " + test::kPlvo + " run --camera sim --frames 2 " +
+                              "--map 8 --map-trajectory " + file("map.txt"))
+                .exit_code,
+            1);
   expect_refused(run("--map 8 --out " + file("same.txt") + " --map-trajectory " + file("same.txt")), 2,
                  "--map-trajectory");
 }

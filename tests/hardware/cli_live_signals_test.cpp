@@ -12,8 +12,8 @@ class CliLiveSignals : public LiveCommand {
  protected:
   void start_live(const std::string& before = "") {
     start("live --every-frame --out " + path("t.txt") + " --stats " + path("s.csv") + " --covariance " +
-              path("c.txt") + " --json " + path("j.json") + " --record " + path("walk") +
-              " --stream unix:" + path("poses"),
+              path("c.txt") + " --json " + path("j.json") + " --record " + path("walk") + " --stream unix:" +
+              path("poses") + " --map 32 --map-out " + path("m.map") + " --map-trajectory " + path("m.txt"),
           "", before);
     EXPECT_TRUE(frames_reach(10)) << err();
   }
@@ -29,7 +29,11 @@ class CliLiveSignals : public LiveCommand {
     EXPECT_EQ(lines_in(read_file(path("s.csv"))), frames + 1);
     EXPECT_EQ(lines_in(read_file(path("t.txt"))), poses + 1);
     EXPECT_EQ(lines_in(read_file(path("c.txt"))), poses + 1);
-    for (const char* file : {"s.csv", "t.txt", "c.txt"})
+    EXPECT_EQ(lines_in(read_file(path("m.txt"))), poses + 1);
+    EXPECT_EQ(plvo("map " + path("m.map") + " --json " + path("map.json")).exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(read_file(path("map.json")))["keyframes"], json["map"]["keyframes"]);
+    EXPECT_FALSE(std::filesystem::exists(path("m.map.part")));
+    for (const char* file : {"s.csv", "t.txt", "c.txt", "m.txt"})
       EXPECT_EQ(read_file(path(file)).back(), '\n') << file;
     EXPECT_FALSE(std::filesystem::exists(path("poses"))) << "the socket is tidied away";
     expect_whole_recording(json["recording"]["frames"]);

@@ -146,6 +146,9 @@ def look(browser, address, control, screenshots):
     wait_for(lambda: browser.value(page, "window.plvo.last.state") == "tracking", "the page never says that it tracks")
     wait_for(lambda: browser.value(page, "window.plvo.last.viewers") == VIEWERS, "not every viewer is counted")
     check(browser.value(page, "path.points.length") >= 9, "no trajectory is drawn")
+    wait_for(lambda: browser.value(page, "window.plvo.last.map.way.length") >= 3, "no keyframe of the map is drawn")
+    numbers = browser.value(page, "document.getElementById('numbers').textContent")
+    check("maplocated, " in numbers and " loops closed" in numbers, f"the page does not tell of the map: {numbers}")
     check(last["points"] and last["segments"], "no features are drawn")
     turned = browser.value(page, """(() => { const before = space.toDataURL();
         eye.touched = true; eye.yaw += 1; drawSpace(); return space.toDataURL() !== before; })()""")
@@ -211,7 +214,7 @@ def main():
                            PLVO_VIRTUAL_START="to_and_fro 1")
         with open(log, "w", encoding="utf-8") as errors:
             live = subprocess.Popen([plvo, "live", "--mode", "320x240", "--calibration", os.path.join(walk, "calibration.txt"),
-                                     "--view", "0", "--json", summary], env=environment, stdout=subprocess.DEVNULL, stderr=errors)
+                                     "--view", "0", "--json", summary, "--map", "32"], env=environment, stdout=subprocess.DEVNULL, stderr=errors)
         browser = Browser(program, folder)
         try:
             found = lambda: re.search(r"http://[\d.]+:\d+/", open(log, encoding="utf-8").read())

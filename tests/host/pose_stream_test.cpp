@@ -102,6 +102,25 @@ TEST(PoseJson, SaysWhoseFramesTheyAre) {
   EXPECT_EQ(json["child_frame_id"], "base_link");
 }
 
+TEST(PoseJson, SaysWhatTheMapKnows) {
+  EXPECT_FALSE(nlohmann::json::parse(pose_json(sample(1))).contains("map"));
+  MapPose map;
+  map.T_map_world = {rotation_exp(Vector3(0, 1, 0)), Vector3(3, 4, 5)};
+  map.pose_covariance = Matrix6::Identity() * 1e-4;
+  map.loops = 7;
+  const nlohmann::json lost = nlohmann::json::parse(pose_json(sample(1), kCameraFrames, &map))["map"];
+  EXPECT_EQ(lost["located"], false);
+  EXPECT_EQ(lost["loops"], 7);
+  for (const char* member : {"position", "orientation_xyzw", "covariance"})
+    EXPECT_TRUE(lost[member].is_null()) << member;
+  map.located = true;
+  const nlohmann::json found = nlohmann::json::parse(pose_json(sample(1), kCameraFrames, &map))["map"];
+  EXPECT_EQ(found["located"], true);
+  EXPECT_EQ(found["position"], nlohmann::json({3.0, 4.0, 5.0}));
+  EXPECT_NEAR(found["orientation_xyzw"][1].get<double>(), std::sin(0.5), 1e-8);
+  EXPECT_NEAR(found["covariance"][7].get<double>(), 1e-4, 1e-12);
+}
+
 TEST(PoseJson, NumbersThatJsonDoesNotKnowBecomeNull) {
   TrackResult result = sample(1);
   result.T_world_camera.t.x() = std::numeric_limits<double>::quiet_NaN();

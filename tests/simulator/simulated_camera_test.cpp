@@ -38,6 +38,27 @@ TEST(SimulatedCamera, AnotherSeedIsAnotherRoomAndAnotherWalk) {
   EXPECT_GT((a[1].T_world_camera.t - b[1].T_world_camera.t).norm(), 1e-4);
 }
 
+// What is printed, grown and worn differs, and nothing else.
+TEST(SimulatedCamera, AnotherStoreyIsTheSameRoomWithOtherTextures) {
+  for (const SceneName scene : {SceneName::kCorridor, SceneName::kDesk, SceneName::kHall}) {
+    SimulatorOptions options = test::small_options(scene);
+    options.noise = false;
+    const std::vector<test::Shot> ground = test::shoot(options);
+    options.storey = 1;
+    const std::vector<test::Shot> upper = test::shoot(options);
+    ASSERT_EQ(ground.size(), upper.size());
+    EXPECT_EQ(ground[3].T_world_camera.t, upper[3].T_world_camera.t);
+    EXPECT_EQ(ground[3].exact, upper[3].exact);
+    EXPECT_NE(ground[3].colour, upper[3].colour);
+    double difference = 0;
+    for (std::size_t i = 0; i < ground[3].exact.size(); ++i)
+      difference +=
+          std::abs(ground[3].gray(i) - upper[3].gray(i)) / static_cast<double>(ground[3].exact.size());
+    EXPECT_GT(difference, 0.5) << to_string(scene);
+    EXPECT_LT(difference, 20) << to_string(scene);
+  }
+}
+
 TEST(SimulatedCamera, StampsIncreaseAndTheStreamEnds) {
   SimulatorOptions options = small_options(SceneName::kBare);
   options.fps = 29.97;

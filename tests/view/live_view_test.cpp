@@ -122,6 +122,24 @@ TEST_F(LiveView, StatusAloneReachesAViewerWhileTheCameraIsSilent) {
   EXPECT_TRUE(update.colour.empty());
 }
 
+TEST_F(LiveView, AMapIsToldWhereThereIsOne) {
+  ViewStatus status;
+  Update update;
+  const auto ask_once = [&] {
+    update = Update();
+    server_.publish_status(status);
+    parse_update(body(get(server_.port(), ask(update, "a"))), update);
+  };
+  ask_once();
+  EXPECT_FALSE(update.state.contains("map"));
+  status.map = {true, 12};
+  server_.publish_map_way(std::vector<Vector3>{{1, 2, 3}, {4, 5, 6.00001}});
+  ask_once();
+  EXPECT_EQ(update.state["map"]["located"], true);
+  EXPECT_EQ(update.state["map"]["loops"], 12);
+  EXPECT_EQ(update.state["map"]["way"], nlohmann::json({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+}
+
 TEST_F(LiveView, StopEndsWaitingRequests) {
   std::string reply;
   std::thread viewer([&] { reply = get(server_.port(), ask({}, "a")); });

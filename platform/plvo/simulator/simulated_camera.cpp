@@ -148,7 +148,7 @@ struct SimulatedCamera::Parts {
 Status SimulatedCamera::create(const SimulatorOptions& options, std::unique_ptr<SimulatedCamera>& camera) {
   const Status valid = options.validate();
   if (!valid.ok()) return valid;
-  std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed);
+  std::unique_ptr<sim::Scene> scene = sim::build_scene(options.scene, options.seed, options.storey);
   if (scene == nullptr)
     return Status(StatusCode::kInvalidArgument, "simulator: the scene is none of those there are");
   // From the stamp of the first frame to that of the last frame.

@@ -9,6 +9,7 @@
 
 #include "plvo/host/files/stamp_text.hpp"
 #include "plvo/host/posix_clock.hpp"
+#include "plvo/map/map_limits.hpp"
 #include "plvo/replay/images/image_writer.hpp"
 #include "plvo/view/view_server.hpp"
 
@@ -61,6 +62,13 @@ Json numbers(std::span<const double> values, double per_unit) {
   return list;
 }
 
+Json coordinates(const std::vector<Vector3>& points) {
+  Json list = Json::array();
+  for (const Vector3& point : points)
+    for (const double coordinate : point) list.push_back(rounded(coordinate, kTenthMillimetres));
+  return list;
+}
+
 Json counts_json(const FeatureCounts& counts) {
   return {{"detected", counts.detected}, {"matched", counts.matched}, {"inliers", counts.inliers}};
 }
@@ -74,7 +82,7 @@ struct ViewHub::Encoded {
   Json features = features_json({});
 };
 
-ViewHub::ViewHub() : encoded_(std::make_shared<Encoded>()) {}
+ViewHub::ViewHub() : encoded_(std::make_shared<Encoded>()) { map_way_.reserve(MapLimits::kMostKeyframes); }
 
 void ViewHub::publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
                       const ViewStatus& status, bool lens_is_straight) {
@@ -111,6 +119,11 @@ void ViewHub::publish_status(const ViewStatus& status) {
     ++sequence_;
   }
   on_news_();
+}
+
+void ViewHub::publish_map_way(std::span<const Vector3> positions) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (lock) map_way_.assign(positions.begin(), positions.end());  // as in publish()
 }
 
 int ViewHub::viewers() const {
@@ -171,7 +184,7 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
   ViewStatus status;
   std::uint64_t path_epoch = 0;
   std::size_t from = 0;
-  std::vector<Vector3> path;  // points from index `from` on
+  std::vector<Vector3> path, map_way;  // path: points from index `from` on
   {
     const std::lock_guard lock(mutex_);
     r = result_;
@@ -180,11 +193,9 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
     const std::vector<Vector3>& points = path_.points();
     if (ask.path_epoch == path_epoch && ask.path_points <= points.size()) from = ask.path_points;
     path.assign(points.begin() + static_cast<std::ptrdiff_t>(from), points.end());
+    map_way = map_way_;
   }
   const Quaternion q = to_quaternion(r.T_world_camera.R);
-  Json path_numbers = Json::array();
-  for (const Vector3& point : path)
-    for (const double coordinate : point) path_numbers.push_back(rounded(coordinate, kTenthMillimetres));
   Json json = {
       {"sequence", sequence},
       {"image", image.image},
@@ -210,8 +221,11 @@ std::string ViewHub::state_json(const Ask& ask, std::uint64_t sequence, const En
       {"line_counts", counts_json(r.lines)},
       {"path_epoch", path_epoch},
       {"path_from", from},
-      {"path", std::move(path_numbers)},
+      {"path", coordinates(path)},
   };
+  if (status.map)
+    json["map"] = {
+        {"located", status.map->located}, {"loops", status.map->loops}, {"way", coordinates(map_way)}};
   json.update(image.features);
   return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }

@@ -10,8 +10,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "plvo/view/view_state.hpp"
 
@@ -33,6 +35,7 @@ class ViewHub {
   void publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
                const ViewStatus& status, bool lens_is_straight);
   void publish_status(const ViewStatus& status);
+  void publish_map_way(std::span<const Vector3> positions);
 
   // Sets the function that is called after each publication with news, on the publisher's thread; it must not
   // wait. Call it before the first publication.
@@ -65,6 +68,7 @@ class ViewHub {
   TrackResult result_;
   ViewStatus status_;
   ViewPath path_;
+  std::vector<Vector3> map_way_;
   std::map<std::string, std::int64_t> seen_;  // viewer → time of its last request
 
   std::function<void()> on_news_ = [] {};

@@ -325,6 +325,9 @@ void ViewServer::publish(const RgbdFrame& frame, const FeatureView& features, co
                          const ViewStatus& status, bool lens_is_straight) {
   impl_->hub.publish(frame, features, result, status, lens_is_straight);
 }
+void ViewServer::publish_map_way(std::span<const Vector3> positions) {
+  impl_->hub.publish_map_way(positions);
+}
 void ViewServer::publish_status(const ViewStatus& status) { impl_->hub.publish_status(status); }
 int ViewServer::viewers() const { return impl_->hub.viewers(); }
 std::uint64_t ViewServer::images() const { return impl_->hub.images(); }

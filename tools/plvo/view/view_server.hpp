@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class ViewServer {
   static constexpr int kMaxRate = 16;
   void publish(const RgbdFrame& frame, const FeatureView& features, const TrackResult& result,
                const ViewStatus& status, bool lens_is_straight);
+  // Where a map puts its keyframes, before publish(). It takes no memory.
+  void publish_map_way(std::span<const Vector3> positions);
   // Publishes only the status when there is no frame.
   void publish_status(const ViewStatus& status);
 

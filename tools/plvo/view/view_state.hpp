@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct ViewStatus {
   std::uint64_t frames = 0;
   std::uint64_t lost = 0;
   std::uint64_t dropped = 0;
+  // With a map.
+  struct Map {
+    bool located = false;
+    int loops = 0;  // closed since the start
+  };
+  std::optional<Map> map;
 };
 
 // Processing state of a feature; the page chooses its colour by it.

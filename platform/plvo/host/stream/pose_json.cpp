@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 namespace plvo {
 namespace {
@@ -43,33 +45,45 @@ std::string json_string(std::string_view text) {
   return out + '"';
 }
 
+void put_numbers(std::string& to, const char* name, std::span<const double> values) {
+  fmt::format_to(std::back_inserter(to), ",\"{}\":[", name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) to += ',';
+    put_number(to, values[i]);
+  }
+  to += ']';
+}
+
+void put_pose(std::string& to, const Se3& T, const Matrix6& covariance) {
+  put_numbers(to, "position", {T.t.data(), 3});
+  const Quaternion q = to_quaternion(T.R);
+  put_numbers(to, "orientation_xyzw", std::array{q.x, q.y, q.z, q.w});
+  // Symmetric: row-major equals column-major.
+  put_numbers(to, "covariance", {covariance.data(), 36});
+}
+
+void put_map(std::string& to, const MapPose& map) {
+  fmt::format_to(std::back_inserter(to), ",\"map\":{{\"located\":{},\"loops\":{}", map.located, map.loops);
+  if (map.located) {
+    put_pose(to, map.T_map_world, map.pose_covariance);
+  } else {
+    to += ",\"position\":null,\"orientation_xyzw\":null,\"covariance\":null";
+  }
+  to += '}';
+}
+
 }  // namespace
 
-std::string pose_json(const TrackResult& result, const FrameNames& frames) {
+std::string pose_json(const TrackResult& result, const FrameNames& frames, const MapPose* map) {
   std::string out = fmt::format(
       "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"frame_id\":\"{}\","
-      "\"child_frame_id\":\"{}\",\"position\":[",
+      "\"child_frame_id\":\"{}\"",
       result.stamp_ns, to_string(result.state), to_string(result.status.code()),
       json_string(result.status.message()), frames.world, frames.body);
-  for (int i = 0; i < 3; ++i) {
-    if (i > 0) out += ',';
-    put_number(out, result.T_world_camera.t[i]);
-  }
-  out += "],\"orientation_xyzw\":[";
-  const Quaternion q = to_quaternion(result.T_world_camera.R);
-  int n = 0;
-  for (double value : {q.x, q.y, q.z, q.w}) {
-    if (n++ > 0) out += ',';
-    put_number(out, value);
-  }
-  out += "],\"covariance\":[";
-  for (int i = 0; i < 36; ++i) {
-    if (i > 0) out += ',';
-    put_number(out, result.pose_covariance(i / 6, i % 6));
-  }
-  out += ']';
+  put_pose(out, result.T_world_camera, result.pose_covariance);
   put_counts(out, "points", result.points);
   put_counts(out, "lines", result.lines);
+  if (map != nullptr) put_map(out, *map);
   out += '}';
   return out;
 }

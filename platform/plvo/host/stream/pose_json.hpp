@@ -13,7 +13,18 @@
 
 namespace plvo {
 
-std::string pose_json(const TrackResult& result, const FrameNames& frames = kCameraFrames);
+// What a map knows of the camera, beside the pose of the odometry.
+struct MapPose {
+  bool located = false;  // otherwise T_map_world and the covariance have no meaning: null in JSON
+  Se3 T_map_world;
+  Matrix6 pose_covariance = Matrix6::Zero();  // of T_map_world · T_world_camera; axes of the map
+  int loops = 0;                              // closed since the start
+};
+
+// With a map there is a further member: "map":{"located":…,"loops":…,"position":…,"orientation_xyzw":…,
+// "covariance":…}.
+std::string pose_json(const TrackResult& result, const FrameNames& frames = kCameraFrames,
+                      const MapPose* map = nullptr);
 
 // {"heartbeat":true,"state":"stalled","seconds_since_frame":1.2,"message":"…"}
 struct Heartbeat {

@@ -111,9 +111,9 @@ Status PoseStream::write_line(std::string line) {
   return {};
 }
 
-Status PoseStream::write(const TrackResult& result) {
+Status PoseStream::write(const TrackResult& result, const MapPose* map) {
   let_in();
-  return readers_.count() == 0 ? Status() : write_line(pose_json(result, frames_));
+  return readers_.count() == 0 ? Status() : write_line(pose_json(result, frames_, map));
 }
 
 Status PoseStream::write_heartbeat(const Heartbeat& heartbeat) {

@@ -28,7 +28,9 @@ class PoseStream final : public PoseSink {
   // kInvalidArgument for nonsense, kBusy when somebody else listens there, kPermission, kIo.
   Status open(const std::string& address);
 
-  Status write(const TrackResult& result) override;
+  Status write(const TrackResult& result) override { return write(result, nullptr); }
+  // map: nullptr without one.
+  Status write(const TrackResult& result, const MapPose* map);
   // When there is no pose to tell: pose_json.hpp, heartbeat_json(). kIo as above.
   Status write_heartbeat(const Heartbeat& heartbeat);
   // Gives the readers a moment for their last lines, and closes.

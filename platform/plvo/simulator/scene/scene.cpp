@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plvo/simulator/scene/scene.hpp"
 
+#include "plvo/simulator/hash.hpp"
 #include "plvo/simulator/scene/scene_builder.hpp"
 
 namespace plvo::sim {
@@ -43,7 +44,9 @@ void Scene::bound_things() {
   things_box_.half = (hi - lo) * 0.5F + Float3{kMargin_m, kMargin_m, kMargin_m};
 }
 
-std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed) {
+namespace {
+
+std::unique_ptr<Scene> build_room(SceneName name, std::uint64_t seed) {
   switch (name) {
     case SceneName::kCorridor: return build_corridor(seed);
     case SceneName::kStaircase: return build_staircase(seed);
@@ -52,6 +55,15 @@ std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed) {
     case SceneName::kBare: return build_bare(seed);
   }
   return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed, std::uint32_t storey) {
+  std::unique_ptr<Scene> scene = build_room(name, seed);
+  if (scene != nullptr && storey != 0)
+    for (Solid& solid : scene->solids) solid.seed = hash(solid.seed, storey);
+  return scene;
 }
 
 }  // namespace plvo::sim

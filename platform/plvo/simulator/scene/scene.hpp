@@ -68,7 +68,8 @@ struct Scene {
   Solid things_box_;  // contains all things
 };
 
-// Builds the room; the same name and seed give the same room. Returns null for an unknown name.
-std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed);
+// Builds the room; the same arguments give the same room (SimulatorOptions). Returns null for an unknown
+// name.
+std::unique_ptr<Scene> build_scene(SceneName name, std::uint64_t seed, std::uint32_t storey = 0);
 
 }  // namespace plvo::sim

@@ -24,6 +24,7 @@ constexpr const char* kLiveHelp =
     "  plvo live --stream - | your_program        poses as JSON, one line a frame\n"
     "  plvo live --device walk.oni --out t.txt    a recording, every frame of it; walk.bag, too\n"
     "  plvo live --camera sim --size 320x240 --view 8080    no sensor needed\n"
+    "  plvo live --map 256 --map-in home.map --map-out home.map    a map that grows from day to day\n"
     "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"
     "\n"
     "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
@@ -97,6 +98,7 @@ void check(const CLI::App& command, LiveOptions& options) {
   check_output_options(command);
   check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
   check_level_option(command, options.imu);
+  check_map_options(command, options.map);
   options.odometry.level_world = outputs.files.base.level;
   FileRoles files;
   files.reads(options.odometry.mask);
@@ -107,6 +109,7 @@ void check(const CLI::App& command, LiveOptions& options) {
     files.writes("--record", std::filesystem::path(options.record) / kAccelerometerFile);
   for (const std::string& stream : options.outputs.streams)
     if (stream == "-") files.writes("--stream", stream);
+  add_map_files(options.map, files);
   add_inputs(options.camera, files);
   files.check();
 }
@@ -127,6 +130,7 @@ void add_live(CLI::App& app, int& exit_code) {
   group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
   add_limit_options(command, options->frames, options->seconds);
   add_bag_options(command, options->camera.topics, BagImu::kPassedOver);
+  add_map_options(command, options->map);
   add_outputs(command, *options);
   add_odometry_options(command, options->odometry);
   on_command(command, exit_code, [&command, options] {

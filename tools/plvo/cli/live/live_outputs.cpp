@@ -40,6 +40,7 @@ Status LiveOutputs::open_view(const std::string& address, const std::vector<std:
         .append(address)
         .append("'");
   view_ = std::make_unique<ViewServer>();
+  map_way_.reserve(MapLimits::kMostKeyframes);
   if (Status status = view_->start(host, port, names); !status.ok()) return status;
   if (!is_loopback(host))
     announcements_.emplace_back(
@@ -69,7 +70,7 @@ Status LiveOutputs::open_stream(const std::string& address) {
 }
 
 void LiveOutputs::write(const FrameRecord& record, const RgbdFrame& frame, const Odometry& odometry,
-                        const ViewStatus& status) {
+                        const SessionMap& map, const ViewStatus& status) {
   if (!files_end_) {
     if (const Status written = files_.write(record); !written.ok()) {
       files_end_ = true;
@@ -79,8 +80,18 @@ void LiveOutputs::write(const FrameRecord& record, const RgbdFrame& frame, const
     }
   }
   const TrackResult result = base_.apply(record.result);
-  to_streams([&](PoseStream& stream) { return stream.write(result); });
-  if (view_) view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
+  MapPose in_map;
+  if (const std::optional<MapResult>& latest = map.latest())
+    in_map = base_.apply(
+        MapPose{latest->located, latest->T_map_world, latest->pose_covariance, map.map().counts().loops},
+        record.result);
+  to_streams([&](PoseStream& stream) { return stream.write(result, map.latest() ? &in_map : nullptr); });
+  if (!view_) return;
+  if (map.latest()) {
+    map.way_in_world(map_way_);
+    view_->publish_map_way(map_way_);
+  }
+  view_->publish(frame, odometry.features(), record.result, status, lens_is_straight_);
 }
 
 // Each stream gets a line; one that cannot go on is closed.

@@ -11,6 +11,7 @@
 
 #include "plvo/cli/common/console.hpp"
 #include "plvo/cli/common/frame_record.hpp"
+#include "plvo/cli/map/session_map.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
 #include "plvo/host/stream/pose_stream.hpp"
 #include "plvo/odometry/odometry.hpp"
@@ -38,7 +39,7 @@ class LiveOutputs {
 
   // After each frame.
   void write(const FrameRecord& record, const RgbdFrame& frame, const Odometry& odometry,
-             const ViewStatus& status);
+             const SessionMap& map, const ViewStatus& status);
   // While there is no frame, as often as one likes: the live view gets it four times a second; the pose
   // streams get a heartbeat whenever they have got no line for kHeartbeat_ns.
   void write_status(const ViewStatus& status, const Heartbeat& heartbeat);
@@ -60,6 +61,7 @@ class LiveOutputs {
   bool has_files_ = false, files_end_ = false;
   std::vector<std::unique_ptr<PoseStream>> streams_;
   std::unique_ptr<ViewServer> view_;
+  std::vector<Vector3> map_way_;  // for the live view
   bool lens_is_straight_ = true;
   std::int64_t next_status_ns_ = 0;
   std::int64_t next_heartbeat_ns_ = 0;

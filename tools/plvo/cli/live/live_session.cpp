@@ -50,6 +50,7 @@ Status LiveSession::prepare_outputs() {
   for (const auto& [option, path] : options_.outputs.files.named())
     if (!path.empty())
       if (Status status = LineFile::check(path); !status.ok()) return status;
+  if (Status status = SessionMap::check_outputs(options_.map); !status.ok()) return status;
   if (!options_.record.empty()) {
     if (Status status = FrameRecording::check(options_.record); !status.ok()) return status;
     if (keeps_imu())
@@ -67,6 +68,7 @@ Status LiveSession::open() {
   const bool every = options_.every_frame || is_played(options_.camera);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
+  if (Status status = map_.init(options_.map, model, block_.config(), false); !status.ok()) return status;
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
   if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
@@ -89,7 +91,7 @@ Status LiveSession::open() {
 }
 
 bool LiveSession::over() const {
-  return interrupted() || (outputs_.in_vain() && !recording_.wanted()) ||
+  return interrupted() || (outputs_.in_vain() && !recording_.wanted() && !map_.writes()) ||
          summary_.frames() >= options_.frames ||
          static_cast<double>(posix_monotonic_ns() - start_ns_) * 1e-9 >= options_.seconds;
 }
@@ -129,11 +131,12 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.max_rate_hz), posix_monotonic_ns());
   block_.track(frame, accelerometer_.until(frame.stamp_ns, arrival_ns), MotionPrior(), record_);
+  map_.add(block_.odometry(), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
   latency_ms_ = static_cast<double>(now - arrival_ns) * 1e-6;
   summary_.add(record_, latency_ms_);
-  outputs_.write(record_, frame, block_.odometry(), view_status());
+  outputs_.write(record_, frame, block_.odometry(), map_, view_status());
   ++record_.number;
   if (summary_.frames() == kWarmFrames) summary_.resident_start = resident_memory();
 }
@@ -155,6 +158,7 @@ ViewStatus LiveSession::view_status() const {
   status.frames = summary_.frames();
   status.lost = summary_.lost();
   status.dropped = ring_->counters().dropped;
+  if (map_.latest()) status.map = {map_.latest()->located, map_.map().counts().loops};
   return status;
 }
 
@@ -163,6 +167,8 @@ void LiveSession::show_line(const ViewStatus& status, const TrackResult& result)
       "{}  camera {:.1f} Hz  odometry {:.1f} Hz  latency {:.0f} ms  points {}  lines {}  lost {}  dropped {}",
       summary_.frames() > 0 ? to_string(result.state) : "waiting", status.camera_hz, status.odometry_hz,
       status.latency_ms, result.points.inliers, result.lines.inliers, status.lost, status.dropped);
+  if (status.map)
+    line += fmt::format("  {}, loops {}", status.map->located ? "located" : "not located", status.map->loops);
   if (recording_.wanted()) line += fmt::format("  recorded {}", recording_.frames());
   if (status.silent) line += "  " + status.camera;
   console_.show_line(line);
@@ -174,6 +180,7 @@ void LiveSession::finish() {
   recorder_failure_ = recording_.stop();
   if (!recorder_failure_.ok()) console_.write(LogLevel::kError, recorder_failure_.message());
   outputs_.close();
+  map_.finish();
   console_.clear();
   if (summary_.frames() < kWarmFrames) summary_.resident_start = resident_memory();
   summary_.resident_end = resident_memory();
@@ -185,14 +192,16 @@ void LiveSession::finish() {
   summary_.dropped = ring_->counters().dropped;
   summary_.recorded = recording_.frames();
   summary_.not_recorded = recording_.dropped();
+  summary_.map = map_.summary();
   summary_.dropped_lines = outputs_.dropped_lines();
   summary_.arena_bytes = block_.odometry().memory_used();
   summary_.arena_peak = block_.odometry().memory_peak();
   if (options_.quiet) return;
   const OutputOptions& files = options_.outputs.files;
+  const MapOptions& map = options_.map;
   std::vector<std::string> paths = options_.outputs.streams;
-  paths.insert(paths.end(),
-               {files.trajectory, files.covariance, files.motions, files.stats, options_.summary});
+  paths.insert(paths.end(), {files.trajectory, files.covariance, files.motions, files.stats, options_.summary,
+                             map.trajectory, map.ply, map.out});
   if (takes_standard_output(paths)) {
     print_to_stderr(summary_.to_text());
   } else {
@@ -201,11 +210,15 @@ void LiveSession::finish() {
 }
 
 int LiveSession::judge() {
+  const Status mapped = map_.write();
+  if (!mapped.ok()) fail(mapped);
   if (!options_.summary.empty()) {
     if (Status status = write_json(options_.summary, summary_.to_json()); !status.ok()) return fail(status);
   }
   std::vector<std::string> written = {options_.record, options_.summary};
   for (const auto& [option, path] : options_.outputs.files.named()) written.push_back(path);
+  if (mapped.ok())
+    written.insert(written.end(), {options_.map.out, options_.map.trajectory, options_.map.ply});
   tell_written(console_, written);
   if (!summary_failure_.ok()) return fail(summary_failure_);
   const LiveCapture::State& capture = summary_.capture;
@@ -221,6 +234,7 @@ int LiveSession::judge() {
                      capture.words));
     return kExitNoSensor;
   }
+  if (!mapped.ok()) return kExitFailure;
   if (!summary_.failed()) return kExitSuccess;
   fail(summary_.why_failed());
   return kExitNothingTracked;

@@ -11,6 +11,7 @@
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/live/live_outputs.hpp"
 #include "plvo/cli/live/live_summary.hpp"
+#include "plvo/cli/map/session_map.hpp"
 #include "plvo/cli/options/odometry_options.hpp"
 
 namespace plvo::cli {
@@ -19,6 +20,7 @@ struct LiveOptions {
   LiveCameraOptions camera;
   OdometryOptions odometry;
   LiveOutputOptions outputs;
+  MapOptions map;
   std::string summary;  // file for the JSON
   std::string record;   // folder or .oni
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
@@ -60,6 +62,7 @@ class LiveSession {
   FrameRecording recording_;
   std::unique_ptr<LiveCapture> capture_;
   OdometryBlock block_;
+  SessionMap map_;
   LiveAccelerometer accelerometer_;
   LiveSummary summary_;
   RateMeter meter_;

@@ -51,6 +51,7 @@ std::string LiveSummary::to_text() const {
                     fmt::format("{:.1f} ms median, {:.1f} p95, {:.1f} max, from frame to pose",
                                 latency_.quantile_ms(0.5), latency_.quantile_ms(0.95), latency_.max_ms()));
   add(cost_rows());
+  if (map) add(map->rows());
   if (!recording.empty())
     rows.emplace_back(
         "recording",
@@ -82,6 +83,7 @@ nlohmann::ordered_json LiveSummary::to_json() const {
     json["accelerometer"] = {{"readings", accelerometer.readings},
                              {"late", accelerometer.late},
                              {"failures", accelerometer.failures}};
+  if (map) json["map"] = map->to_json();
   return json;
 }
 

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "plvo/cli/common/track_summary.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
+#include "plvo/cli/map/map_summary.hpp"
 
 namespace plvo::cli {
 
@@ -28,6 +30,7 @@ class LiveSummary : public TrackSummary {
   std::uint64_t recorded = 0, not_recorded = 0;
   std::uint64_t dropped_lines = 0;
   AccelerometerSummary accelerometer;
+  std::optional<MapSummary> map;
 
  private:
   DurationHistogram latency_;

@@ -29,6 +29,21 @@ TrackResult BaseOption::apply(const TrackResult& result) {
   return result_of_base(result, *T_base_camera, T_odom_world.value_or(*T_base_camera));
 }
 
+// The frame of the map is turned as odom is: it is the base where the camera was at the map's origin. In a
+// level world, whose axes do not depend on how the camera sits, only the axes change.
+MapPose BaseOption::apply(const MapPose& map, const TrackResult& result) const {
+  if (!T_base_camera) return map;
+  const Matrix3 from_optical = (Matrix3() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+  const Se3 T_map_optical = level ? Se3{from_optical, Vector3::Zero()} : *T_base_camera;
+  TrackResult in_map;
+  in_map.T_world_camera = map.T_map_world * result.T_world_camera;
+  in_map.pose_covariance = map.pose_covariance;
+  MapPose of_base = map;
+  of_base.pose_covariance = result_of_base(in_map, *T_base_camera, T_map_optical).pose_covariance;
+  of_base.T_map_world = T_map_optical * map.T_map_world * T_odom_world.value_or(*T_base_camera).inverse();
+  return of_base;
+}
+
 void add_level_option(OptionGroup& group, BaseOption& option) {
   group.flag("--level", option.level,
              "A level world, by the accelerometer of --imu: gravity along its y axis, or with --base-camera "

@@ -9,6 +9,7 @@
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/hal/log.hpp"
 #include "plvo/host/frame_names.hpp"
+#include "plvo/host/stream/pose_json.hpp"
 #include "plvo/odometry/track_result.hpp"
 
 namespace plvo::cli {
@@ -23,6 +24,8 @@ struct BaseOption {
   const FrameNames& frames() const;
   // Of the base, where there is one; of each frame, in order.
   TrackResult apply(const TrackResult& result);
+  // Of the same frame, after apply(): T_map_odom, and the covariance of the base in the map.
+  MapPose apply(const MapPose& map, const TrackResult& result) const;
 };
 void add_base_option(OptionGroup& group, BaseOption& option);
 // Makes T_base_camera of the numbers; refuses a quaternion that is none, and the option where nothing that it

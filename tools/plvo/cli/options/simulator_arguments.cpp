@@ -50,6 +50,9 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
                "varying: a lamp that swings and dims (default constant)");
   group.whole("--seed", arguments.seed, 0, UINT64_MAX,
               "Another room, walk and noise of the same kind (default 1)");
+  group.whole("--storey", arguments.storey, 0, UINT32_MAX,
+              "Another room of the same plan and paint, on the same walk, with grain, wear and prints of its "
+              "own: it looks alike (default 0)");
   group.number("--fps", arguments.fps, {1, 1000}, "HZ", "Frames per second (default 30)");
   group.add("--size", "WIDTHxHEIGHT", "Image size in pixels (default 640x480)",
             [&arguments](const std::string& text) -> std::string {
@@ -108,6 +111,7 @@ Status make_simulator_options(const SimulatorArguments& arguments, int frames, S
   options.scene = arguments.scene;
   options.light = arguments.light;
   options.seed = arguments.seed;
+  options.storey = arguments.storey;
   options.frames = frames;
   options.fps = arguments.fps;
   options.noise = !arguments.clean;

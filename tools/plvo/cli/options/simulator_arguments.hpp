@@ -18,6 +18,7 @@ struct SimulatorArguments {
   SceneName scene = SceneName::kCorridor;
   LightName light = LightName::kConstant;
   std::uint64_t seed = 1;
+  std::uint32_t storey = 0;
   double fps = 30;
   double readout_s = 0;
   int width = 0, height = 0;  // 0: the simulator's own size

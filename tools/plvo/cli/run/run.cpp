@@ -14,13 +14,13 @@
 #include "plvo/cli/common/interrupt.hpp"
 #include "plvo/cli/common/result_output.hpp"
 #include "plvo/cli/common/subcommands.hpp"
+#include "plvo/cli/map/session_map.hpp"
 #include "plvo/cli/options/arguments.hpp"
 #include "plvo/cli/options/camera_options.hpp"
 #include "plvo/cli/options/odometry_options.hpp"
 #include "plvo/cli/run/imu_options.hpp"
 #include "plvo/cli/run/overlay.hpp"
 #include "plvo/cli/run/run_history.hpp"
-#include "plvo/cli/run/run_map.hpp"
 #include "plvo/cli/run/run_outputs.hpp"
 #include "plvo/cli/run/run_summary.hpp"
 #include "plvo/cli/run/wheel_options.hpp"
@@ -106,7 +106,7 @@ class Run {
     if (Status status = open_wheels(options_.wheels, options_.outputs.base, console_, wheels_); !status.ok())
       return status;
     if (Status status = map_.init(options_.map, opened_.camera->model(), block_.config(),
-                                  opened_.frame_count.value_or(kUnknownFrameCount));
+                                  static_cast<bool>(opened_.ground_truth));
         !status.ok())
       return status;
     warn_of_base_option(options_.outputs.base, console_);
@@ -116,7 +116,7 @@ class Run {
     summary_->image = {opened_.camera->model().width, opened_.camera->model().height, opened_.scaled_down_by};
     history_ = std::make_unique<RunHistory>(!options_.report.empty(), options_.report_frames,
                                             opened_.frame_count.value_or(kUnknownFrameCount));
-    if (Status status = map_.check_outputs(); !status.ok()) return status;
+    if (Status status = SessionMap::check_outputs(options_.map); !status.ok()) return status;
     for (const std::string& file : {options_.report, options_.summary})
       if (!file.empty())
         if (Status status = LineFile::check(file); !status.ok()) return status;
@@ -195,7 +195,8 @@ class Run {
       console_.write(LogLevel::kWarning, status.message());
     summary_->evaluation = history_->evaluation();
     map_.finish();
-    summary_->map = map_.summary(opened_);
+    summary_->map = map_.summary();
+    if (summary_->map) summary_->map->ate_m = ate_in_map();
     if (summary_->evaluation)
       if (const std::string doubt = eval::doubt_about_scale(*summary_->evaluation); !doubt.empty())
         console_.write(LogLevel::kWarning, doubt);
@@ -208,6 +209,23 @@ class Run {
       return print(summary_->to_text());
     print_to_stderr(summary_->to_text());
     return {};
+  }
+
+  // Nothing without ground truth. One that cannot be read was reported with the odometry's own figures.
+  std::optional<double> ate_in_map() {
+    if (!opened_.ground_truth) return std::nullopt;
+    eval::Trajectory poses, truth;
+    std::vector<std::int64_t> stamps;
+    const Status read = map_.poses([&](std::int64_t stamp_ns, const Se3& T_map_camera) {
+      stamps.push_back(stamp_ns);
+      poses.poses.push_back({stamp_ns, T_map_camera});
+      return Status();
+    });
+    eval::Evaluation evaluation;
+    if (!read.ok() || poses.poses.size() < 2 || !opened_.ground_truth(stamps, truth).ok() ||
+        !eval::evaluate(truth, poses, {}, {}, {}, evaluation).ok())
+      return std::nullopt;
+    return evaluation.ate.position_m.rmse;
   }
 
   Status write_report() {
@@ -224,7 +242,7 @@ class Run {
   std::optional<RecordedImu> imu_;
   std::optional<RecordedWheels> wheels_;
   FrameCheck check_;
-  RunMap map_;
+  SessionMap map_;
   RunOutputs outputs_;
   Overlay overlay_;
   std::unique_ptr<RunSummary> summary_;

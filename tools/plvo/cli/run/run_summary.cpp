@@ -22,19 +22,7 @@ SummaryRows RunSummary::rows() const {
   rows.emplace_back("damaged", fmt::format("{}", damaged()));
   if (unpaired_images > 0) rows.emplace_back("colour without depth", fmt::format("{}", unpaired_images));
   add(cost_rows());
-  if (map) {
-    rows.emplace_back("map", fmt::format("{} keyframes of {}, {:.1f} MB", map->keyframes, map->capacity,
-                                         static_cast<double>(map->bytes) * 1e-6));
-    if (map->loaded > 0)
-      rows.emplace_back("place in the map", !map->located_after_s
-                                                ? "not known: no place of the loaded map was recognised"
-                                                : fmt::format("found after {:.2f} s", *map->located_after_s));
-    rows.emplace_back("places seen again",
-                      fmt::format("{} times, by {} pairs of keyframes", map->recognised, map->loops));
-    rows.emplace_back("map, CPU per frame",
-                      fmt::format("{:.2f} ms median, {:.2f} p99, {:.2f} max", map->cpu.quantile_ms(0.5),
-                                  map->cpu.quantile_ms(0.99), map->cpu.max_ms()));
-  }
+  if (map) add(map->rows());
   return rows;
 }
 
@@ -62,23 +50,7 @@ nlohmann::ordered_json RunSummary::to_json() const {
   json["unpaired_images"] = unpaired_images;
   json["failure"] = nullptr;
   if (!failure.ok()) json["failure"] = failure.message();
-  if (map) {
-    json["map"] = {{"loaded", map->loaded},
-                   {"located", map->located},
-                   {"located_after_s", nullptr},
-                   {"keyframes", map->keyframes},
-                   {"capacity", map->capacity},
-                   {"bytes", map->bytes},
-                   {"removed", map->removed},
-                   {"compared", map->compared},
-                   {"accepted", map->accepted},
-                   {"recognised", map->recognised},
-                   {"loops", map->loops},
-                   {"cpu_ms", cli::to_json(map->cpu)},
-                   {"ate_m", nullptr}};
-    if (map->located_after_s) json["map"]["located_after_s"] = *map->located_after_s;
-    if (map->ate_m) json["map"]["ate_m"] = *map->ate_m;
-  }
+  if (map) json["map"] = map->to_json();
   if (evaluation) json["evaluation"] = eval::to_json(*evaluation);
   return json;
 }

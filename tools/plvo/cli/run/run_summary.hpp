@@ -7,7 +7,7 @@
 #include <string>
 
 #include "plvo/cli/common/track_summary.hpp"
-#include "plvo/cli/run/run_map.hpp"
+#include "plvo/cli/map/map_summary.hpp"
 #include "plvo/eval/evaluation.hpp"
 
 namespace plvo::cli {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/cli/run/run_map.hpp"
+#include "plvo/cli/map/session_map.hpp"
 
 #include <fmt/format.h>
 
 #include <iterator>
 #include <utility>
 
-#include "plvo/cli/options/arguments.hpp"
-#include "plvo/eval/evaluation.hpp"
 #include "plvo/host/files/line_file.hpp"
 #include "plvo/host/files/map_files.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
@@ -76,67 +74,67 @@ void add_map_files(const MapOptions& options, FileRoles& files) {
   if (options.in != options.out) files.reads(options.in);
 }
 
-Status RunMap::init(const MapOptions& options, const CameraModel& camera, const Config& config,
-                    std::size_t expected_frames) {
+Status SessionMap::check_outputs(const MapOptions& options) {
+  for (const std::string& file : {options.trajectory, options.ply})
+    if (!file.empty())
+      if (Status status = LineFile::check(file); !status.ok()) return status;
+  return options.out.empty() ? Status() : check_map_output(options.out);
+}
+
+Status SessionMap::init(const MapOptions& options, const CameraModel& camera, const Config& config,
+                        bool keep_poses) {
   options_ = options;
   if (options.keyframes == 0) return {};
   camera_ = camera;
   MapLimits limits;
   limits.keyframes = options.keyframes;
   memory_.assign(Map::required_bytes(limits, camera.width, camera.height), std::byte{0});
-  frames_.resize(expected_frames);
-  frames_.clear();
-  if (Status status = map_.init(memory_, camera, config, limits); !status.ok() || options.in.empty())
-    return status;
+  if (Status status = map_.init(memory_, camera, config, limits); !status.ok()) return status;
+  latest_.emplace();
+  if (keep_poses || !options.trajectory.empty() || !options.ply.empty())
+    if (Status status = anchors_.open(); !status.ok()) return status;
+  if (options.in.empty()) return {};
   const Status status = load_map(options.in, map_);
   loaded_ = map_.graph().size();
   return status;
 }
 
-Status RunMap::check_outputs() const {
-  if (options_.keyframes == 0) return {};
-  for (const std::string& file : {options_.trajectory, options_.ply})
-    if (!file.empty())
-      if (Status status = LineFile::check(file); !status.ok()) return status;
-  return options_.out.empty() ? Status() : check_map_output(options_.out);
+bool SessionMap::writes() const {
+  return !options_.out.empty() || !options_.trajectory.empty() || !options_.ply.empty();
 }
 
-void RunMap::add(const Odometry& odometry, const FrameRecord& record) {
-  if (options_.keyframes == 0) return;
+void SessionMap::add(const Odometry& odometry, const FrameRecord& record) {
+  if (!latest_) return;
   const std::int64_t start_ns = posix_thread_cpu_ns();
-  const MapResult result = map_.update(odometry, record.result);
+  const MapResult& result = latest_.emplace(map_.update(odometry, record.result));
   cpu_.add(static_cast<double>(posix_thread_cpu_ns() - start_ns) * 1e-6);
+  const std::int64_t stamp_ns = record.result.stamp_ns;
   recognised_ += result.recognised ? 1 : 0;
-  if (record.has_pose() && !first_stamp_ns_) first_stamp_ns_ = record.result.stamp_ns;
-  if (result.located && !located_stamp_ns_) located_stamp_ns_ = record.result.stamp_ns;
-  if (result.removed != 0) removed_[result.removed] = {result.removed_into, result.T_into_removed};
-  if (record.has_pose() && result.keyframe != 0)
-    frames_.push_back({record.result.stamp_ns, result.keyframe, result.T_keyframe_camera});
+  if (result.located && !located_stamp_ns_) located_stamp_ns_ = stamp_ns;
+  if (result.removed != 0) anchors_.add_removed(result.removed, result.removed_into, result.T_into_removed);
+  if (!record.has_pose()) return;
+  last_stamp_ns_ = stamp_ns;
+  if (!first_stamp_ns_) first_stamp_ns_ = stamp_ns;
+  if (result.keyframe != 0) anchors_.add_frame(stamp_ns, result.keyframe, result.T_keyframe_camera);
 }
 
-void RunMap::finish() {
-  if (options_.keyframes == 0 || map_.graph().size() == 0) return;
+void SessionMap::way_in_world(std::vector<Vector3>& positions) const {
+  positions.clear();
+  if (!latest_ || !latest_->located) return;
+  const Se3 T_world_map = latest_->T_map_world.inverse();
+  for (std::size_t k = 0; k < map_.graph().size(); ++k)
+    if (const std::uint16_t slot = map_.graph().slot_at(k); map_.graph().is_placed(slot))
+      positions.push_back(T_world_map * map_.graph().node(slot).T_map_keyframe.t);
+}
+
+void SessionMap::finish() {
+  if (!latest_ || map_.graph().size() == 0) return;
   if (map_.settle()) ++recognised_;
-  if (map_.located() && !located_stamp_ns_ && !frames_.empty()) located_stamp_ns_ = frames_.back().stamp_ns;
+  if (map_.located() && !located_stamp_ns_ && first_stamp_ns_) located_stamp_ns_ = last_stamp_ns_;
 }
 
-eval::Trajectory RunMap::trajectory() const {
-  eval::Trajectory trajectory;
-  for (const Anchored& frame : frames_) {
-    Se3 T = frame.T_keyframe_camera;
-    std::uint32_t id = frame.keyframe;
-    for (auto at = removed_.find(id); at != removed_.end(); at = removed_.find(id)) {
-      T = at->second.T_into_removed * T;
-      id = at->second.into;
-    }
-    if (const std::optional<Se3> T_map_keyframe = map_.keyframe_pose(id))
-      trajectory.poses.push_back({frame.stamp_ns, *T_map_keyframe * T});
-  }
-  return trajectory;
-}
-
-std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
-  if (options_.keyframes == 0) return std::nullopt;
+std::optional<MapSummary> SessionMap::summary() const {
+  if (!latest_) return std::nullopt;
   MapSummary summary;
   summary.loaded = loaded_;
   summary.located = map_.located();
@@ -151,34 +149,27 @@ std::optional<MapSummary> RunMap::summary(const OpenedCamera& camera) const {
   summary.recognised = recognised_;
   summary.loops = map_.counts().loops;
   summary.cpu = cpu_;
-  const eval::Trajectory poses = trajectory();
-  std::vector<std::int64_t> stamps;
-  for (const eval::StampedPose& pose : poses.poses) stamps.push_back(pose.stamp_ns);
-  eval::Trajectory truth;
-  eval::Evaluation evaluation;
-  // A truth that cannot be read was reported with the odometry's own figures.
-  if (camera.ground_truth && poses.poses.size() >= 2 && camera.ground_truth(stamps, truth).ok() &&
-      eval::evaluate(truth, poses, {}, {}, {}, evaluation).ok())
-    summary.ate_m = evaluation.ate.position_m.rmse;
   return summary;
 }
 
-Status RunMap::write() {
-  if (options_.keyframes == 0) return {};
-  Status saved = options_.out.empty() ? Status() : save_map(options_.out, map_);
-  if (!options_.trajectory.empty()) {
-    LineFile file;
-    if (Status status = file.open(options_.trajectory, kTrajectoryHeader); !status.ok()) return status;
-    for (const eval::StampedPose& pose : trajectory().poses)
-      if (Status status = file.write(trajectory_line(pose.stamp_ns, pose.T_world_camera)); !status.ok())
-        return status;
-  }
-  if (!options_.ply.empty())
-    if (Status status = write_ply(); !status.ok()) return status;
-  return saved;
+// One that fails does not take the others with it; the first failure is told.
+Status SessionMap::write() {
+  if (!latest_) return {};
+  const Status saved = options_.out.empty() ? Status() : save_map(options_.out, map_);
+  const Status trajectory = options_.trajectory.empty() ? Status() : write_trajectory();
+  const Status ply = options_.ply.empty() ? Status() : write_ply();
+  return !saved.ok() ? saved : !trajectory.ok() ? trajectory : ply;
 }
 
-Status RunMap::write_ply() const {
+Status SessionMap::write_trajectory() {
+  LineFile file;
+  if (Status status = file.open(options_.trajectory, kTrajectoryHeader); !status.ok()) return status;
+  return poses([&file](std::int64_t stamp_ns, const Se3& T_map_camera) {
+    return file.write(trajectory_line(stamp_ns, T_map_camera));
+  });
+}
+
+Status SessionMap::write_ply() {
   PlyScene scene;
   for (std::size_t k = 0; k < map_.graph().size(); ++k) {
     const std::uint16_t slot = map_.graph().slot_at(k);
@@ -194,11 +185,13 @@ Status RunMap::write_ply() const {
     }
   }
   std::optional<std::size_t> last;
-  for (const eval::StampedPose& pose : trajectory().poses) {
-    const std::size_t at = scene.add(pose.T_world_camera.t, 0, 90, 255);
+  const Status placed = poses([&](std::int64_t, const Se3& T_map_camera) {
+    const std::size_t at = scene.add(T_map_camera.t, 0, 90, 255);
     if (last) scene.join(*last, at);
     last = at;
-  }
+    return Status();
+  });
+  if (!placed.ok()) return placed;
   LineFile file;
   if (Status status = file.open(options_.ply); !status.ok()) return status;
   return file.write(scene.text());
