@@ -11,23 +11,31 @@
 
 namespace plvo {
 
-// A velocity describes the motion over which it was measured, and the motion that follows, where each takes
-// no longer than this.
-inline constexpr std::int64_t kVelocityLasts_ns = 300'000'000;
-inline bool is_brief(std::int64_t interval_ns) { return interval_ns > 0 && interval_ns <= kVelocityLasts_ns; }
-
 // (v, ω) per second of the scene in the camera's axes (exposure.hpp), a mean over measured_ns.
 struct Velocity {
   Vector6 value = Vector6::Zero();
   std::int64_t measured_ns = 0;  // 0: the velocity is not known
 
   bool known() const { return measured_ns > 0; }
-  // Whether the motion goes on with it, elapsed_ns after it was measured; otherwise the camera is taken to
-  // stand still, and the process noise covers the motion.
+  // Whether the search for the next motion starts from it, elapsed_ns after it was measured: over more than
+  // this multiple of its own interval a prediction is worse than none.
+  bool predicts(std::int64_t elapsed_ns) const {
+    constexpr int kLongestPrediction = 3;
+    return static_cast<double>(elapsed_ns) < kLongestPrediction * static_cast<double>(measured_ns);
+  }
+  // Whether it completes the priors of other sensors, elapsed_ns after it was measured; after that the camera
+  // is taken to stand still. Nothing corrects such a motion, and its process noise covers it.
   bool continues(std::int64_t elapsed_ns) const {
-    return is_brief(measured_ns) && elapsed_ns <= kVelocityLasts_ns;
+    constexpr std::int64_t kLongest_ns = 300'000'000;
+    return known() && measured_ns <= kLongest_ns && elapsed_ns <= kLongest_ns;
   }
 };
+
+// Whether the mean velocity of an interval describes the exposure at its end: over a longer one it does not.
+inline bool describes_exposure(std::int64_t interval_ns) {
+  constexpr std::int64_t kLongest_ns = 200'000'000;
+  return interval_ns > 0 && interval_ns <= kLongest_ns;
+}
 
 // Mean velocity of a motion that took this long.
 Vector6 mean_velocity(const Se3& T_now_before, double seconds);

@@ -57,7 +57,7 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   reference.T_current_predicted = T_last_reference;
   if (predicted.sensed.known())
     reference.T_current_predicted = predicted.sensed.T_current_last() * T_last_reference;
-  else if (last.velocity.continues(elapsed))
+  else if (last.velocity.predicts(elapsed))
     reference.T_current_predicted = motion_at(last.velocity.value, seconds) * T_last_reference;
   PairPrior& prior = reference.prior;
   prior.T_reference_last = from.pose.T_world_camera.inverse() * last.pose.T_world_camera;
