@@ -15,9 +15,9 @@
 #include "kinect_command.hpp"
 #include "plvo/host/files/trajectory_reader.hpp"
 #include "plvo/inertial/imu_integrator.hpp"
-#include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/imu_files.hpp"
 #include "simulated_motor.hpp"
+#include "wrapped_track.hpp"
 
 // The linker's --wrap routes every call of track() through these functions.
 namespace {
@@ -30,12 +30,6 @@ std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch
 std::vector<Tracked> tracked;
 std::atomic<int> tracks{0};
 }  // namespace
-plvo::TrackResult real_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-plvo::TrackResult wrapped_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 const plvo::MotionPrior& prior) {
   tracked.push_back({frame.stamp_ns, now_ns(), prior});

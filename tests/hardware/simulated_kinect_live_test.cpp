@@ -16,20 +16,14 @@
 #include "allocation_guard.hpp"
 #include "kinect_command.hpp"
 #include "kinect_reference.hpp"
-#include "plvo/odometry/odometry.hpp"
 #include "plvo/replay/recorded_camera.hpp"
 #include "processor_time.hpp"
+#include "wrapped_track.hpp"
 
 // The linker's --wrap routes every call of track() through this function, which counts its allocations.
 namespace {
 std::atomic<std::int64_t> tracks{0}, allocations{0};
 }
-plvo::TrackResult real_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__real__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
-plvo::TrackResult wrapped_track(
-    plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-    const plvo::MotionPrior& prior) asm("__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
                                 const plvo::MotionPrior& prior) {
   const plvo::AllocationGuard guard;

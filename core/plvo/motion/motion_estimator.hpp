@@ -37,7 +37,7 @@ struct MotionEstimate {
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.
   Matrix6 C_H = kUnknownVariance * Matrix6::Identity();
   // Information matrices of the first kInformedTerms terms, in their order: C_P⁻¹ (14), C_L⁻¹ (19), …; their
-  // sum is C_H⁻¹ (26). Zero for an empty term.
+  // sum is C_H⁻¹ (26), where C_H contains no other motion. Zero for an empty term.
   std::array<Matrix6, kInformedTerms> information = zero_matrices<kInformedTerms>();
   ReferenceInformation references;       // information of all terms, given the nuisance parameters
   NuisanceEstimate shared;               // zero unless kOk

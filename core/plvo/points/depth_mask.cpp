@@ -2,7 +2,6 @@
 #include "plvo/points/depth_mask.hpp"
 
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -55,23 +54,13 @@ void load_eight(const std::uint16_t* readings, int step, Int16x8& units) {
     for (int i = 0; i < 8; ++i) units[i] = static_cast<std::int16_t>(readings[i * step]);
 }
 
-// Returns one bit for each lane, which is set where the lane is −1 and not where it is 0.
-std::uint32_t bits_of(const Int16x8& lanes) {
-  std::uint8_t bytes[8];
-  store_bytes(lanes & 1, bytes);
-  std::uint64_t together;
-  std::memcpy(&together, bytes, sizeof together);
-  static_assert(std::endian::native == std::endian::little);
-  return static_cast<std::uint32_t>((together * 0x0102040810204080) >> 56);  // byte i to bit 56 + i
-}
-
 // Returns one bit for each of eight readings, which is set if the reading is in the range.
 std::uint32_t own_of_eight(const Int16x8& units, const Range& range) {
   // Subtracts 2^15 from both sides, so that signed comparison orders unsigned values.
   const auto first = static_cast<std::int16_t>(range.first - 32768);
   const auto last = static_cast<std::int16_t>(range.last - 32768);
   const Int16x8 shifted = units ^ std::numeric_limits<std::int16_t>::min();
-  return bits_of((shifted >= first) & (shifted <= last));
+  return negative_mask((shifted >= first) & (shifted <= last));
 }
 
 #endif
@@ -160,13 +149,13 @@ SurfaceBits fill_holes(const LevelReadings& readings, const Range& range) {
       for (int c = 0; c < kHoleColumns; c += 8) {
         Int16x8 units;
         load_eight(row + c * readings.step(), readings.step(), units);
-        if (readings.step() > 1 && bits_of(units == 0) != 0)
+        if (readings.step() > 1 && negative_mask(units == 0) != 0)
           for (int i = 0; i < 8; ++i)
             if (units[i] == 0)
               units[i] = static_cast<std::int16_t>(readings.covered(c + i - kHoleReach, r - kHoleReach));
         const std::uint32_t in_range = own_of_eight(units, range);
         own[static_cast<std::size_t>(r)] |= in_range << c;
-        other[static_cast<std::size_t>(r)] |= (bits_of(units != 0) & ~in_range) << c;
+        other[static_cast<std::size_t>(r)] |= (negative_mask(units != 0) & ~in_range) << c;
       }
       continue;
     }
@@ -230,9 +219,7 @@ WindowMask depth_mask(const DepthSampler& depth, const Vector2& centre, double d
     own[static_cast<std::size_t>(r)] = static_cast<Row>(bits);
   }
 #ifndef PLVO_SIMD_LOOPS
-  std::uint64_t halves[2];
-  std::memcpy(halves, &missing, sizeof halves);
-  holes = holes || (halves[0] | halves[1]) != 0;
+  holes = holes || negative_mask(missing) != 0;
 #endif
   if (holes) own = fill_holes(readings, range);
   shrink(std::span<Row>(own), kRim);

@@ -302,8 +302,9 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
 }
 
 // Where the points that stayed at their pixels may mislead the estimate, looks for a motion of the other
-// matches. If there is one among them, those points travel with the camera. If it explains more than the
-// estimate does, it is taken, and the covariance contains both if they are comparable.
+// matches. If there is one among them, those points travel with the camera. If it explains clearly more than
+// the estimate does, it is taken. If they are comparable, the estimate stays and its covariance contains
+// both.
 [[gnu::noinline]] void ReferenceTracking::look_beside_stayed(std::span<const Reference> references,
                                                              const CurrentFrame& current,
                                                              const Association& association,
