@@ -18,6 +18,12 @@ void between(const Se3& A, const Se3& B, Se3& T, Matrix6& covariance) {
 
 }  // namespace
 
+Matrix3 rotation_body_optical() {
+  Matrix3 R;
+  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return R;
+}
+
 TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera, const Se3& T_odom_world) {
   TrackResult base = result;
   between(T_odom_world, T_base_camera, base.T_world_camera, base.pose_covariance);
@@ -26,8 +32,7 @@ TrackResult result_of_base(const TrackResult& result, const Se3& T_base_camera, 
 }
 
 Se3 level_odom(const Se3& T_world_camera, const Se3& T_base_camera) {
-  Matrix3 R_body_optical;
-  R_body_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Matrix3 R_body_optical = rotation_body_optical();
   const Se3 T_world_base = T_world_camera * T_base_camera.inverse();
   const Vector3 forward = R_body_optical * T_world_base.R.col(0);
   const double heading = atan2(forward.y(), forward.x());

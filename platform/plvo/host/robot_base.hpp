@@ -8,6 +8,9 @@
 
 namespace plvo {
 
+// Turns optical axes (x right, y down, z forward) to those of a body (x forward, y left, z up; REP 103).
+Matrix3 rotation_body_optical();
+
 // The pose is T_odom_base = T_odom_world · T_world_camera · T_base_camera⁻¹, the motion that of the base
 // since the reference; covariances are carried along (first order), T_odom_world and T_base_camera being
 // exact. The names of the members stay: T_world_camera is T_odom_base. All else is as it was.

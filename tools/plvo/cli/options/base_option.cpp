@@ -33,8 +33,7 @@ TrackResult BaseOption::apply(const TrackResult& result) {
 // level world, whose axes do not depend on how the camera sits, only the axes change.
 MapPose BaseOption::apply(const MapPose& map, const TrackResult& result) const {
   if (!T_base_camera) return map;
-  const Matrix3 from_optical = (Matrix3() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
-  const Se3 T_map_optical = level ? Se3{from_optical, Vector3::Zero()} : *T_base_camera;
+  const Se3 T_map_optical = level ? Se3{rotation_body_optical(), Vector3::Zero()} : *T_base_camera;
   TrackResult in_map;
   in_map.T_world_camera = map.T_map_world * result.T_world_camera;
   in_map.pose_covariance = map.pose_covariance;
