@@ -4,8 +4,12 @@
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/symmetric_eigen.hpp"
 
+#include <cstdio>
+#include <cstdlib>
 namespace plvo {
 namespace {
+double disagreement(const CostTerms&t,const Se3&T,const MotionReferences&r){auto m=motions_to_current(T,r);double d=0;for(std::size_t i=0;i<t.size();++i)d+=t[i].dis(m[t[i].reference()]);return d;}
+
 
 // The consensus is solved twice, first with wider χ² thresholds. A match far more precise than the current
 // motion would otherwise fail the test because of the motion's error, and could never correct it. The first
@@ -20,6 +24,9 @@ constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
 // The estimate fails with kNoConsensus if a smaller share of the usable matches are inliers.
 constexpr double kMinInlierShare = 0.1;
+// If a prior contradicts the first motion, another one is taken that it does not contradict and that explains
+// this share of the evidence. Wrong motions explain less.
+constexpr double kShareOfUncontradicted = 0.2;
 // Smallest ratio of the eigenvalues of the information matrix (scaled to a unit diagonal). Below it the
 // inverse is dominated by rounding errors.
 constexpr double kMinEigenvalueRatio = 1e-10;
@@ -148,21 +155,28 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     if (status != StatusCode::kOk) return status;
   }
   Vector6 apart = Vector6::Zero();
-  if (const double covered = ransac.covered(); start.others && covered < kWorldAtRest) {
+  const double covered = ransac.covered();
+  estimate.contradicted = contradict(terms, T, solving.references);
+  const bool contradict0=estimate.contradicted;
+  if (start.others && (covered < kWorldAtRest || estimate.contradicted)) {
     apart = boxminus(T, first);
     Se3 other = T;
     const bool found = ransac.run_beside(seed, start.prediction, other, estimate.ransac) &&
                        approach_from(other, kWiderThanRefined) == StatusCode::kOk && consensus();
     const double covered_by_other = found ? ransac.covered() : 0;
     apart = boxminus(T, first) - apart;
-    if (!are_comparable(covered, covered_by_other)) apart.setZero();
-    estimate.is_other = covered_by_other > covered && ransac.consensus_fixes_motion(seed);
-    if (!estimate.is_other) {
+    if (estimate.contradicted || !are_comparable(covered, covered_by_other)) apart.setZero();
+    const double least = estimate.contradicted ? kShareOfUncontradicted : covered;
+    estimate.is_other = covered_by_other > least && ransac.consensus_fixes_motion(seed);
+    if (estimate.is_other) {
+      estimate.contradicted = false;
+    } else {
       status = approach_from(first, scale);
       if (status != StatusCode::kOk) return status;
     }
   }
   estimate.explained = ransac.covered();
+  if (getenv("DBG")) fprintf(stderr,"first %.2f c%d other=%d explained %.2f contradicted now %d dis %.1f apart %.3f\n",covered,(int)contradict0,estimate.is_other,estimate.explained,(int)estimate.contradicted,disagreement(terms,T,solving.references), (double)sqrt(apart.squaredNorm()));
   estimate.evidence = estimate.explained * ransac.evidence();
   status = refine(lm);
   if (status != StatusCode::kOk) return status;

@@ -32,6 +32,8 @@ struct MotionEstimate {
   double explained = 0;
   // Whether another motion than the first one with a consensus was taken, because it has more evidence.
   bool is_other = false;
+  // Whether a prior excludes the motion: what the sensors measured cannot be one motion of the camera.
+  bool contradicted = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
   // Σ⁻¹ J)⁻¹; m², m rad, rad². contain() adds the difference from another motion.

@@ -21,6 +21,13 @@ MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionRefer
   return motions;
 }
 
+bool contradict(const CostTerms& terms, const Se3& T_current_base, const MotionReferences& references) {
+  const MotionsToCurrent motions = motions_to_current(T_current_base, references);
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (terms[i].contradicts(motions[terms[i].reference()])) return true;
+  return false;
+}
+
 namespace {
 
 constexpr int kJointSize = JointInformation::kSize;

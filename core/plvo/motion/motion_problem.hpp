@@ -66,6 +66,9 @@ using MotionReferences = std::array<MotionReference, kMaxPoses>;
 using MotionsToCurrent = std::array<Se3, kMaxPoses>;
 MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionReferences& references);
 
+// Whether a term contradicts the motion.
+bool contradict(const CostTerms& terms, const Se3& T_current_base, const MotionReferences& references);
+
 class MotionProblem {
  public:
   using Kernels = std::array<RobustKernel, kMaxTerms>;

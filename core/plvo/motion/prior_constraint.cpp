@@ -2,12 +2,26 @@
 #include "plvo/motion/prior_constraint.hpp"
 
 namespace plvo {
+namespace {
+
+// Squared Mahalanobis distance. The estimate of a motion is correlated over the features of a frame, and a
+// prior is seldom as good as its covariance: in simulated rooms at rest the distance reaches 29 in 240 frames
+// with a gyro. Before a board that moves it is 30 to 10,000.
+constexpr double kContradiction = 50;
+
+}  // namespace
 
 PriorConstraint::PriorConstraint(const Se3& T_propagated, const Matrix6& covariance)
     : CostTerm({}), T_propagated_(T_propagated) {
   Cholesky<6> cholesky;
   usable_ = T_propagated.is_finite() && covariance.allFinite() && cholesky.factor(covariance);
   if (usable_) information_ = cholesky.inverse();
+}
+
+bool PriorConstraint::contradicts(const Se3& T) const {
+  if (!usable_) return false;
+  const Vector6 r = boxminus(T, T_propagated_);
+  return r.dot(Vector6(information_.lazyProduct(r))) > kContradiction;
 }
 
 double PriorConstraint::linearize(const Se3& T, const NuisanceParameters&, const RobustKernel& kernel,

@@ -2,7 +2,8 @@
 // The propagated prior of other sensors as a term of the cost. Its residual is r = T ⊟ T_propagated,
 // translation before rotation; it adds ½ ρ(rᵀ C⁻¹ r) to the cost (21). RANSAC does not judge it, because a
 // hypothesis is arbitrary in directions that vision does not determine. If it contradicts the images, Huber's
-// loss bounds its influence.
+// loss bounds its influence; but of two motions that the images show, the one that it does not contradict is
+// the camera's.
 #pragma once
 
 #include "plvo/math/cholesky.hpp"
@@ -17,6 +18,9 @@ class PriorConstraint final : public CostTerm {
 
   int dof() const override { return 6; }
   bool fixes_motion() const override { return usable_; }
+  // Whether rᵀ C⁻¹ r exceeds what the noise of both explains.
+  double dis(const Se3&T) const override{ const Vector6 r = boxminus(T, T_propagated_);return r.dot(Vector6(information_.lazyProduct(r)));}
+  bool contradicts(const Se3& T) const override;
   void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
                    JointInformation& sum) const override;

@@ -219,6 +219,7 @@ bool Ransac::consider(Se3 T, Se3& best, RansacSummary& summary) {
 
 // Scores a refined hypothesis. If it is the best, stores it in `best` and returns true.
 bool Ransac::rate(const Se3& T, Se3& best, RansacSummary& summary) {
+  if (gain_ == Gain::kEvidence && contradict(terms_, T, references_)) return false;
   double refined_score = 0;
   double refined_score_as_fresh = 0;
   int inliers = 0;

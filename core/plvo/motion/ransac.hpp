@@ -59,9 +59,9 @@ class Ransac {
 
   // Writes the motion of the most matches to T. Returns false if no hypothesis has a score above zero.
   bool run(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
-  // Searches for a motion with more evidence than T, the motion of the flagged inliers. Sets are drawn from
-  // the other matches; the prediction, if any, is the first hypothesis. Returns false, and leaves T, if no
-  // better one is found. Reorders the scratch.
+  // Searches for a motion with more evidence than T, the motion of the flagged inliers. A motion that a term
+  // contradicts has no evidence. Sets are drawn from the other matches; the prediction, if any, is the first
+  // hypothesis. Returns false, and leaves T, if no better one is found. Reorders the scratch.
   bool run_beside(std::uint64_t seed, const Se3* prediction, Se3& T, RansacSummary& summary);
 
   // Sets the inlier flag of every match by the χ² test under T with the thresholds scaled by `scale`.
@@ -81,7 +81,7 @@ class Ransac {
   // What an inlier adds to the score is in proportion to this.
   enum class Gain : std::uint8_t {
     kMatch,     // run(): every match counts the same
-    kEvidence,  // run_beside(): by its evidence
+    kEvidence,  // run_beside(): by its evidence, unless a term contradicts the motion
   };
   void weigh();
   void start(Gain gain, RansacSummary& summary);

@@ -29,6 +29,8 @@ constexpr double kSameStart = 4.0 / 525;
 // moved. If they are the same motion, the image is nearer to it than a prediction that is 4 px off, unless
 // the other estimate explains more and they are not comparable.
 constexpr double kOtherMotion = 2.0 / 525;
+// A motion that a prior contradicts counts as explaining this share of what it explains.
+constexpr double kWorthOfContradicted = 0.25;
 // When tracking fails, features are searched this far from their old positions, whatever the prediction.
 constexpr double kWideSearch_px = 120;
 
@@ -119,6 +121,12 @@ bool is_findable(const Reference& reference) {
     }
     return tracked.ok();
   };
+  const auto explained_by_tracked = [&] {
+    Explained explained =
+        explained_by(tracked.motion.T_current_reference, references, tracking, context.camera);
+    if (tracked.motion.contradicted) explained.evidence *= kWorthOfContradicted;
+    return explained;
+  };
   // The start of the motion that explains most so far, the motion, and what it explains.
   struct {
     Se3 start, motion;
@@ -128,17 +136,14 @@ bool is_findable(const Reference& reference) {
   // times: how much more than the best before it has to explain, to become the best.
   const auto explain = [&](const Se3& start, double times = 1) {
     Explained explained;
-    if (refine(start))
-      explained = explained_by(tracked.motion.T_current_reference, references, tracking, context.camera);
+    if (refine(start)) explained = explained_by_tracked();
     last_is_best = explained.evidence > times * best.explained.evidence;
     if (last_is_best) best = {start, tracked.motion.T_current_reference, explained};
     return explained;
   };
   const auto glance = [&](const Se3& start) {
     tracking.glance(references, current, start, tracked);
-    return tracked.ok()
-               ? explained_by(tracked.motion.T_current_reference, references, tracking, context.camera)
-               : Explained{};
+    return tracked.ok() ? explained_by_tracked() : Explained{};
   };
   const auto take_best = [&] {
     if (!last_is_best && best.explained.evidence > 0) (void)refine(best.start);
@@ -181,7 +186,7 @@ bool is_findable(const Reference& reference) {
     if (has_rival && tracked.ok() && is_other_motion(rival, tracked.motion.T_current_reference))
       tracked.motion.contain(boxminus(rival, tracked.motion.T_current_reference));
     if (found.share >= kAcceptedShareByImage) {
-      if (!compare && tracked.motion.explained < kWorldAtRest) {
+      if (!compare && (tracked.motion.explained < kWorldAtRest || tracked.motion.contradicted)) {
         explain(by_prediction, 1 / kComparableShare);
         take_best();
       }
