@@ -47,7 +47,6 @@ class CostTerm {
   // Whether the term alone determines all six degrees of freedom.
   virtual bool fixes_motion() const { return false; }
   // Whether the term excludes the motion, whatever the others say.
-  virtual double dis(const Se3&) const {return 0;}
   virtual bool contradicts(const Se3&) const { return false; }
 
   // reference: index of the reference that the residuals are with (motion_problem.hpp); default 0.

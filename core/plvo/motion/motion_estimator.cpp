@@ -4,11 +4,8 @@
 #include "plvo/math/cholesky.hpp"
 #include "plvo/math/symmetric_eigen.hpp"
 
-#include <cstdio>
-#include <cstdlib>
 namespace plvo {
 namespace {
-double disagreement(const CostTerms&t,const Se3&T,const MotionReferences&r){auto m=motions_to_current(T,r);double d=0;for(std::size_t i=0;i<t.size();++i)d+=t[i].dis(m[t[i].reference()]);return d;}
 
 
 // The consensus is solved twice, first with wider χ² thresholds. A match far more precise than the current
@@ -157,7 +154,6 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
   Vector6 apart = Vector6::Zero();
   const double covered = ransac.covered();
   estimate.contradicted = contradict(terms, T, solving.references);
-  const bool contradict0=estimate.contradicted;
   if (start.others && (covered < kWorldAtRest || estimate.contradicted)) {
     apart = boxminus(T, first);
     Se3 other = T;
@@ -176,7 +172,6 @@ StatusCode solve(std::span<ConstraintSet* const> sets, const CostTerms& terms,
     }
   }
   estimate.explained = ransac.covered();
-  if (getenv("DBG")) fprintf(stderr,"first %.2f c%d other=%d explained %.2f contradicted now %d dis %.1f apart %.3f\n",covered,(int)contradict0,estimate.is_other,estimate.explained,(int)estimate.contradicted,disagreement(terms,T,solving.references), (double)sqrt(apart.squaredNorm()));
   estimate.evidence = estimate.explained * ransac.evidence();
   status = refine(lm);
   if (status != StatusCode::kOk) return status;

@@ -19,7 +19,6 @@ class PriorConstraint final : public CostTerm {
   int dof() const override { return 6; }
   bool fixes_motion() const override { return usable_; }
   // Whether rᵀ C⁻¹ r exceeds what the noise of both explains.
-  double dis(const Se3&T) const override{ const Vector6 r = boxminus(T, T_propagated_);return r.dot(Vector6(information_.lazyProduct(r)));}
   bool contradicts(const Se3& T) const override;
   void begin(const Se3&, const NuisanceParameters&, const RobustKernel&, std::size_t) override {}
   double linearize(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
