@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "plvo/math/cholesky.hpp"
 #include "plvo/math/covariance.hpp"
 #include "plvo/math/trigonometry.hpp"
 
@@ -24,7 +25,8 @@ constexpr double kMostOffsetVariance = 1;
 // Differences of stamps within this bound fit into 64 bits.
 constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
 bool is_stamp(std::int64_t ns) { return ns >= -kFarthest_ns && ns <= kFarthest_ns; }
-// Bound on the correction by one frame, in standard deviations of the prior.
+// Bound on the difference of the rotations by vision and by the gyro that a run corrects the offset by, in
+// standard deviations.
 constexpr double kMostSigmas = 5;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -115,7 +117,7 @@ bool ImuIntegrator::mean_force(std::int64_t from_ns, std::int64_t to_ns, Vector3
   return count > 0;
 }
 
-RotationPrior ImuIntegrator::rotation(double seconds, const Vector3& angle) {
+RotationPrior ImuIntegrator::rotation(double seconds, const Vector3& angle) const {
   RotationPrior prior;
   prior.R_now_before = renormalise(R_now_before_);
   Vector3 variance;
@@ -134,7 +136,7 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   MotionPrior prior;
   const bool first = !started_;
   const std::int64_t before_ns = last_ns_;
-  open_ = false;
+  has_rotation_ = false;
   if (!is_stamp(stamp_ns) || (!first && stamp_ns <= before_ns)) return prior;
   started_ = true;
   before_ns_ = before_ns;
@@ -150,10 +152,10 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   const std::int64_t from_ns = first ? stamp_ns - kMoment_ns : before_ns;
   const bool whole = integrate(from_ns, stamp_ns, angle);
   if (whole && !first && seconds_ > kLeastSeconds) {
-    last_rotation_ = rotation(seconds_, angle);
+    const RotationPrior found = rotation(seconds_, angle);
     // A rotation whose variance exceeds the bound carries no information.
-    open_ = last_rotation_.covariance.diagonal().maxCoeff() <= kMostRotationVariance;
-    if (open_) prior.rotation = last_rotation_;
+    has_rotation_ = found.covariance.diagonal().maxCoeff() <= kMostRotationVariance;
+    if (has_rotation_) prior.rotation = found;
   }
   Vector3 force;
   int count = 0;
@@ -178,36 +180,76 @@ MotionPrior ImuIntegrator::prior(std::int64_t stamp_ns) {
   return prior;
 }
 
-// The estimate rotates the prior's rotation by e and leaves the covariance C' < C, where C is the prior's.
-// The offset's error b contributes Δt b to the prior's error, in the sensor's axes. Given e, b changes by P
-// Δt C⁻¹ e, and its variance P by the square of that gain times C − C'. The estimate has already used the
-// prior, but no information is used twice.
-void ImuIntegrator::correct(const ObservedRotation& observed) {
-  const Matrix3& R_now_reference = observed.R_camera_reference;
-  Matrix3 R_now_before = R_now_reference;
-  bool known = has_seen_ && seen_ns_ == before_ns_ && observed.stamp_ns == last_ns_ && open_ &&
-               observed.reference_stamp_ns != observed.stamp_ns;
-  if (observed.reference_stamp_ns == reference_ns_)
-    R_now_before = R_now_reference * R_seen_reference_.transpose();
-  else
-    known = known && observed.reference_stamp_ns == seen_ns_;
-  seen_ns_ = observed.stamp_ns;
-  reference_ns_ = observed.reference_stamp_ns;
-  R_seen_reference_ = R_now_reference;
-  has_seen_ = true;
-  open_ = false;
-  if (!known) return;
-  const Matrix3 R_imu_camera = turn_.transpose();
-  const Vector3 e = R_imu_camera * rotation_log(R_now_before * last_rotation_.R_now_before.transpose());
-  const Matrix3 prior = R_imu_camera * last_rotation_.covariance * turn_;
-  const Matrix3 left = R_imu_camera * observed.covariance * turn_;
+void ImuIntegrator::start_run(const ObservedRotation& first) {
+  run_ = {first, first, 0, Matrix3::Identity(), Matrix3::Zero()};
+  has_run_ = true;
+}
+
+// Covariance of the rotation by the gyro minus that by vision, apart from the offset. The errors of vision at
+// the ends of the run are taken as independent; the reference itself has none.
+Matrix3 ImuIntegrator::noise_of_run() const {
+  const Vector3 angle = turn_.transpose() * rotation_log(run_.R_last_first);
+  Vector3 variance;
   for (int i = 0; i < 3; ++i) {
-    const double C = prior(i, i);
-    const double gain = variance_[i] * seconds_ / C;
-    const double bound = kMostSigmas * sqrt(C);
-    offset_[i] += gain * std::clamp(e[i], -bound, bound);
-    variance_[i] = std::max(0.0, variance_[i] - gain * gain * (C - std::clamp(left(i, i), 0.0, C)));
+    const double scale = config_.gyro_scale_sigma * angle[i];
+    variance[i] = config_.gyro_noise * config_.gyro_noise * run_.seconds + scale * scale;
   }
+  const Matrix3 R_last_first = run_.R_last_first;
+  return turn_ * variance.asDiagonal() * turn_.transpose() + run_.last.covariance +
+         R_last_first * run_.first.covariance * R_last_first.transpose();
+}
+
+Matrix3 ImuIntegrator::offset_error_of_run() const {
+  return run_.derivative * variance_.asDiagonal() * run_.derivative.transpose();
+}
+
+// A step of a Kalman filter whose state is the offset. Only the variances of the axes are kept.
+void ImuIntegrator::finish_run() {
+  has_run_ = false;
+  const Matrix3 S = noise_of_run() + offset_error_of_run();
+  Cholesky<3> cholesky;
+  if (!cholesky.factor(Matrix3(0.5 * (S + Matrix3(S.transpose()))))) return;
+  const Matrix3 inverse = cholesky.inverse();
+  const Matrix3 R_by_vision = run_.last.R_camera_reference * run_.first.R_camera_reference.transpose();
+  Vector3 e = rotation_log(R_by_vision * run_.R_last_first.transpose());
+  const double sigmas = sqrt(e.dot(Vector3(inverse * e)));
+  if (sigmas > kMostSigmas) e *= kMostSigmas / sigmas;
+  const Matrix3 gain = variance_.asDiagonal() * run_.derivative.transpose() * inverse;
+  const Matrix3 left = Matrix3::Identity() - gain * run_.derivative;
+  offset_ += gain * e;
+  for (int i = 0; i < 3; ++i) variance_[i] *= std::clamp(left(i, i), 0.0, 1.0);
+}
+
+// A run ends with its reference, or as soon as it says more about the offset than is known.
+void ImuIntegrator::correct(const ObservedRotation& observed) {
+  const bool starts = observed.reference_stamp_ns == observed.stamp_ns;
+  if (starts || !has_run_ || !has_rotation_ || run_.last.stamp_ns != before_ns_ ||
+      observed.stamp_ns != last_ns_) {
+    start_run(observed);
+    return;
+  }
+  if (observed.reference_stamp_ns != run_.last.reference_stamp_ns) {
+    const bool goes_on = observed.reference_stamp_ns == run_.last.stamp_ns;
+    ObservedRotation reference = run_.last;
+    if (run_.seconds > 0) finish_run();
+    if (!goes_on) {
+      start_run(observed);
+      return;
+    }
+    reference.reference_stamp_ns = reference.stamp_ns;
+    reference.R_camera_reference.setIdentity();
+    reference.covariance.setZero();
+    start_run(reference);
+    run_.last.reference_stamp_ns = reference.stamp_ns;
+  }
+  const Matrix3& R_now_before = R_now_before_;
+  run_.last = observed;
+  run_.seconds += seconds_;
+  run_.R_last_first = renormalise(R_now_before * run_.R_last_first);
+  run_.derivative = R_now_before * run_.derivative + seconds_ * turn_;
+  if (offset_error_of_run().trace() < noise_of_run().trace()) return;
+  finish_run();
+  start_run(observed);
 }
 
 }  // namespace plvo

@@ -11,6 +11,11 @@
 // "On-Manifold Preintegration for Real-Time Visual–Inertial Odometry", 2017, without the accelerometer's
 // part). The gyro's offset is a separate state that correct() estimates. The accelerometer's mean over the
 // interval gives the direction of gravity.
+//
+// An offset shows in the rotation over several frames. Between neighbouring frames it is less than the error
+// of vision, and the errors of neighbouring frames are not independent, because both are matched with the
+// same reference. So correct() compares the rotation by the gyro with that by vision over a run of frames
+// with one reference, and uses each run once.
 #pragma once
 
 #include <cstddef>
@@ -72,7 +77,8 @@ class ImuIntegrator {
   // call or where samples are missing, and no gravity where the accelerometer gave none.
   MotionPrior prior(std::int64_t stamp_ns);
 
-  // Corrects the gyro's offset by the frame of the last prior. Odometry::track(frame, imu) calls it.
+  // Corrects the gyro's offset by the rotation of the frame of the last prior, if its run of frames ends.
+  // Odometry::track(frame, imu) calls it for every frame whose rotation vision and the gyro agree on.
   void correct(const ObservedRotation& observed);
 
   const Vector3& gyro_offset() const { return offset_; }             // rad/s, in the sensor's axes
@@ -81,7 +87,19 @@ class ImuIntegrator {
  private:
   bool integrate(std::int64_t from_ns, std::int64_t to_ns, Vector3& angle);
   bool mean_force(std::int64_t from_ns, std::int64_t to_ns, Vector3& force, int& count);
-  RotationPrior rotation(double seconds, const Vector3& angle);
+  RotationPrior rotation(double seconds, const Vector3& angle) const;
+  // Frames with one reference, from `first` to `last`, and the gyro's rotation between the two.
+  struct Run {
+    ObservedRotation first, last;
+    double seconds = 0;
+    Matrix3 R_last_first = Matrix3::Identity();  // by the gyro
+    // Derivative of the rotation (in the camera's axes at `last`) with respect to the offset's error, in s.
+    Matrix3 derivative = Matrix3::Zero();
+  };
+  void start_run(const ObservedRotation& first);
+  Matrix3 noise_of_run() const;
+  Matrix3 offset_error_of_run() const;
+  void finish_run();
 
   ImuConfig config_;
   // For rates, which are axial vectors: a rotation also if the axes have another handedness
@@ -91,14 +109,10 @@ class ImuIntegrator {
   std::int64_t last_ns_ = 0, before_ns_ = 0;  // of the last call of prior(), and of the one before
   Matrix3 R_now_before_ = Matrix3::Identity();
   Vector3 offset_ = Vector3::Zero(), variance_ = Vector3::Zero();
-  // State of the last prior with a rotation, until correct() has used it.
-  bool open_ = false;
-  double seconds_ = 0;
-  RotationPrior last_rotation_;
-  // State of the last frame that was tracked.
-  std::int64_t seen_ns_ = 0, reference_ns_ = 0;
-  Matrix3 R_seen_reference_ = Matrix3::Identity();
-  bool has_seen_ = false;
+  double seconds_ = 0;      // of the last prior
+  bool has_rotation_ = false;  // the last prior
+  bool has_run_ = false;
+  Run run_;
 };
 
 }  // namespace plvo
