@@ -155,6 +155,51 @@ TEST(PriorConstraint, HoldsWhatVisionLeavesOpen) {
   EXPECT_LT(std::fabs(across.dot(t_error)), 0.003) << "vision corrects the prior across";
 }
 
+// A room of 30 points and an object of 70 in a wider part of the image: the object has more of the evidence.
+// A gyro tells one of their rotations.
+TEST(PriorConstraint, AGyroDecidesWhichOfTwoMotionsIsTheCameras) {
+  Gaussian gaussian(8);
+  for (std::uint64_t trial = 0; trial < 10; ++trial) {
+    SimulatedPair pair;
+    const Se3 room = boxplus(Se3(), 0.02 * gaussian.vector<6>());
+    const Se3 object = boxplus(room, Vector6(0.1, -0.06, 0.05, 0.03, 0.04, -0.03));
+    const auto add = [&](const Se3& T, int n, double left, double right) {
+      pair.truth = T;
+      for (int i = 0; i < n; ++i) {
+        const double z = gaussian.uniform(2, 4);
+        pair.add_point(gaussian, {z * gaussian.uniform(left, right), z * gaussian.uniform(-0.4, 0.4), z});
+      }
+    };
+    add(room, 30, -0.5, -0.2);
+    add(object, 70, -0.2, 0.5);
+    for (const Se3* camera : {&room, &object}) {
+      Matrix6 C = Matrix6::Identity();
+      C.block<3, 3>(3, 3) *= 1e-6;
+      OnePrior gyro({camera->R, Vector3::Zero()}, C);
+      const std::array<CostTerm*, 1> others{&gyro.set};
+      test::Bench bench;
+      bench.load(pair);
+      const MotionEstimate estimate =
+          estimate_motion(bench.sets, others, MotionReferences{}, {}, {}, trial, nullptr, bench.arena);
+      ASSERT_EQ(estimate.status, StatusCode::kOk) << trial;
+      EXPECT_LT(boxminus(estimate.T_current_reference, *camera).norm(), 0.01) << trial;
+      EXPECT_FALSE(estimate.contradicted) << trial;
+    }
+    // A gyro that tells neither is outweighed.
+    Matrix6 C = Matrix6::Identity();
+    C.block<3, 3>(3, 3) *= 1e-6;
+    OnePrior broken({rotation_exp({0, 0.3, 0}), Vector3::Zero()}, C);
+    const std::array<CostTerm*, 1> others{&broken.set};
+    test::Bench bench;
+    bench.load(pair);
+    const MotionEstimate estimate =
+        estimate_motion(bench.sets, others, MotionReferences{}, {}, {}, trial, nullptr, bench.arena);
+    ASSERT_EQ(estimate.status, StatusCode::kOk) << trial;
+    EXPECT_LT(boxminus(estimate.T_current_reference, object).norm(), 0.02) << trial;
+    EXPECT_TRUE(estimate.contradicted) << trial;
+  }
+}
+
 TEST(PriorConstraint, TheJointCovarianceIsHonest) {
   Gaussian gaussian(11);
   double nees = 0;
