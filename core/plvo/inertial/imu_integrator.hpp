@@ -77,8 +77,8 @@ class ImuIntegrator {
   // call or where samples are missing, and no gravity where the accelerometer gave none.
   MotionPrior prior(std::int64_t stamp_ns);
 
-  // Corrects the gyro's offset by the rotation of the frame of the last prior, if its run of frames ends.
-  // Odometry::track(frame, imu) calls it for every frame whose rotation vision and the gyro agree on.
+  // Takes the rotation of the frame of the last prior, and corrects the gyro's offset where a run of frames
+  // ends. Odometry::track(frame, imu) calls it for every tracked frame.
   void correct(const ObservedRotation& observed);
 
   const Vector3& gyro_offset() const { return offset_; }             // rad/s, in the sensor's axes
@@ -109,7 +109,7 @@ class ImuIntegrator {
   std::int64_t last_ns_ = 0, before_ns_ = 0;  // of the last call of prior(), and of the one before
   Matrix3 R_now_before_ = Matrix3::Identity();
   Vector3 offset_ = Vector3::Zero(), variance_ = Vector3::Zero();
-  double seconds_ = 0;      // of the last prior
+  double seconds_ = 0;         // of the last prior
   bool has_rotation_ = false;  // the last prior
   bool has_run_ = false;
   Run run_;

@@ -7,7 +7,6 @@
 namespace plvo {
 namespace {
 
-
 // The consensus is solved twice, first with wider χ² thresholds. A match far more precise than the current
 // motion would otherwise fail the test because of the motion's error, and could never correct it. The first
 // factor applies to a motion that RANSAC found and refined, the second one to a motion that the caller
