@@ -15,8 +15,6 @@ namespace {
 // not refused, but other motions are searched as well.
 constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
-// A motion is also accepted if two searches lead to it: within this distance (m and rad).
-constexpr double kSameMotion = 0.02;
 // Features are registered again where the estimate is another motion than that of the start, so many times in
 // all: those that move so are now found.
 constexpr int kMostRegistrations = 3;
@@ -158,8 +156,8 @@ bool is_findable(const Reference& reference) {
     if (!tracked.ok()) return false;
     if (!registered) return true;
     const Se3 start = tracked.motion.T_current_reference * from.pose.T_reference_base;
-    if (best.explained.evidence > 0 && boxminus(start, best.motion).norm() < kSameMotion)
-      return refine(best.start);
+    // A motion is also accepted if two searches lead to it.
+    if (best.explained.evidence > 0 && !is_other_motion(start, best.motion)) return refine(best.start);
     return explain(start).share >= kAcceptedShareByFeatures;
   };
 
