@@ -16,6 +16,7 @@ INDIRECT = [
     (re.compile(r"Executor5start"), None),  # Config::executor: the second core has a stack of its own
     (re.compile(r"LevenbergMarquardt.*@lines"), re.compile(r"LmAnyProblem.*EndDepths.*_FUN")),
     (re.compile(r"LevenbergMarquardt"), re.compile(r"LmAnyProblem.*MotionProblem.*_FUN")),
+    (re.compile(r"plvo10contradict"), re.compile(r"11contradicts")),
     (re.compile(r"Ransac|MotionProblem|estimate_motion|5solveESt4span|5count|8estimate"), re.compile(r"_ZNK?4plvo\d+[A-Z]\w*Constraints?S?\d")),
 ]
 

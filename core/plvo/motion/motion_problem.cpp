@@ -21,7 +21,9 @@ MotionsToCurrent motions_to_current(const Se3& T_current_base, const MotionRefer
   return motions;
 }
 
-bool contradict(const CostTerms& terms, const Se3& T_current_base, const MotionReferences& references) {
+// Not inlined: the motions would otherwise stay on the stack while the motion is solved for.
+[[gnu::noinline]] bool contradict(const CostTerms& terms, const Se3& T_current_base,
+                                  const MotionReferences& references) {
   const MotionsToCurrent motions = motions_to_current(T_current_base, references);
   for (std::size_t i = 0; i < terms.size(); ++i)
     if (terms[i].contradicts(motions[terms[i].reference()])) return true;
