@@ -13,6 +13,7 @@ import links
 import messages
 import paths
 import ran
+import release
 import results
 import rules
 import words
@@ -437,6 +438,29 @@ class Words(unittest.TestCase):
                 self.assertEqual(len(errors), 1, (old, name, errors))
                 self.assertTrue(errors[0].startswith(f"{name}:2:"), errors)
         self.assertEqual(len(self.found("core/plvo/base/a.hpp", "// by the " + "front" + "\n// door\n")), 1)
+
+
+class Release(unittest.TestCase):
+    TREE = {
+        "CMakeLists.txt": "project(plvo VERSION 1.2.3 LANGUAGES CXX)\n",
+        "debian/changelog": "plvo (1.2.3) unstable; urgency=medium\n\n  * x\n\n -- A <a@b.c>  Sat, 28 Nov 2026 00:00:00 +0000\n",
+        "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3 (2026-11-28)\n\n## 1.0.0\n",
+        "debian/control": "Source: plvo\nBuild-Depends: debhelper-compat (= 13),\n               cmake,\n               a-dev <!cross>\n\nPackage: b\n",
+        "tools/setup/packages.sh": 'PLVO_PACKAGES_BUILD="g++ cmake"\nPLVO_PACKAGES_PYTHON=""\nPLVO_PACKAGES_ROS="a-dev"\n',
+    }
+
+    def found(self, **changes):
+        with Tree({**self.TREE, **{name: self.TREE[name].replace(*change) for name, change in changes.items()}}) as root:
+            return release.check(root)
+
+    def test_agreement_is_no_error(self):
+        self.assertEqual(self.found(), [])
+
+    def test_another_version_date_or_package_is_one(self):
+        for name, change in (("CMakeLists.txt", ("1.2.3", "1.2.4")), ("CHANGELOG.md", ("(2026-11-28)", "")),
+                             ("debian/changelog", ("28 Nov", "27 Nov")), ("debian/control", ("a-dev", "b-dev")),
+                             ("tools/setup/packages.sh", ("cmake", "cmake c-dev"))):
+            self.assertTrue(self.found(**{name: change}), name)
 
 
 if __name__ == "__main__":

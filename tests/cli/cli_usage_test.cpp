@@ -246,6 +246,7 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
       {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
       {"--camera", 2},       // the simulated camera; the length of its walk depends on the command
+      {"--wheels", 2},       // a file beside a recording; live, what comes through a pipe
       {"--pace", 2},         // live has a pace of its own without a sensor, and no steps
   };
   return flags;

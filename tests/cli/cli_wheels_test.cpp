@@ -2,6 +2,7 @@
 // `plvo run --wheels` on what `plvo simulate --robot` writes: it bridges a covered lens, and says what is
 // wrong.
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "plvo_command.hpp"
@@ -47,6 +48,22 @@ TEST_F(CliWheels, BridgeACoveredLens) {
   const nlohmann::json both = summary("--imu --wheels " + wheels() + kRobotCamera);
   EXPECT_GE(both["predicted"], 15);
   EXPECT_LT(both["evaluation"]["ate_m"]["rmse"], 0.02);
+}
+
+// An accelerometer alone says nothing of the turn: that of the wheels counts, beside gravity.
+TEST_F(CliWheels, TurnTheCameraBesideAnAccelerometerAlone) {
+  const std::filesystem::path walked = walk(), copy = folder_ / "no_gyro";
+  std::filesystem::copy(walked, copy, std::filesystem::copy_options::recursive);
+  std::filesystem::remove(copy / "gyroscope.txt");
+  const auto turn_of = [&](const std::string& options) {
+    const auto result = plvo("run " + copy.string() + " --quiet --json " + path("s.json") + " --wheels " +
+                             wheels() + kRobotCamera + options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(test::read_file(folder_ / "s.json"));
+    EXPECT_GE(json["predicted"], 15);
+    return json["evaluation"]["rpe"][0]["rotation_deg"]["rmse"].get<double>();
+  };
+  EXPECT_LT(turn_of("--imu"), 2.5 * turn_of(""));
 }
 
 TEST_F(CliWheels, TellWhatLooksWrong) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as the file of wheel odometry, and the priors of frames between its samples. Accepted samples are
 // finite, have increasing stamps, and survive writing and reading to seven decimals; every prior is valid.
-#include "plvo/replay/recorded_wheels.hpp"
 #include "plvo/replay/wheel_files.hpp"
+#include "plvo/replay/wheel_priors.hpp"
 #include "scratch_file.hpp"
 
 namespace {
@@ -19,10 +19,14 @@ void check(const WheelRecording& recording) {
 }
 
 void check_priors(const WheelRecording& recording) {
-  RecordedWheels wheels;
-  fuzz::require(wheels.init(recording, {}).ok());
+  WheelPriors wheels, as_they_come;
+  WheelConfig held;
+  held.hold_s = 0.1;
+  fuzz::require(wheels.init(recording, {}).ok() && as_they_come.init({}, held).ok());
   for (const WheelSample& sample : recording.samples) {
     if (sample.stamp_ns > std::int64_t{1} << 61) break;
+    fuzz::require(as_they_come.add(sample));
+    fuzz::require(as_they_come.prior(sample.stamp_ns + 7'000'000).validate().ok());
     const MotionPrior prior = wheels.prior(sample.stamp_ns + 7'000'000);
     fuzz::require(prior.validate().ok());
   }

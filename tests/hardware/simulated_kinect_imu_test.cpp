@@ -38,11 +38,11 @@ plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame&
 }
 // Takes the prior itself, to record it. Without a gyro there is no offset to correct.
 plvo::TrackResult
-wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame, plvo::ImuIntegrator& imu, const std::optional<plvo::TranslationPrior>&) asm(
+wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame, plvo::ImuIntegrator& imu, const plvo::MotionPrior&) asm(
     "__wrap__ZN4plvo8Odometry5trackERKNS_9RgbdFrameERNS_"
-    "13ImuIntegratorERKSt8optionalINS_16TranslationPriorEE");
+    "13ImuIntegratorERKNS_11MotionPriorE");
 plvo::TrackResult wrapped_track(plvo::Odometry* odometry, const plvo::RgbdFrame& frame,
-                                plvo::ImuIntegrator& imu, const std::optional<plvo::TranslationPrior>&) {
+                                plvo::ImuIntegrator& imu, const plvo::MotionPrior&) {
   return wrapped_track(odometry, frame, imu.prior(frame.stamp_ns));
 }
 

@@ -5,9 +5,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
-#include "plvo/replay/recorded_wheels.hpp"
 #include "plvo/replay/wheel_files.hpp"
+#include "plvo/replay/wheel_priors.hpp"
 #include "temporary_folder.hpp"
 
 namespace plvo {
@@ -87,10 +88,10 @@ Se3 slow_drive(double from_s, double to_s) {
   return T;
 }
 
-TEST(RecordedWheels, PriorsOfFramesBetweenSamplesAreTheDrivenWay) {
+TEST(WheelPriors, PriorsOfFramesBetweenSamplesAreTheDrivenWay) {
   WheelConfig config;
   config.T_base_camera = {rotation_exp({0.3, -1, 0.2}), {0.3, 0.1, 0.4}};
-  RecordedWheels wheels;
+  WheelPriors wheels;
   ASSERT_TRUE(wheels.init(driven(150), config).ok());
   EXPECT_FALSE(wheels.prior(kWheelStart + 5'000'000).tells_motion()) << "there is no frame before";
   for (int i = 1; i < 40; ++i) {
@@ -104,16 +105,14 @@ TEST(RecordedWheels, PriorsOfFramesBetweenSamplesAreTheDrivenWay) {
     EXPECT_TRUE(prior.validate().ok());
   }
   EXPECT_EQ(wheels.priors(), 39U);
-  EXPECT_NEAR(wheels.largest_speed(), 0.7, 0.02);
-  EXPECT_NEAR(wheels.largest_turn_rate(), 0.8, 0.01);
 }
 
-TEST(RecordedWheels, StandardDeviationsOfTheFileComeBeforeTheShareOfTheSpeed) {
+TEST(WheelPriors, StandardDeviationsOfTheFileComeBeforeTheShareOfTheSpeed) {
   WheelConfig config;
   config.error_s = 0;
   const auto prior_at = [&](bool with_sigma, double share) {
     config.share = share;
-    RecordedWheels wheels;
+    WheelPriors wheels;
     EXPECT_TRUE(wheels.init(driven(20, with_sigma), config).ok());
     (void)wheels.prior(kWheelStart);
     return wheels.prior(kWheelStart + kWheelPeriod);
@@ -127,10 +126,10 @@ TEST(RecordedWheels, StandardDeviationsOfTheFileComeBeforeTheShareOfTheSpeed) {
               2e-4);
 }
 
-TEST(RecordedWheels, SayNothingWhereSamplesAreMissing) {
+TEST(WheelPriors, SayNothingWhereSamplesAreMissing) {
   WheelRecording recording = driven(100);
   recording.samples.erase(recording.samples.begin() + 30, recording.samples.begin() + 50);  // 0.4 s
-  RecordedWheels wheels;
+  WheelPriors wheels;
   ASSERT_TRUE(wheels.init(recording, {}).ok());
   const auto told = [&](double s) {
     return wheels.prior(kWheelStart + std::llround(s * 1e9)).tells_motion();
@@ -147,11 +146,74 @@ TEST(RecordedWheels, SayNothingWhereSamplesAreMissing) {
   EXPECT_FALSE(told(2.6));
 }
 
-TEST(RecordedWheels, RefuseAConfigurationThatIsNone) {
+// One after the other they give the priors of the whole recording, bit for bit; out of turn they are left
+// out.
+TEST(WheelPriors, SamplesThatComeOneByOneAreThoseOfARecording) {
+  WheelPriors whole, one_by_one;
+  ASSERT_TRUE(whole.init(driven(100), {}).ok());
+  ASSERT_TRUE(one_by_one.init({}, {}).ok());
+  EXPECT_FALSE(one_by_one.last_ns());
+  const std::vector<WheelSample> samples = driven(100).samples;
+  std::size_t next = 0;
+  for (int i = 0; i < 50; ++i) {
+    const std::int64_t stamp_ns = kWheelStart + 7'000'000 + i * 33'000'000;
+    while (next < samples.size() && one_by_one.last_ns() < stamp_ns)
+      EXPECT_TRUE(one_by_one.add(samples[next++]));
+    const MotionPrior expected = whole.prior(stamp_ns), prior = one_by_one.prior(stamp_ns);
+    ASSERT_EQ(prior.tells_motion(), i > 0) << i;
+    ASSERT_EQ(expected.tells_motion(), i > 0) << i;
+    if (i == 0) continue;
+    EXPECT_EQ(prior.translation->t_now_before, expected.translation->t_now_before);
+    EXPECT_EQ(prior.rotation->R_now_before, expected.rotation->R_now_before);
+    EXPECT_EQ(prior.translation->covariance, expected.translation->covariance);
+  }
+  EXPECT_FALSE(one_by_one.add(samples[next - 1])) << "not later";
+  EXPECT_FALSE(one_by_one.add({kWheelStart * 2, {std::nan(""), 0, 0}, Vector3::Zero()}));
+}
+
+TEST(WheelPriors, TheLastVelocityIsHeldForAWhileAndGrowsUnsure) {
+  const auto prior_of = [](double hold_s, int samples, double stamp_s) {
+    WheelConfig config;
+    config.hold_s = hold_s;
+    WheelPriors wheels;
+    EXPECT_TRUE(wheels.init(driven(samples), config).ok());
+    (void)wheels.prior(kWheelStart + 950'000'000);
+    return wheels.prior(kWheelStart + std::llround(stamp_s * 1e9));
+  };
+  // The last of 50 samples is at 0.98 s.
+  EXPECT_FALSE(prior_of(0, 50, 1.05).tells_motion());
+  EXPECT_FALSE(prior_of(0.1, 50, 1.09).tells_motion());
+  const MotionPrior held = prior_of(0.1, 50, 1.05), told = prior_of(0.1, 100, 1.05);
+  ASSERT_TRUE(held.tells_motion() && told.tells_motion());
+  EXPECT_TRUE(held.validate().ok());
+  const Vector3 off = held.translation->t_now_before - told.translation->t_now_before;
+  EXPECT_GT(off.norm(), 0);
+  const Matrix3 sigma = held.translation->covariance;
+  for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(off[k]), 3 * std::sqrt(sigma(k, k))) << off.transpose();
+  EXPECT_GT(sigma(0, 0), 1.2 * told.translation->covariance(0, 0));
+  EXPECT_GT(held.rotation->covariance(2, 2), 1.2 * told.rotation->covariance(2, 2));
+}
+
+TEST(WheelPriors, TheOldestSamplesAreForgotten) {
+  WheelPriors wheels;
+  ASSERT_TRUE(wheels.init({}, {}).ok());
+  const auto stamp_of = [](std::size_t k) {
+    return kWheelStart + static_cast<std::int64_t>(k) * kWheelPeriod;
+  };
+  for (std::size_t k = 0; k < WheelPriors::kMostSamples; ++k)
+    ASSERT_TRUE(wheels.add({stamp_of(k), {0.5, 0, 0}, Vector3::Zero()}));
+  (void)wheels.prior(stamp_of(WheelPriors::kMostSamples - 5));
+  ASSERT_TRUE(wheels.add({stamp_of(WheelPriors::kMostSamples), {0.5, 0, 0}, Vector3::Zero()}));
+  const MotionPrior prior = wheels.prior(stamp_of(WheelPriors::kMostSamples - 2));
+  ASSERT_TRUE(prior.translation);
+  EXPECT_NEAR(prior.translation->t_now_before.norm(), 0.03, 1e-9);
+}
+
+TEST(WheelPriors, RefuseAConfigurationThatIsNone) {
   const auto refused = [](auto spoil, const char* word) {
     WheelConfig config;
     spoil(config);
-    RecordedWheels wheels;
+    WheelPriors wheels;
     const Status status = wheels.init(driven(3), config);
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
     EXPECT_NE(std::string(status.message()).find(word), std::string::npos) << status.message();
@@ -163,6 +225,8 @@ TEST(RecordedWheels, RefuseAConfigurationThatIsNone) {
   refused([](WheelConfig& c) { c.tilt_rps = std::nan(""); }, "standard deviation");
   refused([](WheelConfig& c) { c.error_s = std::nan(""); }, "error_s");
   refused([](WheelConfig& c) { c.longest_gap_s = 0; }, "longest_gap_s");
+  refused([](WheelConfig& c) { c.hold_s = 1; }, "hold_s");
+  refused([](WheelConfig& c) { c.acceleration_rps2 = std::nan(""); }, "an acceleration");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install: the public headers under include/plvo/<module>/, libplvo_core.a, the CMake package (find_package(plvo)
 # defines plvo::core, plvo::hal and plvo::plvo, the shared library for C), the files for pkg-config, and the command line.
-# The components are the Debian packages of package.cmake: library, development, python, ros1, and tools, which is the default.
+# The components are the Debian packages of debian/rules: library, development, python, ros1, and tools, which is the default.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds Debian packages in build/package[-ARCHITECTURE]: libplvo0, libplvo-dev, plvo-tools, python3-plvo, and of
-# this machine's architecture ros-plvo; checks them with lintian. Packages of this machine's architecture are then tested in a clean Debian 12: installed with apt, used from
-# C, C++ and Python, and purged (as root; it downloads about 200 MB of Debian packages). Packages of a board run under
-# emulation.
+# Builds Debian packages in build/package[-ARCHITECTURE] with dpkg-buildpackage, from a copy of these sources: libplvo0, libplvo-dev,
+# plvo-tools, python3-plvo, and of this machine's architecture the source package and ros-plvo; checks them with lintian. Packages of
+# this machine's architecture are then tested in a clean Debian 12: installed with apt, used from C, C++ and Python, and purged (as
+# root; it downloads about 200 MB of Debian packages). pip installs the same sources into an environment of Python. Packages of a
+# board run under emulation.
 # usage: tools/setup/package.sh [arm64|armhf]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -14,21 +15,18 @@ architecture=${1:-$(dpkg --print-architecture)}
 # shellcheck disable=SC2086  # lists of words
 case "${1:-}" in
   "")
-    build=build/package
-    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS lintian mmdebstrap
-    cmake --preset package >&2
+    build=$PWD/build/package
+    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS $PLVO_PACKAGES_PACKAGING \
+      mmdebstrap python3-pip python3-venv
+    options=()
     ;;
   arm64 | armhf)
-    build=build/package-$architecture
-    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_CROSS lintian
+    build=$PWD/build/package-$architecture
+    install_packages $PLVO_PACKAGES_BUILD $PLVO_PACKAGES_CROSS $PLVO_PACKAGES_PACKAGING
     make_sysroot "$architecture" "$PWD/build/sysroot-$architecture"
-    if [ "$architecture" = arm64 ]; then
-      preset=raspberry-pi-64 triplet=aarch64-linux-gnu
-    else
-      preset=raspberry-pi-32 triplet=arm-linux-gnueabihf
-    fi
-    cmake --preset $preset -B "$build" -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/$triplet \
-      -DPLVO_OPENNI2_DRIVER_DIR=/usr/lib/$triplet/OpenNI2/Drivers -DPLVO_BUILD_TESTS=OFF -DPLVO_BUILD_PYTHON=ON >&2
+    if [ "$architecture" = arm64 ]; then triplet=aarch64-linux-gnu; else triplet=arm-linux-gnueabihf; fi
+    # -d: what is linked comes from the folder of the board's packages, not from this machine's.
+    options=(--build=binary --host-arch="$architecture" "--build-profiles=cross,nocheck" -d)
     ;;
   *)
     say "usage: tools/setup/package.sh [arm64|armhf]"
@@ -37,11 +35,15 @@ case "${1:-}" in
 esac
 
 say "building $build"
-cmake --build "$build" --parallel "$(nproc)" >&2
-rm -f "$build"/*.deb
-(cd "$build" && cpack >&2)
+rm -rf "$build"
+source=$build/plvo-$(dpkg-parsechangelog -S Version)
+mkdir -p "$source/build"
+tar --exclude=./build --exclude=./.git --exclude=__pycache__ -c . | tar -x -C "$source"
+if [ -e .git ]; then git describe --always --abbrev=12 --exclude='*' --dirty=+changes >"$source/debian/commit"; fi
+if [ $# -gt 0 ]; then ln -s "$PWD/build/sysroot-$architecture" "$source/build"; fi
+(cd "$source" && dpkg-buildpackage --no-sign --jobs="$(nproc)" "${options[@]}" >&2)
 debs=("$build"/*_"$architecture".deb)
-lintian --fail-on error "${debs[@]}" >&2
+lintian --fail-on error --allow-root "$build"/*.changes >&2
 say "lintian has no error to tell of"
 if [ $# -gt 0 ]; then
   say "trying what is in them under emulation"
@@ -80,13 +82,19 @@ PROGRAM
 fi
 
 packages_of() { sed 's/([^)]*)//g; s/ //g' | tr , '\n' | sort; }
-for pair in library:libplvo0 tools:plvo-tools; do
+for pair in LIBRARY:libplvo0 TOOLS:plvo-tools; do
   deb=$(echo "$build/${pair#*:}"_*_"$architecture".deb)
-  if ! diff <(dpkg-deb -f "$deb" Depends | packages_of) <(packages_of <"$build/packaging/needed_by_${pair%:*}") >&2; then
-    say "what packages for other architectures depend on (tools/cmake/package.cmake) is not what ${pair#*:} needs here"
+  if ! diff <(dpkg-deb -f "$deb" Depends | packages_of) \
+    <(make -s -f debian/rules "print-NEEDED_BY_${pair%:*}" | packages_of) >&2; then
+    say "what packages for other architectures depend on (debian/rules) is not what ${pair#*:} needs here"
     exit 1
   fi
 done
+
+say "pip install of the same sources"
+/usr/bin/python3 -m venv --system-site-packages "$build/env"
+"$build/env/bin/pip" install --quiet --no-index --disable-pip-version-check "$source"
+(cd "$build" && env/bin/python -c 'import plvo; assert plvo.__file__.startswith("'"$build"'/env/"), plvo.__file__')
 
 if [ "$(id -u)" -ne 0 ]; then
   say "to try them in a clean root: sudo $0"

@@ -7,6 +7,9 @@ PLVO_PACKAGES_BUILD="g++ cmake ninja-build pkg-config libeigen3-dev libfmt-dev l
   libyaml-cpp-dev nlohmann-json3-dev libopenni2-dev libusb-1.0-0-dev libfreenect-dev libmicrohttpd-dev libbz2-dev
   liblz4-dev libzstd-dev libsqlite3-dev"
 
+# Debian packages: debian/control names these, and what is built with them.
+PLVO_PACKAGES_PACKAGING="dpkg-dev debhelper dh-python lintian"
+
 # The Python package is built if these are installed.
 PLVO_PACKAGES_PYTHON="pybind11-dev python3-dev python3-numpy"
 
@@ -15,7 +18,7 @@ PLVO_PACKAGES_ROS="libroscpp-dev libmessage-filters-dev libtf2-ros-dev libnav-ms
 
 # The tests: GoogleTest, a second compiler, tools that check the sources, simulated USB devices, a browser for the pages, a counter of
 # instructions, ROS's own writers of bags, ROS's master and messages for Python, compressors, Slurm.
-PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS python3-pytest python3-matplotlib googletest libgtest-dev clang
+PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS python3-pytest python3-pip python3-venv python3-matplotlib googletest libgtest-dev clang
   libclang-rt-dev clang-format clang-tidy umockdev libumockdev-dev chromium fonts-liberation valgrind
   librosbag-storage-dev python3-rosbag python3-roslaunch rosout python3-nav-msgs python3-sensor-msgs python3-diagnostic-msgs
   python3-std-srvs python3-tf2-msgs python3-pil zstd lz4 slurm-wlm"

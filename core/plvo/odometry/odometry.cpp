@@ -98,12 +98,11 @@ Odometry::Odometry() = default;
   return result;
 }
 
-TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu,
-                            const std::optional<TranslationPrior>& wheels) {
-  MotionPrior prior;
-  prior.translation = wheels;
+TrackResult Odometry::track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels) {
+  MotionPrior prior = wheels;
   if (check(input, prior).ok()) prior = imu.prior(input.stamp_ns);
-  prior.translation = wheels;
+  if (!prior.rotation) prior.rotation = wheels.rotation;
+  prior.translation = wheels.translation;
   const TrackResult result = track(input, prior);
   if (const std::optional<ObservedRotation> observed = observed_rotation(result)) imu.correct(*observed);
   return result;

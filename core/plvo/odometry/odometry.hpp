@@ -95,9 +95,9 @@ class Odometry {
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
   // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
   // by what was seen. Every frame must be tracked so, as the samples of the others are missing. A refused
-  // frame uses up no samples. wheels: a translation measured beside it.
-  TrackResult track(const RgbdFrame& input, ImuIntegrator& imu,
-                    const std::optional<TranslationPrior>& wheels = std::nullopt);
+  // frame uses up no samples. wheels: a motion measured beside it; its rotation counts where the gyro tells
+  // none.
+  TrackResult track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels = MotionPrior());
 
   // Restores the state after init: the next usable frame defines the world, and the learnt noise is
   // forgotten. The time budget stays, because it depends on the machine.

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "plvo/base/status.hpp"
+#include "plvo/host/files/table_reader.hpp"
 #include "plvo/math/types.hpp"
 
 namespace plvo {
@@ -19,7 +21,7 @@ inline constexpr const char* kWheelFile = "wheel_odometry.txt";
 struct WheelSample {
   std::int64_t stamp_ns = 0;
   Vector3 velocity = Vector3::Zero();  // vx vy wz
-  Vector3 sigma = Vector3::Zero();     // where WheelRecording::has_sigma
+  Vector3 sigma = Vector3::Zero();     // 0: not stated
 };
 
 struct WheelRecording {
@@ -28,12 +30,30 @@ struct WheelRecording {
   std::size_t ignored = 0;  // samples not later than the one before, or not finite
 };
 
-// Returns the errors of read_text_file; kDamaged, naming file and line, for a row that cannot be parsed, has
-// other columns than the first, or a standard deviation that is not positive; kInvalidArgument for a file
-// without a sample.
+// The lines of such a file, one after the other.
+class WheelRows {
+ public:
+  // Returns kDamaged, naming source and line, for a row that cannot be parsed, has other columns than the
+  // first good one, or a standard deviation that is not positive.
+  Status parse(const std::filesystem::path& source, const TableRow& row, WheelSample& sample);
+  bool has_sigma() const;
+
+ private:
+  std::size_t columns_ = 0;  // of the first good one
+};
+
+// As they are written.
+std::string wheel_header(bool with_sigma);
+std::string wheel_line(const WheelSample& sample, bool with_sigma);
+
+// Returns the errors of read_text_file; those of WheelRows::parse; kInvalidArgument for a file without a
+// sample.
 Status read_wheel_file(const std::filesystem::path& path, WheelRecording& recording);
 
 // Returns kIo with the operating system's reason.
 Status write_wheel_file(const std::filesystem::path& path, const WheelRecording& recording);
+
+// Returns kInvalidArgument if this folder has such a file, which somebody wants to keep.
+Status refuse_wheel_file(const std::filesystem::path& folder);
 
 }  // namespace plvo

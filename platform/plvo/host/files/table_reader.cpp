@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string_view>
 
 #include "plvo/host/files/input_file.hpp"
 
@@ -13,10 +12,7 @@ namespace plvo {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// The words of a line without its comment, and one more than kMostColumns at the most.
-void split_line(std::string_view line, TableRow& row) {
+void split_row(std::string_view line, TableRow& row) {
   constexpr std::string_view kBetween = " \t\r,";
   row.words.clear();
   line = line.substr(0, line.find('#'));
@@ -28,8 +24,6 @@ void split_line(std::string_view line, TableRow& row) {
     line.remove_prefix(row.words.back().size());
   }
 }
-
-}  // namespace
 
 Status row_error(const fs::path& path, const TableRow& row, const std::string& what) {
   return {StatusCode::kDamaged, fmt::format("{} line {}: {}", path.string(), row.line, what)};
@@ -46,7 +40,7 @@ Status each_row(const fs::path& path, std::uintmax_t limit_bytes,
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     ++row.line;
-    split_line(line, row);
+    split_row(line, row);
     if (row.words.empty()) continue;
     if (row.words.size() > kMostColumns)
       return row_error(path, row, fmt::format("has more than {} columns", kMostColumns));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plvo/base/status.hpp"
@@ -20,6 +21,9 @@ struct TableRow {
   std::vector<std::string> words;  // as written: a stamp has more digits than a double
   bool commas = false;
 };
+
+// The words of a line without its comment, and one more than kMostColumns at the most; row.line stays.
+void split_row(std::string_view line, TableRow& row);
 
 // Each row that has a word goes to `take`, whose first failure ends it and is returned. More than most_rows
 // of them or kMostColumns in one are refused. Else as read_text_file. One row at a time: a file within its

@@ -26,6 +26,7 @@ constexpr const char* kLiveHelp =
     "  plvo live --camera sim --size 320x240 --view 8080    no sensor needed\n"
     "  plvo live --map 256 --map-in home.map --map-out home.map    a map that grows from day to day\n"
     "  plvo live --imu                            a Kinect's accelerometer holds roll and pitch\n"
+    "  your_robot | plvo live --wheels - --base-camera 0.2 0 0.5 -0.5 0.5 -0.5 0.5    with its wheels\n"
     "\n"
     "An unplugged or silent sensor is waited for; Ctrl-C ends, with whole files. No sensor? plvo doctor.\n";
 
@@ -96,7 +97,9 @@ void check(const CLI::App& command, LiveOptions& options) {
     refuse_options(command, {"--view-host"}, "is for the live view: add --view PORT, or leave it away");
   LiveOutputOptions& outputs = options.outputs;
   check_output_options(command);
-  check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty());
+  const bool wheels = !options.wheels.file.empty();
+  check_base_option(outputs.files.base, outputs.files.has_poses() || !outputs.streams.empty() || wheels);
+  check_wheel_options(command, options.wheels, outputs.files.base);
   check_level_option(command, options.imu);
   check_map_options(command, options.map);
   options.odometry.level_world = outputs.files.base.level;
@@ -107,6 +110,9 @@ void check(const CLI::App& command, LiveOptions& options) {
   if (is_oni_file(options.record)) files.writes("--record", options.record);
   if (options.imu && !is_oni_file(options.record) && !options.record.empty())
     files.writes("--record", std::filesystem::path(options.record) / kAccelerometerFile);
+  if (options.wheels.file != "-") files.reads(options.wheels.file);
+  if (wheels && !is_oni_file(options.record) && !options.record.empty())
+    files.writes("--record", std::filesystem::path(options.record) / kWheelFile);
   for (const std::string& stream : options.outputs.streams)
     if (stream == "-") files.writes("--stream", stream);
   add_map_files(options.map, files);
@@ -128,6 +134,7 @@ void add_live(CLI::App& app, int& exit_code) {
   group.number("--max-rate", options->max_rate_hz, positive(1000), "HZ",
                "Track so many frames a second at most");
   group.flag("--every-frame", options->every_frame, "Drop no frame: the camera waits for the odometry");
+  add_wheel_options(command, options->wheels, WheelSource::kStream);
   add_limit_options(command, options->frames, options->seconds);
   add_bag_options(command, options->camera.topics, BagImu::kPassedOver);
   add_map_options(command, options->map);

@@ -55,6 +55,8 @@ Status LiveSession::prepare_outputs() {
     if (Status status = FrameRecording::check(options_.record); !status.ok()) return status;
     if (keeps_imu())
       if (Status status = refuse_imu_files(options_.record); !status.ok()) return status;
+    if (keeps_wheels())
+      if (Status status = refuse_wheel_file(options_.record); !status.ok()) return status;
   }
   return outputs_.listen(options_.outputs);
 }
@@ -63,12 +65,20 @@ bool LiveSession::keeps_imu() const {
   return options_.imu && !options_.record.empty() && !is_oni_file(options_.record);
 }
 
+bool LiveSession::keeps_wheels() const {
+  return !options_.wheels.file.empty() && !options_.record.empty() && !is_oni_file(options_.record);
+}
+
 // Everything else that can be wrong is found before the first file is made.
 Status LiveSession::open() {
   const bool every = options_.every_frame || is_played(options_.camera);
   const CameraModel model = camera_->model();
   if (Status status = block_.init(model, options_.odometry); !status.ok()) return status;
   if (Status status = map_.init(options_.map, model, block_.config(), false); !status.ok()) return status;
+  const WheelClock wheel_clock = is_played(options_.camera) ? WheelClock::kImages : WheelClock::kComputer;
+  if (Status status = wheels_.start(options_.wheels, options_.outputs.files.base, wheel_clock); !status.ok())
+    return status;
+  if (keeps_wheels()) wheels_.keep_in(options_.record);
   ring_ = std::make_unique<FrameRing>(model.width, model.height, kSlots,
                                       every ? RingPolicy::kEvery : RingPolicy::kNewest);
   if (Status status = outputs_.open(options_.outputs, model.distortion.is_zero()); !status.ok())
@@ -130,7 +140,8 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
   if (options_.max_rate_hz > 0)
     next_turn_ns_ =
         std::max(next_turn_ns_ + static_cast<std::int64_t>(1e9 / options_.max_rate_hz), posix_monotonic_ns());
-  block_.track(frame, accelerometer_.until(frame.stamp_ns, arrival_ns), MotionPrior(), record_);
+  block_.track(frame, accelerometer_.until(frame.stamp_ns, arrival_ns),
+               wheels_.until(frame.stamp_ns, arrival_ns), record_);
   map_.add(block_.odometry(), record_);
   const std::int64_t now = posix_monotonic_ns();
   meter_.tick(now);
@@ -144,6 +155,7 @@ void LiveSession::handle(const RgbdFrame& frame, std::int64_t arrival_ns) {
 // What is said while there is no pose to tell.
 void LiveSession::tell_status() {
   const LiveCapture::State capture = capture_->state();
+  wheels_.while_no_frame_comes();
   outputs_.write_status(view_status(), {capture.word(), capture.seconds_since_frame, capture.words});
 }
 
@@ -189,6 +201,7 @@ void LiveSession::finish() {
   summary_.warnings = console_.warnings();
   summary_.capture = capture_->state();
   summary_.accelerometer = accelerometer_.summary();
+  summary_.wheels = wheels_.summary();
   summary_.dropped = ring_->counters().dropped;
   summary_.recorded = recording_.frames();
   summary_.not_recorded = recording_.dropped();
@@ -227,7 +240,7 @@ int LiveSession::judge() {
     return exit_code_of_camera(capture.end, options_.camera.device);
   }
   for (const Status& told :
-       {outputs_.failure(), capture.recorder, recorder_failure_, accelerometer_.failure()})
+       {outputs_.failure(), capture.recorder, recorder_failure_, accelerometer_.failure(), wheels_.failure()})
     if (!told.ok()) return kExitFailure;
   if (capture.frames == 0) {
     fail(fmt::format("no frame came from {}: {}; plvo doctor looks into it", summary_.camera_name,

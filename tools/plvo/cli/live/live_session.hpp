@@ -11,6 +11,7 @@
 #include "plvo/cli/live/live_capture.hpp"
 #include "plvo/cli/live/live_outputs.hpp"
 #include "plvo/cli/live/live_summary.hpp"
+#include "plvo/cli/live/live_wheels.hpp"
 #include "plvo/cli/map/session_map.hpp"
 #include "plvo/cli/options/odometry_options.hpp"
 
@@ -28,13 +29,18 @@ struct LiveOptions {
   double max_rate_hz = 0;    // 0: as they come
   bool every_frame = false;  // the camera waits for the odometry
   bool imu = false;          // a Kinect's accelerometer
+  WheelOptions wheels;
   bool quiet = false;
 };
 
 class LiveSession {
  public:
   explicit LiveSession(const LiveOptions& options)
-      : options_(options), console_(options.quiet), outputs_(console_), accelerometer_(console_) {}
+      : options_(options),
+        console_(options.quiet),
+        outputs_(console_),
+        accelerometer_(console_),
+        wheels_(console_) {}
 
   // From opening the camera to the exit code.
   int run();
@@ -45,6 +51,7 @@ class LiveSession {
   int refused(const Status& status, int exit_code);
   void loop();
   bool keeps_imu() const;
+  bool keeps_wheels() const;
   bool over() const;
   bool wait_for_turn();
   void handle(const RgbdFrame& frame, std::int64_t arrival_ns);
@@ -64,6 +71,7 @@ class LiveSession {
   OdometryBlock block_;
   SessionMap map_;
   LiveAccelerometer accelerometer_;
+  LiveWheels wheels_;
   LiveSummary summary_;
   RateMeter meter_;
   FrameRecord record_;

@@ -62,6 +62,9 @@ std::string LiveSummary::to_text() const {
     rows.emplace_back("accelerometer",
                       fmt::format("{} readings, {} left out as late, {} failures", accelerometer.readings,
                                   accelerometer.late, accelerometer.failures));
+  if (wheels.used)
+    rows.emplace_back("wheels", fmt::format("{} lines, {} left out; {} frames with them, {} without",
+                                            wheels.lines, wheels.left_out, wheels.with, wheels.without));
   if (dropped_lines > 0)
     rows.emplace_back("stream", fmt::format("{} lines dropped for slow readers", dropped_lines));
   return printable(camera_name) + '\n' + cli::to_text(rows) + stage_table();
@@ -83,6 +86,11 @@ nlohmann::ordered_json LiveSummary::to_json() const {
     json["accelerometer"] = {{"readings", accelerometer.readings},
                              {"late", accelerometer.late},
                              {"failures", accelerometer.failures}};
+  if (wheels.used)
+    json["wheels"] = {{"lines", wheels.lines},
+                      {"left_out", wheels.left_out},
+                      {"frames_with", wheels.with},
+                      {"frames_without", wheels.without}};
   if (map) json["map"] = map->to_json();
   return json;
 }

@@ -10,6 +10,7 @@
 #include "plvo/cli/common/track_summary.hpp"
 #include "plvo/cli/live/live_accelerometer.hpp"
 #include "plvo/cli/live/live_capture.hpp"
+#include "plvo/cli/live/live_wheels.hpp"
 #include "plvo/cli/map/map_summary.hpp"
 
 namespace plvo::cli {
@@ -30,6 +31,7 @@ class LiveSummary : public TrackSummary {
   std::uint64_t recorded = 0, not_recorded = 0;
   std::uint64_t dropped_lines = 0;
   AccelerometerSummary accelerometer;
+  WheelSummary wheels;
   std::optional<MapSummary> map;
 
  private:

@@ -114,8 +114,7 @@ void OdometryBlock::track(const RgbdFrame& frame, ImuIntegrator* imu, const Moti
                           FrameRecord& record) {
   const std::int64_t start_ns = posix_monotonic_ns();
   const std::int64_t cpu_before_ns = cpu_ns();
-  record.result =
-      imu != nullptr ? odometry_.track(frame, *imu, wheels.translation) : odometry_.track(frame, wheels);
+  record.result = imu != nullptr ? odometry_.track(frame, *imu, wheels) : odometry_.track(frame, wheels);
   record.cpu_ns = cpu_ns() - cpu_before_ns;
   record.elapsed_ns = posix_monotonic_ns() - start_ns;
   odometry_.frame_took(record.cpu_ns);

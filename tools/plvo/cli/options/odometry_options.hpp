@@ -40,7 +40,7 @@ class OdometryBlock {
   // scaled_down_by: factor between the images of the recording and those of the camera.
   Status init(const CameraModel& camera, const OdometryOptions& options, int scaled_down_by = 1);
   // Tracks, notes what came of it and what it took, and tells the budget.
-  // imu: nullptr without one; with one, only the translation of wheels is used.
+  // imu: nullptr without one; with one, the rotation of wheels counts where the gyro tells none.
   void track(const RgbdFrame& frame, ImuIntegrator* imu, const MotionPrior& wheels, FrameRecord& record);
   Odometry& odometry() { return odometry_; }
   const Config& config() const { return config_; }

@@ -59,7 +59,8 @@ Status open_imu(const ImuOptions& options, const OpenedCamera& camera, bool leve
   if (level && recording.accelerometer.empty())
     return {StatusCode::kNotFound, "--level: without an accelerometer nothing says where down is"};
   if (recording.gyro.empty())
-    log.write(LogLevel::kWarning, "no gyro: gravity alone helps, a frame that shows nothing is lost");
+    log.write(LogLevel::kWarning,
+              "no gyro: gravity alone helps; without wheels, a frame that shows nothing is lost");
   if (recording.accelerometer.empty())
     log.write(LogLevel::kWarning, "no accelerometer: nothing holds roll and pitch");
   if (recording.ignored > 0)

@@ -240,7 +240,7 @@ class Run {
   OpenedCamera opened_;
   OdometryBlock block_;
   std::optional<RecordedImu> imu_;
-  std::optional<RecordedWheels> wheels_;
+  std::optional<WheelPriors> wheels_;
   FrameCheck check_;
   SessionMap map_;
   RunOutputs outputs_;
@@ -259,7 +259,9 @@ void check(const CLI::App& command, RunOptions& options) {
   check_map_options(command, options.map);
   check_output_options(command);
   check_base_option(options.outputs.base, options.outputs.has_poses() || !options.wheels.file.empty());
-  check_wheel_options(command, options.wheels, options.camera, options.outputs.base);
+  if (options.camera.simulated && !options.wheels.file.empty())
+    refuse("--wheels", "is for recorded sequences; plvo simulate --robot records wheels, too");
+  check_wheel_options(command, options.wheels, options.outputs.base);
   check_level_option(command, options.imu.used);
   options.odometry.level_world = options.outputs.base.level;
   FileRoles files;
@@ -285,7 +287,7 @@ void add_run(CLI::App& app, int& exit_code) {
       Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}, {"step", Pace::kStep}},
       "As fast as it goes (default), as the stamps say, or a frame for each Enter");
   add_imu_options(command, options->imu);
-  add_wheel_options(command, options->wheels);
+  add_wheel_options(command, options->wheels, WheelSource::kFile);
   add_map_options(command, options->map);
   add_output_options(command, options->outputs);
   OptionGroup base(command, kOutputGroup);

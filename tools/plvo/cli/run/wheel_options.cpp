@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "plvo/cli/options/arguments.hpp"
@@ -15,11 +17,15 @@ constexpr double kQuick_mps = 20, kQuick_rps = 10;
 
 }  // namespace
 
-void add_wheel_options(CLI::App& command, WheelOptions& options) {
+void add_wheel_options(CLI::App& command, WheelOptions& options, WheelSource source) {
+  const bool live = source == WheelSource::kStream;
   OptionGroup group(command);
-  group.path("--wheels", options.file,
-             "With wheel odometry: 'stamp vx vy wz' per line (m/s, rad/s of the robot's base), or also "
-             "'sigma_vx sigma_vy sigma_wz'; --base-camera says where the camera sits");
+  group.path(
+      "--wheels", options.file,
+      fmt::format("With wheel odometry{}: 'stamp vx vy wz' per line (m/s, rad/s of the robot's base), or "
+                  "also 'sigma_vx sigma_vy sigma_wz'; --base-camera says where the camera sits",
+                  live ? ", as it comes through a named pipe, a serial port or - (standard input)" : ""),
+      live ? "FILE|-" : "FILE");
   group.number(
       "--wheels-error", options.share, {0, 1}, "SHARE",
       fmt::format("Of lines without sigma: how far the wheels are off, as a share of the speed, slip "
@@ -27,18 +33,36 @@ void add_wheel_options(CLI::App& command, WheelOptions& options) {
                   WheelConfig().share));
 }
 
-void check_wheel_options(const CLI::App& command, const WheelOptions& options, const CameraOptions& camera,
-                         const BaseOption& base) {
+void check_wheel_options(const CLI::App& command, const WheelOptions& options, const BaseOption& base) {
   if (options.file.empty())
     return refuse_options(command, {"--wheels-error"}, "is for --wheels: add that, or leave this away");
-  if (camera.simulated)
-    refuse("--wheels", "is for recorded sequences; plvo simulate --robot records wheels, too");
   if (base.numbers.empty())
     refuse("--wheels", "needs --base-camera: where the camera sits in the robot whose wheels these are");
 }
 
+WheelConfig wheel_config(const WheelOptions& options, const BaseOption& base) {
+  WheelConfig config;
+  config.T_base_camera = *base.T_base_camera;
+  config.share = options.share;
+  return config;
+}
+
+void QuickWheels::add(const WheelSample& sample) {
+  speed_ = std::max(speed_, sample.velocity.head<2>().norm());
+  turn_rate_ = std::max(turn_rate_, std::abs(sample.velocity.z()));
+}
+
+void QuickWheels::tell(Log& log) {
+  if (speed_ > kQuick_mps && !std::exchange(told_speed_, true))
+    log.write(LogLevel::kWarning,
+              fmt::format("the wheels drive at up to {:.3g} m/s: are their speeds in m/s?", speed_));
+  if (turn_rate_ > kQuick_rps && !std::exchange(told_turn_rate_, true))
+    log.write(LogLevel::kWarning,
+              fmt::format("the wheels turn at up to {:.3g} rad/s: are their rates in rad/s?", turn_rate_));
+}
+
 Status open_wheels(const WheelOptions& options, const BaseOption& base, Log& log,
-                   std::optional<RecordedWheels>& wheels) {
+                   std::optional<WheelPriors>& wheels) {
   if (options.file.empty()) return {};
   WheelRecording recording;
   if (Status status = read_wheel_file(options.file, recording); !status.ok()) return status;
@@ -46,19 +70,11 @@ Status open_wheels(const WheelOptions& options, const BaseOption& base, Log& log
     log.write(LogLevel::kWarning, fmt::format("{} samples of the wheels left out: not finite, or not later "
                                               "than the one before",
                                               recording.ignored));
-  WheelConfig config;
-  config.T_base_camera = *base.T_base_camera;
-  config.share = options.share;
-  if (Status status = wheels.emplace().init(std::move(recording), config); !status.ok()) return status;
-  if (wheels->largest_speed() > kQuick_mps)
-    log.write(LogLevel::kWarning,
-              fmt::format("the wheels drive at up to {:.3g} m/s: are their speeds in m/s?",
-                          wheels->largest_speed()));
-  if (wheels->largest_turn_rate() > kQuick_rps)
-    log.write(LogLevel::kWarning,
-              fmt::format("the wheels turn at up to {:.3g} rad/s: are their rates in rad/s?",
-                          wheels->largest_turn_rate()));
-  return {};
+  QuickWheels quick;
+  for (const WheelSample& sample : recording.samples) quick.add(sample);
+  const Status status = wheels.emplace().init(std::move(recording), wheel_config(options, base));
+  if (status.ok()) quick.tell(log);
+  return status;
 }
 
 }  // namespace plvo::cli

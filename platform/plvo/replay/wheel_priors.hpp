@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the samples of recorded wheels the priors of the frames (plvo/motion/wheel_prior.hpp).
+// Makes the samples of wheels the priors of the frames (plvo/motion/wheel_prior.hpp), of a recording or as
+// they come.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/replay/wheel_files.hpp"
 
 namespace plvo {
 
-// How far off the twist is, as standard deviations. For samples that have their own, only the last four are
+// How far off the twist is, as standard deviations. For samples that have their own, the first four are not
 // used.
 struct WheelConfig {
   Se3 T_base_camera;
@@ -23,14 +25,27 @@ struct WheelConfig {
   double error_s = 0.5;                        // how long an error lasts (wheel_prior.hpp)
   double longest_gap_s = 0.25;                 // between samples; over a longer one there is no prior
 
+  // Of wheels that are read as they come: so long the last velocity is taken to go on, where later samples
+  // are not there yet. It may change meanwhile by these accelerations, times that time.
+  double hold_s = 0;
+  double acceleration_mps2 = 1, acceleration_rps2 = 2;
+
   // Returns kInvalidArgument, naming the entry and its range.
   Status validate() const;
 };
 
-class RecordedWheels {
+class WheelPriors {
  public:
+  static constexpr std::size_t kMostSamples = std::size_t{1} << 16;  // of add(): twenty minutes of 50 Hz
+
   // Returns the error of WheelConfig::validate.
   Status init(WheelRecording recording, const WheelConfig& config);
+
+  // Another sample. Returns false, and leaves it out, if it is not later than the one before or not finite.
+  // Beyond kMostSamples the oldest are forgotten.
+  bool add(const WheelSample& sample);
+  // The stamp of the last sample; nothing without one.
+  std::optional<std::int64_t> last_ns() const;
 
   // Prior of the frame at this stamp, since the frame of the previous call. Velocities are linear between
   // samples. It is empty at the first call, where samples are missing, and where wheel_prior.hpp refuses the
@@ -38,15 +53,14 @@ class RecordedWheels {
   MotionPrior prior(std::int64_t stamp_ns);
 
   std::size_t priors() const { return priors_; }  // that were not empty
-  // The largest speed (m/s) and turn rate (rad/s) of the samples.
-  double largest_speed() const;
-  double largest_turn_rate() const;
 
  private:
+  MotionPrior prior_between(std::int64_t from_ns, std::int64_t to_ns);
   Matrix6 covariance_between(const WheelSample& a, const WheelSample& b, const Vector3& velocity) const;
   bool covers(std::size_t first, std::int64_t from_ns, std::int64_t to_ns) const;
 
-  WheelRecording recording_;
+  std::vector<WheelSample> samples_;
+  std::optional<double> held_s_;  // the last sample is no sample, but the one before so much later
   WheelConfig config_;
   std::size_t next_ = 0;  // no sample before it is needed any more
   std::size_t priors_ = 0;
