@@ -240,7 +240,6 @@ void ImuIntegrator::correct(const ObservedRotation& observed) {
     reference.R_camera_reference.setIdentity();
     reference.covariance.setZero();
     start_run(reference);
-    run_.last.reference_stamp_ns = reference.stamp_ns;
   }
   const Matrix3& R_now_before = R_now_before_;
   run_.last = observed;
