@@ -205,7 +205,6 @@ Matrix3 ImuIntegrator::offset_error_of_run() const {
 
 // A step of a Kalman filter whose state is the offset. Only the variances of the axes are kept.
 void ImuIntegrator::finish_run() {
-  has_run_ = false;
   const Matrix3 S = noise_of_run() + offset_error_of_run();
   Cholesky<3> cholesky;
   if (!cholesky.factor(Matrix3(0.5 * (S + Matrix3(S.transpose()))))) return;
@@ -231,7 +230,7 @@ void ImuIntegrator::correct(const ObservedRotation& observed) {
   if (observed.reference_stamp_ns != run_.last.reference_stamp_ns) {
     const bool goes_on = observed.reference_stamp_ns == run_.last.stamp_ns;
     ObservedRotation reference = run_.last;
-    if (run_.seconds > 0) finish_run();
+    finish_run();
     if (!goes_on) {
       start_run(observed);
       return;

@@ -30,7 +30,8 @@ struct MotionEstimate {
   // Evidence (coverage.hpp) that the motion explains, in m, and its share of that of all matches.
   double evidence = 0;
   double explained = 0;
-  // Whether another motion than the first one with a consensus was taken, because it has more evidence.
+  // Whether another motion than the first one with a consensus was taken: it has more evidence, or a prior
+  // contradicts the first one.
   bool is_other = false;
   // Whether a prior excludes the motion: what the sensors measured cannot be one motion of the camera.
   bool contradicted = false;
