@@ -12,7 +12,7 @@ STAMP = {
     "date": r"\d{4}-\d\d-\d\d\b.*",
     "machine": r"\S.*",
     "command": r"`(?:plvo_bench|plvo|sequence_statistics|truth_noise|moving_world\.py) .*`",
-    "written": r"by (?:`tools/plvo/bench/update_results.py`|hand, from .*)",
+    "written": r"by `tools/plvo/bench/update_results.py`",
 }
 MOST_LINES = 25  # of a decision
 

@@ -49,7 +49,8 @@ struct MotionEstimate {
   RansacSummary ransac;
   LmSummary lm;
 
-  // Of another motion that explains nearly as much (are_comparable). apart: ⊞-perturbation between the two.
+  // Adds another motion that explains nearly as much (are_comparable) to the covariance. apart:
+  // ⊞-perturbation between the two.
   void contain(const Vector6& apart) { C_H += apart.lazyProduct(apart.transpose()); }
 
   static constexpr double kUnknownVariance = 1e6;

@@ -69,7 +69,7 @@ class Ransac {
   int inliers() const { return inliers_; }
   // Share of the evidence of all usable matches that the flagged inliers have.
   double covered() const;
-  // Of all matches, in m.
+  // The evidence of all matches together, in m.
   double evidence() const { return evidence_; }
 
   // Returns false if no minimal set drawn from the flagged inliers determines the motion, and no other term

@@ -55,7 +55,7 @@ py::array members_view(std::span<const Struct> structs, Member Struct::*first, p
   return view(py::dtype::of<Member>(), {rows, columns}, {row_step, step}, data, owner);
 }
 
-// Of anything that NumPy makes an array of doubles of; a column may be one-dimensional. Copies.
+// Copies anything that NumPy makes an array of doubles of; a column may be one-dimensional.
 template <int Rows, int Columns>
 Matrix<Rows, Columns> matrix_of(const py::handle& object, const std::string& name) {
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
@@ -77,7 +77,7 @@ inline void refuse_array(const std::string& name, const char* why) {
   throw py::value_error(name + ": " + why);
 }
 
-// Of a 4×4 matrix.
+// Converts a 4×4 matrix.
 inline Se3 se3_of(const py::handle& object, const std::string& name) {
   const Matrix4 T = matrix_of<4, 4>(object, name);
   if (T.row(3) != Vector4(0, 0, 0, 1).transpose()) refuse_array(name, "the last row must be 0 0 0 1");

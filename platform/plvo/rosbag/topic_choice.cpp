@@ -25,7 +25,7 @@ std::string original_of(const std::string& topic) {
   return topic;
 }
 
-// Of a topic's name that tell cameras apart: the empty one before the first slash, and the next.
+// The parts of a topic's name that tell cameras apart: the empty one before the first slash, and the next.
 constexpr std::size_t kPartsOfACamera = 2;
 
 bool is_named_registered(const std::string& topic) {

@@ -23,10 +23,10 @@ PAGES = {
     "recordings": ("Recorded sequences: every system",
                    f"plvo_bench run {FR1} {FR3} {CORRIDORS} --systems ours,paper,opencv --repeats 3 --out {{work}}/recordings"),
     "table2": ("TUM fr1, beside the paper's Table 2", f"plvo_bench tum {FR1} --systems ours,peers --out {{work}}/table2"),
-    "lighting": ("Simulated sequences under two lights", "plvo_bench lighting --systems ours,peers --out {work}/lighting"),
+    "lighting": ("Simulated sequences under two lights", "plvo_bench lighting --seeds 1 --frames 90 --jobs 2 --discard-images --systems ours,opencv --out {work}/lighting"),
     "stages": ("Instructions and time of each stage", f"plvo_bench stages {FR1} --instructions --out {{work}}/stages"),
-    "growth": ("How the cost of a frame grows", f"plvo_bench growth {FR1} {CORRIDORS} --out {{work}}/growth"),
-    "detectors": ("Detectors beside those of OpenCV", f"plvo_bench detectors {FR1} {FR3} --out {{work}}/detectors"),
+    "growth": ("How the cost of a frame grows", f"plvo_bench growth --tables sizes,points,segments,images --frames 6 --jobs 2 --out {{work}}/growth"),
+    "detectors": ("Detectors beside those of OpenCV", f"plvo_bench detectors {FR1} {FR3} --frames 30 --out {{work}}/detectors"),
     "moving_world": ("A world that moves, mirrors and lies", "moving_world.py {bin}/plvo {work}/moving_world"),
 }
 

@@ -74,7 +74,7 @@ struct ImuMessage {
 // Returns kDamaged if the bytes end early.
 Status parse_imu(WireFormat wire, std::span<const unsigned char> bytes, ImuMessage& imu);
 
-// Of nav_msgs/Odometry or geometry_msgs/PoseStamped.
+// A pose of nav_msgs/Odometry or geometry_msgs/PoseStamped.
 struct PoseMessage {
   std::int64_t stamp_ns = 0;
   Se3 pose;
