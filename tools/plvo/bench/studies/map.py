@@ -47,9 +47,10 @@ def measure(program, work, job):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
-def table(head, rows):
+def table(head, rows, words=1):
+    """words: columns at the left that are no figures."""
     print("\n| " + " | ".join(head) + " |")
-    print("|---" * (1 + (head[1] == "light")) + "|---:" * (len(head) - 1 - (head[1] == "light")) + "|")
+    print("|---" * words + "|---:" * (len(head) - words) + "|")
     for row in rows:
         print("| " + " | ".join(row) + " |")
 
@@ -87,7 +88,7 @@ Walks of {frames} frames at 30 Hz, several rounds of the hall and the corridor, 
                      f"{1000 * one['loop_median_m']:.0f} / {1000 * one['loop_max_m']:.0f}" if one["judged"] else "–",
                      f"{1000 * one['odometry_ate_m']:.0f}", f"{1000 * one['map_ate_m']:.0f}", f"{ratio:.2f}"])
     table(["room", "light", "seed", "image", "lost", "placed", "keyframes", "times seen again", "loops", "wrong", "error of a loop: median / max mm",
-           "ATE odometry mm", "ATE map mm", "map / odometry"], rows)
+           "ATE odometry mm", "ATE map mm", "map / odometry"], rows, 2)
     print(f"\nOf {loops} loops {wrong} are wrong. Of {len(found)} patrols {len(better)} saw a place again; in {sum(r <= 1 / 3 for r in better)} of "
           f"these the ATE of the map is at most a third of the odometry's, in {sum(r > 1 for r in better)} it is greater.")
 
@@ -139,7 +140,7 @@ the view is a new one. Under the varying light the second view is of another tim
         accepted = [pair for pair in one["pairs"] if pair[3]]
         rows.append([room[0], room[1], percent(sum(pair[3] for pair in near), len(near)), f"{len(one['pairs'])}", f"{len(accepted)}",
                      f"{sum(pair[4] for pair in accepted)}"])
-    table(["room", "light", "accepted, near", "pairs", "accepted", "wrong"], rows)
+    table(["room", "light", "accepted, near", "pairs", "accepted", "wrong"], rows, 2)
 
 
 def draw(found, path):
@@ -200,7 +201,7 @@ must find the place. It is found in the first frame in which the map knows its p
                          f"{sum(trial[1] > 0 for trial in some)}", f"{len(early)}" + (f" ({max(trial[4] for trial in early)})" if early else ""),
                          f"{1000 * statistics.median(errors):.0f} / {1000 * max(errors):.0f}" if errors else "–"])
     table(["room", "light", "how", "image", "keyframes", "found in frame 1", "within 6", "within 10", "within 30", "median frame", "wrong",
-           "sure too early (frames)", "error: median / max mm"], rows)
+           "sure too early (frames)", "error: median / max mm"], rows, 3)
     print(f"\nOf {total} trials {in_ten} ({percent(in_ten, total)}) found the place within 10 frames; in {bad} a wrong loop joined.")
 
 
@@ -226,9 +227,9 @@ def cost(found, quick):
     print("""
 ## Time of a frame
 
-A round of a closed walk three times, with `--map 256`; the third one is measured. The map is loaded and the round walked five
-times, and of each frame the least CPU time counts: the work is the same to the bit, so what is more was other work of the machine. After
-`load` the camera must first be found, which makes more comparisons than usual. **new**: share of the frames that are a keyframe.""")
+A closed walk, round and round until a map of 256 keyframes is full or for twenty rounds; then one more round is measured. For that the map
+is loaded and the round walked five times, and of each frame the least CPU time counts: the work is the same to the bit, so what is more was
+other work of the machine. After the map is loaded, the camera must first be found, which makes more comparisons than usual. **new**: share of the frames that are a keyframe.""")
     rows = []
     for room, one in found:
         amount = COSTS[room]
