@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""map.py MAP_STUDY WORK [--quick]: what the map does in simulated rooms. Runs map_study for each room, prints the tables of
+"""map.py MAP_STUDY WORK [--quick | --measured]: what the map does in simulated rooms. Runs map_study for each room, prints the tables of
 docs/results/map.md, and draws map_recall.svg into WORK. WORK: a folder for what is measured; what is there is not measured again.
---quick: a small part of all, to see whether it runs."""
+--quick: a small part of all, to see whether it runs. --measured: only what WORK has already."""
 import json
 import os
 import pathlib
@@ -17,10 +17,10 @@ PATROLS = [("hall", "constant", 21, 320), ("hall", "varying", 22, 320), ("hall",
            ("hall", "constant", 22, 160), ("desk", "constant", 22, 160), ("desk", "varying", 22, 160), ("corridor", "constant", 21, 160),
            ("corridor", "varying", 22, 160), ("staircase", "constant", 21, 160)]
 ROOMS = [(scene, light, 3, 160) for scene in ("hall", "desk", "corridor") for light in ("constant", "varying")]
-CARRIED = [("hall", "constant", 3, 320), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
-COSTS = {("hall", "constant", 3, 320): (300, 60), ("desk", "constant", 3, 160): (400, 60), ("staircase", "constant", 3, 160): (300, 60)}
+CARRIED = [("hall", "constant", 3, 240), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
+COSTS = [("hall", "constant", 3, 240), ("staircase", "constant", 3, 160)]
 SOAKS = [("desk", "constant", 3, 160)]
-AMOUNTS = {"patrol": (3000, 100), "soak": (100000, 2000), "carried": (50, 3), "recall": (16, 2)}
+AMOUNTS = {"patrol": (3000, 100), "soak": (100000, 2000), "carried": (50, 3), "recall": (10, 2), "cost": (200, 60)}
 
 SHARES = [0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1]
 METRES = [0, 0.1, 0.2, 0.4, 0.7, 1, 1.5, 2.5]
@@ -30,17 +30,23 @@ LEAST_PAIRS = 10  # of which a share is told
 
 def jobs(quick):
     """Yields (study, room, amount)."""
-    for study, rooms in (("patrol", PATROLS), ("soak", SOAKS), ("carried", CARRIED), ("recall", ROOMS)):
+    # Times come last, when nothing else runs.
+    for study, rooms in (("patrol", PATROLS), ("soak", SOAKS), ("carried", CARRIED), ("recall", ROOMS), ("cost", COSTS)):
         for room in rooms:
             yield study, room, AMOUNTS[study][quick]
-    for room, amount in COSTS.items():
-        yield "cost", room, amount[quick]
+
+
+def words_of(job):
+    study, room, amount = job
+    return [study, *map(str, room), str(amount)]
+
+
+def path_of(work, job):
+    return work / ("_".join(words_of(job)) + ".json")
 
 
 def measure(program, work, job):
-    study, room, amount = job
-    words = [study, *map(str, room), str(amount)]
-    path = work / ("_".join(words) + ".json")
+    words, path = words_of(job), path_of(work, job)
     if not path.exists():
         print(" ".join(words), file=sys.stderr, flush=True)
         path.write_text(subprocess.run([program, *words], stdout=subprocess.PIPE, text=True, check=True).stdout, encoding="utf-8")
@@ -205,7 +211,7 @@ must find the place. It is found in the first frame in which the map knows its p
     print(f"\nOf {total} trials {in_ten} ({percent(in_ten, total)}) found the place within 10 frames; in {bad} a wrong loop joined.")
 
 
-def soak(found):
+def soak(found, amount):
     print("""
 ## Round and round
 
@@ -215,7 +221,7 @@ resident memory of the process after the round.""")
     for room, one in found:
         rounds = one["rounds"]
         told = sorted({1, 2, 3, 5, 10, 20, 50, 100, 200, len(rounds)} & set(range(1, len(rounds) + 1)))
-        print(f"\n{room[0].capitalize()}, {room[3]}×{room[3] * 3 // 4}, {len(rounds) * 400} frames, a map of {one['capacity']} keyframes:")
+        print(f"\n{room[0].capitalize()}, {room[3]}×{room[3] * 3 // 4}, {amount} frames, a map of {one['capacity']} keyframes:")
         table(["round", "lost", "keyframes", "loops so far", "odometry mm", "map mm", "memory MB"],
               [[f"{n}", f"{r[1]}", f"{r[2]}", f"{r[3]}", f"{1000 * r[4]:.1f}", f"{1000 * r[5]:.1f}", f"{r[6] / 1e6:.2f}"]
                for n in told for r in [rounds[n - 1]]])
@@ -223,7 +229,7 @@ resident memory of the process after the round.""")
               f"{rounds[-1][6] - rounds[min(1, len(rounds) - 1)][6]} bytes.")
 
 
-def cost(found, quick):
+def cost(found, amount):
     print("""
 ## Time of a frame
 
@@ -232,9 +238,8 @@ is loaded and the round walked five times, and of each frame the least CPU time 
 other work of the machine. After the map is loaded, the camera must first be found, which makes more comparisons than usual. **new**: share of the frames that are a keyframe.""")
     rows = []
     for room, one in found:
-        amount = COSTS[room]
         track, one_map, both = one["track"], one["map"], one["both"]
-        rows.append([room[0], f"{room[3]}×{room[3] * 3 // 4}", f"{one['keyframes']}", percent(one["joined"], amount[quick]),
+        rows.append([room[0], f"{room[3]}×{room[3] * 3 // 4}", f"{one['keyframes']}", percent(one["joined"], amount),
                      f"{track[0]:.2f}", f"{both[0]:.2f}", f"{both[0] / track[0]:.2f}", f"{both[1] / track[1]:.2f}", f"{track[2] / track[0]:.2f}",
                      f"{both[2] / track[0]:.2f}", f"{both[2] / both[0]:.2f}", f"{one_map[3]:.2f}"])
     table(["room", "image", "keyframes", "new", "median ms, without", "median ms, with", "with / without: median", "mean", "p99 / median, without",
@@ -242,21 +247,17 @@ other work of the machine. After the map is loaded, the camera must first be fou
 
 
 def main():
-    program, work, quick = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), "--quick" in sys.argv[3:]
+    program, work, options = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), sys.argv[3:]
     work.mkdir(parents=True, exist_ok=True)
-    todo = list(jobs(quick))
-    # Times come last, when nothing else runs.
-    timed = [job for job in todo if job[0] == "cost"]
+    quick = "--quick" in options
+    todo = [job for job in jobs(quick) if "--measured" not in options or path_of(work, job).exists()]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda job: measure(program, work, job), [job for job in todo if job not in timed]))
-    found = lambda study: [(job[1], measure(program, work, job)) for job in todo if job[0] == study]
-    costs = found("cost")
-    patrols(found("patrol"), AMOUNTS["patrol"][quick])
-    recall(found("recall"), AMOUNTS["recall"][quick])
-    draw(found("recall"), work / PICTURE)
-    carried(found("carried"), AMOUNTS["carried"][quick])
-    soak(found("soak"))
-    cost(costs, quick)
+        list(pool.map(lambda job: measure(program, work, job), [job for job in todo if job[0] != "cost"]))
+    for study, tell in (("patrol", patrols), ("recall", recall), ("carried", carried), ("soak", soak), ("cost", cost)):
+        if found := [(job[1], measure(program, work, job)) for job in todo if job[0] == study]:
+            tell(found, AMOUNTS[study][quick])
+        if study == "recall":
+            draw(found, work / PICTURE)
 
 
 if __name__ == "__main__":
