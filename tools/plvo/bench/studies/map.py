@@ -16,7 +16,9 @@ PICTURE = "map_recall.svg"
 PATROLS = [("hall", "constant", 21, 320), ("hall", "varying", 22, 320), ("hall", "constant", 21, 160), ("hall", "varying", 21, 160),
            ("hall", "constant", 22, 160), ("desk", "constant", 22, 160), ("desk", "varying", 22, 160), ("corridor", "constant", 21, 160),
            ("corridor", "varying", 22, 160), ("staircase", "constant", 21, 160)]
-ROOMS = [(scene, light, 3, 160) for scene in ("hall", "desk", "corridor") for light in ("constant", "varying")]
+# Tables and picture are of the first six; the others show what a smaller image does.
+ROOMS = [(scene, light, 3, width) for scene, width in (("hall", 320), ("corridor", 320), ("desk", 160)) for light in ("constant", "varying")]
+SMALL = [(scene, light, 3, 160) for scene in ("hall", "corridor") for light in ("constant", "varying")]
 CARRIED = [("hall", "constant", 3, 240), ("desk", "constant", 3, 160), ("desk", "varying", 3, 160), ("corridor", "constant", 3, 160)]
 COSTS = [("hall", "constant", 3, 240), ("staircase", "constant", 3, 160)]
 SOAKS = [("desk", "constant", 3, 160)]
@@ -31,7 +33,7 @@ LEAST_PAIRS = 10  # of which a share is told
 def jobs(quick):
     """Yields (study, room, amount)."""
     # Times come last, when nothing else runs.
-    for study, rooms in (("patrol", PATROLS), ("soak", SOAKS), ("carried", CARRIED), ("recall", ROOMS), ("cost", COSTS)):
+    for study, rooms in (("patrol", PATROLS), ("soak", SOAKS), ("carried", CARRIED), ("recall", ROOMS + SMALL), ("cost", COSTS)):
         for room in rooms:
             yield study, room, AMOUNTS[study][quick]
 
@@ -76,8 +78,8 @@ def patrols(found, frames):
 Walks of {frames} frames at 30 Hz, several rounds of the hall and the corridor, to and fro in the others, with `--map 256`.
 
 - **lost**: frames without a pose. The images are small, and the hall is 13 × 10 m with a depth camera that sees 5 m: with 160×120 the
-  camera is lost for a tenth to a fifth of the frames there, and the errors are those of the frames that were not seen. The patrols of
-  320×240 are the ones that measure the map.
+  camera is lost for a tenth to a fifth of the frames there, and most of the error is of the ways that were not seen. The patrols of
+  320×240 in the hall, and those at the desk and on the stairs, say more about the map.
 - **placed**: share of the poses of which the map knows the place in the end. The ATE of both are of these poses.
 - **loops**: those that joined the graph; each was compared with the true poses when it joined. **wrong**: farther from the truth than
   0.15 m or 0.1 rad.
@@ -128,25 +130,27 @@ def recall(found, views):
 
 `LoopCheck` compares a view of a walk with another one of the same room: up to a whole depth of the scene away, in any direction
 that is free, and turned about the vertical by up to 60°. The depth of the scene is the median of the view's points. {views} views of each
-walk (hall, desk, corridor; 160×120), a pair in each cell. The camera sees 63° of the room: turned by 30°, half of
-the view is a new one. Under the varying light the second view is of another time, when the lamp hangs otherwise. Shares of fewer than
+walk, a pair in each cell. The camera sees 63° of the room: turned by 30°, half of the view is a new one. Under the varying light the second view is of another time, when the lamp hangs otherwise. Shares of fewer than
 {LEAST_PAIRS} pairs are left out. In the map three pairs must agree, so a place is recognised less often than a pair is accepted.
 
 ![share of accepted pairs over the distance, one curve for each angle]({PICTURE})""")
     for light in ("constant", "varying"):
-        pairs = [pair for room, one in found if room[1] == light for pair in one["pairs"]]
-        print(f"\n### {light.capitalize()} light\n\nBy the distance as a share of the scene's depth, {len(pairs)} pairs:")
+        rooms = [(room, one) for room, one in found if room in ROOMS and room[1] == light]
+        pairs = [pair for _, one in rooms for pair in one["pairs"]]
+        print(f"\n### {light.capitalize()} light\n\n{len(pairs)} pairs of "
+              + ", ".join(f"{room[0]} ({room[3]}×{room[3] * 3 // 4})" for room, _ in rooms) + ", by the distance as a share of the scene's depth:")
         recall_table(pairs, 0, SHARES, "")
         print("\nThe same by the distance in metres:")
         recall_table(pairs, 1, METRES, " m")
-    print("\nPairs within 0.2 of the depth and 20°, and accepted pairs that are wrong (0.15 m, 0.1 rad) before any other test of the map:")
+    print("\nRoom by room. **near**: pairs within 0.2 of the depth and 20°. **wrong**: accepted pairs farther from the truth than 0.15 m or 0.1 rad, "
+          "before any other test of the map. A smaller image has fewer points, and a loop needs 20 inliers.")
     rows = []
     for room, one in found:
         near = [pair for pair in one["pairs"] if pair[0] < 0.2 and pair[2] < 20]
         accepted = [pair for pair in one["pairs"] if pair[3]]
-        rows.append([room[0], room[1], percent(sum(pair[3] for pair in near), len(near)), f"{len(one['pairs'])}", f"{len(accepted)}",
-                     f"{sum(pair[4] for pair in accepted)}"])
-    table(["room", "light", "accepted, near", "pairs", "accepted", "wrong"], rows, 2)
+        rows.append([room[0], room[1], f"{room[3]}×{room[3] * 3 // 4}", percent(sum(pair[3] for pair in near), len(near)), f"{len(one['pairs'])}",
+                     f"{len(accepted)}", f"{sum(pair[4] for pair in accepted)}"])
+    table(["room", "light", "image", "near: accepted", "pairs", "accepted", "wrong"], rows, 2)
 
 
 def draw(found, path):
@@ -165,7 +169,7 @@ def draw(found, path):
         for share in (0, 0.2, 0.4, 0.6, 0.8, 1):
             parts.append(f'<text x="{x(share):.1f}" y="{top + height + 16}" text-anchor="middle">{share:g}</text>')
         parts.append(f'<text x="{x0 + width / 2:.0f}" y="{top + height + 34}" text-anchor="middle">distance / depth of the scene</text>')
-        cells = bins([pair for room, one in found if room[1] == light for pair in one["pairs"]], 0, SHARES)
+        cells = bins([pair for room, one in found if room in ROOMS and room[1] == light for pair in one["pairs"]], 0, SHARES)
         for a, colour in enumerate(colours):
             points = [((SHARES[d] + SHARES[d + 1]) / 2, statistics.fmean(p[3] for p in cells[d, a]))
                       for d in range(len(SHARES) - 1) if len(cells.get((d, a), [])) >= LEAST_PAIRS]
