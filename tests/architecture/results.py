@@ -11,7 +11,7 @@ STAMP = {
     "commit": r"[0-9a-f]{40}\b.*",
     "date": r"\d{4}-\d\d-\d\d\b.*",
     "machine": r"\S.*",
-    "command": r"`(?:plvo_bench|plvo|sequence_statistics|truth_noise|moving_world\.py) .*`",
+    "command": r"`(?:plvo_bench|plvo|sequence_statistics|truth_noise|moving_world\.py|map\.py) .*`",
     "written": r"by `tools/plvo/bench/update_results.py`",
 }
 MOST_LINES = 25  # of a decision

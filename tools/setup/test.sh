@@ -43,7 +43,7 @@ briefly() {
   # The run of an emulated board takes minutes in a single thread: it continues during the next builds.
   local preset programs tests emulated=()
   for preset in cortex-m7 aarch64 armhf; do
-    programs=(golden_test) tests="golden_test budget_text"
+    programs=(golden_test map_golden_test) tests="golden_test map_golden_test budget_text"
     if [ "$preset" = cortex-m7 ]; then programs+=(footprint stack_program) tests+=" budget_stack"; fi
     build "$preset" --target "${programs[@]}"
     suite "$preset" "$tests" --tests-regex "^(${tests// /|})$" >"build/$preset/golden.log" 2>&1 &

@@ -9,6 +9,7 @@ import datetime
 import os
 import pathlib
 import platform
+import shutil
 import subprocess
 import sys
 
@@ -28,7 +29,10 @@ PAGES = {
     "growth": ("How the cost of a frame grows", f"plvo_bench growth --tables sizes,points,segments,images --frames 6 --jobs 2 --out {{work}}/growth"),
     "detectors": ("Detectors beside those of OpenCV", f"plvo_bench detectors {FR1} {FR3} --frames 30 --out {{work}}/detectors"),
     "moving_world": ("A world that moves, mirrors and lies", "moving_world.py {bin}/plvo {work}/moving_world"),
+    "map": ("What a map corrects, and what it recognises", "map.py {bin}/map_study {work}/map"),
 }
+# page -> pictures that its command draws into {work}/<page>; they stand beside the page.
+PICTURES = {"map": ["map_recall.svg"]}
 
 
 def commit():
@@ -80,6 +84,8 @@ def main(words=None):
     for name in arguments.names or PAGES:
         text = measure(name, arguments.bench.resolve(), arguments.data, arguments.work.resolve())
         (arguments.out / f"{name}.md").write_text(text, encoding="utf-8")
+        for picture in PICTURES.get(name, ()):
+            shutil.copyfile(arguments.work / name / picture, arguments.out / picture)
         print(f"{name}.md is written", file=sys.stderr)
 
 

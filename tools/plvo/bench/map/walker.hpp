@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// An odometry with a map beside it, on frames of which the true pose is known: every loop that joins the map
+// is compared with the truth.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "plvo/map/map.hpp"
+#include "plvo/odometry/odometry.hpp"
+#include "plvo/simulator/simulator_options.hpp"
+
+namespace plvo::bench {
+
+// A loop farther from the truth than this is wrong, as in tests/accuracy/look_alike_test.cpp.
+inline constexpr double kWrongLoop_m = 0.15, kWrongLoop_rad = 0.1;
+
+// A simulated camera of this width in pixels, 4:3, with the field of view of the default one.
+SimulatorOptions simulated(SceneName scene, LightName light, std::uint64_t seed, int width, int frames);
+
+// (t, angle) between an estimate of a pose and the truth.
+struct PoseError {
+  double m = 0, rad = 0;
+  bool wrong() const { return m > kWrongLoop_m || rad > kWrongLoop_rad; }
+};
+PoseError pose_error(const Se3& estimate, const Se3& truth);
+
+class MapWalker {
+ public:
+  MapWalker(const CameraModel& camera, int keyframes);
+
+  // Tracks a frame; T_world_camera is the truth.
+  void see(const RgbdFrame& frame, const Se3& T_world_camera);
+  // A frame in which there is nothing to see, as with a hand over the lens.
+  void see_nothing(std::int64_t stamp_ns);
+  // At the end of a walk.
+  void settle();
+
+  // The map as a file, and back: the camera begins anew, and nothing is known of its place.
+  std::vector<std::byte> save();
+  void load(const std::vector<std::byte>& file);
+  // Forgets the loops that were judged so far, not the places of the keyframes.
+  void forget_loops() { loops_.clear(); }
+
+  Odometry odometry;
+  Map map;
+  TrackResult result;
+  MapResult in_map;
+
+  // Of each loop that joined.
+  const std::vector<PoseError>& loops() const { return loops_; }
+  int wrong_loops() const;
+  int lost() const { return lost_; }
+  // CPU time of the odometry and of the map for each frame, ms.
+  const std::vector<double>& track_ms() const { return track_ms_; }
+  const std::vector<double>& map_ms() const { return map_ms_; }
+
+  // The poses of the odometry, of the map and of the truth for all frames of which the map knows the place
+  // now.
+  struct Poses {
+    std::vector<Se3> odometry, map, truth;
+    std::size_t frames = 0;  // with a pose of the odometry
+  };
+  Poses poses() const;
+
+ private:
+  struct Frame {
+    std::uint32_t keyframe = 0;
+    Se3 T_keyframe_camera, T_world_camera, truth;
+  };
+  void update();
+  void judge_loops();
+  void note_loops();
+
+  CameraModel camera_;
+  std::vector<std::byte> memory_, map_memory_;
+  std::vector<std::uint8_t> black_;
+  std::vector<std::uint16_t> no_depth_;
+  std::map<std::int64_t, Se3> truth_;       // of frames by their stamps
+  std::map<std::uint32_t, Se3> keyframes_;  // truth of the map's keyframes by their ids
+  std::set<std::pair<std::uint32_t, std::uint32_t>> known_loops_;
+  std::vector<PoseError> loops_;
+  std::vector<Frame> frames_;
+  std::map<std::uint32_t, std::pair<std::uint32_t, Se3>> removed_;
+  std::vector<double> track_ms_, map_ms_;
+  int lost_ = 0;
+};
+
+}  // namespace plvo::bench
