@@ -271,6 +271,32 @@ TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
   }
 }
 
+// At each step the stated covariance must contain the error: what a loop tells may not make it small before
+// the pose has moved.
+TEST(PoseGraph, TheCovarianceShrinksNotBeforeThePoseMoves) {
+  constexpr int kNodes = 200;
+  const std::vector<Se3> truth = circle(kNodes);
+  Graph g(kNodes);
+  walk(g.graph, truth, 5);
+  const std::uint16_t last = g.graph.last();
+  const auto nees = [&] {
+    const PoseGraph::Node& node = g.graph.node(last);
+    const Eigen::Matrix<double, 6, 6> C = about_position(node.covariance, node.T_map_keyframe.t);
+    const Eigen::Matrix<double, 6, 1> error = boxminus(node.T_map_keyframe, truth.back());
+    return error.dot(C.llt().solve(error));
+  };
+  const double before = nees();
+  const double spread = g.graph.node(last).covariance.trace();
+  g.graph.add_loop(g.graph.slot_at(0), last, truth[0].inverse() * truth.back(), covariance(0.01, 0.01));
+  int steps = 0;
+  for (; !g.graph.idle(); ++steps) {
+    g.graph.step();
+    ASSERT_LT(nees(), std::max(before, 30.0)) << "after " << steps << " steps";
+  }
+  EXPECT_GT(steps, 3);
+  EXPECT_LT(g.graph.node(last).covariance.trace(), 0.1 * spread);
+}
+
 TEST(PoseGraph, ARemovedNodeLeavesItsMotionsAndLoops) {
   const std::vector<Se3> truth = circle(10);
   Graph g(10);

@@ -211,7 +211,7 @@ Matrix6 PoseGraph::chain_covariance(std::uint16_t a, std::uint16_t b) const {
 
 // What the iterations have reached so far is kept; the rest begins anew.
 void PoseGraph::note_change() {
-  if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply();
+  if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply(false);
   phase_ = Phase::kIdle;
   changed_ = true;
 }
@@ -230,7 +230,7 @@ void PoseGraph::step() {
       for (int i = 0; i < kIterationsPerStep && phase_ == Phase::kIterate; ++i) {
         if (!iterate()) continue;
         phase_ = Phase::kIdle;
-        if (apply() && round_ + 1 < kMostRounds) begin_round(round_ + 1);
+        if (apply(true) && round_ + 1 < kMostRounds) begin_round(round_ + 1);
       }
       break;
   }
@@ -268,12 +268,11 @@ void PoseGraph::linearise_chain(std::size_t position) {
   node.W = cholesky.factor(node.C) ? cholesky.inverse() : Matrix6(Matrix6::Zero());
   node.residual =
       difference(previous.T_map_keyframe * node.T_previous_keyframe * node.T_map_keyframe.inverse());
-  relax(node, previous, node.C);
 }
 
 void PoseGraph::linearise_loop(Loop& loop) {
-  Node& older = nodes_[loop.older];
-  Node& newer = nodes_[loop.newer];
+  const Node& older = nodes_[loop.older];
+  const Node& newer = nodes_[loop.newer];
   loop.residual = difference(older.T_map_keyframe * loop.T_older_newer * newer.T_map_keyframe.inverse());
   const Matrix6 C = motion_in_map(older.T_map_keyframe, loop.T_older_newer, loop.covariance);
   Cholesky<6> cholesky;
@@ -283,8 +282,6 @@ void PoseGraph::linearise_loop(Loop& loop) {
     kernel_(cholesky.solve_lower(loop.residual).squaredNorm(), weight);
     loop.W = weight * cholesky.inverse();
   }
-  relax(newer, older, C);
-  relax(older, newer, C);
 }
 
 // The gradient at y = 0: W r of each motion, and of each loop for all motions that it spans.
@@ -352,9 +349,10 @@ bool PoseGraph::iterate() {
   return false;
 }
 
-// Moves the poses; those that joined since the linearisation move with the last one. Returns whether any
-// moved far.
-bool PoseGraph::apply() {
+// Moves the poses; those that joined since the linearisation move with the last one. What the loops tell
+// makes a covariance smaller only with the pose to which they lead, so not before they are solved for. Returns
+// whether any pose moved far.
+bool PoseGraph::apply(bool is_solved) {
   Vector6 x = Vector6::Zero();
   bool moved = false;
   for (std::size_t k = 1; k < size_; ++k) {
@@ -364,6 +362,14 @@ bool PoseGraph::apply() {
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
     moved = moved || x.cwiseAbs().maxCoeff() > kGraphMoved;
   }
+  if (is_solved)
+    for (const Loop& loop : loops()) {
+      Node& older = nodes_[loop.older];
+      Node& newer = nodes_[loop.newer];
+      const Matrix6 C = motion_in_map(older.T_map_keyframe, loop.T_older_newer, loop.covariance);
+      relax(newer, older, C);
+      relax(older, newer, C);
+    }
   for (std::size_t k = count_; k-- > 1;) relax(at(k - 1), at(k), at(k).C);
   for (std::size_t k = 1; k < size_; ++k)
     if (k < count_)

@@ -122,7 +122,7 @@ class PoseGraph {
   void linearise_loop(Loop& loop);
   void begin_iterations();
   bool iterate();
-  bool apply();
+  bool apply(bool is_solved);
   void relax(Node& node, const Node& from, const Matrix6& between) const;
   void keep_loop(const Loop& loop);
 
