@@ -350,8 +350,8 @@ bool PoseGraph::iterate() {
 }
 
 // Moves the poses; those that joined since the linearisation move with the last one. What the loops tell
-// makes a covariance smaller only with the pose to which they lead, so not before they are solved for. Returns
-// whether any pose moved far.
+// makes a covariance smaller only with the pose to which they lead, so not before they are solved for.
+// Returns whether any pose moved far.
 bool PoseGraph::apply(bool is_solved) {
   Vector6 x = Vector6::Zero();
   bool moved = false;
