@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "plvo/math/chi_square.hpp"
 #include "plvo/math/cholesky.hpp"
 
 namespace plvo {
@@ -14,6 +15,8 @@ constexpr double kMotionFloor = 1e-8;
 constexpr double kGainShare = 1e-8, kGainEnough = 1e-6;
 // Another linearisation follows where a pose moved by more than this (m, rad).
 constexpr double kGraphMoved = 1e-3;
+// Probability with which the poses of a solved graph agree with a motion, by its χ² test.
+constexpr double kAgreeingMotion = 0.9999;
 
 Se3 displacement(const Vector6& x) { return {rotation_exp(x.tail<3>()), x.head<3>()}; }
 
@@ -54,6 +57,7 @@ void PoseGraph::clear() {
   size_ = loop_count_ = 0;
   next_id_ = 1;
   kernel_ = RobustKernel(RobustLoss::kHuber, 6);
+  most_agreeing_ = chi_square_quantile(6, kAgreeingMotion);
   phase_ = Phase::kIdle;
   changed_ = false;
 }
@@ -136,11 +140,7 @@ void PoseGraph::join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, c
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
   }
   moves.covariance = stays.covariance + motion_in_map(stays.T_map_keyframe, T_stays_moves, of_motion);
-  const auto motion_to = [this](std::size_t k) {
-    return motion_in_map(at(k - 1).T_map_keyframe, at(k).T_previous_keyframe, at(k).motion_covariance);
-  };
-  for (std::size_t k = size_; k-- > 1;) relax(at(k - 1), at(k), motion_to(k));
-  for (std::size_t k = 1; k < size_; ++k) relax(at(k), at(k - 1), motion_to(k));
+  relax_along_chain();
 }
 
 PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
@@ -211,7 +211,7 @@ Matrix6 PoseGraph::chain_covariance(std::uint16_t a, std::uint16_t b) const {
 
 // What the iterations have reached so far is kept; the rest begins anew.
 void PoseGraph::note_change() {
-  if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply(false);
+  if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply();
   phase_ = Phase::kIdle;
   changed_ = true;
 }
@@ -230,7 +230,7 @@ void PoseGraph::step() {
       for (int i = 0; i < kIterationsPerStep && phase_ == Phase::kIterate; ++i) {
         if (!iterate()) continue;
         phase_ = Phase::kIdle;
-        if (apply(true) && round_ + 1 < kMostRounds) begin_round(round_ + 1);
+        if (apply() && round_ + 1 < kMostRounds) begin_round(round_ + 1);
       }
       break;
   }
@@ -253,11 +253,26 @@ void PoseGraph::linearise() {
   if (edge_ == count_ + loop_count_) begin_iterations();
 }
 
-// If the path over `from` is more certain, the covariance of `node` is that of this path.
-void PoseGraph::relax(Node& node, const Node& from, const Matrix6& between) const {
+// If the path over `from` is more certain, the covariance of `node` is that of this path: but only where the
+// poses agree with the motion between the two. While the graph is solved for they may not yet.
+void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const {
+  if (node.position == 0) return;
   const Matrix6 covariance = from.covariance + between;
   const Vector3& t = node.T_map_keyframe.t;
-  if (node.position > 0 && spread(covariance, t) < spread(node.covariance, t)) node.covariance = covariance;
+  if (!(spread(covariance, t) < spread(node.covariance, t))) return;
+  const Vector6 residual = difference(from.T_map_keyframe * T_from_node * node.T_map_keyframe.inverse());
+  Cholesky<6> cholesky;
+  if (cholesky.factor(between) && cholesky.solve_lower(residual).squaredNorm() <= most_agreeing_)
+    node.covariance = covariance;
+}
+
+void PoseGraph::relax_along_chain() {
+  for (std::size_t k = size_; k-- > 1;) {
+    Node& node = at(k);
+    node.C = motion_in_map(at(k - 1).T_map_keyframe, node.T_previous_keyframe, node.motion_covariance);
+    relax(at(k - 1), node, node.T_previous_keyframe.inverse(), node.C);
+  }
+  for (std::size_t k = 1; k < size_; ++k) relax(at(k), at(k - 1), at(k).T_previous_keyframe, at(k).C);
 }
 
 void PoseGraph::linearise_chain(std::size_t position) {
@@ -349,10 +364,9 @@ bool PoseGraph::iterate() {
   return false;
 }
 
-// Moves the poses; those that joined since the linearisation move with the last one. What the loops tell
-// makes a covariance smaller only with the pose to which they lead, so not before they are solved for.
-// Returns whether any pose moved far.
-bool PoseGraph::apply(bool is_solved) {
+// Moves the poses; those that joined since the linearisation move with the last one. Returns whether any
+// moved far.
+bool PoseGraph::apply() {
   Vector6 x = Vector6::Zero();
   bool moved = false;
   for (std::size_t k = 1; k < size_; ++k) {
@@ -362,21 +376,14 @@ bool PoseGraph::apply(bool is_solved) {
     node.T_map_keyframe.R = renormalise(node.T_map_keyframe.R);
     moved = moved || x.cwiseAbs().maxCoeff() > kGraphMoved;
   }
-  if (is_solved)
-    for (const Loop& loop : loops()) {
-      Node& older = nodes_[loop.older];
-      Node& newer = nodes_[loop.newer];
-      const Matrix6 C = motion_in_map(older.T_map_keyframe, loop.T_older_newer, loop.covariance);
-      relax(newer, older, C);
-      relax(older, newer, C);
-    }
-  for (std::size_t k = count_; k-- > 1;) relax(at(k - 1), at(k), at(k).C);
-  for (std::size_t k = 1; k < size_; ++k)
-    if (k < count_)
-      relax(at(k), at(k - 1), at(k).C);
-    else
-      relax(at(k), at(k - 1),
-            motion_in_map(at(k - 1).T_map_keyframe, at(k).T_previous_keyframe, at(k).motion_covariance));
+  for (const Loop& loop : loops()) {
+    Node& older = nodes_[loop.older];
+    Node& newer = nodes_[loop.newer];
+    const Matrix6 C = motion_in_map(older.T_map_keyframe, loop.T_older_newer, loop.covariance);
+    relax(newer, older, loop.T_older_newer, C);
+    relax(older, newer, loop.T_older_newer.inverse(), C);
+  }
+  relax_along_chain();
   return moved;
 }
 

@@ -122,8 +122,9 @@ class PoseGraph {
   void linearise_loop(Loop& loop);
   void begin_iterations();
   bool iterate();
-  bool apply(bool is_solved);
-  void relax(Node& node, const Node& from, const Matrix6& between) const;
+  bool apply();
+  void relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const;
+  void relax_along_chain();
   void keep_loop(const Loop& loop);
 
   std::span<Node> nodes_;           // by slot
@@ -133,6 +134,7 @@ class PoseGraph {
   std::size_t loop_count_ = 0;
   std::uint32_t next_id_ = 1;
   RobustKernel kernel_;
+  double most_agreeing_ = 0;  // squared residual of a motion with which the poses agree
 
   Phase phase_ = Phase::kIdle;
   bool changed_ = false;   // since the last linearisation began
