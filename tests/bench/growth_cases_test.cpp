@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "plvo/bench/sequences/scaled_camera.hpp"
+
 namespace plvo::bench {
 namespace {
 

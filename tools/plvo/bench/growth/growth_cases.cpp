@@ -5,6 +5,8 @@
 
 #include <sstream>
 
+#include "plvo/bench/sequences/scaled_camera.hpp"
+
 namespace plvo::bench {
 namespace {
 
@@ -95,16 +97,6 @@ class Planner {
 };
 
 }  // namespace
-
-CameraModel scaled(const CameraModel& camera, double scale) {
-  CameraModel result = camera;
-  result.width = static_cast<int>(camera.width * scale);
-  result.height = static_cast<int>(camera.height * scale);
-  // (0, 0) is the centre of the first pixel.
-  result.pinhole = {camera.pinhole.fx * scale, camera.pinhole.fy * scale,
-                    (camera.pinhole.cx + 0.5) * scale - 0.5, (camera.pinhole.cy + 0.5) * scale - 0.5};
-  return result;
-}
 
 Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>& recorded, GrowthPlan& plan) {
   Planner planner(options, plan);

@@ -58,7 +58,4 @@ struct GrowthOptions {
 // unknown table.
 Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>& recorded, GrowthPlan& plan);
 
-// The same view in an image whose width and height are multiplied by `scale`.
-CameraModel scaled(const CameraModel& camera, double scale);
-
 }  // namespace plvo::bench

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "plvo/bench/map/walker.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
 namespace plvo::bench {
@@ -10,7 +11,7 @@ namespace plvo::bench {
 ClosedWalk::ClosedWalk(SimulatorOptions options) {
   const int round = options.frames++;  // the last pose is the first one again
   std::unique_ptr<SimulatedCamera> camera;
-  if (!SimulatedCamera::create(options, camera).ok()) return;
+  need(SimulatedCamera::create(options, camera));
   camera_ = camera->model();
   frame_ns_ = 1e9 / options.fps;
   const auto pixels = static_cast<std::ptrdiff_t>(camera_.width) * camera_.height;

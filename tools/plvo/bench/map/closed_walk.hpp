@@ -14,7 +14,7 @@ namespace plvo::bench {
 
 class ClosedWalk {
  public:
-  // options.frames: of a round. Empty if the options are refused.
+  // options.frames: of a round.
   explicit ClosedWalk(SimulatorOptions options);
 
   int frames() const { return static_cast<int>(poses_.size()); }

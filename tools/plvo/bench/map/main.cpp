@@ -28,7 +28,7 @@ int main(int count, char** words) {
     study.width = std::atoi(words[5]);
     study.amount = std::atoi(words[6]);
     for (const Named& named : kStudies) {
-      if (named.name != words[1]) continue;
+      if (named.name != words[1] || study.width <= 0 || study.amount <= 0) continue;
       named.run(study);
       return 0;
     }

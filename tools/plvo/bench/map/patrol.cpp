@@ -15,7 +15,7 @@ namespace plvo::bench {
 void patrol(const MapStudy& study) {
   const SimulatorOptions options = simulated(study.scene, study.light, study.seed, study.width, study.amount);
   std::unique_ptr<SimulatedCamera> camera;
-  if (!SimulatedCamera::create(options, camera).ok()) return;
+  need(SimulatedCamera::create(options, camera));
   MapWalker walker(camera->model(), 256);
   int recognised = 0;
   RgbdFrame frame;

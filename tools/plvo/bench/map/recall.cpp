@@ -30,14 +30,11 @@ class ViewMaker {
     limits.width = camera.width;
     limits.height = camera.height;
     memory_.resize(required_bytes(limits));
-    ready_ = odometry_.init(memory_, camera, Config(), limits).ok();
-    for (std::size_t bytes = 0; bytes == 0 || bytes > arena_memory_.size();) {
-      arena_memory_.resize(bytes);
-      Arena sizer = Arena::counting();
-      store_.allocate(sizer, kLimits);
-      LoopCheck::reserve(sizer, kLimits, camera.width, camera.height);
-      bytes = sizer.peak() + kArenaAlignment;
-    }
+    need(odometry_.init(memory_, camera, Config(), limits));
+    Arena sizer = Arena::counting();
+    store_.allocate(sizer, kLimits);
+    LoopCheck::reserve(sizer, kLimits, camera.width, camera.height);
+    arena_memory_.resize(sizer.peak() + kArenaAlignment);
     arena_ = Arena(arena_memory_);
     store_.allocate(arena_, kLimits);
     arena_.seal();
@@ -47,7 +44,7 @@ class ViewMaker {
   // False: the view has too few features for a keyframe.
   bool make(std::size_t slot, const RgbdFrame& frame) {
     odometry_.reset();
-    if (!ready_ || !odometry_.track(frame).status.ok()) return false;
+    if (!odometry_.track(frame).status.ok()) return false;
     const FrameFeatures* features = odometry_.keyframe().features;
     if (features == nullptr || !features->points.described) return false;
     store_.set(slot, features->points, features->lines);
@@ -74,7 +71,6 @@ class ViewMaker {
   Arena arena_;
   MapFeatureStore store_;
   LoopCheck check_;
-  bool ready_ = false;
 };
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include "plvo/bench/map/walker.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/resident_memory.hpp"
-#include "plvo/map/map.hpp"
 
 namespace plvo::bench {
 namespace {
@@ -20,19 +19,9 @@ constexpr int kKeyframes = 128;
 
 void soak(const MapStudy& study) {
   const ClosedWalk walk(simulated(study.scene, study.light, study.seed, study.width, kFramesOfARound));
-  const CameraModel& camera = walk.camera();
-  Limits limits;
-  limits.width = camera.width;
-  limits.height = camera.height;
-  MapLimits map_limits;
-  map_limits.keyframes = kKeyframes;
-  std::vector<std::byte> memory(required_bytes(limits));
-  std::vector<std::byte> map_memory(Map::required_bytes(map_limits, camera.width, camera.height));
-  Odometry odometry;
-  Map map;
-  if (!odometry.init(memory, camera, Config(), limits).ok() ||
-      !map.init(map_memory, camera, Config(), map_limits).ok())
-    return;
+  MappedOdometry mapped(walk.camera(), kKeyframes);
+  Odometry& odometry = mapped.odometry;
+  Map& map = mapped.map;
   const Se3 T_map_room = walk.pose(0).inverse();
   // [round, lost, keyframes, loops so far, RMS error of the odometry and in the map (m), resident bytes] of
   // each round. Room is taken before the first frame, so that the list takes none.

@@ -5,20 +5,12 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "plvo/bench/sequences/scaled_camera.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/posix_clock.hpp"
 
 namespace plvo::bench {
 namespace {
-
-constexpr double kWidthOfDefault = 640;
-
-// A study has no use for a program that goes on after a failure.
-void need(const Status& status) {
-  if (status.ok()) return;
-  std::fprintf(stderr, "map_study: %s\n", status.message());
-  std::exit(1);
-}
 
 class FileSink final : public ByteSink {
  public:
@@ -34,6 +26,12 @@ class FileSink final : public ByteSink {
 
 }  // namespace
 
+void need(const Status& status) {
+  if (status.ok()) return;
+  std::fprintf(stderr, "map_study: %s\n", status.message());
+  std::exit(1);
+}
+
 SimulatorOptions simulated(SceneName scene, LightName light, std::uint64_t seed, int width, int frames) {
   SimulatorOptions options;
   options.scene = scene;
@@ -41,13 +39,7 @@ SimulatorOptions simulated(SceneName scene, LightName light, std::uint64_t seed,
   options.seed = seed;
   options.frames = frames;
   options.threads = 1;
-  const double share = width / kWidthOfDefault;
-  Pinhole& pinhole = options.camera.pinhole;
-  options.camera.width = width;
-  options.camera.height = width * 3 / 4;
-  // The centres of the outermost pixels lie half a pixel inside of the image.
-  pinhole = {share * pinhole.fx, share * pinhole.fy, share * (pinhole.cx + 0.5) - 0.5,
-             share * (pinhole.cy + 0.5) - 0.5};
+  options.camera = scaled(options.camera, static_cast<double>(width) / options.camera.width);
   return options;
 }
 
@@ -56,7 +48,7 @@ PoseError pose_error(const Se3& estimate, const Se3& truth) {
   return {error.head<3>().norm(), error.tail<3>().norm()};
 }
 
-MapWalker::MapWalker(const CameraModel& camera, int keyframes) : camera_(camera) {
+MappedOdometry::MappedOdometry(const CameraModel& camera, int keyframes) {
   Limits limits;
   limits.width = camera.width;
   limits.height = camera.height;
@@ -66,6 +58,10 @@ MapWalker::MapWalker(const CameraModel& camera, int keyframes) : camera_(camera)
   map_limits.keyframes = keyframes;
   map_memory_.resize(Map::required_bytes(map_limits, camera.width, camera.height));
   need(map.init(map_memory_, camera, Config(), map_limits));
+}
+
+MapWalker::MapWalker(const CameraModel& camera, int keyframes)
+    : MappedOdometry(camera, keyframes), camera_(camera) {
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   black_.resize(3 * pixels);
   no_depth_.resize(pixels);

@@ -18,6 +18,9 @@ namespace plvo::bench {
 // A loop farther from the truth than this is wrong, as in tests/accuracy/look_alike_test.cpp.
 inline constexpr double kWrongLoop_m = 0.15, kWrongLoop_rad = 0.1;
 
+// Ends the program with the message of a failure: a study has no use for a part of its figures.
+void need(const Status& status);
+
 // A simulated camera of this width in pixels, 4:3, with the field of view of the default one.
 SimulatorOptions simulated(SceneName scene, LightName light, std::uint64_t seed, int width, int frames);
 
@@ -28,7 +31,19 @@ struct PoseError {
 };
 PoseError pose_error(const Se3& estimate, const Se3& truth);
 
-class MapWalker {
+// An odometry and a map, each in a block of its own.
+class MappedOdometry {
+ public:
+  MappedOdometry(const CameraModel& camera, int keyframes);
+
+  Odometry odometry;
+  Map map;
+
+ private:
+  std::vector<std::byte> memory_, map_memory_;
+};
+
+class MapWalker : public MappedOdometry {
  public:
   MapWalker(const CameraModel& camera, int keyframes);
 
@@ -45,8 +60,6 @@ class MapWalker {
   // Forgets the loops that were judged so far, not the places of the keyframes.
   void forget_loops() { loops_.clear(); }
 
-  Odometry odometry;
-  Map map;
   TrackResult result;
   MapResult in_map;
 
@@ -76,7 +89,6 @@ class MapWalker {
   void note_loops();
 
   CameraModel camera_;
-  std::vector<std::byte> memory_, map_memory_;
   std::vector<std::uint8_t> black_;
   std::vector<std::uint16_t> no_depth_;
   std::map<std::int64_t, Se3> truth_;       // of frames by their stamps
