@@ -21,7 +21,7 @@ constexpr int kFramesAfter = 30;   // in which a wrong place may become the righ
 constexpr std::int64_t kFrame_ns = 33'333'333, kCarried_ns = 60'000'000'000;
 // The camera then walks on beside the mapped walk, within these of it.
 constexpr double kAside_m = 0.3, kHeight_m = 0.1, kYaw_rad = 10 * kPi / 180, kTilt_rad = 5 * kPi / 180;
-constexpr int kTries = 50;  // to find a place where the camera can be
+constexpr int kTriesOfACarry = 50;  // to find a place where the camera can be
 // The camera is found when the map states its position within this standard deviation.
 constexpr double kKnown_m = 0.1;
 
@@ -88,7 +88,7 @@ class Trials {
   void draw(double& start_s, Se3& T_walk_camera) {
     const double last_s = camera_.duration_s() - (kMostFrames + kFramesAfter) * camera_.frame_s();
     const auto within = [&](double most) { return most * (2 * random_.uniform() - 1); };
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kTriesOfACarry; ++i) {
       start_s = last_s * random_.uniform();
       const Vector3 aside(within(kAside_m), within(kHeight_m), within(kAside_m));  // right, down, ahead
       const Vector3 turn(within(kTilt_rad), within(kYaw_rad), within(kTilt_rad));
