@@ -20,7 +20,7 @@ constexpr int kFramesOfTheWalk = 1800;
 constexpr std::array kShares = {0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0};
 constexpr std::array kAngles_deg = {0.0, 10.0, 20.0, 30.0, 45.0, 60.0};
 constexpr double kHeightShare = 0.3;  // of the other directions: people walk and robots roll
-constexpr int kTriesPerPair = 20;  //  to find a place where the camera can be
+constexpr int kTriesPerPair = 20;  // to find a place where the camera can be
 
 // The keyframe that an odometry makes of a view.
 class ViewMaker {
