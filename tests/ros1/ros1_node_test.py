@@ -466,7 +466,7 @@ def test_the_page_has_every_argument_of_the_launch_file():
     ("_base_camera:=0 0 0", "~base_camera must be seven numbers: tx ty tz qx qy qz qw"),
     ("_base_camera:=0 0 0 0 0 0 2", "~base_camera: the quaternion x y z w must have the length 1, not 2"),
     ("_imu:=1", "~imu has a value of another type"),
-    ("_level:=true", "~level is by the accelerometer of ~imu: set that, too")])
+    ("_level:=true", "~level is by the accelerometer of imu: set that, too")])
 def test_a_wrong_parameter_ends_the_node(ros, parameter, words):
     Session.count += 1  # parameters stay with the name
     done = subprocess.run([str(NODE), f"__name:=plvo{Session.count}", parameter], capture_output=True, text=True, timeout=PATIENCE_S, check=False)
