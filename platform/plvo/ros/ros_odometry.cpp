@@ -46,13 +46,6 @@ RosCovariance ros_covariance(const Matrix6& covariance) {
   return rows;
 }
 
-// Axes of a base that looks along the camera.
-Matrix3 body_from_optical() {
-  Matrix3 R;
-  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return R;
-}
-
 bool same_camera(const CameraModel& a, const CameraModel& b) {
   const Distortion &d = a.distortion, &e = b.distortion;
   return a.width == b.width && a.height == b.height && a.pinhole.fx == b.pinhole.fx &&
@@ -208,7 +201,7 @@ Status RosOdometry::State::init(const ImageMessage& colour, const ImageMessage& 
 }
 
 Status RosOdometry::State::set_pose(const PoseWithCovariance& base) {
-  if (!started && settings.level) T_odom_world = {body_from_optical(), Vector3::Zero()};
+  if (!started && settings.level) T_odom_world = {rotation_body_optical(), Vector3::Zero()};
   const Matrix6 exact = Matrix6::Zero();
   const Se3 T_world_odom = T_odom_world.inverse(), T_world_base = T_world_odom * base.T_odom_base;
   const Matrix6 C_world_base = compose_covariance(T_world_odom, exact, base.T_odom_base, base.covariance);
