@@ -456,7 +456,7 @@ def test_what_cannot_be_tracked_is_named(ros, walk):
 
 def test_the_page_has_every_argument_of_the_launch_file():
     arguments = xml.etree.ElementTree.parse(PACKAGES / "plvo" / "launch" / "plvo.launch").getroot().findall("arg")
-    page = pathlib.Path(os.environ["PLVO_PAGE"]).read_text().partition("## A node for ROS 1")[2].partition("\n## ")[0]
+    page = pathlib.Path(os.environ["PLVO_PAGE"]).read_text().partition("## Topics and parameters")[2].partition("\n## ")[0]
     assert len(arguments) > 10
     for argument in arguments:
         assert f"`{argument.get('name')}`" in page, argument.get("name")
