@@ -105,7 +105,8 @@ def test_the_types_of_the_parameters_are_those_of_the_node(launch):
     """ROS 2 refuses a parameter of another type than the node declares."""
     _, node = launch
     (parameters,) = node["parameters"]
-    settings = "".join((ROOT / "platform/plvo/ros" / name).read_text(encoding="utf-8") for name in ("ros_node.hpp", "ros_odometry.hpp"))
+    text = "".join((ROOT / "platform/plvo/ros" / name).read_text(encoding="utf-8") for name in ("ros_node.hpp", "ros_odometry.hpp"))
+    settings = "".join(re.findall(r"^struct Ros\w*Settings \{\n.*?^\};\n", text, re.M | re.S))
     for name, parameter in parameters.items():
         member = re.search(rf'read\("{name}", (?:odometry\.)?(\w+)\)', settings).group(1)
         declaration = re.search(rf"^  (std::string|bool|double|int) [^;()]*\b{member}\b", settings, re.M).group(1)
