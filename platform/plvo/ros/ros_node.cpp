@@ -10,12 +10,12 @@
 namespace plvo {
 namespace {
 
-using Clock = std::chrono::steady_clock;  // that of a simulation may stand still
+using SteadyClock = std::chrono::steady_clock;  // that of a simulation may stand still
 constexpr double kComplaintPeriod_s = 5;
 constexpr double kSilence_s = 2;  // without images, until the diagnosis says so
 
-double seconds_since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
+double seconds_since(SteadyClock::time_point then) {
+  return std::chrono::duration<double>(SteadyClock::now() - then).count();
 }
 
 // `count` numbers with spaces between them, and nothing else.
@@ -43,7 +43,7 @@ struct RosNode::State {
     std::int64_t stamp_ns = 0;
     std::string camera_frame;
     Track track;
-    Clock::time_point arrival;
+    SteadyClock::time_point arrival;
   };
 
   void take_camera_info(const std::string& wrong);
@@ -65,13 +65,13 @@ struct RosNode::State {
   std::string imu_frame;
   bool base_is_known = false, imu_axes_are_known = false;
   std::int64_t last_imu_ns = 0;
-  std::optional<Clock::time_point> last_arrival;  // of a frame
+  std::optional<SteadyClock::time_point> last_arrival;  // of a frame
   std::string camera_frame;
 
   RosEstimate estimate;
   std::uint64_t frames = 0, without_pose = 0, dropped = 0, poses_set = 0;
   std::string waits_for, camera_wanted, complaint;
-  Clock::time_point complained;
+  SteadyClock::time_point complained;
 };
 
 RosNode::RosNode(const RosNodeSettings& settings, RosMiddleware middleware)
@@ -148,7 +148,7 @@ void RosNode::State::take_imu(const std::string& wrong, std::int64_t stamp_ns, c
 void RosNode::add_frame(std::int64_t stamp_ns, const std::string& camera_frame, Track track) {
   State& state = *state_;
   state.camera_frame = camera_frame;
-  state.last_arrival = Clock::now();
+  state.last_arrival = SteadyClock::now();
   state.waiting.push_back({stamp_ns, camera_frame, std::move(track), *state.last_arrival});
   state.track_waiting();
   if (state.waiting.size() <= queue_length()) return;
@@ -263,7 +263,7 @@ void RosNode::State::complain(const std::string& text) {
   if (text.empty()) return;
   if (text == complaint && seconds_since(complained) < kComplaintPeriod_s) return;
   complaint = text;
-  complained = Clock::now();
+  complained = SteadyClock::now();
   middleware.log(RosLevel::kWarn, text);
 }
 

@@ -89,7 +89,11 @@ class OdometryNode : public rclcpp::Node {
     const std::size_t queue = node_.queue_length();
     odometry_publisher_ = create_publisher<Odometry>("odom", rclcpp::QoS(queue));
     diagnostics_publisher_ = create_publisher<DiagnosticArray>("/diagnostics", rclcpp::QoS(queue));
-    reset_service_ = create_service<Trigger>("~/reset", std::bind(&OdometryNode::reset, this, _1, _2));
+    reset_service_ = create_service<Trigger>(
+        "~/reset", [this](std::shared_ptr<Trigger::Request>, std::shared_ptr<Trigger::Response> response) {
+          response->message = node_.reset();
+          response->success = true;
+        });
     set_pose_subscription_ = create_subscription<PoseWithCovarianceStamped>(
         "~/set_pose", rclcpp::QoS(queue), [this](const PoseWithCovarianceStamped& pose) { set_pose(pose); });
     // Best effort takes what drivers send of either reliability.
@@ -191,11 +195,6 @@ class OdometryNode : public rclcpp::Node {
     array.header.stamp = now();
     array.status.push_back(status);
     diagnostics_publisher_->publish(array);
-  }
-
-  void reset(const Trigger::Request::SharedPtr&, const Trigger::Response::SharedPtr& response) {
-    response->message = node_.reset();
-    response->success = true;
   }
 
   void set_pose(const PoseWithCovarianceStamped& message) {
