@@ -19,6 +19,9 @@ set(reached plvo/odometry/odometry.hpp plvo/map/map.hpp plvo/motion/wheel_prior.
 if(C_EXAMPLE)
   list(APPEND reached plvo/c/imu.h plvo/c/map.h plvo/c/plvo.h plvo/c/sequence.h plvo/c/thread_pair.h)
 endif()
+if(ROS)
+  list(APPEND reached plvo/ros/ros_node.hpp plvo/ros/ros_odometry.hpp)
+endif()
 set(open ${reached})
 while(open)
   list(POP_FRONT open header)
@@ -79,9 +82,10 @@ run(${COMPILER} ${flags} -std=c++20 ${CONSUMER}/main.cpp ${words} -o ${WORK}/con
 run(${WORK}/consumer_by_pkg_config)
 if(C_EXAMPLE)
   get_filename_component(library_dir ${pc_dir} DIRECTORY)
-  run(python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
-    ${include}/plvo/c/imu.h ${include}/plvo/c/map.h ${include}/plvo/c/sequence.h
-    ${include}/plvo/c/thread_pair.h)
+  set(marked ${reached})
+  list(FILTER marked INCLUDE REGEX "^plvo/(c|ros)/")
+  list(TRANSFORM marked PREPEND ${include}/)
+  run(python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${marked})
   execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/exports.py ${library_dir}/libplvo.so.0 ${include}/plvo/c/plvo.h
     RESULT_VARIABLE result OUTPUT_VARIABLE said)
   if(result EQUAL 0 OR NOT said MATCHES "no header has it: plvo_sequence_open")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """release.py ROOT: checks what a release says twice: the version of CMakeLists.txt is the latest one of debian/changelog and of
-CHANGELOG.md (beside what is unreleased), with one date, and debian/control needs the packages of tools/setup/packages.sh for a build."""
+CHANGELOG.md (beside what is unreleased), with one date, and that of the package of ROS 2; debian/control needs the packages of tools/setup/packages.sh for a build."""
 import email.utils
 import pathlib
 import re
@@ -25,6 +25,16 @@ def check_versions(root):
         yield f"CHANGELOG.md: the latest version is {released}, that of debian/changelog is {version} ({date})"
 
 
+def check_ros_2(root):
+    version = re.search(r"^project\(plvo VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.M).group(1)
+    package = re.search(r"<version>(.*)</version>", (root / "platform/plvo/ros2/package.xml").read_text(encoding="utf-8")).group(1)
+    wanted = re.search(r"^find_package\(plvo ([\d.]+)", (root / "platform/plvo/ros2/CMakeLists.txt").read_text(encoding="utf-8"), re.M).group(1)
+    if package != version:
+        yield f"platform/plvo/ros2/package.xml: the version is {package}, that of CMakeLists.txt is {version}"
+    if wanted != version.rpartition(".")[0]:
+        yield f"platform/plvo/ros2/CMakeLists.txt: it takes plvo {wanted}, and this is {version}"
+
+
 def check_packages(root):
     lists = dict(re.findall(r'^PLVO_PACKAGES_(\w+)="([^"]*)"', (root / "tools/setup/packages.sh").read_text(encoding="utf-8"), re.M))
     wanted = {name for which in LISTS for name in lists[which].split()} - BUILD_ESSENTIAL
@@ -38,7 +48,7 @@ def check_packages(root):
 
 def check(root):
     root = pathlib.Path(root)
-    return [*check_versions(root), *check_packages(root)]
+    return [*check_versions(root), *check_ros_2(root), *check_packages(root)]
 
 
 if __name__ == "__main__":

@@ -445,6 +445,8 @@ class Release(unittest.TestCase):
         "CMakeLists.txt": "project(plvo VERSION 1.2.3 LANGUAGES CXX)\n",
         "debian/changelog": "plvo (1.2.3) unstable; urgency=medium\n\n  * x\n\n -- A <a@b.c>  Sat, 28 Nov 2026 00:00:00 +0000\n",
         "CHANGELOG.md": "# Changes\n\n## Unreleased\n\n## 1.2.3 (2026-11-28)\n\n## 1.0.0\n",
+        "platform/plvo/ros2/package.xml": "<package>\n  <version>1.2.3</version>\n</package>\n",
+        "platform/plvo/ros2/CMakeLists.txt": "find_package(plvo 1.2 REQUIRED)\n",
         "debian/control": "Source: plvo\nBuild-Depends: debhelper-compat (= 13),\n               cmake,\n               a-dev <!cross>\n\nPackage: b\n",
         "tools/setup/packages.sh": 'PLVO_PACKAGES_BUILD="g++ cmake"\nPLVO_PACKAGES_PYTHON=""\nPLVO_PACKAGES_ROS="a-dev"\n',
     }
@@ -458,7 +460,8 @@ class Release(unittest.TestCase):
 
     def test_another_version_date_or_package_is_one(self):
         for name, change in (("CMakeLists.txt", ("1.2.3", "1.2.4")), ("CHANGELOG.md", ("(2026-11-28)", "")),
-                             ("debian/changelog", ("28 Nov", "27 Nov")), ("debian/control", ("a-dev", "b-dev")),
+                             ("debian/changelog", ("28 Nov", "27 Nov")), ("platform/plvo/ros2/package.xml", ("1.2.3", "1.2.2")),
+                             ("platform/plvo/ros2/CMakeLists.txt", ("1.2", "1.1")), ("debian/control", ("a-dev", "b-dev")),
                              ("tools/setup/packages.sh", ("cmake", "cmake c-dev"))):
             self.assertTrue(self.found(**{name: change}), name)
 

@@ -17,7 +17,11 @@ PLVO = os.environ["PLVO_BINARY"]
 # The blocks, by their first words.
 HERE = ("plvo live --base-camera", "plvo run walk --wheels", "mkfifo wheels")
 PACKAGES = "sudo apt install libroscpp-dev"  # those of tools/setup/packages.sh
-BLOCKS_OF_TESTS = {"roscore &": "ros1_node_test"}
+BLOCKS_OF_TESTS = {  # the test, and the programs that both have
+    "roscore &": ("ros1_node_test", ("roscore", "roslaunch", "rosbag")),
+    "mkdir -p ws/src": ("ros2_workspace_test", ("colcon build", "cp -r /usr/src/plvo_ros")),
+    "ros2 launch": ("ros2_workspace_test", ("ros2 launch plvo_ros plvo.launch.py",)),
+}
 
 # Commands within the text: the test that has their options, or why there is none.
 IN_THE_TEXT = {
@@ -38,6 +42,7 @@ IN_NO_TEST = {
     "tools/setup/package.sh": "by hand: it makes packages and installs them in a clean root",
     "evo_ape tum groundtruth.txt t.txt -a": "evo is not part of Debian; the page says so",
     "stty -F /dev/ttyUSB0 115200 raw": "it needs a serial port",
+    "rosdep install --from-paths src --skip-keys plvo": "rosdep is no part of Debian 12's ROS 2, and reads its list from a server",
     "date +%s.%N": "a form of stamps, which live_wheels_test writes",
 }
 
@@ -50,7 +55,7 @@ def commands_in_the_text():
     text = re.sub(r"^```.*?^```$", "", PAGE, flags=re.S | re.M)
     for span in re.findall(r"`([^`]+)`", text):
         command = " ".join(span.split())
-        if re.match(r"(?:your_robot \| )?plvo \w+ \S|tools/setup/|(?:rosbag|roslaunch|evo_\w+|stty|date|sudo|mkfifo) \S", command):
+        if re.match(r"(?:your_robot \| )?plvo \w+ \S|tools/setup/|(?:rosbag|roslaunch|rosdep|ros2|colcon|evo_\w+|stty|date|sudo|mkfifo) \S", command):
             yield command
 
 
@@ -61,10 +66,10 @@ def file_of(name):
 def test_every_block_is_known():
     for block in blocks():
         assert block.startswith((*HERE, PACKAGES, *BLOCKS_OF_TESTS)), block
-    for first, name in BLOCKS_OF_TESTS.items():
+    for first, (name, programs) in BLOCKS_OF_TESTS.items():
         words = " ".join(block for block in blocks() if block.startswith(first))
         text = file_of(name).read_text(encoding="utf-8")
-        for program in ("roscore", "roslaunch", "rosbag"):
+        for program in programs:
             assert program in words and program in text
 
 

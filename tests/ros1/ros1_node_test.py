@@ -456,7 +456,7 @@ def test_what_cannot_be_tracked_is_named(ros, walk):
 
 def test_the_page_has_every_argument_of_the_launch_file():
     arguments = xml.etree.ElementTree.parse(PACKAGES / "plvo" / "launch" / "plvo.launch").getroot().findall("arg")
-    page = pathlib.Path(os.environ["PLVO_PAGE"]).read_text().partition("## A node for ROS 1")[2].partition("\n## ")[0]
+    page = pathlib.Path(os.environ["PLVO_PAGE"]).read_text().partition("## Topics and parameters")[2].partition("\n## ")[0]
     assert len(arguments) > 10
     for argument in arguments:
         assert f"`{argument.get('name')}`" in page, argument.get("name")
@@ -466,7 +466,7 @@ def test_the_page_has_every_argument_of_the_launch_file():
     ("_base_camera:=0 0 0", "~base_camera must be seven numbers: tx ty tz qx qy qz qw"),
     ("_base_camera:=0 0 0 0 0 0 2", "~base_camera: the quaternion x y z w must have the length 1, not 2"),
     ("_imu:=1", "~imu has a value of another type"),
-    ("_level:=true", "~level is by the accelerometer of ~imu: set that, too")])
+    ("_level:=true", "~level is by the accelerometer of imu: set that, too")])
 def test_a_wrong_parameter_ends_the_node(ros, parameter, words):
     Session.count += 1  # parameters stay with the name
     done = subprocess.run([str(NODE), f"__name:=plvo{Session.count}", parameter], capture_output=True, text=True, timeout=PATIENCE_S, check=False)

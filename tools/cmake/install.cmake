@@ -79,6 +79,11 @@ if(TARGET plvo_ros1_node)
     COMPONENT ros1)
 endif()
 
+# The sources of the package of ROS 2, which a workspace of colcon builds.
+if(TARGET plvo_ros AND TARGET plvo_shared)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/platform/plvo/ros2/ DESTINATION src/plvo_ros COMPONENT development)
+endif()
+
 # The pages. Messages name them by this path below the prefix; the link makes it right in the build folder, too.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/plvo)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/doc)

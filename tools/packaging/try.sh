@@ -82,6 +82,20 @@ step "ROS 1: roslaunch finds the node and its launch file"
 ROS_HOME=/tmp/ros roslaunch --args /plvo plvo plvo.launch | grep -q "/usr/lib/plvo/odometry colour:="
 if ldd /usr/lib/plvo/odometry | grep "not found" >&2; then exit 1; fi
 
+step "ROS 2: the sources of the package, and the shared library's part of a node, in C++17"
+test -s /usr/src/plvo_ros/package.xml
+cat >node.cpp <<'PROGRAM'
+#include <plvo/ros/ros_node.hpp>
+int main() {
+  plvo::RosNodeSettings settings;
+  settings.base_camera = "0 0 0";
+  return plvo::RosNode(settings, {}).start().find("base_camera must be seven numbers") == 0 ? 0 : 1;
+}
+PROGRAM
+# shellcheck disable=SC2046
+g++ -std=c++17 -Wall -Wextra -Werror node.cpp $(pkg-config --cflags --libs plvo) -o node
+./node
+
 step "purge, install and use once more, purge: the same files before and after, and none of plvo's"
 apt-get purge -y -qq $packages >/dev/null
 files >before

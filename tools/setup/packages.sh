@@ -17,11 +17,13 @@ PLVO_PACKAGES_PYTHON="pybind11-dev python3-dev python3-numpy"
 PLVO_PACKAGES_ROS="libroscpp-dev libmessage-filters-dev libtf2-ros-dev libnav-msgs-dev libdiagnostic-msgs-dev libstd-srvs-dev"
 
 # The tests: GoogleTest, a second compiler, tools that check the sources, simulated USB devices, a browser for the pages, a counter of
-# instructions, ROS's own writers of bags, ROS's master and messages for Python, compressors, Slurm.
+# instructions, ROS's own writers of bags, ROS's master and messages for Python, what there is of ROS 2, compressors, Slurm.
 PLVO_PACKAGES_TEST="$PLVO_PACKAGES_PYTHON $PLVO_PACKAGES_ROS python3-pytest python3-pip python3-venv python3-matplotlib googletest libgtest-dev clang
   libclang-rt-dev clang-format clang-tidy umockdev libumockdev-dev chromium fonts-liberation valgrind
   librosbag-storage-dev python3-rosbag python3-roslaunch rosout python3-nav-msgs python3-sensor-msgs python3-diagnostic-msgs
-  python3-std-srvs python3-tf2-msgs python3-pil zstd lz4 slurm-wlm"
+  python3-std-srvs python3-tf2-msgs rosidl-generator-c-cpp librosidl-runtime-c-cpp-dev ament-cmake colcon python3-colcon-ros
+  python3-colcon-recursive-crawl python3-colcon-package-selection python3-colcon-library-path ros-sensor-msgs ros-nav-msgs
+  ros-diagnostic-msgs ros-std-srvs python3-pil zstd lz4 slurm-wlm"
 
 # The boards: cross compilers and emulators.
 PLVO_PACKAGES_CROSS="g++-aarch64-linux-gnu g++-arm-linux-gnueabihf qemu-user gcc-arm-none-eabi libnewlib-arm-none-eabi

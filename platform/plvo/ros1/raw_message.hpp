@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "plvo/ros1/ros_odometry.hpp"
+#include "plvo/ros/ros_odometry.hpp"
 
 namespace plvo {
 

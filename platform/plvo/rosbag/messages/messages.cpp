@@ -62,15 +62,7 @@ std::int64_t stamp_of_message(WireFormat wire, std::span<const unsigned char> st
   return reader.time_ns();
 }
 
-Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image) {
-  WireReader reader(wire, bytes);
-  image = take_image_header(wire, reader);
-  const std::uint32_t height = reader.u32(), width = reader.u32();
-  image.encoding = reader.text();
-  image.big_endian = reader.u8() != 0;
-  image.step = reader.u32();
-  image.data = reader.take(reader.u32());
-  if (!reader.ok()) return message_ends_early();
+Status set_size(std::uint32_t width, std::uint32_t height, ImageMessage& image) {
   constexpr std::uint32_t kMost = kMaxImageSide;
   if (width < 1 || height < 1 || width > kMost || height > kMost)
     return {StatusCode::kInvalidArgument,
@@ -82,6 +74,17 @@ Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageM
     return {StatusCode::kDamaged, fmt::format("an image of {}x{} has {} bytes in rows of {}: too few", width,
                                               height, image.data.size(), image.step)};
   return {};
+}
+
+Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image) {
+  WireReader reader(wire, bytes);
+  image = take_image_header(wire, reader);
+  const std::uint32_t height = reader.u32(), width = reader.u32();
+  image.encoding = reader.text();
+  image.big_endian = reader.u8() != 0;
+  image.step = reader.u32();
+  image.data = reader.take(reader.u32());
+  return reader.ok() ? set_size(width, height, image) : message_ends_early();
 }
 
 Status parse_compressed_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image) {
@@ -106,6 +109,24 @@ Status parse_compressed_image(WireFormat wire, std::span<const unsigned char> by
   return config.ok() ? Status() : message_ends_early();
 }
 
+Status calibration_of(const CameraInfoMessage& info, Calibration& calibration) {
+  constexpr std::uint32_t kMost = kMaxImageSide;
+  Calibration found;
+  if (info.width >= 1 && info.height >= 1 && info.width <= kMost && info.height <= kMost) {
+    found.camera.width = static_cast<int>(info.width);
+    found.camera.height = static_cast<int>(info.height);
+    found.has_size = true;
+  }
+  const auto K = info.K;
+  found.camera.pinhole = {K[0], K[4], K[2], K[5]};
+  if (!(K[0] > 0 && K[4] > 0))
+    return {StatusCode::kInvalidArgument, "K holds no focal length: the camera was not calibrated"};
+  if (Status status = distortion_of(info.distortion_model, info.D, found.camera.distortion); !status.ok())
+    return status;
+  calibration = found;
+  return {};
+}
+
 Status parse_camera_info(WireFormat wire, std::span<const unsigned char> bytes, Calibration& calibration) {
   WireReader reader(wire, bytes);
   take_header(wire, reader);
@@ -117,21 +138,8 @@ Status parse_camera_info(WireFormat wire, std::span<const unsigned char> bytes, 
   for (double& coefficient : coefficients) coefficient = reader.f64();
   double K[9];
   for (double& entry : K) entry = reader.f64();
-  if (!reader.ok()) return message_ends_early();
-  constexpr std::uint32_t kMost = kMaxImageSide;
-  Calibration found;
-  if (width >= 1 && height >= 1 && width <= kMost && height <= kMost) {
-    found.camera.width = static_cast<int>(width);
-    found.camera.height = static_cast<int>(height);
-    found.has_size = true;
-  }
-  found.camera.pinhole = {K[0], K[4], K[2], K[5]};
-  if (!(K[0] > 0 && K[4] > 0))
-    return {StatusCode::kInvalidArgument, "K holds no focal length: the camera was not calibrated"};
-  if (Status status = distortion_of(model, coefficients, found.camera.distortion); !status.ok())
-    return status;
-  calibration = found;
-  return {};
+  return reader.ok() ? calibration_of({width, height, model, coefficients, K}, calibration)
+                     : message_ends_early();
 }
 
 Status parse_imu(WireFormat wire, std::span<const unsigned char> bytes, ImuMessage& imu) {

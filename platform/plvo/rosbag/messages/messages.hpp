@@ -55,14 +55,26 @@ struct ImageMessage {
   float depth_a = 0, depth_b = 0;
 };
 
-// Returns kDamaged if the bytes end early, or there are fewer pixels than the size requires; kInvalidArgument
-// for an image that exceeds the limit of recordings (plvo/replay/images/image_decoder.hpp).
+// Sets the size of pixels. Returns kDamaged if there are fewer than the size requires; kInvalidArgument for
+// an image that exceeds the limit of recordings (plvo/replay/images/image_decoder.hpp).
+Status set_size(std::uint32_t width, std::uint32_t height, ImageMessage& image);
+
+// Returns kDamaged if the bytes end early, and the errors of set_size.
 Status parse_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image);
 // Returns kDamaged if the bytes end early, kUnsupported for a compression that is not read.
 Status parse_compressed_image(WireFormat wire, std::span<const unsigned char> bytes, ImageMessage& image);
 
-// Parses camera and size. Returns kDamaged if the bytes end early, kUnsupported for an unknown lens model,
-// kInvalidArgument for impossible numbers (the K of an uncalibrated camera is zero).
+struct CameraInfoMessage {
+  std::uint32_t width = 0, height = 0;
+  std::string_view distortion_model;
+  std::span<const double> D;
+  std::span<const double, 9> K;
+};
+// Returns kUnsupported for an unknown lens model, kInvalidArgument for impossible numbers (the K of an
+// uncalibrated camera is zero).
+Status calibration_of(const CameraInfoMessage& info, Calibration& calibration);
+
+// Parses camera and size. Returns kDamaged if the bytes end early, and the errors of calibration_of.
 Status parse_camera_info(WireFormat wire, std::span<const unsigned char> bytes, Calibration& calibration);
 
 // A reading is empty if the message marks it as missing, by a covariance that begins with -1.

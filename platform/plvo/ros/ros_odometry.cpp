@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/ros1/ros_odometry.hpp"
+#include "plvo/ros/ros_odometry.hpp"
 
 #include <fmt/core.h>
 
@@ -46,13 +46,6 @@ RosCovariance ros_covariance(const Matrix6& covariance) {
   return rows;
 }
 
-// Axes of a base that looks along the camera.
-Matrix3 body_from_optical() {
-  Matrix3 R;
-  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return R;
-}
-
 bool same_camera(const CameraModel& a, const CameraModel& b) {
   const Distortion &d = a.distortion, &e = b.distortion;
   return a.width == b.width && a.height == b.height && a.pinhole.fx == b.pinhole.fx &&
@@ -64,9 +57,14 @@ bool same_camera(const CameraModel& a, const CameraModel& b) {
 }  // namespace
 
 struct RosOdometry::State {
+  std::string set_camera(const Calibration& calibration);
+  std::string add_imu(const ImuMessage& message);
   Status init(const ImageMessage& colour, const ImageMessage& depth);
-  Status read(const RosMessage& message, const char* what, ImageMessage& image);
-  Status make_frame(const RosMessage& colour, const RosMessage& depth, RgbdFrame& frame);
+  Status read(const RosMessage& message, ImageMessage& image);
+  Status read(const RosImage& message, ImageMessage& image);
+  Status make_frame(const ImageMessage& colour, const ImageMessage& depth, RgbdFrame& frame);
+  template <typename Image>
+  RosEstimate track(const Image& colour, const Image& depth);
   Status start_imu();
   struct PoseWithCovariance {
     Se3 T_odom_base;
@@ -112,10 +110,23 @@ std::string RosOdometry::set_camera(const RosMessage& camera_info) {
   if (const Status status = parse_camera_info(WireFormat::kRos1, camera_info.bytes, calibration);
       !status.ok())
     return fmt::format("camera_info: {}", status.message());
-  State& state = *state_;
-  const bool changed = state.latest_camera && !same_camera(state.latest_camera->camera, calibration.camera);
-  state.latest_camera = calibration;
-  if (!state.first_camera) state.first_camera = calibration;
+  return state_->set_camera(calibration);
+}
+
+std::string RosOdometry::set_camera(const RosCameraInfo& camera_info) {
+  Calibration calibration;
+  if (const Status status = calibration_of(
+          {camera_info.width, camera_info.height, camera_info.distortion_model, camera_info.D, camera_info.K},
+          calibration);
+      !status.ok())
+    return fmt::format("camera_info: {}", status.message());
+  return state_->set_camera(calibration);
+}
+
+std::string RosOdometry::State::set_camera(const Calibration& calibration) {
+  const bool changed = latest_camera && !same_camera(latest_camera->camera, calibration.camera);
+  latest_camera = calibration;
+  if (!first_camera) first_camera = calibration;
   return changed ? "camera_info has changed; frames are tracked with the first one until reset is called"
                  : "";
 }
@@ -143,9 +154,22 @@ std::string RosOdometry::add_imu(const RosMessage& imu, std::int64_t& stamp_ns) 
   if (const Status status = parse_imu(WireFormat::kRos1, imu.bytes, message); !status.ok())
     return fmt::format("imu: {}", status.message());
   stamp_ns = message.stamp_ns;
+  return state_->add_imu(message);
+}
+
+std::string RosOdometry::add_imu(const RosImu& imu) {
+  ImuMessage message;
+  message.stamp_ns = imu.stamp_ns;
+  const auto &rate = imu.angular_velocity, &force = imu.linear_acceleration;
+  if (imu.angular_velocity_variance != -1) message.rate = Vector3(rate[0], rate[1], rate[2]);
+  if (imu.linear_acceleration_variance != -1) message.force = Vector3(force[0], force[1], force[2]);
+  return state_->add_imu(message);
+}
+
+std::string RosOdometry::State::add_imu(const ImuMessage& message) {
   bool taken = true;
-  if (message.rate) taken = state_->imu.add_gyro({message.stamp_ns, *message.rate});
-  if (message.force) taken = state_->imu.add_acceleration({message.stamp_ns, *message.force}) && taken;
+  if (message.rate) taken = imu.add_gyro({message.stamp_ns, *message.rate});
+  if (message.force) taken = imu.add_acceleration({message.stamp_ns, *message.force}) && taken;
   return taken ? "" : "imu: a reading is not finite, or not later than the one before; it is left out";
 }
 
@@ -177,7 +201,7 @@ Status RosOdometry::State::init(const ImageMessage& colour, const ImageMessage& 
 }
 
 Status RosOdometry::State::set_pose(const PoseWithCovariance& base) {
-  if (!started && settings.level) T_odom_world = {body_from_optical(), Vector3::Zero()};
+  if (!started && settings.level) T_odom_world = {rotation_body_optical(), Vector3::Zero()};
   const Matrix6 exact = Matrix6::Zero();
   const Se3 T_world_odom = T_odom_world.inverse(), T_world_base = T_world_odom * base.T_odom_base;
   const Matrix6 C_world_base = compose_covariance(T_world_odom, exact, base.T_odom_base, base.covariance);
@@ -189,19 +213,26 @@ Status RosOdometry::State::set_pose(const PoseWithCovariance& base) {
   return status;
 }
 
-Status RosOdometry::State::read(const RosMessage& message, const char* what, ImageMessage& image) {
+Status RosOdometry::State::read(const RosMessage& message, ImageMessage& image) {
   if (!is_image_type(message.type))
-    return {StatusCode::kInvalidArgument, fmt::format("{} is of the type {}, not {} or {}", what,
-                                                      message.type, kImageType, kCompressedImageType)};
-  const Status status = conversion.parse(message.type, WireFormat::kRos1, message.bytes, image);
-  return status.ok() ? status : Status(status.code(), what).append(": ").append(status.message());
+    return {StatusCode::kInvalidArgument, fmt::format("a message of the type {}, not {} or {}", message.type,
+                                                      kImageType, kCompressedImageType)};
+  return conversion.parse(message.type, WireFormat::kRos1, message.bytes, image);
 }
 
-Status RosOdometry::State::make_frame(const RosMessage& colour, const RosMessage& depth, RgbdFrame& frame) {
-  ImageMessage colour_image, depth_image;
-  Status status = read(colour, "colour", colour_image);
-  if (status.ok()) status = read(depth, "depth", depth_image);
-  if (status.ok() && !is_colour_encoding(colour_image.encoding)) status = conversion.colour(colour_image, {});
+Status RosOdometry::State::read(const RosImage& message, ImageMessage& image) {
+  image.stamp_ns = message.stamp_ns;
+  image.encoding = message.encoding;
+  image.big_endian = message.big_endian;
+  image.step = message.step;
+  image.data = {message.data, message.bytes};
+  return set_size(message.width, message.height, image);
+}
+
+Status RosOdometry::State::make_frame(const ImageMessage& colour_image, const ImageMessage& depth_image,
+                                      RgbdFrame& frame) {
+  Status status;
+  if (!is_colour_encoding(colour_image.encoding)) status = conversion.colour(colour_image, {});
   if (status.ok() && !is_depth_encoding(depth_image.encoding)) status = conversion.depth(depth_image, {});
   if (status.ok() && !odometry) status = init(colour_image, depth_image);
   if (!status.ok()) return status;
@@ -223,22 +254,38 @@ Status RosOdometry::State::make_frame(const RosMessage& colour, const RosMessage
   return status;
 }
 
-RosEstimate RosOdometry::track(const RosMessage& colour, const RosMessage& depth) {
-  State& state = *state_;
+template <typename Image>
+RosEstimate RosOdometry::State::track(const Image& colour, const Image& depth) {
   RosEstimate estimate;
   estimate.state = "error";
-  if (!state.first_camera) {
+  if (!first_camera) {
     estimate.reason = "no camera_info has come yet";
     return estimate;
   }
+  ImageMessage colour_image, depth_image;
+  if (const Status status = read(colour, colour_image); !status.ok()) {
+    estimate.reason = fmt::format("colour: {}", status.message());
+    return estimate;
+  }
+  if (const Status status = read(depth, depth_image); !status.ok()) {
+    estimate.reason = fmt::format("depth: {}", status.message());
+    return estimate;
+  }
   RgbdFrame frame;
-  if (const Status status = state.make_frame(colour, depth, frame); !status.ok()) {
+  if (const Status status = make_frame(colour_image, depth_image, frame); !status.ok()) {
     estimate.reason = status.message();
     return estimate;
   }
-  state.report(state.settings.imu ? state.odometry->track(frame, state.imu) : state.odometry->track(frame),
-               estimate);
+  report(settings.imu ? odometry->track(frame, imu) : odometry->track(frame), estimate);
   return estimate;
+}
+
+RosEstimate RosOdometry::track(const RosMessage& colour, const RosMessage& depth) {
+  return state_->track(colour, depth);
+}
+
+RosEstimate RosOdometry::track(const RosImage& colour, const RosImage& depth) {
+  return state_->track(colour, depth);
 }
 
 void RosOdometry::State::report(const TrackResult& result, RosEstimate& estimate) {
