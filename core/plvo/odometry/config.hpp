@@ -67,7 +67,7 @@ enum class ReferencePolicy : std::uint8_t {
   // Matches with the keyframe and a recent frame (ReferenceConfig::recent_frames) in one estimate. The
   // keyframe keeps the drift small; the recent frame shares most features with the current one.
   kKeyframeAndPrevious,
-  // Matches with these and the previous keyframe. The drift is smaller where the camera walks, but not where
+  // Matches with these and the previous keyframe. The drift is smaller where the camera moves on, but not where
   // it rotates fast; time and memory grow (docs/decisions/window.md).
   kWindow,
 };

@@ -17,7 +17,7 @@ struct MapStudy {
 // A walk of `amount` frames: the errors of odometry and map, each loop compared with the truth.
 void patrol(const MapStudy& study);
 // Pairs of a view of the walk and another one at a distance and an angle: whether LoopCheck accepts them.
-// `amount`: views of the walk.
+// `amount`: views of the sequence.
 void recall(const MapStudy& study);
 // `amount` times the camera is put to a place near the mapped walk: carried there in the dark, and switched
 // on there.

@@ -12,10 +12,10 @@
 
 namespace plvo::bench {
 
-class ClosedWalk {
+class ClosedSequence {
  public:
   // options.frames: of a round.
-  explicit ClosedWalk(SimulatorOptions options);
+  explicit ClosedSequence(SimulatorOptions options);
 
   int frames() const { return static_cast<int>(poses_.size()); }
   const CameraModel& camera() const { return camera_; }

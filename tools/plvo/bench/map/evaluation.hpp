@@ -43,15 +43,15 @@ class MappedOdometry {
   std::vector<std::byte> memory_, map_memory_;
 };
 
-class MapWalker : public MappedOdometry {
+class MapEvaluation : public MappedOdometry {
  public:
-  MapWalker(const CameraModel& camera, int keyframes);
+  MapEvaluation(const CameraModel& camera, int keyframes);
 
   // Tracks a frame; T_world_camera is the truth.
   void see(const RgbdFrame& frame, const Se3& T_world_camera);
   // A frame in which there is nothing to see, as with a hand over the lens.
   void see_nothing(std::int64_t stamp_ns);
-  // At the end of a walk.
+  // At the end of a sequence.
   void settle();
 
   // The map as a file, and back: the camera begins anew, and nothing is known of its place.
