@@ -125,7 +125,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                         result.reference_stamp_ns == keyframe_stamp_ns_;
   // A world starts anew with a message, or after Odometry::reset() with a pose that is as certain as at
   // first.
-  const bool unseen =
+  const bool unobserved =
       !follows_camera_ ||
       (result.state == TrackState::kInitialising &&
        (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace()));
@@ -133,7 +133,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   Matrix6 covariance = Matrix6::Zero();
   if (memory_.graph.size() == 0) {
     T_previous_this = view.T_world_camera;  // the map begins as the world
-  } else if (unseen) {
+  } else if (unobserved) {
     covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
     covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
   } else if (measured) {
@@ -147,7 +147,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   }
   if (!is_judged_) judge(out);
   // Taken before a keyframe makes room, which may be the latest one.
-  const bool begins_part = memory_.graph.size() == 0 || unseen;
+  const bool begins_part = memory_.graph.size() == 0 || unobserved;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {
