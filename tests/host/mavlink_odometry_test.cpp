@@ -44,9 +44,9 @@ TEST(MavlinkOdometry, ResetsAreCounted) {
   MavlinkOdometry odometry;
   (void)odometry.message(tracked(0));
   EXPECT_EQ(odometry.message(tracked(1))->at(kResets), 0);
-  TrackResult returned = tracked(2);
-  returned.returned = true;
-  EXPECT_EQ(odometry.message(returned)->at(kResets), 1);
+  TrackResult relocalised = tracked(2);
+  relocalised.relocalised = true;
+  EXPECT_EQ(odometry.message(relocalised)->at(kResets), 1);
   TrackResult new_world = tracked(3);
   new_world.state = TrackState::kInitialising;
   EXPECT_EQ(odometry.message(new_world)->at(kResets), 2);

@@ -43,7 +43,7 @@ TEST(Recovery, ResumesAtTheKeyframeAfterACoveredLens) {
     for (int i = 0; i < 10; ++i) EXPECT_EQ(walk.see(kDark).state, TrackState::kLost);
     // Uncovered, five views later.
     const TrackResult after = walk.see(kOut + 5);
-    EXPECT_EQ(after.returned, kept > 0);
+    EXPECT_EQ(after.relocalised, kept > 0);
     EXPECT_EQ(after.state, kept > 0 ? TrackState::kTracking : TrackState::kInitialising);
     const double error = distance_to_truth(after, kOut + 5);
     std::printf("%d kept: %.1f mm beside the truth\n", kept, 1e3 * error);
@@ -55,7 +55,7 @@ TEST(Recovery, ResumesAtTheKeyframeAfterACoveredLens) {
     }
     const TrackResult next = walk.see(kOut + 6);
     EXPECT_EQ(next.state, TrackState::kTracking) << next.status.message();
-    EXPECT_FALSE(next.returned);
+    EXPECT_FALSE(next.relocalised);
   }
 }
 
@@ -67,14 +67,14 @@ TEST(Recovery, RestoresTheOldPoseAtAKeptKeyframe) {
     // Elsewhere: a restart at a pose whose error is the unobserved motion.
     TrackResult result = walk.see(kAway);
     EXPECT_EQ(result.state, TrackState::kInitialising);
-    EXPECT_FALSE(result.returned);
+    EXPECT_FALSE(result.relocalised);
     EXPECT_GT(distance_to_truth(result, kAway), 0.2);
     int returns = 0;
     for (int view = kAway - 1; view >= 0; --view) {
       const double sigma = std::sqrt(result.pose_covariance(0, 0));
       result = walk.see(view);
       ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
-      if (result.returned) {
+      if (result.relocalised) {
         ++returns;
         std::printf("%d kept: back at view %d, SD %.0f mm before, %.2f mm after\n", kept, view, 1e3 * sigma,
                     1e3 * std::sqrt(result.pose_covariance(0, 0)));
@@ -103,7 +103,7 @@ TEST(Recovery, RejectsASimilarViewBeyondTheUncertainty) {
   for (int view = 0; view <= kOut; ++view) before = walk.see(view);
   for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
   const TrackResult after = walk.see(kOut + 5);
-  EXPECT_FALSE(after.returned);
+  EXPECT_FALSE(after.relocalised);
   EXPECT_EQ(after.state, TrackState::kInitialising);
   EXPECT_EQ(after.T_world_camera.t, before.T_world_camera.t);
 }
@@ -113,7 +113,7 @@ TEST(Recovery, SetPoseDropsTheKeptKeyframes) {
   for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
   for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
   ASSERT_TRUE(walk.odometry.set_pose(Se3(), Matrix6::Identity()).ok());
-  EXPECT_FALSE(walk.see(kOut).returned);
+  EXPECT_FALSE(walk.see(kOut).relocalised);
 }
 
 TEST(KeptKeyframes, ReplacesTheOldest) {

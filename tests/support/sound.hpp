@@ -40,11 +40,11 @@ inline bool is_sound_pose(const Se3& T) {
 // A reason when there is no new pose, and numbers that fit the state.
 inline bool is_sound_state(const TrackResult& result) {
   switch (result.state) {
-    case TrackState::kInitialising: return !result.returned;
-    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.returned);
+    case TrackState::kInitialising: return !result.relocalised;
+    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.relocalised);
     case TrackState::kLost:
     case TrackState::kPredicted:
-      return !result.status.ok() && result.status.message()[0] != '\0' && !result.returned;
+      return !result.status.ok() && result.status.message()[0] != '\0' && !result.relocalised;
   }
   return false;
 }

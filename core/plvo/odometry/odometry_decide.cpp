@@ -48,10 +48,10 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
     decision.status = stopped_depth(first_word);
   } else if (tracked.ok()) {
     decision.outcome = Decision::Outcome::kTrack;
-    if (tracked.new_piece)
+    if (tracked.restarted)
       decision.status = {StatusCode::kOk,
-                         "a new piece of the trajectory starts: the motion before it was not seen, and the "
-                         "covariance includes it"};
+                         "tracking restarts from the lost frame before: the motion up to that frame was not "
+                         "observed, and the covariance includes it"};
     decision.kept = still_good();
   } else if (window_.has_keyframe()) {
     decision.outcome = Decision::Outcome::kLose;

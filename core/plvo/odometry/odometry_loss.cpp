@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Part of the odometry: frames after a loss. Each is searched from the references first. Where that fails, it
-// is matched with the lost frame before: if the two agree, tracking goes on in a new piece of the trajectory.
-// The piece begins at the last good pose, with the unobserved motion in its covariance.
-// The old keyframe is kept (kept_keyframes.hpp); when its view comes back, the pieces are joined
-// (recovery.cpp). After some time the references are given up.
+// Part of the odometry: frames after a loss. The motion of each is searched from the references first. Where
+// that fails, the frame is matched with the lost frame before. If the two agree, tracking restarts from that
+// lost frame, whose pose is the last good one with the unobserved motion in the covariance. The old keyframe
+// is kept (kept_keyframes.hpp). When its view comes back, the camera is relocalised (recovery.cpp). After
+// some time the references are given up.
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/tracking/motion_search.hpp"
@@ -52,7 +52,7 @@ bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior
   if (!window_.has_lost() || repeats_.colour_is_repeated()) return false;
   predict_from_lost(input, prior, predicted);
   search_motion(frame, memory_.tracking, tracked);
-  tracked.new_piece = tracked.ok();
+  tracked.restarted = tracked.ok();
   if (tracked.ok())
     window_.go_on_from_lost();
   else

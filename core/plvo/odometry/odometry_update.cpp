@@ -46,10 +46,10 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
                                                const MotionPrior& prior, const TrackedMotion& tracked) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
-  if (!tracked.returned) show_tracks();
+  if (!tracked.relocalised) show_tracks();
   // A frame that has come back to an earlier keyframe was not matched with the references.
   const std::span<const Reference> matched =
-      tracked.returned ? std::span<const Reference>() : frame.predicted.references();
+      tracked.relocalised ? std::span<const Reference>() : frame.predicted.references();
   for (std::size_t r = 0; r < matched.size(); ++r)
     if (FrameFeatures* features = window_.find(matched[r].features); features != nullptr)
       note_records(memory_.tracking.tracks(r), *features);
@@ -87,7 +87,7 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
   note_depth();
-  result.returned = tracked.returned;
+  result.relocalised = tracked.relocalised;
   report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
 }

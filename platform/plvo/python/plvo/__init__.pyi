@@ -315,7 +315,7 @@ class Result:
     def mean_brightness(self) -> float:
         """Mean of the grey image, 0 to 255."""
     @property
-    def returned(self) -> bool:
+    def relocalised(self) -> bool:
         """Whether the view of a keyframe from before a loss was recognised, which corrected the pose."""
     @property
     def repeated(self) -> bool:

@@ -15,11 +15,11 @@ namespace plvo::bench {
 namespace {
 
 constexpr int kFramesOfTheMap = 600;
-constexpr int kFramesBefore = 10;  // of the walk, before the camera is carried away
+constexpr int kFramesBefore = 10;  // of the sequence, before the camera is carried away
 constexpr int kMostFrames = 30;    // in which the camera may find its place
 constexpr int kFramesAfter = 30;   // in which a wrong place may become the right one
 constexpr std::int64_t kFrame_ns = 33'333'333, kCarried_ns = 60'000'000'000;
-// The camera then walks on beside the mapped walk, within these of it.
+// The camera then moves on beside the mapped trajectory, within these of it.
 constexpr double kAside_m = 0.3, kHeight_m = 0.1, kYaw_rad = 10 * kPi / 180, kTilt_rad = 5 * kPi / 180;
 constexpr int kTriesOfACarry = 50;  // to find a place where the camera can be
 // The camera is found when the map states its position within this standard deviation.
@@ -87,7 +87,7 @@ class Trials {
                        first.rad, wrong_frames, last.m);
   }
 
-  // Beside the walk, at a time of it.
+  // A pose beside the trajectory, and the time at which the trajectory is nearest.
   void draw(double& start_s, Se3& T_trajectory_camera) {
     const double last_s = camera_.duration_s() - (kMostFrames + kFramesAfter) * camera_.frame_s();
     const auto within = [&](double most) { return most * (2 * random_.uniform() - 1); };

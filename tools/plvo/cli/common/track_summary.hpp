@@ -48,7 +48,7 @@ class TrackSummary {
  private:
   static constexpr std::size_t kKinds = static_cast<std::size_t>(StatusCode::kNotConverged) + 1;
 
-  std::uint64_t frames_ = 0, started_ = 0, tracked_ = 0, predicted_ = 0, repeated_ = 0, returned_ = 0,
+  std::uint64_t frames_ = 0, started_ = 0, tracked_ = 0, predicted_ = 0, repeated_ = 0, relocalised_ = 0,
                 lost_ = 0, damaged_ = 0;
   std::uint64_t frames_with_fewer_features_ = 0;  // for the budget's sake
   int lowest_step_ = 0;
