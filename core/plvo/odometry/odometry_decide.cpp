@@ -121,8 +121,8 @@ Window::Kept Odometry::still_good() const {
   return kept;
 }
 
-// Whether the last estimate found this share of the frame's features; the frame was its reference of this
-// index.
+// Whether this share of the features of the frame in `slot` were inliers of the last estimate. The frame was
+// the reference of this index.
 bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   const FrameFeatures& features = window_[slot].features;
   std::size_t available = features.lines.count_3d;

@@ -92,8 +92,8 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   return result;
 }
 
-// Says where the image shows what travels with the camera: when it is found, and when it has grown to twice
-// as many cells.
+// A status that says where in the image something travels with the camera. It is given when this is found,
+// and again when it has grown to more than twice as many cells.
 Status Odometry::tell_carried() {
   if (carried_.count() <= 2 * carried_told_) return {};
   carried_told_ = carried_.count();
@@ -109,8 +109,8 @@ Status Odometry::tell_carried() {
       .append(bounds.bottom - 1);
 }
 
-// Makes the current frame the keyframe and the last good one, without a motion before it; or waits for one
-// that can be that.
+// Makes the current frame the keyframe and the last good frame, without a motion before it. A frame that
+// cannot be that is left out, and the odometry waits for the next one.
 [[gnu::noinline]] TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   if (decision.new_world) forget_world();

@@ -52,15 +52,15 @@ struct Range {
   std::int32_t low, high;
 };
 
-// Packs two 16-bit numbers into one of 32 bits, and reads four of those as lanes.
+// Packs two 16-bit numbers into one of 32 bits, and reads four of those as one vector.
 std::int32_t pair_of(int x, int y) {
   return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xffffU) | static_cast<std::uint32_t>(y)
                                                                                    << 16);
 }
 Int16x8 pairs(const Int32x4& four) {
-  Int16x8 lanes;
-  std::memcpy(&lanes, &four, sizeof lanes);
-  return lanes;
+  Int16x8 vector;
+  std::memcpy(&vector, &four, sizeof vector);
+  return vector;
 }
 
 // Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px. For each run, its first and its last

@@ -15,8 +15,8 @@ namespace {
 class FileSink final : public ByteSink {
  public:
   explicit FileSink(std::vector<std::byte>& file) : file_(file) {}
-  Status write(std::span<const std::byte> piece) override {
-    file_.insert(file_.end(), piece.begin(), piece.end());
+  Status write(std::span<const std::byte> bytes) override {
+    file_.insert(file_.end(), bytes.begin(), bytes.end());
     return {};
   }
 
