@@ -153,7 +153,7 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run --camera sim --calibration c", "--calibration: is for recorded sequences");
   expect_usage("run --camera sim --readout 0.02", "--readout: is for recorded sequences");
   expect_usage("run --camera sim --tolerance 1", "--tolerance: is for recorded sequences");
-  expect_usage("run --camera sim --frames 5:9", "a simulated walk starts at frame 0");
+  expect_usage("run --camera sim --frames 5:9", "a simulated sequence starts at frame 0");
   expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
   expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
   expect_usage("run x --preset tiny --reference both",

@@ -11,14 +11,14 @@ namespace plvo {
 namespace {
 
 constexpr int kWeightBits = 7;  // fraction bits of a position in the blend
-constexpr int kLaneBits = 10;   // fraction bits of a position within a row of a cell
-constexpr int kLaneShift = 16 - kLaneBits;
+constexpr int kRowBits = 10;    // fraction bits of a position within a row of a cell
+constexpr int kRowShift = 16 - kRowBits;
 // Limits within a row, in px: kMostWay for the distance of a pixel from the first one, kMostOutside for the
 // distance of the first one from the border of the raw image. Their sum fits in a 16-bit element, and
 // kMostWay times the longest stride fits in 15 bits.
 constexpr std::int32_t kMostWay = 10;
 constexpr std::int32_t kMostOutside = 20;
-static_assert((kMostWay + 1 + kMostOutside) << kLaneBits < 1 << 15);
+static_assert((kMostWay + 1 + kMostOutside) << kRowBits < 1 << 15);
 
 constexpr std::int64_t pair_of(double x, double y) {
   return round_to<std::int64_t>(x * 65536) * (std::int64_t{1} << 32) + round_to<std::int64_t>(y * 65536);
@@ -26,7 +26,7 @@ constexpr std::int64_t pair_of(double x, double y) {
 std::int64_t pair_of(const Vector2& v) { return pair_of(v.x(), v.y()); }
 
 constexpr std::int16_t to_lane(std::int32_t q16) {
-  return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
+  return static_cast<std::int16_t>((q16 + (1 << (kRowShift - 1))) >> kRowShift);
 }
 
 // The last bits of x and y of a cell's position (units of 2^-16 px) store its kind. Plain: the cell is
@@ -294,7 +294,7 @@ struct UndistortionMap::PlainStart {
       : base(std::clamp<std::int32_t>(q16 >> kFractionBits, 0, last >> kFractionBits)) {
     constexpr std::int32_t kMost = kMostOutside << kFractionBits;
     at = static_cast<std::int16_t>(std::clamp<std::int32_t>(q16 - (base << kFractionBits), -kMost, kMost) >>
-                                   kLaneShift);
+                                   kRowShift);
     low = static_cast<std::int16_t>(std::max<std::int32_t>(-base * kWeightOne, INT16_MIN));
     high = static_cast<std::int16_t>(
         std::min<std::int32_t>((last >> (kFractionBits - kWeightBits)) - base * kWeightOne, INT16_MAX));
@@ -307,7 +307,7 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
   const Cell c = cell;  // a local copy, which writes to out cannot alias
   constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
-  constexpr int kToWeight = kLaneBits - kWeightBits;
+  constexpr int kToWeight = kRowBits - kWeightBits;
   constexpr std::int16_t kRound = 1 << (kToWeight - 1);
   const Int16x8 bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
   const Int16x8 bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;
