@@ -37,10 +37,10 @@ struct Said {
   Vector2 with, without;
 };
 
-// Frames that are matched with a keyframe, which errs by a + v, and with the frame before, which errs by q
-// more than that frame's own pose; a is the same for ever, v and q are new. The weights take all for new.
-// What then comes out errs by e, whose covariance is known exactly from frame to frame, as that of e and a
-// together.
+// Frames that are matched with a keyframe and with the frame before. The matches with the keyframe have the
+// error a + v. Those with the frame before have the error q in addition to that of the frame's pose. a is the
+// same for all frames; v and q are independent. The weights of the estimate assume that all are independent.
+// The covariance of the resulting error e, jointly with a, follows exactly from frame to frame.
 Said after(int frames, double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const Matrix6 R = some_covariance(random, 0.01), Q = some_covariance(random, 0.003);
