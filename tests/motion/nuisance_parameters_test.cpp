@@ -83,7 +83,8 @@ TEST(NuisanceParameters, AGlobalShutterHasNoErrorOfTurning) {
   EXPECT_EQ(shared.sigma(0), 0);
 }
 
-// Gradient of either kind by the shared errors against central differences of its cost.
+// The gradient of points and of lines with respect to the nuisance parameters, compared with central
+// differences of the cost.
 TEST(NuisanceParameters, TheGradientByThemIsThatOfTheCost) {
   Gaussian gaussian(4);
   for (const bool of_lines : {false, true}) {

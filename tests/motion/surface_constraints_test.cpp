@@ -151,7 +151,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
     Dense V(3, kAll);
     V << Dense::Identity(3, 3), -Dense(skew(T.R * match.p_reference)), F, Dense(match.common);
     const DenseVector n = match.normal;
-    // Weights are those of where the solve began, with none of the shared errors.
+    // The weights are those at the start of the solve, without nuisance parameters.
     double weight = 1;
     (void)kKernel(set.constraints.mahalanobis_squared(i, walls.truth), weight);
     const Dense M =

@@ -178,8 +178,8 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
   }
 }
 
-// The pose and the shared errors are eliminated together: what both are moved to, the motion held, is what
-// one dense system of them says.
+// The pose and the nuisance parameters are eliminated together: for a given motion, both move as the solution
+// of one dense system of both says.
 TEST(TwoReferences, APoseAndNuisanceParametersMoveAsADenseSystemSays) {
   CameraModel camera;
   camera.readout_s = 0.03;

@@ -216,7 +216,7 @@ class RosRecordings(unittest.TestCase):
                 self.expect_equal(file, "--depth-scale", UNITS)
 
     def folder_of(self, name, colour, depth):
-        """A copy of the walk whose images went through the functions."""
+        """A copy of the recording whose images went through the functions."""
         copy = self.folder / name
         shutil.copytree(self.recording.folder, copy)
         for (_, rgb, _, units), c, d in zip(self.recording.frames, self.recording.rows("rgb.txt"), self.recording.rows("depth.txt")):

@@ -165,7 +165,7 @@ Report make_report(const SequencesOptions& options, const std::vector<Result>& r
         "\"paper\": Table 2 of Lu & Song (ICCV 2015), each figure over the whole sequence.");
   } else {
     report.name = "comparison";
-    report.title = "Side by side";
+    report.title = "Comparison";
     report.table = comparison_table(results, 0);
     report.exact = comparison_table(results, kExactDecimals);
   }
