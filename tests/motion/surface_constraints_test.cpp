@@ -200,7 +200,7 @@ TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
 
 // Walls, floor and ceiling of a corridor along z; the normals are off by two degrees, as those of small
 // windows are.
-TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
+TEST(SurfaceConstraints, ACorridorsWallsDoNotConstrainMotionAlongIt) {
   Gaussian gaussian(14);
   constexpr int kTrials = 100;
   double along = 0;
