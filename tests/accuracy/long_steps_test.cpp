@@ -42,8 +42,10 @@ void expect_motions_off(int expected, SceneName scene, double fps, int frames) {
 }
 
 // 18 cm and 9° from one frame to the next, before bricks.
-TEST(LongSteps, BricksOffConvinceTwiceInThirtyNineMotions) { expect_motions_off(2, SceneName::kBare, 3, 40); }
-TEST(LongSteps, InAHallItNeverDoes) { expect_motions_off(0, SceneName::kHall, 4, 24); }
+TEST(LongSteps, MotionsWrongByABrickAreAcceptedTwiceInThirtyNine) {
+  expect_motions_off(2, SceneName::kBare, 3, 40);
+}
+TEST(LongSteps, NoMotionIsWrongByABrickInAHall) { expect_motions_off(0, SceneName::kHall, 4, 24); }
 
 }  // namespace
 }  // namespace plvo

@@ -237,7 +237,7 @@ class Study {
   std::unique_ptr<PlacedMap> tour_;
 };
 
-TEST(LookAlike, NoPlaceIsTakenForAnother) {
+TEST(LookAlike, NoPlaceIsRecognisedAsAnother) {
   Study study;
   for (int number = 0; number < buildings(); ++number) {
     study.record(number);

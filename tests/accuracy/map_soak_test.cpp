@@ -29,7 +29,7 @@ struct Round {
   std::size_t keyframes = 0;
 };
 
-TEST(MapSoak, TheMapStaysAsItIsRoundAfterRound) {
+TEST(MapSoak, AllocatesNothingAndStaysCorrectRoundAfterRound) {
   if (!AllocationGuard::available()) GTEST_SKIP() << "a sanitizer has its own malloc";
   SimulatorOptions options = test::small_options(SceneName::kDesk);
   options.frames = kFramesOfARound + 1;  // the last pose is the first one again

@@ -31,14 +31,14 @@ Matrix6 by_differences(const Function& f) {
   return kSigma_s * kSigma_s * rate * rate.transpose();
 }
 
-TEST(StampError, OfAPoseIsWhatTheCameraMovesMeanwhile) {
+TEST(StampError, CovarianceOfAPoseIsThatOfTheMotionDuringIt) {
   const Se3 T = some_pose();
   const Matrix6 expected =
       by_differences([&](double error) { return T * moved(kVelocity, error).inverse(); });
   EXPECT_LT((stamp_covariance_of_pose(T, kVelocity, kSigma_s) - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST(StampError, OfAMotionIsThatOfBothItsEnds) {
+TEST(StampError, CovarianceOfAMotionContainsBothStamps) {
   const Se3 T = some_pose();
   const Matrix6 expected =
       by_differences([&](double error) { return moved(kVelocity, error) * T; }) +
@@ -75,7 +75,7 @@ Means mean_nees(const test::TrackedSequence& tracked) {
   return {means.of_motion / tracked, means.of_pose / tracked};
 }
 
-TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
+TEST(StampError, MakesCovariancesTrueAndDoesNotChangePoses) {
   const test::TrackedSequence told = track_with_stamps(kSigma_s), not_told = track_with_stamps(0);
   test::expect_same_poses(told, not_told);
   const Means with = mean_nees(told), without = mean_nees(not_told);

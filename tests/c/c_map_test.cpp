@@ -166,7 +166,7 @@ TEST_F(CMap, TheFunctionsOfThePageSaveAndLoadAFile) {
               "cannot write the file");
 }
 
-TEST_F(CMap, NonsenseIsAnsweredWithWords) {
+TEST_F(CMap, InvalidArgumentsAreRefusedWithAMessage) {
   MapTape tape;
   plvo_result result = {};
   result.struct_size = sizeof result;

@@ -88,7 +88,7 @@ TEST_F(CRecordedImu, GivesWhatTheFolderHas) {
   EXPECT_EQ(readings.left_out, 2U);
 }
 
-TEST_F(CRecordedImu, SaysWhatIsWrongAndGivesNothing) {
+TEST_F(CRecordedImu, ReportsErrorsAndGivesNoPrior) {
   test::write_file(recording() / kGyroFile, "1 0 0 0\n2 0 zero 0\n");
   plvo_imu_readings readings = empty();
   plvo_status status = read(readings);

@@ -53,7 +53,7 @@ TEST(MavlinkOdometry, ResetsAreCounted) {
   EXPECT_EQ(odometry.message(tracked(4))->at(kResets), 2);
 }
 
-TEST(MavlinkOdometry, QualityIsTheShareOfTheMatchesThatAgree) {
+TEST(MavlinkOdometry, QualityIsTheInlierRatio) {
   MavlinkOdometry odometry;
   (void)odometry.message(tracked(0));
   EXPECT_EQ(odometry.message(tracked(1))->at(kQuality), 75);

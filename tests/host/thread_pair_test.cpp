@@ -17,7 +17,7 @@
 namespace plvo {
 namespace {
 
-TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
+TEST(ThreadPair, RunsEachTaskOnAThreadOfItsOwn) {
   ThreadPair pair;
   const Executor executor = pair.executor();
   const std::thread::id caller = std::this_thread::get_id();
@@ -42,7 +42,7 @@ TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
   EXPECT_GT(pair.cpu_ns(), 0);
 }
 
-TEST(ThreadPair, HalvesCoverAllAndMeetOnce) {
+TEST(ThreadPair, HalvesCoverTheRangeOnce) {
   ThreadPair pair;
   for (const Executor& executor : {pair.executor(), Executor()}) {
     for (const std::size_t count : {0U, 1U, 2U, 7U, 100U}) {
@@ -107,7 +107,7 @@ TEST(ThreadPair, AnOdometryOnTwoCoresGivesTheSameBits) {
     }
 }
 
-TEST(ThreadPair, NeedsTheMemoryOfTwo) {
+TEST(ThreadPair, RequiresLimitsForTwoCores) {
   ThreadPair pair;
   Config config;
   config.executor = pair.executor();

@@ -92,7 +92,7 @@ TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
   EXPECT_FALSE(sampler.sample(26, 18, kReach).on_edge);
 }
 
-TEST(DepthSampler, OneOrTwoPixelsThatFlyBeforeTheSurfaceAreNone) {
+TEST(DepthSampler, IgnoresOneOrTwoFlyingPixels) {
   for (const int flying : {1, 2}) {
     Scene scene([](int, int) { return 1.5; });
     for (int i = 0; i < flying; ++i) scene.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;

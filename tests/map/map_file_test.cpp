@@ -314,7 +314,7 @@ TEST_F(WrongMapFile, NumbersThatCannotBe) {
   }
 }
 
-TEST(MapFile, RefusesWhatItCannotSaveOrLoad) {
+TEST(MapFile, RefusesToSaveAnEmptyMapAndToLoadInvalidOnes) {
   Map map;
   Bytes bytes(100);
   SpanSink sink(bytes);

@@ -157,7 +157,7 @@ TEST(Map, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(bits.value(), kGolden);
 }
 
-TEST(Map, AKeyframeTakesNoMoreThanItSays) {
+TEST(Map, AKeyframeTakesAtMostTheStatedBytes) {
   for (const int keyframes : {8, 63, 64, 65, 255, 256, 257, 511, 512}) {
     MapLimits limits;
     limits.keyframes = keyframes;
@@ -168,7 +168,7 @@ TEST(Map, AKeyframeTakesNoMoreThanItSays) {
   }
 }
 
-TEST(Map, RefusesWhatItCannotUse) {
+TEST(Map, RefusesInvalidArguments) {
   const CameraModel camera;
   Map map;
   std::vector<std::byte> memory(100);

@@ -191,7 +191,7 @@ TEST(PoseGraph, BoundsTheWorkOfAStep) {
   EXPECT_LT((g.graph.node(g.graph.last()).T_map_keyframe.t - truth.back().t).norm(), 0.05);
 }
 
-TEST(PoseGraph, MovesWhatWasNotSeenAndKeepsWhatWas) {
+TEST(PoseGraph, MovesUncertainMotionsAndKeepsCertainOnes) {
   // Between keyframes 9 and 10 nothing was seen: the odometry went on at a wrong place.
   const std::vector<Se3> truth = circle(20);
   Graph g(20);
@@ -273,7 +273,7 @@ TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
 
 // At each step the stated covariance must contain the error: what a loop tells may not make it small before
 // the pose has moved.
-TEST(PoseGraph, TheCovarianceShrinksNotBeforeThePoseMoves) {
+TEST(PoseGraph, TheCovarianceShrinksOnlyWithThePose) {
   constexpr int kNodes = 200;
   const std::vector<Se3> truth = circle(kNodes);
   Graph g(kNodes);

@@ -58,7 +58,7 @@ Said after(int frames, double share, std::uint64_t seed) {
   return {ratios(C + D, of_e), ratios(C, of_e)};
 }
 
-TEST(RepeatedError, IsWhatTheCovarianceLacksExactly) {
+TEST(CommonModeError, EqualsTheMissingCovarianceOfALinearModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     for (const double share : {0.0, 0.3, 0.6, 1.0})
       for (const int frames : {2, 10, 100}) {
@@ -71,7 +71,7 @@ TEST(RepeatedError, IsWhatTheCovarianceLacksExactly) {
       }
 }
 
-TEST(RepeatedError, IsNoneWithoutOthersAndStaysWithoutABase) {
+TEST(CommonModeError, IsZeroWithoutOtherReferencesAndKeptWithoutABase) {
   std::mt19937_64 random(3);
   const Matrix6 H = test::inverse(some_covariance(random, 0.01)), D = some_covariance(random, 0.02);
   EXPECT_LT(common_mode_error({H, Matrix6::Zero()}, D, 0.6).norm(), 1e-12 * D.norm());
@@ -80,7 +80,7 @@ TEST(RepeatedError, IsNoneWithoutOthersAndStaysWithoutABase) {
 }
 
 // The keyframe goes out of view: the two errors cannot be more alike than both being one.
-TEST(RepeatedError, IsNoMoreThanErrorsThatAreWhollyAlike) {
+TEST(CommonModeError, IsAtMostThatOfFullyCorrelatedErrors) {
   std::mt19937_64 random(5);
   for (const double grown : {1.0, 10.0, 1e4}) {
     const Matrix6 R = grown * some_covariance(random, 0.01), S = some_covariance(random, 0.003);

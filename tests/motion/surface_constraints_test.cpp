@@ -103,7 +103,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   }
 }
 
-TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
+TEST(SurfaceConstraints, AStrideOfFourEqualsASetOfEveryFourthMatch) {
   Gaussian gaussian(21);
   const Walls walls(gaussian, room(), 40, 0.004, 0.03);
   Walls fewer = walls;
@@ -124,7 +124,7 @@ TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
 }
 
 // The slow, obvious statement: all parameters in one dense system, match by match, those of the set last.
-TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
+TEST(SurfaceConstraints, EliminationOfCommonErrorsEqualsADenseSystem) {
   Gaussian gaussian(12);
   Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
@@ -175,7 +175,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   EXPECT_NEAR(cost, expected_cost, 1e-9 * plain);
 }
 
-TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
+TEST(SurfaceConstraints, TheCovarianceMatchesTheErrors) {
   Gaussian gaussian(13);
   constexpr int kTrials = 300;
   double nees = 0;
@@ -229,7 +229,7 @@ TEST(SurfaceConstraints, ACorridorsWallsDoNotConstrainMotionAlongIt) {
   EXPECT_GT(across, 3e6);
 }
 
-TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
+TEST(SurfaceConstraints, SelectsItsOwnInliersOutsideOfRansac) {
   Gaussian gaussian(15);
   Walls walls(gaussian, room(), 50, 0.004, 0.01);
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;

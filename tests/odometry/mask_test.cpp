@@ -312,7 +312,7 @@ TEST(Mask, RepeatedImagesAreFoundBehindABurntInClock) {
   EXPECT_TRUE(masked_sequence.odometry.track(again).repeated);
 }
 
-TEST(Mask, RefusesWhatIsNoMaskOfTheCamera) {
+TEST(Mask, RefusesInvalidMasks) {
   const std::vector<std::uint8_t> pixels(kWide * kHigh, 255), black(kWide * kHigh, 0);
   const CameraModel camera = ProceduralSequence(kWide, kHigh).camera();
   const auto init_with = [&](const GrayView& mask, bool room = true) {

@@ -71,7 +71,7 @@ TEST(OneReference, AllowsAKeyframeThatChangesWithEveryFrame) {
   EXPECT_EQ(track(config, Limits::tiny()), track(config, with_references(Limits::tiny(), 2)));
 }
 
-TEST(OneReference, RefusesAPolicyOfTwo) {
+TEST(OneReference, RefusesAPolicyWithTwoReferences) {
   constexpr Limits kLimits = Limits::tiny();
   std::vector<std::byte> memory(required_bytes(kLimits));
   Odometry odometry;

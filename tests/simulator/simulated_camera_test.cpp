@@ -112,7 +112,7 @@ TEST(SimulatedCamera, TheTrajectoryIsClosedAndMovesLikeAHand) {
   }
 }
 
-TEST(SimulatedCamera, RefusesWhatCannotBe) {
+TEST(SimulatedCamera, RefusesInvalidOptions) {
   std::unique_ptr<SimulatedCamera> camera;
   const auto code = [&](auto change) {
     SimulatorOptions options = small_options(SceneName::kBare);

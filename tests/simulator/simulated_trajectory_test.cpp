@@ -103,7 +103,7 @@ TEST_F(RecordedTrajectory, DrivesACameraUntilItsEnd) {
   EXPECT_TRUE(camera->next(frame).ok());
 }
 
-TEST_F(RecordedTrajectory, RefusesWhatIsNone) {
+TEST_F(RecordedTrajectory, RefusesInvalidTrajectories) {
   Trajectory trajectory;
   EXPECT_EQ(load(trajectory).code(), StatusCode::kNotFound);
   write("# nothing\n");
@@ -147,7 +147,7 @@ TEST(HandHeldTrajectory, KeepsClearOfAllSolids) {
   }
 }
 
-TEST_F(RecordedTrajectory, TakesTheRealOnes) {
+TEST_F(RecordedTrajectory, AcceptsRecordedTrajectories) {
   const char* shared = std::getenv("PLVO_SHARED");
   const std::filesystem::path folder =
       std::filesystem::path(shared != nullptr ? shared : "") / "data/tum_groundtruth";

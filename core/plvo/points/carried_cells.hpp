@@ -40,7 +40,7 @@ class CarriedCells {
   void vote(const Counts& stayed, const Counts& moved);
   // Takes in a frame that alone is certain: the cells with features that stayed, and the cells beside them,
   // are carried at once.
-  void convict(const Counts& stayed);
+  void mark_carried(const Counts& stayed);
 
   // The cell of a pixel; of one outside the image, the nearest cell.
   std::size_t cell_of(const Vector2& pixel) const;

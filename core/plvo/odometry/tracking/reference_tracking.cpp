@@ -322,7 +322,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const bool agree =
       tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried);
   const bool contradicted = !agree && depth_contradicts(stayed);
-  if (agree || contradicted) carried.convict(stayed.cells);
+  if (agree || contradicted) carried.mark_carried(stayed.cells);
   if (contradicted) {
     tracked.motion.status = StatusCode::kNoConsensus;
     return;
