@@ -314,7 +314,7 @@ TEST_F(WrongMapFile, NumbersThatCannotBe) {
   }
 }
 
-TEST(MapFile, RefusesToSaveAnEmptyMapAndToLoadInvalidOnes) {
+TEST(MapFile, RefusesToSaveAnEmptyMapOrIntoTooFewBytes) {
   Map map;
   Bytes bytes(100);
   SpanSink sink(bytes);
