@@ -8,7 +8,7 @@
 namespace plvo {
 namespace {
 
-// Of the motion of any tracked frame, which has six degrees of freedom.
+// Bound on the NEES of the motion of any tracked frame, which has six degrees of freedom.
 constexpr double kNeesBound = 20;
 
 struct HardSequence {

@@ -39,7 +39,8 @@ class Session {
     }
     map.finish();
   }
-  // Of a frame, through the keyframes that its keyframe was joined with, one after the other.
+  // A frame, and its pose in the map over the keyframes with which its keyframe was merged, one after the
+  // other.
   struct Seen {
     std::int64_t stamp_ns = 0;
     std::uint32_t keyframe = 0;

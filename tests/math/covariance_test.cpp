@@ -12,7 +12,7 @@
 namespace plvo {
 namespace {
 
-// Of this rank, with standard deviations over many orders of magnitude.
+// A covariance of this rank, with standard deviations over many orders of magnitude.
 Matrix6 random_covariance(Random& random, int rank) {
   Matrix6 C = Matrix6::Zero();
   Vector6 deviation;

@@ -10,7 +10,7 @@
 namespace plvo {
 namespace {
 
-// Of motions, whose rotations are surer than their translations.
+// A covariance of a motion, with smaller variances of the rotation than of the translation.
 Matrix6 some_covariance(std::mt19937_64& random, double sigma) {
   std::normal_distribution<double> normal;
   Matrix6 root;

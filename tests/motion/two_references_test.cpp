@@ -43,7 +43,7 @@ TEST(TwoReferences, WithAnExactPoseAreOneProblem) {
     }
 }
 
-// Of the pair's matches every second one, the first of them or the one after it.
+// Every second match of the pair, from the match with this index on.
 SimulatedPair half_of(const SimulatedPair& pair, std::size_t first) {
   SimulatedPair half = pair;
   half.point_matches.clear();
@@ -156,7 +156,7 @@ TEST(TwoReferences, EstimatesAReferencePoseThatIsFarOff) {
     const LmSummary summary = solver.solve(problem, {});
     ASSERT_TRUE(converged(summary.status)) << static_cast<int>(summary.status);
 
-    // Of the motion, and of the pose in its SDs, about the solution.
+    // The cost around the solution, as a function of the motion, and of the pose in units of its SDs.
     const MotionReference found = problem.poses()[1];
     const auto cost = [&](const Vector6& of_motion, const Vector6& of_pose) {
       MotionReferences exact;

@@ -10,9 +10,9 @@
 
 namespace plvo::test {
 
-// Of correlations: relative to the standard deviations.
+// Tolerance of correlations, that is relative to the standard deviations.
 inline constexpr double kSoundTolerance = 1e-8;
-// What is unsure beyond this in m² or rad² says nothing.
+// Bounds on the variances, in m² or rad².
 inline constexpr double kMostVariance[6] = {1e6, 1e6, 1e6, 9.87, 9.87, 9.87};
 
 inline bool is_sound_covariance(const Matrix6& C) {
