@@ -14,7 +14,7 @@
 #include "plvo/odometry/odometry.hpp"
 
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
-              "nobody ends it: the caller takes the memory back");
+              "it is never destroyed: the caller only frees its memory");
 
 namespace {
 
