@@ -19,13 +19,13 @@ void expect_motions_off(int expected, SceneName scene, double fps, int frames) {
   options.scene = scene;
   options.fps = fps;
   options.frames = frames;
-  const test::TrackedSequence tracked = test::track_sequence(options, Limits{}, Config{});
+  const test::TrackedSequence sequence = test::track_sequence(options, Limits{}, Config{});
   int tracked = 0, off = 0;
   double most = 0;  // of the others
-  for (std::size_t i = 0; i < tracked.results.size(); ++i) {
-    const TrackResult& result = tracked.results[i];
+  for (std::size_t i = 0; i < sequence.results.size(); ++i) {
+    const TrackResult& result = sequence.results[i];
     if (result.state != TrackState::kTracking) continue;
-    const double error = tracked.error_of_motion(i).head<3>().norm();
+    const double error = sequence.error_of_motion(i).head<3>().norm();
     ++tracked;
     if (error < kOff_m) {
       most = std::max(most, error);

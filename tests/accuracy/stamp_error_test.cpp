@@ -63,13 +63,13 @@ struct Means {
   double of_motion = 0, of_pose = 0;  // 6 if the covariance is true
 };
 
-Means mean_nees(const test::TrackedSequence& tracked) {
+Means mean_nees(const test::TrackedSequence& sequence) {
   Means means;
   double tracked = 0;
-  for (std::size_t i = 0; i < tracked.results.size(); ++i) {
-    if (tracked.results[i].state != TrackState::kTracking) continue;
-    means.of_motion += tracked.nees_of_motion(i);
-    means.of_pose += tracked.nees_of_pose(i);
+  for (std::size_t i = 0; i < sequence.results.size(); ++i) {
+    if (sequence.results[i].state != TrackState::kTracking) continue;
+    means.of_motion += sequence.nees_of_motion(i);
+    means.of_pose += sequence.nees_of_pose(i);
     ++tracked;
   }
   return {means.of_motion / tracked, means.of_pose / tracked};
