@@ -113,8 +113,8 @@ TEST_F(SequenceCalibration, ReportsWhatPlainTumNumbersOmit) {
   const std::string all = missing("walk", "517.3 516.5 318.6 255.3 5000");
   EXPECT_TRUE(has_text(all, "by its numbers this is TUM's camera tum-fr1")) << all;
   EXPECT_TRUE(has_text(all,
-                       "does not say: the lens, the rolling shutter, when depth is exposed, what the "
-                       "stamps err; --camera-model tum-fr1 says it"))
+                       "does not say: the lens, the rolling shutter, when depth is exposed, the "
+                       "errors of the stamps; --camera-model tum-fr1 says it"))
       << all;
   const std::string lens =
       missing("walk", "517.306408 516.469215 318.643040 255.313989 5000 0.262 -0.953 -0.005 0.0026 1.163");
