@@ -49,7 +49,7 @@ TEST(AccuracyBaseline, RejectsACovarianceThatIsFartherFromTheTruthOnEitherSide) 
   EXPECT_TRUE(compare(before, six_starts(8, 0.8, 4)).empty());  // 6 / 4 is as far as 9 / 6
 }
 
-TEST(AccuracyBaseline, AcceptsWhatNobodyNoticesWhereTheStartsAgree) {
+TEST(AccuracyBaseline, AcceptsASmallChangeWhereTheStartsAgree) {
   const std::vector<Figures> before(6, {8, 0.8, 6, 0});
   EXPECT_TRUE(compare(before, std::vector<Figures>(6, {8.1, 0.81, 6.2, 0})).empty());
   EXPECT_EQ(compare(before, std::vector<Figures>(6, {8.3, 0.83, 6.5, 0})).size(), 3U);

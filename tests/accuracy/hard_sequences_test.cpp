@@ -8,7 +8,7 @@
 namespace plvo {
 namespace {
 
-// Of the motion of any tracked frame, which has six degrees of freedom.
+// Bound on the NEES of the motion of any tracked frame, which has six degrees of freedom.
 constexpr double kNeesBound = 20;
 
 struct HardSequence {
@@ -28,17 +28,17 @@ SimulatorOptions hard_options(int frames, std::initializer_list<const char*> nam
 }
 
 HardSequence track_hard(const SimulatorOptions& options) {
-  const test::TrackedSequence walk = test::track_sequence(options, test::kTestLimits, Config{});
+  const test::TrackedSequence tracked = test::track_sequence(options, test::kTestLimits, Config{});
   HardSequence figures;
-  for (std::size_t i = 0; i < walk.results.size(); ++i) {
-    const TrackResult& result = walk.results[i];
+  for (std::size_t i = 0; i < tracked.results.size(); ++i) {
+    const TrackResult& result = tracked.results[i];
     figures.lost += result.state == TrackState::kLost ? 1 : 0;
     figures.repeated += result.repeated ? 1 : 0;
-    const Vector3 position = (walk.truth.front().inverse() * walk.truth[i]).t;
+    const Vector3 position = (tracked.truth.front().inverse() * tracked.truth[i]).t;
     figures.error_m = std::max(figures.error_m, (result.T_world_camera.t - position).norm());
     if (result.state != TrackState::kTracking) continue;
     ++figures.tracked;
-    figures.nees = std::max(figures.nees, walk.nees_of_motion(i));
+    figures.nees = std::max(figures.nees, tracked.nees_of_motion(i));
   }
   return figures;
 }

@@ -51,11 +51,11 @@ TEST(SimulatedLens, DrawsWhereTheLensImages) {
   }
 }
 
-struct Walk {
+struct Outcome {
   int tracked = 0;
   double error_m = 0, error_rad = 0;  // the largest of a pose
 };
-Walk track(const SimulatorOptions& options, const CameraModel& believed) {
+Outcome track(const SimulatorOptions& options, const CameraModel& believed) {
   std::unique_ptr<SimulatedCamera> camera;
   EXPECT_TRUE(SimulatedCamera::create(options, camera).ok());
   const Limits limits{.width = 320, .height = 240};
@@ -63,29 +63,29 @@ Walk track(const SimulatorOptions& options, const CameraModel& believed) {
   Odometry odometry;
   const Status status = odometry.init(memory, believed, {}, limits);
   EXPECT_TRUE(status.ok()) << status.message();
-  Walk walk;
+  Outcome outcome;
   RgbdFrame frame;
   while (camera->next(frame).ok()) {
     const TrackResult result = odometry.track(frame);
-    walk.tracked += result.state == TrackState::kTracking ? 1 : 0;
+    outcome.tracked += result.state == TrackState::kTracking ? 1 : 0;
     const Se3 truth = camera->pose(0).inverse() * camera->ground_truth(frame.stamp_ns);
     const Vector6 error = boxminus(result.T_world_camera, truth);
-    walk.error_m = std::max(walk.error_m, error.head<3>().norm());
-    walk.error_rad = std::max(walk.error_rad, error.tail<3>().norm());
+    outcome.error_m = std::max(outcome.error_m, error.head<3>().norm());
+    outcome.error_rad = std::max(outcome.error_rad, error.tail<3>().norm());
   }
-  return walk;
+  return outcome;
 }
 
 TEST(SimulatedLens, TheOdometryTakesItOut) {
   for (const Distortion& lens : {kRational, kFisheye}) {
     const SimulatorOptions options = through(140, lens);
-    const Walk right = track(options, options.camera);
+    const Outcome right = track(options, options.camera);
     EXPECT_EQ(right.tracked, options.frames - 1);
     EXPECT_LT(right.error_m, 0.006);
     EXPECT_LT(right.error_rad, 0.002);
     CameraModel wrong = options.camera;
     wrong.distortion = {};
-    const Walk without = track(options, wrong);
+    const Outcome without = track(options, wrong);
     EXPECT_GT(without.error_m, 4 * right.error_m) << "the lens must matter for the test to mean something";
     EXPECT_GT(without.error_rad, 4 * right.error_rad);
   }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places that look alike but are others: corridors of doors, desks and halls of many buildings, and both
-// sides and all stretches of the same one. A query is a keyframe that is asked of a map. Whatever loop joins
-// the map is compared with the true poses; one that is wrong is one too many.
+// Different places that look alike: corridors of doors, desks and halls of many buildings, and both sides and
+// all stretches of the same one. A query is the search for a keyframe in a map. Every loop that a map accepts
+// is compared with the true poses; no loop may be wrong.
 //
-// Each building is walked through in pieces. Every piece is asked of the maps of all pieces before it, just
-// loaded, so that the camera does not know where it is; and of the map of a tour of several buildings, in
-// which it does, but for the uncertainty of the way from one building to the next.
+// Each building is recorded in sessions. The keyframes of every session are searched in the maps of all
+// sessions before it, which are freshly loaded, so that the place of the camera is unknown. They are also
+// searched in the map of a tour of several buildings, in which it is known up to the uncertainty of the way
+// from one building to the next.
 //
-// The suite walks through three buildings; PLVO_BUILDINGS=24 build/release/tests/look_alike_test walks
-// through any other number. With many it fails: desks and halls of other seeds have much of their plan in
-// common, and with PLVO_STOREYS=3 each three buildings have the same one (docs/decisions/look_alikes.md).
+// The suite records three buildings; PLVO_BUILDINGS=24 build/release/tests/look_alike_test records any other
+// number. With many it fails: desks and halls of other seeds have much of their plan in common, and with
+// PLVO_STOREYS=3 each three buildings have the same plan (docs/decisions/look_alikes.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@
 namespace plvo {
 namespace {
 
-constexpr int kFramesOfAPiece = 160, kPiecesOfABuilding = 2;
+constexpr int kFramesOfASession = 160, kSessionsOfABuilding = 2;
 constexpr double kFramesPerSecond = 6;
 constexpr int kFramesOnTheWay = 40;  // in the dark, from one building to the next
 constexpr int kBuildingsOfATour = 6;
@@ -39,19 +40,19 @@ int wanted(const char* name, int otherwise, int least) {
   const char* given = std::getenv(name);
   return given == nullptr ? otherwise : std::max(std::atoi(given), least);
 }
-int buildings_to_walk() { return wanted("PLVO_BUILDINGS", 3, 2); }
+int buildings() { return wanted("PLVO_BUILDINGS", 3, 2); }
 
-// Storeys of one building have the same plan, paint and walk.
+// Storeys of one building have the same plan, paint and trajectory.
 SimulatorOptions building(int number) {
   constexpr std::array kScenes = {SceneName::kCorridor, SceneName::kDesk, SceneName::kCorridor,
                                   SceneName::kHall};
-  const int storeys = wanted("PLVO_STOREYS", 1, 1), house = number / storeys;
-  const auto light = house % 5 == 4 ? LightName::kVarying : LightName::kConstant;
-  SimulatorOptions options = test::small_options(kScenes[static_cast<std::size_t>(house) % 4], light);
-  options.seed = static_cast<std::uint64_t>(100 + house);
+  const int storeys = wanted("PLVO_STOREYS", 1, 1), plan = number / storeys;
+  const auto light = plan % 5 == 4 ? LightName::kVarying : LightName::kConstant;
+  SimulatorOptions options = test::small_options(kScenes[static_cast<std::size_t>(plan) % 4], light);
+  options.seed = static_cast<std::uint64_t>(100 + plan);
   options.storey = static_cast<std::uint32_t>(number % storeys);
   options.fps = kFramesPerSecond;
-  options.frames = kFramesOfAPiece * kPiecesOfABuilding;
+  options.frames = kFramesOfASession * kSessionsOfABuilding;
   options.threads = 1;
   return options;
 }
@@ -64,8 +65,8 @@ struct Place {
 
 class StringSink final : public ByteSink {
  public:
-  Status write(std::span<const std::byte> piece) override {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
+  Status write(std::span<const std::byte> bytes_to_add) override {
+    bytes.insert(bytes.end(), bytes_to_add.begin(), bytes_to_add.end());
     return {};
   }
   std::vector<std::byte> bytes;
@@ -99,9 +100,9 @@ struct Figures {
   }
 };
 
-class Walk {
+class Study {
  public:
-  Walk() {
+  Study() {
     const CameraModel camera = building(0).camera;
     const Limits limits{camera.width, camera.height, 250, 64, 2, 1, 0};
     memory_.resize(required_bytes(limits));
@@ -109,15 +110,15 @@ class Walk {
     dark_.resize(3 * static_cast<std::size_t>(camera.width * camera.height));
   }
 
-  void through(int number) {
-    walked_ = number + 1;
+  void record(int number) {
+    recorded_ = number + 1;
     std::unique_ptr<SimulatedCamera> camera;
     ASSERT_TRUE(SimulatedCamera::create(building(number), camera).ok());
     if (number % kBuildingsOfATour == 0) tour_ = std::make_unique<PlacedMap>(camera->model(), 512);
-    for (int piece = 0; piece < kPiecesOfABuilding; ++piece) {
+    for (int session = 0; session < kSessionsOfABuilding; ++session) {
       for (std::size_t i = 0; i < saved_.size(); ++i) load(i, camera->model());
       PlacedMap fresh(camera->model(), 256);
-      for (int k = 0; k < kFramesOfAPiece; ++k) {
+      for (int k = 0; k < kFramesOfASession; ++k) {
         RgbdFrame frame;
         ASSERT_TRUE(camera->next(frame).ok());
         const Se3 T_building_camera = camera->ground_truth(frame.stamp_ns);
@@ -135,11 +136,11 @@ class Walk {
   }
 
   void end() {
-    if (walked_ % kBuildingsOfATour != 0) judge(*tour_, located);
+    if (recorded_ % kBuildingsOfATour != 0) judge(*tour_, located);
   }
 
   Figures unlocated, located;
-  int found = 0;  // pieces that were found in the map of another piece of their building
+  int found = 0;  // sessions that were found in the map of another session of their building
 
  private:
   struct Saved {
@@ -230,26 +231,27 @@ class Walk {
   std::vector<std::uint8_t> dark_;
   std::vector<std::uint16_t> no_depth_;
   std::int64_t taken_ = 1;
-  int walked_ = 0;  // buildings
+  int recorded_ = 0;  // buildings
   std::vector<Saved> saved_;
   std::vector<std::unique_ptr<PlacedMap>> loaded_;
   std::unique_ptr<PlacedMap> tour_;
 };
 
-TEST(LookAlike, NoPlaceIsTakenForAnother) {
-  Walk walk;
-  for (int number = 0; number < buildings_to_walk(); ++number) {
-    walk.through(number);
+TEST(LookAlike, NoPlaceIsRecognisedAsAnother) {
+  Study study;
+  for (int number = 0; number < buildings(); ++number) {
+    study.record(number);
     std::printf("building %d, %s\n", number, to_string(building(number).scene));
-    walk.unlocated.say("after load");
+    study.unlocated.say("after load");
     std::fflush(stdout);
   }
-  walk.end();
-  walk.located.say("on a tour");
-  std::printf("pieces that were found in the map of the other piece of their building: %d\n", walk.found);
-  EXPECT_EQ(walk.unlocated.wrong, 0);
-  EXPECT_EQ(walk.located.wrong, 0);
-  EXPECT_GT(walk.unlocated.compared, 20);
+  study.end();
+  study.located.say("on a tour");
+  std::printf("sessions that were found in the map of the other session of their building: %d\n",
+              study.found);
+  EXPECT_EQ(study.unlocated.wrong, 0);
+  EXPECT_EQ(study.located.wrong, 0);
+  EXPECT_GT(study.unlocated.compared, 20);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera walks round and round in a simulated room with a map beside it: no allocation, a map that is no
+// A camera moves round after round in a simulated room with a map beside it: no allocation, a map that is no
 // larger than it may be, and an error in the map that does not grow while that of the odometry does. The
 // images of a round are rendered once. docs/results/map.md has 100 000 frames.
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ struct Round {
   std::size_t keyframes = 0;
 };
 
-TEST(MapSoak, TheMapStaysAsItIsRoundAfterRound) {
+TEST(MapSoak, AllocatesNothingAndStaysCorrectRoundAfterRound) {
   if (!AllocationGuard::available()) GTEST_SKIP() << "a sanitizer has its own malloc";
   SimulatorOptions options = test::small_options(SceneName::kDesk);
   options.frames = kFramesOfARound + 1;  // the last pose is the first one again

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One odometry over many frames: laps of the procedural sequence, there and back, with frames in the dark.
-// The suite walks a few laps; PLVO_SOAK_FRAMES=100000 build/release/tests/odometry_soak_test walks as many
+// The suite tracks a few laps; PLVO_SOAK_FRAMES=100000 build/release/tests/odometry_soak_test tracks as many
 // frames as it says. What the process holds does not grow, every lap finds its way, and a lap that starts
 // anew in memory that has seen all the others gives the bits of the first.
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr int kFramesOneWay = 30;
 constexpr int kFramesOfALap = 2 * kFramesOneWay;
 constexpr int kDarkFrame = 17;  // of a lap
 
-int frames_to_walk() {
+int frames_to_track() {
   const char* wanted = std::getenv("PLVO_SOAK_FRAMES");
   return wanted == nullptr ? 8 * kFramesOfALap : std::max(std::atoi(wanted), 3 * kFramesOfALap);
 }
@@ -41,7 +41,7 @@ class Lap {
     }
   }
   const CameraModel& camera() const { return sequence_.camera(); }
-  // i-th of the lap, as the number-th of the walk.
+  // i-th of the lap, as the number-th of the sequence.
   RgbdFrame frame(int i, std::int64_t number) {
     const int place = i < kFramesOneWay ? i : kFramesOfALap - 1 - i;
     const auto image = static_cast<std::size_t>(i == kDarkFrame ? kFramesOneWay : place);
@@ -74,7 +74,7 @@ class Soak : public ::testing::Test {
     ASSERT_TRUE(odometry_.init(memory_, lap_.camera(), Config{}, kLimits).ok());
     number_ = 0;
   }
-  LapResult walk() {
+  LapResult track_lap() {
     LapResult done;
     Fingerprint print;
     std::array<std::int64_t, kFramesOfALap> took{};
@@ -103,25 +103,25 @@ class Soak : public ::testing::Test {
 };
 
 TEST_F(Soak, MemoryIsFlatAndTheLastLapIsAsTheFirst) {
-  const int laps = frames_to_walk() / kFramesOfALap;
+  const int laps = frames_to_track() / kFramesOfALap;
   start();
-  const LapResult first = walk();
+  const LapResult first = track_lap();
   EXPECT_EQ(first.lost, 1);
   EXPECT_EQ(first.tracked, kFramesOfALap - 2);
-  (void)walk();
+  (void)track_lap();
   prefault_program();
   const std::int64_t before = resident_memory().anonymous;
   const std::size_t peak = odometry_.memory_peak();
   LapResult last;
   for (int lap = 2; lap < laps - 1; ++lap) {
-    last = walk();
+    last = track_lap();
     ASSERT_EQ(last.lost, 1) << "lap " << lap;
     ASSERT_EQ(last.tracked, kFramesOfALap - 1) << "lap " << lap;
   }
   EXPECT_EQ(odometry_.memory_peak(), peak);
   EXPECT_LE(resident_memory().anonymous - before, 64 * 1024);
   start();
-  EXPECT_EQ(walk().bits, first.bits);
+  EXPECT_EQ(track_lap().bits, first.bits);
   std::printf(
       "%d frames; the median frame's CPU time: %.2f ms in the first lap, %.2f in the last; hash %016llx\n",
       laps * kFramesOfALap, first.cpu_ms, last.cpu_ms, static_cast<unsigned long long>(first.bits));

@@ -17,14 +17,14 @@ TEST(RecentPose, IsEstimatedWithTheMotionInAHall) {
   options.scene = SceneName::kHall;
   options.camera.readout_s = 0.0261;
   options.frames = 25;
-  const test::TrackedSequence walk = test::track_sequence(options, Limits{}, Config{});
+  const test::TrackedSequence tracked = test::track_sequence(options, Limits{}, Config{});
   double most = 0;
   int searched = 0;
-  for (std::size_t i = 1; i < walk.results.size(); ++i) {
-    const TrackResult& result = walk.results[i];
+  for (std::size_t i = 1; i < tracked.results.size(); ++i) {
+    const TrackResult& result = tracked.results[i];
     ASSERT_EQ(result.state, TrackState::kTracking);
     searched += result.ransac_iterations > 0 ? 1 : 0;
-    most = std::max(most, walk.error_of_motion(i).head<3>().norm());
+    most = std::max(most, tracked.error_of_motion(i).head<3>().norm());
   }
   std::printf("at most %.1f mm off; RANSAC in %d of 24 frames\n", 1e3 * most, searched);
   EXPECT_LE(searched, 4);

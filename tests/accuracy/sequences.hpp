@@ -20,12 +20,13 @@ struct Sequence {
   eval::EvaluationOptions evaluation;  // how good the truth is
 };
 
-// A recorded one: a folder, and the name of a built-in calibration or nothing for the file beside the images.
+// A recorded sequence: a folder, and the name of a built-in calibration, or nothing for the calibration file
+// in the folder.
 struct Recorded {
   const char* folder;
   const char* camera_model;
-  // Motion capture: each true pose errs by so much in each axis, and its frame is turned against the
-  // camera's. Zero: the truth is exact.
+  // Standard deviations of the true poses by motion capture: of the position in each axis, and of the
+  // rotation between the captured body and the camera. Zero: the truth is exact.
   double truth_sigma_m, truth_sigma_deg;
 };
 const std::vector<Recorded>& recorded_sequences();

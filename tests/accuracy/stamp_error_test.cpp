@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CameraModel::stamp_sigma_s: what is reported of a pose whose stamp errs. The estimate does not know of
-// stamps, so that the poses must stay as they are, and the covariances must hold what the camera moves
+// CameraModel::stamp_sigma_s: the reported pose of a frame whose stamp has an error. The estimate does not
+// depend on stamps, so the poses must stay the same. The covariances must contain the motion of the camera
 // between the exposure and the stamp.
 #include <cmath>
 #include <cstdio>
@@ -31,14 +31,14 @@ Matrix6 by_differences(const Function& f) {
   return kSigma_s * kSigma_s * rate * rate.transpose();
 }
 
-TEST(StampError, OfAPoseIsWhatTheCameraMovesMeanwhile) {
+TEST(StampError, CovarianceOfAPoseIsThatOfTheMotionDuringIt) {
   const Se3 T = some_pose();
   const Matrix6 expected =
       by_differences([&](double error) { return T * moved(kVelocity, error).inverse(); });
   EXPECT_LT((stamp_covariance_of_pose(T, kVelocity, kSigma_s) - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST(StampError, OfAMotionIsThatOfBothItsEnds) {
+TEST(StampError, CovarianceOfAMotionContainsBothStamps) {
   const Se3 T = some_pose();
   const Matrix6 expected =
       by_differences([&](double error) { return moved(kVelocity, error) * T; }) +
@@ -47,9 +47,9 @@ TEST(StampError, OfAMotionIsThatOfBothItsEnds) {
   EXPECT_LT((C - expected).norm(), 1e-6 * expected.norm());
 }
 
-// A walk whose stamps err by kSigma_s, tracked by an odometry that is told so, or not. What stamps err is
-// judged alone, without what a kept keyframe errs (kept_keyframe_test).
-test::TrackedSequence walk_with_stamps(double stamp_sigma_s) {
+// A sequence whose stamps have errors of kSigma_s, tracked by an odometry that is told of them, or not. The
+// effect of the stamps is judged alone, without the common-mode error of a keyframe (kept_keyframe_test).
+test::TrackedSequence track_with_stamps(double stamp_sigma_s) {
   constexpr int kFrames = 40;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -63,23 +63,23 @@ struct Means {
   double of_motion = 0, of_pose = 0;  // 6 if the covariance is true
 };
 
-Means mean_nees(const test::TrackedSequence& walk) {
+Means mean_nees(const test::TrackedSequence& sequence) {
   Means means;
   double tracked = 0;
-  for (std::size_t i = 0; i < walk.results.size(); ++i) {
-    if (walk.results[i].state != TrackState::kTracking) continue;
-    means.of_motion += walk.nees_of_motion(i);
-    means.of_pose += walk.nees_of_pose(i);
+  for (std::size_t i = 0; i < sequence.results.size(); ++i) {
+    if (sequence.results[i].state != TrackState::kTracking) continue;
+    means.of_motion += sequence.nees_of_motion(i);
+    means.of_pose += sequence.nees_of_pose(i);
     ++tracked;
   }
   return {means.of_motion / tracked, means.of_pose / tracked};
 }
 
-TEST(StampError, MakesCovariancesTrueAndLeavesThePosesAlone) {
-  const test::TrackedSequence told = walk_with_stamps(kSigma_s), not_told = walk_with_stamps(0);
+TEST(StampError, MakesCovariancesTrueAndDoesNotChangePoses) {
+  const test::TrackedSequence told = track_with_stamps(kSigma_s), not_told = track_with_stamps(0);
   test::expect_same_poses(told, not_told);
   const Means with = mean_nees(told), without = mean_nees(not_told);
-  const Means with_half = mean_nees(walk_with_stamps(kSigma_s / 2));
+  const Means with_half = mean_nees(track_with_stamps(kSigma_s / 2));
   std::printf("NEES of motions and poses: told %.2f %.2f, told half %.2f %.2f, not told %.2f %.2f\n",
               with.of_motion, with.of_pose, with_half.of_motion, with_half.of_pose, without.of_motion,
               without.of_pose);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated walk, tracked, beside its truth.
+// The results of tracking a simulated sequence, and its true poses.
 #pragma once
 
 #include <algorithm>
@@ -49,11 +49,11 @@ struct TrackedSequence {
 inline TrackedSequence track_sequence(
     const SimulatorOptions& options, const Limits& limits, const Config& config, double stamp_sigma_s = 0,
     const std::function<std::int64_t()>& stamp_error_ns = [] { return 0; }) {
-  TrackedSequence walk;
+  TrackedSequence tracked;
   std::unique_ptr<SimulatedCamera> camera;
   const Status created = SimulatedCamera::create(options, camera);
   EXPECT_TRUE(created.ok()) << created.message();
-  if (!created.ok()) return walk;
+  if (!created.ok()) return tracked;
   CameraModel model = camera->model();
   model.stamp_sigma_s = stamp_sigma_s;
   std::vector<std::byte> memory(required_bytes(limits));
@@ -62,11 +62,11 @@ inline TrackedSequence track_sequence(
   EXPECT_TRUE(status.ok()) << status.message();
   RgbdFrame frame;
   while (camera->next(frame).ok()) {
-    if (!walk.truth.empty()) frame.stamp_ns += stamp_error_ns();
-    walk.truth.push_back(camera->ground_truth(frame.stamp_ns));
-    walk.results.push_back(odometry.track(frame));
+    if (!tracked.truth.empty()) frame.stamp_ns += stamp_error_ns();
+    tracked.truth.push_back(camera->ground_truth(frame.stamp_ns));
+    tracked.results.push_back(odometry.track(frame));
   }
-  return walk;
+  return tracked;
 }
 
 // At 320×240; no frame may be lost.
@@ -78,10 +78,10 @@ inline TrackedSequence track_sequence(
   options.camera.height = 240;
   options.camera.pinhole = {262.5, 262.5, 159.5, 119.5};
   options.frames = frames;
-  TrackedSequence walk = track_sequence(options, kTestLimits, config, stamp_sigma_s, stamp_error_ns);
-  for (const TrackResult& result : walk.results)
+  TrackedSequence tracked = track_sequence(options, kTestLimits, config, stamp_sigma_s, stamp_error_ns);
+  for (const TrackResult& result : tracked.results)
     EXPECT_NE(result.state, TrackState::kLost) << result.status.message();
-  return walk;
+  return tracked;
 }
 
 inline void expect_same_poses(const TrackedSequence& a, const TrackedSequence& b) {

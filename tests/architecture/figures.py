@@ -64,7 +64,7 @@ def expected_rows(recordings, lighting):
             rows[row["sequence"]] = {"plvo, mm per s": row["mm/s"], "plvo, ° per s": row["°/s"], "time": row["time / RgbdOdometry"]}
         elif row["system"] in PEERS:
             peers.setdefault(row["sequence"], []).append((float(row["mm/s"]), row["mm/s"], PEERS[row["system"]]))
-    for row in all_rows(lighting, "site", "light", "never moves"):
+    for row in all_rows(lighting, "site", "light", "zero motion"):
         name = f"{row['site']}, {row['light']}"
         rows[name] = {"plvo, mm per s": row["plvo-both"], "plvo, ° per s": "–", "time": "–"}
         peers[name] = [(float(row[peer]), row[peer], PEERS[peer]) for peer in PEERS if row.get(peer, "–") != "–"]

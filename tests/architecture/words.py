@@ -12,9 +12,20 @@ IDENTIFIERS = {
     "kNobody": "kNoFrame", "SensedMotion": "PropagatedPrior", "HeldPose": "PoseWithCovariance", "GravityHold": "GravityFilter",
     "SharedErrors": "NuisanceParameters", "MidExposure": "RowTimeCompensation", "own_surface": "depth_mask",
     "side_by_side": "executor", "SideBySide": "Executor", "house_arrows": "dependencies", "tests/house": "tests/architecture",
+    "TrackResult::returned": "relocalised", "look_back": "relocalisation", "repeated_share": "common_mode_share",
+    "turning_rad_per_s": "angular_rate_error_rad_per_s", "unseen": "unobserved, or process noise", "new_piece": "restarted",
 }
 # Prose, in capitals or not, also across the end of a line.
-PHRASES = {"front door": "public API", "carve": "allocate", "the house": "plvo, or the modules"}
+PHRASES = {
+    "front door": "public API", "carve": "allocate", "the house": "plvo, or the modules",
+    "lane": "element of a SIMD vector", "lanes": "SIMD vector, or its elements", "small code": "size-optimised code",
+    "side by side": "in parallel, or adjacent, or in one table", "shared errors": "nuisance parameters", "repeated share": "common-mode share",
+    "look back": "relocalise", "looks back": "relocalises", "looked back": "relocalised",
+    "piece of the trajectory": "restart", "pieces of the trajectory": "restarts",
+    "a walk": "a sequence", "simulated walk": "simulated sequence", "simulated walks": "simulated sequences",
+    "camera walks": "camera moves", "walking camera": "moving camera", "never moves": "zero-motion baseline",
+    "errs": "has an error", "convinces": "is accepted", "luggage": "what is carried", "clock of the wall": "real time",
+}
 SUFFIXES = (*sources.CODE, *sources.SCRIPTS, ".js", ".html", ".in", ".txt", ".yaml", ".json")
 NOT_SEARCHED = ("CHANGELOG.md", "tests/architecture/words.py", "tests/golden/golden.txt", "tests/fuzz/seeds/")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the call graphs that GCC writes beside its objects (-fcallgraph-info=su,da, one .ci file a source) and finds the
 deepest stack that a function can need. What has no bound is an error: recursion, arrays of a size known only at run time,
-a function that nobody can see into, an indirect call that nobody has said the targets of."""
+a function without a call graph, an indirect call without stated targets."""
 import pathlib
 import re
 

@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "budget"))
 import budget
 from call_graph import CallGraph
 
-# Of the two forms of track the one without a prior, which calls the other.
+# The form of track without a prior calls the form with one.
 ROOTS = {"init": r"^_ZN4plvo8Odometry4initE\w*(\.|$)", "track": r"^_ZN4plvo8Odometry5trackERKNS_9RgbdFrameE(\.|$)"}
 
 

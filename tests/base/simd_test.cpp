@@ -24,15 +24,15 @@ Eight any_numbers(Random& random) {
 
 template <typename Numbers>
 Numbers loaded(const Eight& numbers) {
-  Numbers lanes;
-  load(numbers.data(), lanes);
-  return lanes;
+  Numbers vector;
+  load(numbers.data(), vector);
+  return vector;
 }
 
 template <typename Numbers>
-Eight stored(const Numbers& lanes) {
+Eight stored(const Numbers& vector) {
   Eight numbers{};
-  store(lanes, numbers.data());
+  store(vector, numbers.data());
   return numbers;
 }
 
@@ -62,9 +62,9 @@ TEST(Int16x8, ArithmeticEqualsThatOfLoops) {
     const std::int16_t low = std::min(a[0], b[0]);
     const std::int16_t high = std::max(a[0], b[0]);
     const auto clamped = [&]<typename T>(const T& x, const T&) -> T {
-      T lanes = x;
-      clamp(low, high, lanes);
-      return lanes;
+      T vector = x;
+      clamp(low, high, vector);
+      return vector;
     };
     expect_alike(a, b, clamped);
     for (std::size_t i = 0; i < a.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests plvo_bench growth through the command line, with walks of a few frames.
+// Tests plvo_bench growth through the command line, with sequences of a few frames.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -18,7 +18,7 @@ using test::run_command;
 using test::TemporaryFolder;
 
 const std::string kGrowth =
-    std::string(PLVO_BENCH_BINARY) + " growth --frames 3 --walk-frames 3 --repeats 1 --jobs 2";
+    std::string(PLVO_BENCH_BINARY) + " growth --frames 3 --sequence-frames 3 --repeats 1 --jobs 2";
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -44,7 +44,8 @@ double number(const Rows& rows, std::size_t row, const std::string& column) {
 
 TEST(BenchGrowth, CostOfAFrameGrowsWithItsImage) {
   const TemporaryFolder folder;
-  const CommandResult run = run_command(kGrowth + " --tables sizes,walks --out " + (folder / "out").string());
+  const CommandResult run =
+      run_command(kGrowth + " --tables sizes,sequences --out " + (folder / "out").string());
   if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(read_file(folder / "out" / "growth.md"), run.out);
@@ -70,13 +71,13 @@ TEST(BenchGrowth, CostOfAFrameGrowsWithItsImage) {
     EXPECT_NEAR(sum, number(sizes, row, "all"), 0.31) << run.out;
   }
 
-  const Rows walks = rows_below(run.out, "Frames of a walk");
-  ASSERT_EQ(walks.size(), 1U + 1) << run.out;
-  EXPECT_EQ(number(walks, 1, "frames"), 2);
-  EXPECT_GE(number(walks, 1, "p99"), number(walks, 1, "median"));
-  EXPECT_GE(number(walks, 1, "most"), number(walks, 1, "p99"));
-  EXPECT_NEAR(number(walks, 1, "median"), number(sizes, kVga, "all"), 0.11) << "the same frames";
-  EXPECT_NE(run.out.find("\n- rendered walk, p99 / median: "), std::string::npos) << run.out;
+  const Rows sequences = rows_below(run.out, "Frames of a sequence");
+  ASSERT_EQ(sequences.size(), 1U + 1) << run.out;
+  EXPECT_EQ(number(sequences, 1, "frames"), 2);
+  EXPECT_GE(number(sequences, 1, "p99"), number(sequences, 1, "median"));
+  EXPECT_GE(number(sequences, 1, "most"), number(sequences, 1, "p99"));
+  EXPECT_NEAR(number(sequences, 1, "median"), number(sizes, kVga, "all"), 0.11) << "the same frames";
+  EXPECT_NE(run.out.find("\n- rendered sequence, p99 / median: "), std::string::npos) << run.out;
 }
 
 TEST(BenchGrowth, RejectsBadInputWithAMessage) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests plvo_bench through the command line, with walks of a few frames and plvo's own systems: the layout of
-// its tables, the remaining work after an interruption, and the list of jobs.
+// Tests plvo_bench through the command line, with sequences of a few frames and plvo's own systems: the
+// layout of its tables, the remaining work after an interruption, and the list of jobs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::string lighting(const fs::path& out) {
          " --sites bare --seeds 1 --systems plvo-points,plvo-both --frames " + std::to_string(kFrames);
 }
 
-// Renders two walks once for all tests.
+// Renders two sequences once for all tests.
 class Bench : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -63,8 +63,8 @@ class Bench : public ::testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   static fs::path out() { return *folder_ / "lighting"; }
-  static std::string walk(const std::string& light) {
-    return (out() / "walks" / ("bare_" + light + "_1_" + std::to_string(kFrames) + "f")).string();
+  static std::string rendered(const std::string& light) {
+    return (out() / "sequences" / ("bare_" + light + "_1_" + std::to_string(kFrames) + "f")).string();
   }
 
   static std::unique_ptr<TemporaryFolder> folder_;
@@ -77,7 +77,7 @@ CommandResult Bench::lighting_;
 
 TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
   ASSERT_EQ(lighting_.exit_code, 0) << lighting_.err;
-  // The finished walk is not processed again.
+  // The finished sequence is not processed again.
   EXPECT_EQ(rows_with(lighting_.err, "[1/1] bare_constant").size(), 1U) << lighting_.err;
   const auto lines = lines_of(lighting_.out);
   ASSERT_GE(lines.size(), 7U);
@@ -95,14 +95,14 @@ TEST_F(Bench, LightingHasARowForEachSiteAndLight) {
 // Rendering and measuring may be separate, and the images may be in any folder.
 TEST_F(Bench, RendersWithoutMeasuring) {
   const fs::path results = *folder_ / "apart";
-  const fs::path walks = *folder_ / "elsewhere";
-  const std::string command = kBench +
-                              " lighting --sites bare --seeds 1 --lights constant --frames 2 --out " +
-                              results.string() + " --walks " + walks.string() + " --systems plvo-points";
+  const fs::path sequences = *folder_ / "elsewhere";
+  const std::string command =
+      kBench + " lighting --sites bare --seeds 1 --lights constant --frames 2 --out " + results.string() +
+      " --sequences " + sequences.string() + " --systems plvo-points";
   const CommandResult rendered = run_command(command + " --render-only");
   ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
   EXPECT_TRUE(rendered.out.empty()) << rendered.out;
-  const fs::path images = walks / "bare_constant_1_2f" / "rgb.txt";
+  const fs::path images = sequences / "bare_constant_1_2f" / "rgb.txt";
   ASSERT_TRUE(fs::exists(images));
   const auto written = fs::last_write_time(images);
   EXPECT_TRUE(run_command(command + " --render-only --list-jobs").out.empty());
@@ -112,16 +112,16 @@ TEST_F(Bench, RendersWithoutMeasuring) {
   ASSERT_EQ(measured.exit_code, 0) << measured.err;
   EXPECT_EQ(rows_with(measured.out, "| bare | constant |").size(), 2U) << measured.out;
   EXPECT_EQ(fs::last_write_time(images), written);
-  EXPECT_FALSE(fs::exists(results / "walks"));
+  EXPECT_FALSE(fs::exists(results / "sequences"));
 }
 
 TEST_F(Bench, ComparisonHasARowForEachSystemAndForIdentity) {
   const fs::path results = *folder_ / "run";
-  const CommandResult run = run_command(kBench + " run " + walk("constant") + ' ' + walk("varying") +
+  const CommandResult run = run_command(kBench + " run " + rendered("constant") + ' ' + rendered("varying") +
                                         " --systems ours --repeats 2 --jobs 2 --out " + results.string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(lines_of(run.out)[0].rfind("| sequence | system | mm/s |", 0), 0U);
-  EXPECT_EQ(rows_with(run.out, "| never moves |").size(), 2U);
+  EXPECT_EQ(rows_with(run.out, "| zero motion |").size(), 2U);
   for (const char* system : {"plvo-points", "plvo-lines", "plvo-both"})
     EXPECT_EQ(rows_with(run.out, std::string("| ") + system + " |").size(), 2U) << run.out;
   const auto csv = lines_of(read_file(results / "comparison.csv"));
@@ -149,7 +149,7 @@ TEST_F(Bench, ComparisonHasARowForEachSystemAndForIdentity) {
 TEST_F(Bench, ResumesAfterAnInterruption) {
   const fs::path results = *folder_ / "resumed";
   const std::string command =
-      kBench + " run " + walk("constant") + " --systems ours --out " + results.string();
+      kBench + " run " + rendered("constant") + " --systems ours --out " + results.string();
   const std::string list = command + " --list-jobs";
   EXPECT_EQ(lines_of(run_command(list).out).size(), 3U);
   ASSERT_EQ(run_command(command).exit_code, 0);
@@ -157,7 +157,7 @@ TEST_F(Bench, ResumesAfterAnInterruption) {
 
   // One result is missing, and one was truncated by a full disk.
   const auto job = [&](const std::string& system) {
-    return results / "jobs" / (fs::path(walk("constant")).filename().string() + '.' + system + ".0.json");
+    return results / "jobs" / (fs::path(rendered("constant")).filename().string() + '.' + system + ".0.json");
   };
   ASSERT_TRUE(fs::remove(job("plvo-lines")));
   write_file(job("plvo-both"), read_file(job("plvo-both")).substr(0, 100));
@@ -178,12 +178,12 @@ TEST_F(Bench, ResumesAfterAnInterruption) {
 
 TEST_F(Bench, Table2WeightsItsMeanByFrames) {
   const fs::path results = *folder_ / "tum";
-  const CommandResult run = run_command(kBench + " tum " + walk("constant") + ' ' + walk("varying") +
+  const CommandResult run = run_command(kBench + " tum " + rendered("constant") + ' ' + rendered("varying") +
                                         " --systems plvo-points --out " + results.string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(rows_with(run.out, "| mean, weighted by frames |").size(), 2U) << run.out;
-  EXPECT_EQ(rows_with(run.out, "| never moves |").size(), 3U) << run.out;
-  double sum = 0;  // the walks have the same length
+  EXPECT_EQ(rows_with(run.out, "| zero motion |").size(), 3U) << run.out;
+  double sum = 0;  // the sequences have the same length
   const json all = json::parse(read_file(results / "table2.json"));
   for (const json& result : all["results"]) sum += result["estimate"]["rpe_frame_mm"].get<double>();
   const auto mean = rows_with(read_file(results / "table2.csv"), "\"mean, weighted by frames\",plvo-points,");
@@ -196,15 +196,15 @@ TEST_F(Bench, Table2WeightsItsMeanByFrames) {
 TEST_F(Bench, CameraModelCanBeGivenForEachFolder) {
   const auto trajectory = [&](const std::string& model) {
     const fs::path results = *folder_ / ("camera" + model);
-    const CommandResult run = run_command(kBench + " run " + walk("constant") + model +
+    const CommandResult run = run_command(kBench + " run " + rendered("constant") + model +
                                           " --systems plvo-points --out " + results.string());
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return read_file(results / "jobs" /
-                     (fs::path(walk("constant")).filename().string() + ".plvo-points.0.txt"));
+                     (fs::path(rendered("constant")).filename().string() + ".plvo-points.0.txt"));
   };
   EXPECT_NE(trajectory(""), trajectory("=tum-fr1"));
   const CommandResult unknown =
-      run_command(kBench + " run " + walk("constant") + "=tum-fr9 --out " + (*folder_ / "bad").string());
+      run_command(kBench + " run " + rendered("constant") + "=tum-fr9 --out " + (*folder_ / "bad").string());
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_NE(unknown.err.find("tum-fr1"), std::string::npos) << unknown.err;
 }
@@ -225,7 +225,7 @@ TEST_F(Bench, FoldersOfNumberedFramesHaveTheirOwnTruth) {
 }
 
 TEST_F(Bench, SequenceStatisticsUseTheTruePose) {
-  const CommandResult table = run_command(std::string(PLVO_STATISTICS_BINARY) + ' ' + walk("constant"));
+  const CommandResult table = run_command(std::string(PLVO_STATISTICS_BINARY) + ' ' + rendered("constant"));
   ASSERT_EQ(table.exit_code, 0) << table.err;
   const auto value = [](const std::string& row) { return std::stod(row.substr(row.find(" | ") + 3)); };
   const auto lines = lines_of(table.out);
@@ -245,14 +245,14 @@ TEST_F(Bench, SequenceStatisticsUseTheTruePose) {
 TEST_F(Bench, StagesCountTimeAndInstructions) {
   const fs::path results = *folder_ / "stages";
   const CommandResult run =
-      run_command(kBench + " stages " + walk("constant") + " --instructions --out " + results.string());
+      run_command(kBench + " stages " + rendered("constant") + " --instructions --out " + results.string());
   if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(read_file(results / "stages.md"), run.out);
-  EXPECT_EQ(lines_of(run.out)[0], fs::path(walk("constant")).filename().string() + ": 2 frames, 0 lost");
+  EXPECT_EQ(lines_of(run.out)[0], fs::path(rendered("constant")).filename().string() + ": 2 frames, 0 lost");
   for (const char* stage : {"image", "points", "lines", "matching", "motion"})
     EXPECT_GE(rows_with(run.out, std::string("| ") + stage + " | ").size(), 3U) << run.out;
-  // On a slow walk the images are aligned directly and the keyframe stays, so no descriptors are made or
+  // In a slow sequence the images are aligned directly and the keyframe stays, so no descriptors are made or
   // matched; the test below uses other images.
   const auto zero_rows = rows_with(run.out, "| 0.00 | 0.0 |");
   EXPECT_EQ(zero_rows.size(), rows_with(run.out, "| by descriptor | 0.00 |").size() +
@@ -280,8 +280,8 @@ TEST_F(Bench, NoStageTakesMoreInstructionsThanThePageSays) {
   for (const std::string image : {"own", "noise", "stripes", "checkerboard"}) {
     SCOPED_TRACE(image);
     const CommandResult run =
-        run_command(kBench + " stages " + walk("constant") + " --instructions --image " + image + " --out " +
-                    (*folder_ / image).string());
+        run_command(kBench + " stages " + rendered("constant") + " --instructions --image " + image +
+                    " --out " + (*folder_ / image).string());
     if (run.err.find("needs valgrind") != std::string::npos) GTEST_SKIP() << run.err;
     ASSERT_EQ(run.exit_code, 0) << run.err;
     std::map<std::string, double> sums;
@@ -304,7 +304,7 @@ TEST_F(Bench, UnwritableOutputIsAnError) {
   }
   // Results are written at once: they are complete or absent.
   const fs::path limited = *folder_ / "limited";
-  const CommandResult r = run_command("prlimit --fsize=600 " + kBench + " run " + walk("constant") +
+  const CommandResult r = run_command("prlimit --fsize=600 " + kBench + " run " + rendered("constant") +
                                       " --systems plvo-points --out " + limited.string());
   EXPECT_EQ(r.exit_code, 1) << r.err;
   EXPECT_NE(r.err.find("plvo_bench: error: "), std::string::npos) << r.err;
@@ -314,7 +314,7 @@ TEST_F(Bench, UnwritableOutputIsAnError) {
 
 TEST_F(Bench, NamesAreEscapedForTheTerminal) {
   const fs::path hostile = *folder_ / "walk\x1b[31m\nx";
-  fs::copy(walk("constant"), hostile, fs::copy_options::recursive);
+  fs::copy(rendered("constant"), hostile, fs::copy_options::recursive);
   const std::string run = kBench + " run '" + hostile.string() + "' --systems plvo-points --out ";
   const CommandResult table = run_command(run + (*folder_ / "hostile").string());
   EXPECT_EQ(table.exit_code, 0) << table.err;
@@ -329,17 +329,17 @@ TEST_F(Bench, NamesAreEscapedForTheTerminal) {
 TEST_F(Bench, RejectsBadInputWithAMessage) {
   const std::string out_option = " --out " + (*folder_ / "bad").string();
   const CommandResult system =
-      run_command(kBench + " run " + walk("constant") + " --systems slam" + out_option);
+      run_command(kBench + " run " + rendered("constant") + " --systems slam" + out_option);
   EXPECT_EQ(system.exit_code, 1);
   EXPECT_NE(system.err.find("plvo-lines"), std::string::npos) << system.err;
   EXPECT_EQ(run_command(kBench + " run /no/such/folder" + out_option).exit_code, 1);
-  EXPECT_EQ(run_command(kBench + " run " + walk("constant")).exit_code, 2);
+  EXPECT_EQ(run_command(kBench + " run " + rendered("constant")).exit_code, 2);
   EXPECT_EQ(run_command(kBench + " lighting --sites moon" + out_option).exit_code, 1);
 
   // The jobs of an unreadable sequence fail, and the table has the others.
   const fs::path broken = *folder_ / "broken";
   fs::create_directory(broken);
-  const CommandResult run = run_command(kBench + " run " + broken.string() + ' ' + walk("constant") +
+  const CommandResult run = run_command(kBench + " run " + broken.string() + ' ' + rendered("constant") +
                                         " --systems plvo-points" + out_option);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.err.find("1 of 2 jobs failed"), std::string::npos) << run.err;

@@ -16,7 +16,7 @@ TEST(GrowthCases, VaryOneParameterAtATime) {
   ASSERT_TRUE(plan_growth({}, {}, plan).ok());
   ASSERT_EQ(plan.tables.size(), 4U);
   const std::size_t rows[] = {5, 5, 6, 4};
-  std::size_t measured = 1 + plan.walks.rows.size();  // the first case is in each of these tables
+  std::size_t measured = 1 + plan.sequences.rows.size();  // the first case is in each of these tables
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(plan.tables[i].rows.size(), rows[i]) << plan.tables[i].title;
     measured += rows[i] - 1;
@@ -45,12 +45,12 @@ TEST(GrowthCases, VaryOneParameterAtATime) {
 
 TEST(GrowthCases, CoverTheRequestedTables) {
   GrowthOptions options;
-  options.tables = "walks";
+  options.tables = "sequences";
   GrowthPlan plan;
   ASSERT_TRUE(plan_growth(options, {{"/recorded", "recorded", "tum-fr1"}}, plan).ok());
   EXPECT_TRUE(plan.tables.empty());
-  ASSERT_EQ(plan.walks.rows.size(), 2U);
-  EXPECT_FALSE(plan.cases[plan.walks.rows[1].measured].walk) << "a recorded one is not rendered";
+  ASSERT_EQ(plan.sequences.rows.size(), 2U);
+  EXPECT_FALSE(plan.cases[plan.sequences.rows[1].measured].rendering) << "a recorded one is not rendered";
   options.tables = "sizes,moons";
   EXPECT_EQ(plan_growth(options, {}, plan).code(), StatusCode::kInvalidArgument);
 }

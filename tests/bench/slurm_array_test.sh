@@ -88,13 +88,13 @@ task='sh -c "$(sed -n ${SLURM_ARRAY_TASK_ID}p jobs.txt)"'
 
 # The second task reports that it runs and then waits, so that it is killed while it runs, whatever the speed of the machine.
 array=$(submit "if [ \$SLURM_ARRAY_TASK_ID = 2 ]; then touch started; sleep 1000; fi; $task")
-[ "$(wc -l < "$work/jobs.txt")" -eq 4 ] || fail "four walks were to be measured"
+[ "$(wc -l < "$work/jobs.txt")" -eq 4 ] || fail "four sequences were to be measured"
 wait_for "the start of the second task" started
 scancel "${array}_2"
 wait_for "the end of the array" none_left
 "${measure[@]}" --list-jobs > "$work/left.txt"
-[ "$(wc -l < "$work/left.txt")" -eq 1 ] || fail "one walk was to be left, not $(wc -l < "$work/left.txt")"
-grep -q -- '--sites desk --lights varying' "$work/left.txt" || fail "the wrong walk is left: $(cat "$work/left.txt")"
+[ "$(wc -l < "$work/left.txt")" -eq 1 ] || fail "one sequence was to be left, not $(wc -l < "$work/left.txt")"
+grep -q -- '--sites desk --lights varying' "$work/left.txt" || fail "the wrong sequence is left: $(cat "$work/left.txt")"
 
 submit "$task" >/dev/null
 wait_for "the end of the second array" none_left

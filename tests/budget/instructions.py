@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The instructions of a frame on an emulated processor, in thousands, against the table of docs/developer/performance.md.
 usage: instructions.py PAGE PROCESSOR PLUGIN EMULATOR… PROGRAM
-The program writes a line for each walk: its name, and marks its frames for the plugin (count_instructions.c); or where the plugin
+The program writes a line for each sequence: its name, and marks its frames for the plugin (count_instructions.c); or where the plugin
 is "-", the name and the instructions, counted by itself."""
 import statistics
 import subprocess

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracks the procedural walk with the settings of boards. A system call that no kernel has marks the
+// Tracks the procedural sequence with the settings of boards. A system call that no kernel has marks the
 // beginning and the end of every frame for count_instructions.c.
 #include <unistd.h>
 

@@ -55,7 +55,7 @@ int tracked_alike(Doors& doors, int frames) {
   return tracked;
 }
 
-TEST(CApi, GivesTheBitsOfTheFrontDoor) {
+TEST(CApi, GivesTheBitsOfCpp) {
   Doors doors;
   EXPECT_GE(tracked_alike(doors, 10), 7);
 }
@@ -111,7 +111,7 @@ TEST(CApi, TheTinyPresetIsThatOfConfigAndLimits) {
 }
 
 // What a frame took is what the caller says: down by too long ones, up by quick ones.
-TEST(CApi, ABudgetOfTimeStepsTheFeatures) {
+TEST(CApi, AFrameBudgetReducesTheFeatures) {
   plvo_config c_config;
   plvo_config_init(&c_config, sizeof c_config);
   c_config.frame_budget_ns = 1000;
@@ -138,7 +138,7 @@ TEST(CApi, ABudgetOfTimeStepsTheFeatures) {
 }
 
 // A struct of zeros but for what its user knew is one of a program that was written before the rest.
-TEST(CApi, WhatAProgramDoesNotKnowIsTheDefault) {
+TEST(CApi, FieldsThatAnOlderProgramLacksHaveTheirDefaults) {
   Limits expected;
   expected.width = kLimits.width;
   expected.height = kLimits.height;
@@ -175,7 +175,7 @@ TEST(CApi, TheBlockMayStartAnywhere) {
   EXPECT_GE(tracked_alike(doors, 4), 3);
 }
 
-TEST(CApi, FeaturesAreThoseOfTheFrontDoor) {
+TEST(CApi, FeaturesEqualThoseOfCpp) {
   Doors doors;
   EXPECT_EQ(plvo_image(doors.c_odometry, nullptr), nullptr) << "no frame yet";
   EXPECT_EQ(plvo_keypoints(doors.c_odometry, nullptr, 0), 0U);
@@ -245,7 +245,7 @@ TEST(CApi, SaysHowManyBytesAreMissing) {
   EXPECT_EQ(odometry, nullptr);
 }
 
-TEST(CApi, RefusesWhatItCannotUse) {
+TEST(CApi, RefusesInvalidArguments) {
   const plvo_limits limits = c_limits(kLimits);
   ProceduralSequence sequence(kLimits.width, kLimits.height);
   const plvo_camera camera = c_camera(sequence.camera());
@@ -305,7 +305,7 @@ TEST(CApi, RefusesWhatItCannotUse) {
   EXPECT_EQ(result.state, PLVO_LOST);
 }
 
-TEST(CApi, SizesTellHowTheProgramWasCompiled) {
+TEST(CApi, StructSizesTellTheVersionOfTheHeader) {
   const plvo_limits limits = c_limits(kLimits);
   plvo_camera camera = c_camera(CameraModel());
   EXPECT_EQ(c::kFirstSize<plvo_camera>, 112U) << "of version 0.1, as programs were compiled then";
@@ -328,7 +328,7 @@ TEST(CApi, SizesTellHowTheProgramWasCompiled) {
   EXPECT_EQ(config.struct_size, 4U) << "nothing is written past what the caller says there is";
 }
 
-TEST(CApi, WhatStampsErrIsThatOfCpp) {
+TEST(CApi, StampSigmaGivesTheCovariancesOfCpp) {
   CameraModel model;
   model.stamp_sigma_s = 0.002;
   plvo_camera camera = c_camera(model);
@@ -350,7 +350,7 @@ TEST(CApi, WhatStampsErrIsThatOfCpp) {
   EXPECT_EQ(status.code, PLVO_OK) << status.message;
 }
 
-TEST(CApi, LensesAreThoseOfCpp) {
+TEST(CApi, LensesGiveTheBitsOfCpp) {
   const plvo_limits limits = c_limits(kLimits);
   std::vector<std::byte> memory(plvo_required_bytes(&limits));
   plvo_odometry* odometry = nullptr;

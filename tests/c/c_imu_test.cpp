@@ -108,7 +108,7 @@ TEST_F(CImu, TakesNoMemory) {
   EXPECT_EQ(guard.calls(), 0);
 }
 
-TEST_F(CImu, ASensorThatIsNotThereSaysNothing) {
+TEST_F(CImu, AMissingSensorGivesNoPrior) {
   plvo_imu_config config = default_imu_config();
   config.accelerometer_samples = 0;
   EXPECT_LT(plvo_imu_required_bytes(&config), plvo_imu_required_bytes(nullptr));
@@ -123,7 +123,7 @@ TEST_F(CImu, ASensorThatIsNotThereSaysNothing) {
   EXPECT_EQ(prior.has_gravity, 0);
 }
 
-TEST_F(CImu, RefusesWhatItCannotUse) {
+TEST_F(CImu, RefusesInvalidArguments) {
   ASSERT_EQ(init(nullptr).code, PLVO_OK);
   add(0);
   const double nan = std::numeric_limits<double>::quiet_NaN();

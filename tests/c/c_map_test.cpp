@@ -72,7 +72,7 @@ class CMap : public testing::Test {
     EXPECT_EQ(guard.calls(), 0);
     guard.disarm();
   }
-  void walk(int from, int to) {
+  void move(int from, int to) {
     for (int view = from; view != to; view += from < to ? 1 : -1) see(frame(view));
   }
 
@@ -123,8 +123,8 @@ TEST_F(CMap, GivesTheMapOfCpp) {
 
 TEST_F(CMap, IsSavedAndLoadedThroughTheCallersFunctions) {
   for (int round = 0; round < 2; ++round) {
-    walk(0, kMapViews);
-    walk(kMapViews, 0);
+    move(0, kMapViews);
+    move(kMapViews, 0);
   }
   MapTape tape;
   tape.bytes.resize(plvo_map_saved_bytes(map_));
@@ -140,7 +140,7 @@ TEST_F(CMap, IsSavedAndLoadedThroughTheCallersFunctions) {
   EXPECT_EQ(plvo_map_keyframes(map_), keyframes);
   see(frame(20));
   EXPECT_EQ(in_map_.located, 0);
-  walk(21, 50);
+  move(21, 50);
   EXPECT_EQ(in_map_.located, 1);
 
   tape.bytes.resize(tape.bytes.size() - 1);
@@ -153,7 +153,7 @@ TEST_F(CMap, IsSavedAndLoadedThroughTheCallersFunctions) {
 }
 
 TEST_F(CMap, TheFunctionsOfThePageSaveAndLoadAFile) {
-  walk(0, 10);
+  move(0, 10);
   const test::TemporaryFolder folder;
   const std::string path = (folder / "room.map").string();
   ASSERT_EQ(save_map(map_, path.c_str(), (path + ".part").c_str()).code, PLVO_OK);
@@ -166,13 +166,13 @@ TEST_F(CMap, TheFunctionsOfThePageSaveAndLoadAFile) {
               "cannot write the file");
 }
 
-TEST_F(CMap, NonsenseIsAnsweredWithWords) {
+TEST_F(CMap, InvalidArgumentsAreRefusedWithAMessage) {
   MapTape tape;
   plvo_result result = {};
   result.struct_size = sizeof result;
   const plvo_status ok = {};
   expect_says(plvo_map_save(map_, write_tape, &tape), PLVO_NOT_FOUND, "no keyframe yet");
-  walk(0, 2);
+  move(0, 2);
   expect_says(plvo_map_save(map_, write_tape, &tape), PLVO_IO, "function to write the map failed");
   expect_says(plvo_map_save(map_, nullptr, &tape), PLVO_INVALID_ARGUMENT, "write is NULL");
   expect_says(plvo_map_load(map_, nullptr, &tape), PLVO_INVALID_ARGUMENT, "read is NULL");

@@ -58,7 +58,7 @@ TEST_F(CMask, GivesTheBitsOfCpp) {
   EXPECT_EQ(odometry.features().image.at(5, kSeenHigh - 1), 128) << "masked pixels are grey";
 }
 
-TEST_F(CMask, NeedsItsMemoryAndItsSize) {
+TEST_F(CMask, RequiresMemoryAndTheSizeOfTheCamera) {
   const std::size_t with = plvo_required_bytes(&limits);
   limits.mask = 0;
   EXPECT_LT(plvo_required_bytes(&limits), with);
@@ -78,7 +78,7 @@ TEST_F(CMask, NeedsItsMemoryAndItsSize) {
 }
 
 // What lies behind the structs of a program that was compiled before is not the library's to read.
-TEST_F(CMask, AnOlderProgramHasNone) {
+TEST_F(CMask, AProgramWithoutTheFieldHasNoMask) {
   config.struct_size = offsetof(plvo_config, mask);
   limits.struct_size = offsetof(plvo_limits, mask);
   const plvo_status status = init();

@@ -102,7 +102,7 @@ TEST_F(CPage, TracksWithWheels) {
   }
 }
 
-TEST_F(CPage, WheelsThatAreNoMotionAreRefusedAndChangeNothing) {
+TEST_F(CPage, InvalidWheelStepsAreRefusedAndChangeNothing) {
   const double T[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   plvo_wheel_step step = {};
   step.seconds = 0.1;

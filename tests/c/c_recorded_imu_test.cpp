@@ -21,28 +21,28 @@
 namespace plvo {
 namespace {
 
-constexpr int kWalkFrames = 7, kDark = 5;
+constexpr int kRecordedFrames = 7, kDark = 5;
 
 class CRecordedImu : public testing::Test {
  protected:
   void SetUp() override {
     ProceduralSequence rendered(320, 240);
     TumWriter writer;
-    ASSERT_TRUE(writer.open(walk(), rendered.camera(), 1000).ok());
-    for (int i = 0; i < kWalkFrames; ++i) {
+    ASSERT_TRUE(writer.open(recording(), rendered.camera(), 1000).ok());
+    for (int i = 0; i < kRecordedFrames; ++i) {
       ASSERT_TRUE(writer.write(i == kDark ? rendered.render_dark(i) : rendered.render(i)).ok());
       for (const ImuReading& reading : imu_readings(i)) {
         recorded_.gyro.push_back({reading.stamp_ns, reading.rate});
         recorded_.accelerometer.push_back({reading.stamp_ns, reading.force});
       }
     }
-    ASSERT_TRUE(write_imu_files(walk(), recorded_, ImuAxes::kSensor).ok());
+    ASSERT_TRUE(write_imu_files(recording(), recorded_, ImuAxes::kSensor).ok());
   }
   void TearDown() override { plvo_sequence_close(sequence_); }
-  std::filesystem::path walk() const { return folder_ / "walk"; }
+  std::filesystem::path recording() const { return folder_ / "walk"; }
   plvo_status read(plvo_imu_readings& readings) {
     plvo_sequence_close(sequence_);
-    EXPECT_EQ(plvo_sequence_open(walk().c_str(), nullptr, &sequence_).code, PLVO_OK);
+    EXPECT_EQ(plvo_sequence_open(recording().c_str(), nullptr, &sequence_).code, PLVO_OK);
     return plvo_sequence_imu(sequence_, &readings);
   }
   static plvo_imu_readings empty() {
@@ -74,7 +74,7 @@ TEST_F(CRecordedImu, GivesWhatTheFolderHas) {
   EXPECT_EQ(readings.left_out, 0U);
   EXPECT_EQ(readings.struct_size, sizeof readings);
 
-  std::filesystem::remove(walk() / kGyroFile);
+  std::filesystem::remove(recording() / kGyroFile);
   readings = empty();
   status = read(readings);
   ASSERT_EQ(status.code, PLVO_OK) << status.message;
@@ -82,14 +82,14 @@ TEST_F(CRecordedImu, GivesWhatTheFolderHas) {
   EXPECT_EQ(readings.gyro_count, 0U);
   expect_same(readings.accelerometer, readings.accelerometer_count, recorded_.accelerometer);
 
-  test::write_file(walk() / kAccelerometerFile, "2 0 9.8 0\n1 0 9.8 0\n3 0 nan 0\n4 0 9.7 0\n");
+  test::write_file(recording() / kAccelerometerFile, "2 0 9.8 0\n1 0 9.8 0\n3 0 nan 0\n4 0 9.7 0\n");
   ASSERT_EQ(read(readings).code, PLVO_OK);
   EXPECT_EQ(readings.accelerometer_count, 2U);
   EXPECT_EQ(readings.left_out, 2U);
 }
 
-TEST_F(CRecordedImu, SaysWhatIsWrongAndGivesNothing) {
-  test::write_file(walk() / kGyroFile, "1 0 0 0\n2 0 zero 0\n");
+TEST_F(CRecordedImu, ReportsErrorsAndGivesNoPrior) {
+  test::write_file(recording() / kGyroFile, "1 0 0 0\n2 0 zero 0\n");
   plvo_imu_readings readings = empty();
   plvo_status status = read(readings);
   EXPECT_EQ(status.code, PLVO_DAMAGED);
@@ -98,8 +98,8 @@ TEST_F(CRecordedImu, SaysWhatIsWrongAndGivesNothing) {
   EXPECT_EQ(readings.gyro, nullptr);
   EXPECT_EQ(readings.gyro_count + readings.accelerometer_count + readings.left_out, 0U);
 
-  std::filesystem::remove(walk() / kGyroFile);
-  std::filesystem::remove(walk() / kAccelerometerFile);
+  std::filesystem::remove(recording() / kGyroFile);
+  std::filesystem::remove(recording() / kAccelerometerFile);
   status = read(readings);
   EXPECT_EQ(status.code, PLVO_NOT_FOUND);
   EXPECT_NE(std::strstr(status.message, "has neither gyroscope.txt nor accelerometer.txt"), nullptr);
@@ -114,9 +114,9 @@ TEST_F(CRecordedImu, SaysWhatIsWrongAndGivesNothing) {
 // To the nine decimals that the program prints.
 TEST_F(CRecordedImu, TheProgramOfThePageGivesThePosesOfCpp) {
   Calibration calibration;
-  ASSERT_TRUE(read_calibration(walk() / "calibration.txt", calibration).ok());
+  ASSERT_TRUE(read_calibration(recording() / "calibration.txt", calibration).ok());
   RecordedCamera camera;
-  ASSERT_TRUE(camera.open(walk(), calibration).ok());
+  ASSERT_TRUE(camera.open(recording(), calibration).ok());
   RecordedImu imu;
   ASSERT_TRUE(imu.init(recorded_, {}).ok());
   const Limits limits{320, 240};
@@ -131,17 +131,19 @@ TEST_F(CRecordedImu, TheProgramOfThePageGivesThePosesOfCpp) {
     expected.push_back(line.substr(line.find(' ')));
   }
 
-  const test::CommandResult run = test::run_command(std::string(PLVO_C_IMU_EXAMPLE) + ' ' + walk().string());
+  const test::CommandResult run =
+      test::run_command(std::string(PLVO_C_IMU_EXAMPLE) + ' ' + recording().string());
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::istringstream lines(run.out);
   std::vector<std::string> poses;
   for (std::string line; std::getline(lines, line);) poses.push_back(line.substr(line.find(' ')));
   EXPECT_EQ(poses, expected);
-  EXPECT_EQ(poses.size(), std::size_t{kWalkFrames});
+  EXPECT_EQ(poses.size(), std::size_t{kRecordedFrames});
   EXPECT_EQ(test::run_command(PLVO_C_IMU_EXAMPLE).exit_code, 2);
-  std::filesystem::remove(walk() / kGyroFile);
-  std::filesystem::remove(walk() / kAccelerometerFile);
-  const test::CommandResult none = test::run_command(std::string(PLVO_C_IMU_EXAMPLE) + ' ' + walk().string());
+  std::filesystem::remove(recording() / kGyroFile);
+  std::filesystem::remove(recording() / kAccelerometerFile);
+  const test::CommandResult none =
+      test::run_command(std::string(PLVO_C_IMU_EXAMPLE) + ' ' + recording().string());
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_EQ(none.err.rfind("not_found: ", 0), 0U) << none.err;
 }

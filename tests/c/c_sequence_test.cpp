@@ -152,7 +152,7 @@ TEST(CSequence, ALensThatTheCallersStructHasNoRoomForIsRefused) {
   EXPECT_NEAR(camera.fx, 517.3, 0.1);
 }
 
-TEST(CSequence, RefusesWhatIsNoSequence) {
+TEST(CSequence, RefusesFoldersWithoutASequence) {
   const test::TemporaryFolder folder;
   plvo_sequence* sequence = nullptr;
   const plvo_status status = plvo_sequence_open((folder / "nowhere").c_str(), nullptr, &sequence);

@@ -100,7 +100,7 @@ TEST_F(CTwoCores, EachTaskHasAThreadOfItsOwn) {
   EXPECT_EQ(plvo_thread_pair_start(nullptr).code, PLVO_INVALID_ARGUMENT);
 }
 
-TEST_F(CTwoCores, NeedTheirMemory) {
+TEST_F(CTwoCores, RequireLimitsForTwoCores) {
   Runs runs;
   config.executor = run_here;
   config.executor_runner = &runs;

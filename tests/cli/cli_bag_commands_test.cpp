@@ -11,7 +11,7 @@
 
 #include "bag_of_folder.hpp"
 #include "plvo_command.hpp"
-#include "recorded_walk.hpp"
+#include "recorded_sequence.hpp"
 #include "turning_hand.hpp"
 
 namespace plvo {
@@ -21,15 +21,16 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
 using test::read_file;
+using test::recorded_sequence;
 using test::RecordedMessage;
-using test::walk;
 using test::write_file;
 
 class CliBagCommands : public test::PlvoCommand {
  protected:
   void SetUp() override {
-    std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", ImuContent::kBoth);
-    const std::vector<RecordedMessage> images = test::published(walk(), true);
+    std::vector<RecordedMessage> messages =
+        test::published_imu(recorded_sequence(), "/imu", ImuContent::kBoth);
+    const std::vector<RecordedMessage> images = test::published(recorded_sequence(), true);
     messages.insert(messages.end(), images.begin(), images.end());
     write_file(folder_ / "walk.bag", test::bag_of(messages, "none"));
   }
@@ -49,7 +50,7 @@ TEST_F(CliBagCommands, EscapesControlCharactersInTopicNames) {
   // Two topics of each kind, none with a known name: the message lists them.
   std::vector<RecordedMessage> messages;
   for (const char* camera : {"/1", "/2"})
-    for (RecordedMessage message : test::published(walk(), true)) {
+    for (RecordedMessage message : test::published(recorded_sequence(), true)) {
       // A message on kNotRead ends a chunk.
       if (message.topic != test::kNotRead) message.topic = "/\x1b[31m\u009b\nx" + (camera + message.topic);
       messages.push_back(message);
@@ -74,16 +75,17 @@ TEST_F(CliBagCommands, FindsGroundTruthBesideTheBag) {
   expect_refused("eval --gt " + bag + " --est " + path("t"), 1,
                  "walk.bag has no poses: put the true ones beside it, as walk-groundtruth.txt, or "
                  "name a trajectory");
-  fs::copy_file(walk() / "groundtruth.txt", folder_ / "walk-groundtruth.txt");
+  fs::copy_file(recorded_sequence() / "groundtruth.txt", folder_ / "walk-groundtruth.txt");
   ASSERT_EQ(plvo("run " + bag + run + path("with")).exit_code, 0);
-  ASSERT_EQ(plvo("run " + walk().string() + run + path("folder")).exit_code, 0);
+  ASSERT_EQ(plvo("run " + recorded_sequence().string() + run + path("folder")).exit_code, 0);
   const auto evaluation = [&](const char* name) {
     return nlohmann::json::parse(read_file(folder_ / name)).at("evaluation");
   };
   EXPECT_EQ(evaluation("with"), evaluation("folder"));
   EXPECT_LT(evaluation("with")["ate_m"]["rmse"].get<double>(), 0.02);
   const CommandResult of_bag = plvo("eval --json - --gt " + bag + " --est " + path("t"));
-  const CommandResult of_folder = plvo("eval --json - --gt " + walk().string() + " --est " + path("t"));
+  const CommandResult of_folder =
+      plvo("eval --json - --gt " + recorded_sequence().string() + " --est " + path("t"));
   EXPECT_EQ(of_bag.exit_code, 0) << of_bag.err;
   EXPECT_EQ(of_bag.out, of_folder.out);
   expect_refused("eval --gt " + bag + " --gt-format tum --est " + path("t"), 2,
@@ -103,15 +105,17 @@ TEST_F(CliBagCommands, RecordWritesAFolder) {
   EXPECT_EQ(bytes_of(made), bytes_of(bag));
   EXPECT_EQ(bytes_of(made, "--imu"), bytes_of(bag, "--imu"));
   EXPECT_NE(bytes_of(made, "--imu"), bytes_of(made)) << "the readings matter";
-  EXPECT_EQ(read_file(folder_ / "made/rgb.txt").substr(0, 200), read_file(walk() / "rgb.txt").substr(0, 200));
+  EXPECT_EQ(read_file(folder_ / "made/rgb.txt").substr(0, 200),
+            read_file(recorded_sequence() / "rgb.txt").substr(0, 200));
   ASSERT_EQ(plvo("record " + path("short") + " --frames 2 --device " + bag).exit_code, 0);
   EXPECT_EQ(bytes_of(path("short")), bytes_of(bag, "--frames 2"));
   EXPECT_FALSE(fs::exists(folder_ / "short/accelerometer.txt")) << "nobody asked";
 }
 
 TEST_F(CliBagCommands, RecordWritesOneFileForAnAccelerometerAlone) {
-  std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", ImuContent::kAcceleration);
-  const std::vector<RecordedMessage> images = test::published(walk(), true);
+  std::vector<RecordedMessage> messages =
+      test::published_imu(recorded_sequence(), "/imu", ImuContent::kAcceleration);
+  const std::vector<RecordedMessage> images = test::published(recorded_sequence(), true);
   messages.insert(messages.end(), images.begin(), images.end());
   write_file(folder_ / "walk.bag", test::bag_of(messages, "none"));
   ASSERT_EQ(plvo("record " + path("made") + " --imu --device " + path("walk.bag")).exit_code, 0);
@@ -124,12 +128,12 @@ TEST_F(CliBagCommands, LivePlaysEveryFrame) {
                                path("kept") + " --out " + path("t") + " --covariance " + path("c"));
   ASSERT_EQ(r.exit_code, 0) << r.err;
   const std::string bytes = read_file(folder_ / "t") + read_file(folder_ / "c");
-  EXPECT_EQ(bytes, bytes_of(walk().string()));
+  EXPECT_EQ(bytes, bytes_of(recorded_sequence().string()));
   EXPECT_EQ(bytes, bytes_of(path("kept")));
 }
 
 TEST_F(CliBagCommands, LiveEndsInAGapOfTheRecording) {
-  std::vector<RecordedMessage> messages = test::published(walk(), true);
+  std::vector<RecordedMessage> messages = test::published(recorded_sequence(), true);
   // The second byte of the stamp's seconds, behind the four bytes of the sequence number: 256 s later.
   for (std::size_t i = messages.size() / 2; i < messages.size(); ++i) ++messages[i].data[5];
   write_file(folder_ / "gap.bag", test::bag_of(messages, "none"));
@@ -154,7 +158,7 @@ TEST_F(CliBagCommands, RejectsOptionsThatDoNotApply) {
   expect_refused("record " + path("x") + " --imu --device walk.oni", 2,
                  "--imu: does not apply to an .oni file");
   expect_refused("doctor" + device, 2, "--device: a ROS bag is no sensor");
-  expect_refused("calibrate " + walk().string() + " --depth-topic /x --out " + path("y"), 2,
+  expect_refused("calibrate " + recorded_sequence().string() + " --depth-topic /x --out " + path("y"), 2,
                  "--depth-topic: is for a ROS bag");
   expect_refused("calibrate " + path("walk.bag") + " --depth-topic /x --out " + path("y"), 1,
                  "there are no images on /x; images are on: ");

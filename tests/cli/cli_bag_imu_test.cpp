@@ -5,7 +5,7 @@
 
 #include "bag_of_folder.hpp"
 #include "plvo_command.hpp"
-#include "recorded_walk.hpp"
+#include "recorded_sequence.hpp"
 
 namespace plvo {
 namespace {
@@ -14,20 +14,20 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::ImuContent;
 using test::read_file;
+using test::recorded_sequence;
 using test::RecordedMessage;
-using test::walk;
 using test::write_file;
 using Messages = std::vector<RecordedMessage>;
 
 class CliBagImu : public test::PlvoCommand {
  protected:
   static Messages readings(const std::string& topic, ImuContent content) {
-    return test::published_imu(walk(), topic, content);
+    return test::published_imu(recorded_sequence(), topic, content);
   }
   void write(const std::vector<Messages>& readings) const {
     Messages all;
     for (const Messages& part : readings) all.insert(all.end(), part.begin(), part.end());
-    const Messages images = test::published(walk(), true);
+    const Messages images = test::published(recorded_sequence(), true);
     all.insert(all.end(), images.begin(), images.end());
     write_file(folder_ / "walk.bag", test::bag_of(all, "lz4"));
   }
@@ -47,12 +47,12 @@ class CliBagImu : public test::PlvoCommand {
 };
 
 TEST_F(CliBagImu, EqualsTheBytesOfTheFolder) {
-  const std::string expected = bytes_of(walk().string(), "--imu");
-  EXPECT_NE(expected, bytes_of(walk().string(), "")) << "the readings matter";
+  const std::string expected = bytes_of(recorded_sequence().string(), "--imu");
+  EXPECT_NE(expected, bytes_of(recorded_sequence().string(), "")) << "the readings matter";
   write({readings("/imu", ImuContent::kBoth)});
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu"), expected);
   EXPECT_EQ(bytes_of(path("walk.bag"), "--imu --imu-axes x,-y,-z"),
-            bytes_of(walk().string(), "--imu --imu-axes x,-y,-z"));
+            bytes_of(recorded_sequence().string(), "--imu --imu-axes x,-y,-z"));
   // Sorted by stamp, whatever the order in the file.
   Messages backwards = readings("/imu", ImuContent::kBoth);
   std::reverse(backwards.begin(), backwards.end());
@@ -64,7 +64,7 @@ TEST_F(CliBagImu, EqualsTheBytesOfTheFolder) {
 }
 
 TEST_F(CliBagImu, UsesAnAccelerometerAlone) {
-  fs::copy(walk(), folder_ / "still", fs::copy_options::recursive);
+  fs::copy(recorded_sequence(), folder_ / "still", fs::copy_options::recursive);
   fs::remove(folder_ / "still/gyroscope.txt");
   const std::string expected = bytes_of(path("still"), "--imu");
   for (const ImuContent content : {ImuContent::kAcceleration, ImuContent::kAccelerationAlone}) {
@@ -75,7 +75,7 @@ TEST_F(CliBagImu, UsesAnAccelerometerAlone) {
 }
 
 TEST_F(CliBagImu, ChoosesOneOfSeveralTopicsByName) {
-  const std::string expected = bytes_of(walk().string(), "--imu");
+  const std::string expected = bytes_of(recorded_sequence().string(), "--imu");
   Messages other = readings("/base/imu", ImuContent::kBoth);
   for (std::size_t i = 0; i < other.size(); i += 2) other[i].data.resize(100);
   write({other, readings("/camera/imu", ImuContent::kBoth)});
@@ -100,7 +100,7 @@ TEST_F(CliBagImu, ReportsMissingReadings) {
   expect_refused("--imu --accelerometer-topic /tf", 1,
                  "there are no readings of an accelerometer (sensor_msgs/Imu) on /tf; no topic has");
   expect_refused("--gyro-topic /imu", 2, "--gyro-topic: is for --imu");
-  const CommandResult folder = run(walk().string(), "--imu --gyro-topic /imu");
+  const CommandResult folder = run(recorded_sequence().string(), "--imu --gyro-topic /imu");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--gyro-topic: is for a ROS bag"), std::string::npos) << folder.err;
 }

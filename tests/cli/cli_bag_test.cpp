@@ -9,7 +9,7 @@
 
 #include "bag_of_folder.hpp"
 #include "plvo_command.hpp"
-#include "recorded_walk.hpp"
+#include "recorded_sequence.hpp"
 
 namespace plvo {
 namespace {
@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::kPlvo;
 using test::read_file;
+using test::recorded_sequence;
 using test::RecordedMessage;
 using test::run_command;
-using test::walk;
 using test::write_file;
 
-std::vector<RecordedMessage> published(bool metres) { return test::published(walk(), metres); }
+std::vector<RecordedMessage> published(bool metres) { return test::published(recorded_sequence(), metres); }
 
 class CliBag : public test::PlvoCommand {
  protected:
@@ -32,7 +32,7 @@ class CliBag : public test::PlvoCommand {
     write_file(folder_ / "walk.bag", test::bag_of(messages, compression));
   }
   void run_folder() const {
-    const CommandResult r = plvo("run " + walk().string() + " --quiet --out " + path("folder") +
+    const CommandResult r = plvo("run " + recorded_sequence().string() + " --quiet --out " + path("folder") +
                                  " --covariance " + path("folder_c"));
     ASSERT_EQ(r.exit_code, 0) << r.err;
   }
@@ -202,7 +202,8 @@ TEST_F(CliBag, ReportsUnstampedMessages) {
                     "them; give each its time of receipt (share/doc/plvo/user/ros_recordings.md)",
                     topic));
   }
-  std::vector<RecordedMessage> messages = test::published_imu(walk(), "/imu", test::ImuContent::kBoth);
+  std::vector<RecordedMessage> messages =
+      test::published_imu(recorded_sequence(), "/imu", test::ImuContent::kBoth);
   for (RecordedMessage& message : messages) message.data.replace(4, 8, 8, '\0');
   for (const RecordedMessage& message : published(true)) messages.push_back(message);
   write(messages);
@@ -234,7 +235,7 @@ TEST_F(CliBag, ReportsUnreadableBags) {
   expect_refused("--rate 30", 2, "does not apply to a ROS bag");
   expect_refused("--colour-topic ''", 2, "--colour-topic: expected the name of a topic");
   expect_refused("--out " + path("walk.bag"), 2, "is an input, which would be overwritten");
-  const CommandResult folder = plvo("run " + walk().string() + " --depth-topic /x");
+  const CommandResult folder = plvo("run " + recorded_sequence().string() + " --depth-topic /x");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--depth-topic: is for a ROS bag"), std::string::npos) << folder.err;
   // A damaged image costs only its frame.

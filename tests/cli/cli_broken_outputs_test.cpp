@@ -24,7 +24,7 @@ using test::run_command;
 
 constexpr int kTrackedFrames = 24;
 
-const std::string& walk() {
+const std::string& recording() {
   static const std::string folder = test::simulated_sequence<kTrackedFrames>().string();
   return folder;
 }
@@ -71,7 +71,7 @@ class CliBrokenOutputs : public test::PlvoCommand {
 
 TEST_F(CliBrokenOutputs, FilesUnderALimitHoldWholeRows) {
   constexpr int kLimit_bytes = 1100;
-  const std::string run = "run " + walk() + " --quiet ";
+  const std::string run = "run " + recording() + " --quiet ";
   for (const char* option : {"--covariance ", "--motions "}) {
     ASSERT_EQ(plvo(run + option + path("whole")).exit_code, 0);
     expect_failure(limited(kLimit_bytes, run + option + path("rows")),
@@ -96,9 +96,9 @@ TEST_F(CliBrokenOutputs, FilesUnderALimitHoldWholeRows) {
 }
 
 TEST_F(CliBrokenOutputs, FilesWrittenAtTheEndAreWholeOrEmpty) {
-  const std::string truth = walk() + "/groundtruth.txt";
+  const std::string truth = recording() + "/groundtruth.txt";
   for (const std::string& words :
-       {"eval --gt " + truth + " --est " + truth, "run " + walk() + " --quiet --readout 0"}) {
+       {"eval --gt " + truth + " --est " + truth, "run " + recording() + " --quiet --readout 0"}) {
     // A report is larger than its script of 20 kB; the summary is smaller.
     expect_failure(limited(15'000, words + " --report " + path("page") + " --json " + path("json")),
                    "page: File too large");
@@ -110,7 +110,7 @@ TEST_F(CliBrokenOutputs, FilesWrittenAtTheEndAreWholeOrEmpty) {
 }
 
 TEST_F(CliBrokenOutputs, SummaryGoesToStandardErrorBesideAReportOnStandardOutput) {
-  const std::string truth = walk() + "/groundtruth.txt";
+  const std::string truth = recording() + "/groundtruth.txt";
   const CommandResult r = plvo("eval --report - --gt " + truth + " --est " + truth);
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_TRUE(r.out.ends_with("</html>\n\n")) << "nothing behind it";
@@ -136,23 +136,24 @@ TEST_F(CliBrokenOutputs, SimulatedFolderListsOnlyCompleteImages) {
 
 TEST_F(CliBrokenOutputs, ClosedPipeEndsNoCommandBySignal) {
   const BrokenPipe pipe;
-  const std::string truth = walk() + "/groundtruth.txt";
+  const std::string truth = recording() + "/groundtruth.txt";
   for (const std::string& words :
-       {"run " + walk(), "run " + walk() + " --quiet --out -", "run " + walk() + " --quiet --stats -",
-        "run " + walk() + " --quiet --json -", "run " + walk() + " --quiet --report -",
-        "eval --gt " + truth + " --est " + truth, "eval --json - --gt " + truth + " --est " + truth,
+       {"run " + recording(), "run " + recording() + " --quiet --out -",
+        "run " + recording() + " --quiet --stats -", "run " + recording() + " --quiet --json -",
+        "run " + recording() + " --quiet --report -", "eval --gt " + truth + " --est " + truth,
+        "eval --json - --gt " + truth + " --est " + truth,
         "simulate --scene bare --size 96x64 --frames 1 --out " + path("one"), std::string("--help"),
         std::string("calibrate --help"), std::string("completion bash"), std::string("man run")})
     expect_failure(plvo(words, pipe.as_output()),
                    "standard output: Broken pipe; the program that reads it has ended");
   // A failure to write progress messages does not change the exit code.
-  EXPECT_EQ(plvo("run " + walk() + " --out - >/dev/null 2" + pipe.as_output().substr(1)).exit_code, 0);
+  EXPECT_EQ(plvo("run " + recording() + " --out - >/dev/null 2" + pipe.as_output().substr(1)).exit_code, 0);
 }
 
 TEST_F(CliBrokenOutputs, TheOtherOutputsOfARunAreWritten) {
   // The limit applies only to the program; the output that passes through cat has none.
   const CommandResult r =
-      run_command("sh -c '{ prlimit --fsize=12000 " + kPlvo + " run " + walk() + " --motions " +
+      run_command("sh -c '{ prlimit --fsize=12000 " + kPlvo + " run " + recording() + " --motions " +
                   path("rows") + " --json " + path("json") + " --report -; echo $? >" + path("code") +
                   "; } | cat >" + path("page") + "'");
   EXPECT_EQ(read_file(folder_ / "code"), "1\n");
@@ -163,7 +164,7 @@ TEST_F(CliBrokenOutputs, TheOtherOutputsOfARunAreWritten) {
   EXPECT_GT(json["frames"], 1);
   EXPECT_LT(json["frames"], kTrackedFrames);
   EXPECT_TRUE(read_file(folder_ / "page").ends_with("</html>\n\n"));
-  ASSERT_EQ(plvo("run " + walk() + " --quiet --json " + path("json")).exit_code, 0);
+  ASSERT_EQ(plvo("run " + recording() + " --quiet --json " + path("json")).exit_code, 0);
   EXPECT_TRUE(nlohmann::json::parse(read_file(folder_ / "json"))["failure"].is_null());
 }
 

@@ -33,10 +33,10 @@ constexpr const char* kLens = " --fx 262.5 --fy 262.5 --cx 159.5 --cy 119.5 --de
 
 TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   const TemporaryFolder folder;
-  const std::string walk = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
+  const std::string recording = (folder / "walk").string(), yaml = (folder / "camera.yaml").string();
   record_turns(folder, "walk", 1, 60);
   // The lens is given, but no timing of depth.
-  const CommandResult r = run_plvo("calibrate " + walk + " --find delay --quiet --json - --report " +
+  const CommandResult r = run_plvo("calibrate " + recording + " --find delay --quiet --json - --report " +
                                    (folder / "page.html").string() + " --out " + yaml + kLens);
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.err, "");
@@ -56,7 +56,7 @@ TEST(CliCalibrate, RecoversTheDelayOfDepthFromTheRecordingAlone) {
   EXPECT_EQ(found.depth_units_per_metre, 5000);
   EXPECT_TRUE(found.readout_given);
   EXPECT_NE(test::read_file(folder / "page.html").find("<polyline"), std::string::npos);
-  const CommandResult run = run_plvo("run " + walk + " --quiet --calibration " + yaml);
+  const CommandResult run = run_plvo("run " + recording + " --quiet --calibration " + yaml);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
 }
@@ -133,8 +133,8 @@ TEST(CliCalibrate, ARecordingThatIsTooShortIsRefusedInOneLine) {
 TEST(CliCalibrate, AnInputIsNotOverwritten) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 2).ok());
-  const std::string walk = (folder / "walk").string();
-  const CommandResult r = run_plvo("calibrate " + walk + " --out " + walk + "/calibration.txt");
+  const std::string recording = (folder / "walk").string();
+  const CommandResult r = run_plvo("calibrate " + recording + " --out " + recording + "/calibration.txt");
   EXPECT_EQ(r.exit_code, 2);
   EXPECT_NE(r.err.find("is an input, which would be overwritten"), std::string::npos) << r.err;
 }

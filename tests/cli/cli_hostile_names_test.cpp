@@ -32,8 +32,8 @@ void expect_one_line(const std::string& text) {
 
 class CliHostileNames : public test::PlvoCommand {
  protected:
-  CliHostileNames() : walk_((folder_ / kHostile).string()) {
-    fs::copy(test::simulated_sequence<kNamedFrames>(), walk_, fs::copy_options::recursive);
+  CliHostileNames() : recording_((folder_ / kHostile).string()) {
+    fs::copy(test::simulated_sequence<kNamedFrames>(), recording_, fs::copy_options::recursive);
   }
   static CommandResult plvo(const std::string& arguments) {
     const CommandResult r = PlvoCommand::plvo(arguments);
@@ -41,12 +41,12 @@ class CliHostileNames : public test::PlvoCommand {
     expect_harmless(r.err);
     return r;
   }
-  const std::string walk_;
+  const std::string recording_;
 };
 
 TEST_F(CliHostileNames, AFolder) {
   const CommandResult r =
-      plvo("run " + quoted(walk_) + " --json " + path("json") + " --report " + path("page"));
+      plvo("run " + quoted(recording_) + " --json " + path("json") + " --report " + path("page"));
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_EQ(r.out.rfind(kShown + '\n', 0), 0u) << r.out;
   // JSON cannot hold the byte that is not UTF-8.
@@ -70,10 +70,10 @@ TEST_F(CliHostileNames, APathThatIsNotThere) {
   for (const std::string& words :
        {"run " + nothing, "run " + nothing + "/x.bag", "eval --est x --gt " + nothing,
         "calibrate " + nothing + " --out " + path("c.yaml"),
-        "run " + quoted(walk_) + " --calibration " + nothing,
-        "run " + quoted(walk_) + " --out " + quoted(path("no" + kHostile) + "/t"),
+        "run " + quoted(recording_) + " --calibration " + nothing,
+        "run " + quoted(recording_) + " --out " + quoted(path("no" + kHostile) + "/t"),
         "live --device " + quoted(path("no" + kHostile) + ".bag"),
-        "record " + quoted(walk_) + " --device " + quoted(path("no" + kHostile) + ".bag")}) {
+        "record " + quoted(recording_) + " --device " + quoted(path("no" + kHostile) + ".bag")}) {
     const CommandResult r = plvo(words);
     EXPECT_NE(r.exit_code, 0) << words;
     expect_one_line(r.err);
@@ -100,21 +100,21 @@ TEST_F(CliHostileNames, ACalibration) {
   test::write_file(folder_ / "c.txt", "fx: 131\n" + std::string("k\x1b[31m\u009b: 3\n"));
   test::write_file(folder_ / "c.yaml", std::string("fx: 131\nmodel: \"\x1b[31m\"\n"));
   for (const char* file : {"c.txt", "c.yaml"}) {
-    const CommandResult r = plvo("run " + quoted(walk_) + " --calibration " + path(file));
+    const CommandResult r = plvo("run " + quoted(recording_) + " --calibration " + path(file));
     EXPECT_EQ(r.exit_code, 1) << r.err;
     expect_one_line(r.err);
   }
 }
 
 TEST_F(CliHostileNames, AReasonInTheStatistics) {
-  const fs::path list = fs::path(walk_) / "rgb.txt",
+  const fs::path list = fs::path(recording_) / "rgb.txt",
                  image = fs::directory_iterator(list.parent_path() / "rgb")->path();
   std::string text = read_file(list);
   text.replace(text.find(image.filename().string()), image.filename().string().size(),
                "x\x1b[31m\u009b\x9b.png");
   test::write_file(list, text);
   test::write_file(image.parent_path() / "x\x1b[31m\u009b\x9b.png", "no image");
-  const CommandResult r = plvo("run " + quoted(walk_) + " --quiet --stats -");
+  const CommandResult r = plvo("run " + quoted(recording_) + " --quiet --stats -");
   EXPECT_EQ(r.exit_code, 0) << r.err;
   EXPECT_NE(r.out.find("rgb/x\\x1b[31m\\u009b\\x9b.png"), std::string::npos) << "the reason: " << r.out;
   EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 1 + kNamedFrames) << r.out;

@@ -26,7 +26,7 @@ const std::string kLive = " live --quiet --pace fast --camera sim " + kRobot + k
 
 class CliLiveWheels : public test::PlvoCommand {
  protected:
-  static std::string walk() {
+  static std::string recording() {
     static const test::TemporaryFolder folder;
     static const bool made = [] {
       const auto result = plvo("simulate --quiet --out " + (folder / "walk").string() + ' ' + kRobot);
@@ -36,7 +36,7 @@ class CliLiveWheels : public test::PlvoCommand {
     EXPECT_TRUE(made);
     return (folder / "walk").string();
   }
-  static std::string wheels() { return walk() + "/wheel_odometry.txt"; }
+  static std::string wheels() { return recording() + "/wheel_odometry.txt"; }
   static std::vector<std::string> lines() {
     std::vector<std::string> found;
     std::istringstream text(test::read_file(wheels()));
@@ -69,9 +69,9 @@ class CliLiveWheels : public test::PlvoCommand {
 };
 
 TEST_F(CliLiveWheels, PosesAreThoseOfARunWithTheFile) {
-  ASSERT_EQ(
-      plvo("run --quiet " + walk() + " --wheels " + wheels() + kBase + "--out " + path("run.txt")).exit_code,
-      0);
+  ASSERT_EQ(plvo("run --quiet " + recording() + " --wheels " + wheels() + kBase + "--out " + path("run.txt"))
+                .exit_code,
+            0);
   const std::string live = kLive + "--wheels " + wheels() + " --json " + path("s.json");
   const CommandResult result = plvo(live + " --out " + path("live.txt") + " --record " + path("kept"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -189,9 +189,9 @@ TEST_F(CliLiveWheels, WhatDoesNotApplyIsRefused) {
   expect_refused(plvo(live + "--wheels " + wheels()), 2, "--wheels: needs --base-camera");
   expect_refused(plvo(live + "--wheels-error 0.1"), 2, "is for --wheels");
   expect_refused(plvo(live + "--wheels " + path("none") + kBase), 1, "none: No such file");
-  expect_refused(plvo(live + "--wheels " + walk() + kBase), 1, "it is a folder");
+  expect_refused(plvo(live + "--wheels " + recording() + kBase), 1, "it is a folder");
   expect_refused(plvo(live + "--wheels " + wheels() + kBase + "--out " + wheels()), 2, "is an input");
-  expect_refused(plvo(live + "--wheels " + wheels() + kBase + "--record " + walk()), 2, "is an input");
+  expect_refused(plvo(live + "--wheels " + wheels() + kBase + "--record " + recording()), 2, "is an input");
   std::filesystem::create_directory(folder_ / "new");
   test::write_file(folder_ / "new/wheel_odometry.txt", "1 0 0 0\n");
   expect_refused(plvo(live + "--wheels " + wheels() + kBase + "--record " + path("new")), 1,

@@ -39,7 +39,7 @@ class CliMapFile : public test::PlvoCommand {
  protected:
   static constexpr int kFramesInRoom = 200;
 
-  // One walk past a desk, under constant light and under a lamp that swings.
+  // One sequence past a desk, under constant light and under a lamp that swings.
   static std::string desk(const std::string& light) {
     static const test::TemporaryFolder folder;
     const fs::path sequence = folder / light;

@@ -25,13 +25,13 @@ using test::read_file;
 using test::run_command;
 using test::write_file;
 
-constexpr int kShortWalk = 4;
+constexpr int kShortFrames = 4;
 
-const fs::path& short_walk() { return test::simulated_sequence<kShortWalk>(); }
+const fs::path& short_recording() { return test::simulated_sequence<kShortFrames>(); }
 
 class CliOutputs : public test::PlvoCommand {
  protected:
-  CliOutputs() { fs::copy(short_walk(), folder_ / "walk", fs::copy_options::recursive); }
+  CliOutputs() { fs::copy(short_recording(), folder_ / "walk", fs::copy_options::recursive); }
   CommandResult run(const std::string& more) const { return plvo("run " + path("walk") + ' ' + more); }
   void expect_refused(const CommandResult& r, const std::string& words) const {
     PlvoCommand::expect_refused(r, 2, words);
@@ -122,8 +122,8 @@ TEST_F(CliOutputs, StandardOutputCarriesOneOutput) {
     EXPECT_EQ(r.out, expected) << name;
     EXPECT_NE(r.err.find("resident memory"), std::string::npos) << "the summary: " << r.err;
   }
-  EXPECT_EQ(lines(run("--quiet --stats -").out), 1 + kShortWalk);
-  EXPECT_EQ(nlohmann::json::parse(run("--json -").out)["frames"], kShortWalk);
+  EXPECT_EQ(lines(run("--quiet --stats -").out), 1 + kShortFrames);
+  EXPECT_EQ(nlohmann::json::parse(run("--json -").out)["frames"], kShortFrames);
   EXPECT_EQ(run("--quiet --report -").out.rfind("<!", 0), 0u);
   // Appending to an existing file must not truncate it.
   write_file(folder_ / "log", "before\n");
@@ -191,7 +191,7 @@ TEST_F(CliOutputs, TrajectoriesFollowTumsFormatExactly) {
       EXPECT_LT((Eigen::Vector4d(q.x, q.y, q.z, q.w) - (xyzw[3] < 0 ? -1 : 1) * xyzw).norm(), 1e-8);
       ++rows;
     }
-    EXPECT_EQ(rows, std::size_t{kShortWalk});
+    EXPECT_EQ(rows, std::size_t{kShortFrames});
     EXPECT_EQ(read.poses.size(), rows);
   }
 }
@@ -250,14 +250,14 @@ TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
   const auto read = [&](const std::string& file) {
     Trajectory trajectory;
     EXPECT_TRUE(read_trajectory({path(file), TrajectoryFormat::kTum, {}}, trajectory).ok());
-    EXPECT_EQ(trajectory.poses.size(), std::size_t{kShortWalk});
+    EXPECT_EQ(trajectory.poses.size(), std::size_t{kShortFrames});
     return trajectory.poses;
   };
   ASSERT_EQ(run("--quiet --imu --level --out " + path("t")).exit_code, 0);
   EXPECT_NE(read_file(folder_ / "t").find("turned level: gravity along y"), std::string::npos);
   const auto truth = read("walk/groundtruth.txt"), level = read("t");
   const Vector3 up(0, 0, 1);
-  for (std::size_t i = 0; i < kShortWalk; ++i) {
+  for (std::size_t i = 0; i < kShortFrames; ++i) {
     const Vector3 down = level[i].T_world_camera.R * truth[i].T_world_camera.R.transpose() * -up;
     EXPECT_LT((down - Vector3(0, 1, 0)).norm(), 0.1) << down.transpose();
   }
@@ -268,7 +268,7 @@ TEST_F(CliOutputs, AccelerometerLevelsTheWorld) {
   const Se3 T_base_camera{to_rotation({-0.576, 0.576, -0.41, 0.41}), Vector3(0.2, 0, 0.5)};
   const auto base = read("b");
   EXPECT_LT(base[0].T_world_camera.t.norm(), 1e-8);
-  for (std::size_t i = 0; i < kShortWalk; ++i) {
+  for (std::size_t i = 0; i < kShortFrames; ++i) {
     const Matrix3 R_odom_truth =
         base[i].T_world_camera.R * T_base_camera.R * truth[i].T_world_camera.R.transpose();
     EXPECT_LT((R_odom_truth * up - up).norm(), 0.1) << i;
@@ -306,7 +306,7 @@ TEST_F(CliOutputs, DepthOfItsOwnSizeAndCamera) {
     const CommandResult e = plvo("eval --gt " + path("whole") + " --est " + path("half") + " --json -");
     ASSERT_EQ(e.exit_code, 0) << e.err;
     const auto json = nlohmann::json::parse(e.out);
-    EXPECT_EQ(json["poses"], kShortWalk);
+    EXPECT_EQ(json["poses"], kShortFrames);
     EXPECT_LT(json["ate_m"]["max"], 0.003) << said;
   }
 }

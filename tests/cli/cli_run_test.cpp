@@ -35,7 +35,7 @@ bool contains(const std::string& text, std::string_view words) {
   return text.find(words) != std::string::npos;
 }
 
-// A walk through a simulated room, rendered once; each test works on its own copy.
+// A sequence of a simulated room, rendered once; each test works on its own copy.
 const fs::path& master_sequence() { return test::simulated_sequence<kFrames>(); }
 
 class CliRun : public test::PlvoCommand {

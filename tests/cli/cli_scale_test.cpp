@@ -56,7 +56,7 @@ class CliScale : public test::PlvoCommand {
   }
 };
 
-// The same walk is rendered at 640×480 and at half that size.
+// The same sequence is rendered at 640×480 and at half that size.
 TEST_F(CliScale, RecordingOfTwiceTheSizeGivesThePosesOfTheSmallOne) {
   simulate("small", "--scene desk --frames 12 --size 320x240");
   simulate("large", "--scene desk --frames 12 --size 640x480");

@@ -153,7 +153,7 @@ TEST(CliUsage, OptionsThatDoNotApplyAreRefused) {
   expect_usage("run --camera sim --calibration c", "--calibration: is for recorded sequences");
   expect_usage("run --camera sim --readout 0.02", "--readout: is for recorded sequences");
   expect_usage("run --camera sim --tolerance 1", "--tolerance: is for recorded sequences");
-  expect_usage("run --camera sim --frames 5:9", "a simulated walk starts at frame 0");
+  expect_usage("run --camera sim --frames 5:9", "a simulated sequence starts at frame 0");
   expect_usage("run x.oni --depth-scale 1000", "--depth-scale: does not apply to an .oni file");
   expect_usage("run x --calibration c --camera-model tum-fr1", "cannot be combined with --calibration");
   expect_usage("run x --preset tiny --reference both",
@@ -245,7 +245,7 @@ const std::map<std::string, std::size_t>& flags_of_several_meanings() {
       {"--report", 3},       // a page; its content depends on the command
       {"--device", 2},       // doctor does not capture from a ROS bag
       {"--seconds", 2},      // doctor ends by itself
-      {"--camera", 2},       // the simulated camera; the length of its walk depends on the command
+      {"--camera", 2},       // the simulated camera; the length of its sequence depends on the command
       {"--wheels", 2},       // a file beside a recording; live, what comes through a pipe
       {"--pace", 2},         // live has a pace of its own without a sensor, and no steps
   };
@@ -276,10 +276,10 @@ TEST(CliUsage, SameFlagHasTheSameMeaning) {
 TEST(CliUsage, SameFlagHasTheSameEffect) {
   const TemporaryFolder folder;
   ASSERT_TRUE(test::write_tiny_sequence(folder / "walk", 5).ok());
-  const std::string walk = (folder / "walk").string();
+  const std::string recording = (folder / "walk").string();
   // --frames N: the first N; --json FILE, and - for standard output, whatever the command.
-  const CommandResult first = run_plvo("run " + walk + " --frames 2 --quiet --json -");
-  const CommandResult range = run_plvo("run " + walk + " --frames 0:2 --quiet --json -");
+  const CommandResult first = run_plvo("run " + recording + " --frames 2 --quiet --json -");
+  const CommandResult range = run_plvo("run " + recording + " --frames 0:2 --quiet --json -");
   EXPECT_NE(first.out.find("\"frames\": 2,"), std::string::npos) << first.out << first.err;
   EXPECT_NE(range.out.find("\"frames\": 2,"), std::string::npos) << range.out << range.err;
   for (const char* command : {"run", "live", "eval", "doctor", "tilt"})

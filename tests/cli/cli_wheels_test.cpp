@@ -14,7 +14,7 @@ constexpr const char* kRobotCamera = " --base-camera 0.2 0 0.5 -0.5 0.5 -0.5 0.5
 
 class CliWheels : public test::PlvoCommand {
  protected:
-  static std::string walk() {
+  static std::string recording() {
     static const test::TemporaryFolder folder;
     static const bool made = [] {
       const auto result =
@@ -26,9 +26,9 @@ class CliWheels : public test::PlvoCommand {
     EXPECT_TRUE(made);
     return (folder / "walk").string();
   }
-  static std::string wheels() { return walk() + "/wheel_odometry.txt"; }
+  static std::string wheels() { return recording() + "/wheel_odometry.txt"; }
   nlohmann::json summary(const std::string& options) const {
-    const auto result = plvo("run " + walk() + " --quiet --json " + path("s.json") + ' ' + options);
+    const auto result = plvo("run " + recording() + " --quiet --json " + path("s.json") + ' ' + options);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     return nlohmann::json::parse(test::read_file(folder_ / "s.json"));
@@ -52,8 +52,8 @@ TEST_F(CliWheels, BridgeACoveredLens) {
 
 // An accelerometer alone says nothing of the turn: that of the wheels counts, beside gravity.
 TEST_F(CliWheels, TurnTheCameraBesideAnAccelerometerAlone) {
-  const std::filesystem::path walked = walk(), copy = folder_ / "no_gyro";
-  std::filesystem::copy(walked, copy, std::filesystem::copy_options::recursive);
+  const std::filesystem::path recorded = recording(), copy = folder_ / "no_gyro";
+  std::filesystem::copy(recorded, copy, std::filesystem::copy_options::recursive);
   std::filesystem::remove(copy / "gyroscope.txt");
   const auto turn_of = [&](const std::string& options) {
     const auto result = plvo("run " + copy.string() + " --quiet --json " + path("s.json") + " --wheels " +
@@ -69,7 +69,7 @@ TEST_F(CliWheels, TurnTheCameraBesideAnAccelerometerAlone) {
 TEST_F(CliWheels, TellWhatLooksWrong) {
   const auto told = [&](const std::string& text, const std::string& words) {
     test::write_file(folder_ / "w.txt", text);
-    const auto result = plvo("run " + walk() + " --frames 4 --quiet --out " + path("t") + " --wheels " +
+    const auto result = plvo("run " + recording() + " --frames 4 --quiet --out " + path("t") + " --wheels " +
                              path("w.txt") + kRobotCamera);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
@@ -81,7 +81,7 @@ TEST_F(CliWheels, TellWhatLooksWrong) {
 }
 
 TEST_F(CliWheels, RefuseWhatDoesNotApply) {
-  const std::string run = "run " + walk() + ' ';
+  const std::string run = "run " + recording() + ' ';
   expect_refused(plvo(run + "--wheels " + wheels()), 2, "--wheels: needs --base-camera");
   expect_refused(plvo(run + "--wheels-error 0.1"), 2, "is for --wheels");
   expect_refused(plvo(run + "--wheels-error 2 --wheels " + wheels() + kRobotCamera), 2, "--wheels-error");

@@ -49,7 +49,7 @@ class LiveWheelsOfASensor : public ::testing::Test {
   const std::int64_t first_arrival_ns_ = posix_monotonic_ns() - 500'000'000 + kArrival;
 };
 
-TEST_F(LiveWheelsOfASensor, LinesAreTakenOverToTheClockOfItsFrames) {
+TEST_F(LiveWheelsOfASensor, StampsOfLinesAreConvertedToTheClockOfTheFrames) {
   start();
   drive(since_1970_s());
   EXPECT_FALSE(frame(0).tells_motion());

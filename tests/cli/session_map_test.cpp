@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kWidthOfSession = 160, kHeightOfSession = 120;
 
-// Walks there and back in the procedural room, with a map of the fewest keyframes.
+// Moves there and back in the procedural room, with a map of the fewest keyframes.
 class Session {
  public:
   explicit Session(const MapOptions& options) {
@@ -32,14 +32,15 @@ class Session {
     const Status status = map.init(options, sequence_.camera(), Config(), false);
     EXPECT_TRUE(status.ok()) << status.message();
   }
-  void walk() {
+  void track_there_and_back() {
     for (int round = 0; round < 3; ++round) {
       for (int view = 0; view < kFramesOneWay; ++view) see(view);
       for (int view = kFramesOneWay; view > 0; --view) see(view);
     }
     map.finish();
   }
-  // Of a frame, through the keyframes that its keyframe was joined with, one after the other.
+  // A frame, and its pose in the map over the keyframes with which its keyframe was merged, one after the
+  // other.
   struct Seen {
     std::int64_t stamp_ns = 0;
     std::uint32_t keyframe = 0;
@@ -90,14 +91,14 @@ MapOptions least_map() {
 TEST(SessionMap, AllocatesNothingForAFrame) {
   if (!AllocationGuard::available()) GTEST_SKIP() << "a sanitizer has its own malloc";
   Session session(least_map());
-  session.walk();
+  session.track_there_and_back();
   EXPECT_GT(session.map.map().counts().removed, 0);
   EXPECT_EQ(session.allocations, 0);
 }
 
 TEST(SessionMap, PosesOutlastTheirKeyframes) {
   Session session(least_map());
-  session.walk();
+  session.track_there_and_back();
   EXPECT_GT(session.map.map().counts().removed, 4);
   std::size_t at = 0;
   const Status status = session.map.poses([&](std::int64_t stamp_ns, const Se3& T_map_camera) {

@@ -125,7 +125,7 @@ TEST(MotionChain, CorrelationShowsOnlyOverASecond) {
   const std::vector<UncertainMotion> motions = draw({.shared_variance = 0.1});
   EXPECT_NEAR(per_motion(motions).all.mean, 6, 0.6);
   // The sum of 30 motions with variance 1 has the variance 30·0.9 + 30²·0.1, where 30 is reported: 3.9 times
-  // as much if all share one error. It is less for a span over two shared errors.
+  // as much if all share one error. It is less for a span that contains two such errors.
   const Consistency c = per_second(motions);
   EXPECT_GT(c.all.mean, 2.5 * 6);
   EXPECT_LT(c.all.mean, 3.9 * 6 * 1.2);

@@ -10,8 +10,9 @@
 namespace plvo::eval {
 namespace {
 
-// A walk at 30 Hz along x at 0.3 m/s; the estimate moves `scale` as far and rotates by `turn_deg` per frame.
-PairedPoses straight_walk(int frames, double scale, double turn_deg) {
+// A trajectory at 30 Hz along x at 0.3 m/s; the estimate moves `scale` as far and rotates by `turn_deg` per
+// frame.
+PairedPoses straight_trajectory(int frames, double scale, double turn_deg) {
   PairedPoses poses;
   const Se3 true_step{Matrix3::Identity(), Vector3(0.01, 0, 0)};
   const Se3 step{rotation_exp(Vector3(0, 0, turn_deg * 3.14159265358979 / 180)), Vector3(0.01 * scale, 0, 0)};
@@ -42,7 +43,7 @@ TEST(RpeDelta, Parses) {
 }
 
 TEST(RelativeError, ScaleErrorGrowsWithTheDelta) {
-  const PairedPoses poses = straight_walk(61, 1.1, 0);
+  const PairedPoses poses = straight_trajectory(61, 1.1, 0);
   const RpeResult frame = relative_pose_error(poses, delta("1f"));
   EXPECT_EQ(frame.estimate.translation_m.count, 60u);
   EXPECT_NEAR(frame.estimate.translation_m.rmse, 0.001, 1e-12);
@@ -55,26 +56,26 @@ TEST(RelativeError, ScaleErrorGrowsWithTheDelta) {
 }
 
 TEST(RelativeError, RotationIsInDegrees) {
-  const RpeResult r = relative_pose_error(straight_walk(31, 1, 0.5), delta("10f"));
+  const RpeResult r = relative_pose_error(straight_trajectory(31, 1, 0.5), delta("10f"));
   EXPECT_NEAR(r.estimate.rotation_deg.rmse, 5, 1e-9);
   EXPECT_NEAR(r.identity.rotation_deg.rmse, 0, 1e-9);
 }
 
 TEST(RelativeError, PerfectEstimateInAnotherWorldHasNoError) {
-  PairedPoses poses = straight_walk(40, 1, 0);
+  PairedPoses poses = straight_trajectory(40, 1, 0);
   for (Se3& T : poses.estimate) T = Se3{rotation_exp(Vector3(1, 2, 0.5)), Vector3(3, 4, 5)} * T;
   EXPECT_LT(relative_pose_error(poses, delta("1s")).estimate.translation_m.max, 1e-12);
   EXPECT_LT(end_drift(poses).translation_m, 1e-12);
 }
 
 TEST(EndDrift, IsTheEndToEndError) {
-  const PairedPoses poses = straight_walk(101, 1.1, 0);
+  const PairedPoses poses = straight_trajectory(101, 1.1, 0);
   EXPECT_NEAR(end_drift(poses).translation_m, 0.1, 1e-9);
   EXPECT_NEAR(identity_end_drift(poses).translation_m, 1.0, 1e-9);
 }
 
 TEST(DistanceErrors, ScaleErrorIsAConstantPercentage) {
-  const std::vector<DistanceError> errors = distance_errors(straight_walk(121, 1.1, 0));
+  const std::vector<DistanceError> errors = distance_errors(straight_trajectory(121, 1.1, 0));
   ASSERT_EQ(errors.size(), 4u);  // 0.1, 0.2, 0.5 and 1 m of a path of 1.2 m
   EXPECT_EQ(errors[3].length_m, 1.0);
   for (const DistanceError& e : errors) EXPECT_NEAR(e.translation_percent.median, 10, 1.0) << e.length_m;

@@ -25,7 +25,7 @@ class Run {
            memory_.map.init(memory_.map_arena, sequence_.camera(), config_, kMapGoldenMapLimits).ok();
   }
 
-  void walk(const char* name, int from, int to) {
+  void track(const char* name, int from, int to) {
     for (int view = from; view != to; view += from < to ? 1 : -1) see(name, sequence_.render(view));
   }
   void cover(const char* name) {
@@ -94,11 +94,11 @@ bool map_golden_run(const MapGoldenMemory& memory, void (*print)(std::string_vie
     print("too little memory");
     return false;
   }
-  run.walk("out", 0, kTurn);
-  run.walk("back", kTurn, 0);
-  run.walk("again", 0, kTurn);
+  run.track("out", 0, kTurn);
+  run.track("back", kTurn, 0);
+  run.track("again", 0, kTurn);
   run.cover("covered");
-  run.walk("carried", 30, kTurn);
+  run.track("carried", 30, kTurn);
   if (run.save_and_load()) return true;
   print("the map cannot be saved and loaded");
   return false;

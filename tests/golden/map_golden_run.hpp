@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The golden run of a small map, whose output (map_golden.txt) must be the same bytes everywhere: a camera
-// walks to and fro in the procedural room, is covered, and is found again; places are recognised and
+// moves to and fro in the procedural room, is covered, and is found again; places are recognised and
 // keyframes make room. At the end the map is saved, and loaded. Without an operating system.
 #pragma once
 

@@ -207,13 +207,13 @@ def main():
         print("SKIPPED: no Chromium here (apt install chromium)")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="plvo_live_") as folder:
-        raw, walk, control, log, summary = (os.path.join(folder, n) for n in ("raw", "walk", "control", "log", "summary.json"))
-        subprocess.run([frames_maker, raw, walk, str(FRAMES)], check=True)
+        raw, recording, control, log, summary = (os.path.join(folder, n) for n in ("raw", "walk", "control", "log", "summary.json"))
+        subprocess.run([frames_maker, raw, recording, str(FRAMES)], check=True)
         os.mkfifo(control)
         environment = dict(os.environ, LD_LIBRARY_PATH=openni2, PLVO_VIRTUAL_FRAMES=raw, PLVO_VIRTUAL_CONTROL=control,
                            PLVO_VIRTUAL_START="to_and_fro 1")
         with open(log, "w", encoding="utf-8") as errors:
-            live = subprocess.Popen([plvo, "live", "--mode", "320x240", "--calibration", os.path.join(walk, "calibration.txt"),
+            live = subprocess.Popen([plvo, "live", "--mode", "320x240", "--calibration", os.path.join(recording, "calibration.txt"),
                                      "--view", "0", "--json", summary, "--map", "32"], env=environment, stdout=subprocess.DEVNULL, stderr=errors)
         browser = Browser(program, folder)
         try:

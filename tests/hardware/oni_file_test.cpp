@@ -280,7 +280,7 @@ TEST_F(OniFileTest, ProgramWithoutAPlayerReportsIt) {
 
 // A player that a damaged file has compromised may do nothing, send nonsense, or close the connection and
 // keep running.
-TEST_F(OniFileTest, APlayerIsNotBelieved) {
+TEST_F(OniFileTest, InvalidMessagesOfThePlayerAreErrors) {
   record(2);
   OpenNi2Options options;
   options.uri = path_;

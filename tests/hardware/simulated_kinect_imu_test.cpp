@@ -142,7 +142,7 @@ TEST_F(KinectImu, ReadingsAreStampedByTheClockOfTheFrames) {
   EXPECT_LT(std::abs(median_s), 0.020);
 }
 
-TEST_F(KinectImu, WithoutAnAccelerometerItIsSaidOnce) {
+TEST_F(KinectImu, AMissingAccelerometerIsReportedOnce) {
   show_a_room();
   kinect_.plug();
   ASSERT_EQ(plvo({"live", "--imu", "--frames", "60"}), 0) << err_;
@@ -152,7 +152,7 @@ TEST_F(KinectImu, WithoutAnAccelerometerItIsSaidOnce) {
   EXPECT_EQ(tracked.size(), 60U);
 }
 
-TEST_F(KinectImu, AnAccelerometerThatFailsStopsNobodyAndMayComeBack) {
+TEST_F(KinectImu, AFailingAccelerometerStopsNothingElseAndMayComeBack) {
   show_a_room();
   kinect_.plug();
   SimulatedMotor motor(kinect_, [] { return kTilted; });

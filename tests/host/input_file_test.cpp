@@ -42,7 +42,7 @@ TEST(InputFile, KeepsItsBuffer) {
   EXPECT_EQ(bytes.data(), before);
 }
 
-TEST(InputFile, RefusesWhatIsNoFile) {
+TEST(InputFile, RefusesFoldersAndDevices) {
   const TemporaryFolder folder;
   std::vector<unsigned char> bytes;
   EXPECT_EQ(read_input_file(folder / "none", 10, bytes).code(), StatusCode::kNotFound);
@@ -53,7 +53,7 @@ TEST(InputFile, RefusesWhatIsNoFile) {
       << "and nobody waited for a writer";
 }
 
-TEST(InputFile, RefusesWhatIsTooLargeBeforeReadingIt) {
+TEST(InputFile, RefusesTooLargeFilesBeforeReadingThem) {
   const TemporaryFolder folder;
   write_file(folder / "holes", "");
   std::filesystem::resize_file(folder / "holes", std::uintmax_t{1} << 40);

@@ -71,7 +71,7 @@ TEST_F(NamedPipe, ALineThatIsTooLongIsCut) {
   ::close(descriptor);
 }
 
-TEST(LineReader, FilesAndWhatIsNone) {
+TEST(LineReader, ReadsFilesAndRefusesOthers) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "file", "a\r\nb\n");
   LineReader reader;

@@ -44,16 +44,16 @@ TEST(MavlinkOdometry, ResetsAreCounted) {
   MavlinkOdometry odometry;
   (void)odometry.message(tracked(0));
   EXPECT_EQ(odometry.message(tracked(1))->at(kResets), 0);
-  TrackResult returned = tracked(2);
-  returned.returned = true;
-  EXPECT_EQ(odometry.message(returned)->at(kResets), 1);
+  TrackResult relocalised = tracked(2);
+  relocalised.relocalised = true;
+  EXPECT_EQ(odometry.message(relocalised)->at(kResets), 1);
   TrackResult new_world = tracked(3);
   new_world.state = TrackState::kInitialising;
   EXPECT_EQ(odometry.message(new_world)->at(kResets), 2);
   EXPECT_EQ(odometry.message(tracked(4))->at(kResets), 2);
 }
 
-TEST(MavlinkOdometry, QualityIsTheShareOfTheMatchesThatAgree) {
+TEST(MavlinkOdometry, QualityIsTheInlierRatio) {
   MavlinkOdometry odometry;
   (void)odometry.message(tracked(0));
   EXPECT_EQ(odometry.message(tracked(1))->at(kQuality), 75);

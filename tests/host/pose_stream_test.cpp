@@ -225,7 +225,7 @@ TEST(PoseStream, AReaderThatReadsOutlastsAnyNumberOfIdleConnections) {
   for (const int fd : idle) ::close(fd);
 }
 
-TEST(PoseStream, WhatTheSystemHoldsForAnIdleReaderDoesNotProveIt) {
+TEST(PoseStream, BytesBufferedByTheSystemDoNotCountAsRead) {
   PoseStream stream;
   ASSERT_TRUE(stream.open("0").ok());
   const int idle = test::connect_loopback(stream.port());
@@ -259,7 +259,7 @@ TEST(PoseStream, UnixSocketLeftOverFromACrashIsReplacedAndALiveOneIsNot) {
   EXPECT_EQ(test::read_file(path), "a file of the user's");
 }
 
-TEST(PoseStream, PortInUseAndNonsense) {
+TEST(PoseStream, RefusesAPortInUseAndInvalidAddresses) {
   PoseStream stream;
   ASSERT_TRUE(stream.open("127.0.0.1:0").ok());
   PoseStream other;
@@ -270,7 +270,7 @@ TEST(PoseStream, PortInUseAndNonsense) {
   }
 }
 
-TEST(TcpListener, WhatMerelyLooksLikeTheLoopbackIsNone) {
+TEST(TcpListener, NamesThatOnlyLookLikeLoopbackAreNotLoopback) {
   for (const char* here : {"localhost", "127.0.0.1", "127.8.9.1", "::1", "[::1]"})
     EXPECT_TRUE(is_loopback(here)) << here;
   for (const char* elsewhere :

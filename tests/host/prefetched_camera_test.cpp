@@ -112,7 +112,7 @@ TEST(PrefetchedCamera, ReadsAheadAndLeavesTheFrameThatIsLookedAt) {
   }
 }
 
-TEST(PrefetchedCamera, AllocatesNothingForWhoReads) {
+TEST(PrefetchedCamera, AllocatesNothingPerFrame) {
   ToldCamera camera(std::vector<StatusCode>(50, StatusCode::kOk));
   PrefetchedCamera prefetched(camera);
   AllocationGuard guard;
@@ -123,7 +123,7 @@ TEST(PrefetchedCamera, AllocatesNothingForWhoReads) {
   EXPECT_EQ(guard.calls(), 0);
 }
 
-TEST(PrefetchedCamera, EndsBeforeItWasAsked) {
+TEST(PrefetchedCamera, EndsWithoutACallOfNext) {
   ToldCamera camera(std::vector<StatusCode>(20, StatusCode::kOk));
   { const PrefetchedCamera prefetched(camera); }
   EXPECT_LE(camera.calls(), 2);

@@ -17,7 +17,7 @@
 namespace plvo {
 namespace {
 
-TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
+TEST(ThreadPair, RunsEachTaskOnAThreadOfItsOwn) {
   ThreadPair pair;
   const Executor executor = pair.executor();
   const std::thread::id caller = std::this_thread::get_id();
@@ -42,7 +42,7 @@ TEST(ThreadPair, DoesBothEachOnAThreadOfItsOwn) {
   EXPECT_GT(pair.cpu_ns(), 0);
 }
 
-TEST(ThreadPair, HalvesCoverAllAndMeetOnce) {
+TEST(ThreadPair, HalvesCoverTheRangeOnce) {
   ThreadPair pair;
   for (const Executor& executor : {pair.executor(), Executor()}) {
     for (const std::size_t count : {0U, 1U, 2U, 7U, 100U}) {
@@ -55,12 +55,12 @@ TEST(ThreadPair, HalvesCoverAllAndMeetOnce) {
   }
 }
 
-struct Walk {
+struct Tracked {
   std::vector<Fingerprint> frames;
   int tracked = 0, lost = 0;
 };
 
-Walk walk(ProceduralSequence& sequence, Config config, TaskPair* pair) {
+Tracked track(ProceduralSequence& sequence, Config config, TaskPair* pair) {
   Limits limits = Limits::qvga();
   limits.width = sequence.camera().width;
   limits.height = sequence.camera().height;
@@ -74,7 +74,7 @@ Walk walk(ProceduralSequence& sequence, Config config, TaskPair* pair) {
   Odometry odometry;
   const Status status = odometry.init(memory, sequence.camera(), config, limits);
   EXPECT_TRUE(status.ok()) << status.message();
-  Walk result;
+  Tracked result;
   for (int i = 0; i < 16; ++i) {
     const RgbdFrame frame = i >= 6 && i < 9 ? sequence.render_dark(i) : sequence.render(i);
     AllocationGuard guard;
@@ -96,8 +96,8 @@ TEST(ThreadPair, AnOdometryOnTwoCoresGivesTheSameBits) {
     for (const bool paper : {false, true}) {
       Config config = paper ? Config::paper() : Config();
       config.features = features;
-      const Walk alone = walk(sequence, config, nullptr);
-      const Walk together = walk(sequence, config, &pair);
+      const Tracked alone = track(sequence, config, nullptr);
+      const Tracked together = track(sequence, config, &pair);
       EXPECT_GT(alone.tracked, 6);
       EXPECT_GT(alone.lost, 0);
       ASSERT_EQ(alone.frames.size(), together.frames.size());
@@ -107,7 +107,7 @@ TEST(ThreadPair, AnOdometryOnTwoCoresGivesTheSameBits) {
     }
 }
 
-TEST(ThreadPair, NeedsTheMemoryOfTwo) {
+TEST(ThreadPair, RequiresLimitsForTwoCores) {
   ThreadPair pair;
   Config config;
   config.executor = pair.executor();

@@ -60,7 +60,7 @@ TEST_F(WholeWrite, ALineFileHoldsWholeLines) {
   EXPECT_EQ(written(), row_ + row_ + row_ + "short\n");
 }
 
-TEST_F(WholeWrite, SoDoesAFileThatOthersBegan) {
+TEST_F(WholeWrite, AFileThatAnotherProgramBeganHoldsWholeLines) {
   for (const int flags : {0, O_APPEND}) {
     test::write_file(folder_ / "file", "theirs\n");
     const int descriptor = open_file(flags);
@@ -73,7 +73,7 @@ TEST_F(WholeWrite, SoDoesAFileThatOthersBegan) {
   }
 }
 
-TEST_F(WholeWrite, WhatOthersWroteBehindStays) {
+TEST_F(WholeWrite, KeepsWhatAnotherProgramAppended) {
   set_limit(200);
   test::write_file(folder_ / "file", std::string(150, '-'));
   set_limit(100);
@@ -94,7 +94,7 @@ TEST_F(WholeWrite, APoseStreamIntoAFileHoldsWholeLines) {
   EXPECT_EQ(written(), row_ + row_ + row_);
 }
 
-TEST(WholeWriteToADevice, SaysWhy) {
+TEST(WholeWriteToADevice, ReportsTheError) {
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
   EXPECT_EQ(write_whole(full, "text"), ENOSPC);
   ::close(full);

@@ -92,7 +92,7 @@ TEST(DepthSampler, OnAnEdgeTheNearerSurfaceCounts) {
   EXPECT_FALSE(sampler.sample(26, 18, kReach).on_edge);
 }
 
-TEST(DepthSampler, OneOrTwoPixelsThatFlyBeforeTheSurfaceAreNone) {
+TEST(DepthSampler, IgnoresOneOrTwoFlyingPixels) {
   for (const int flying : {1, 2}) {
     Scene scene([](int, int) { return 1.5; });
     for (int i = 0; i < flying; ++i) scene.units[static_cast<std::size_t>(18 * kWidth + 22 + i)] /= 2;
@@ -228,18 +228,18 @@ TEST(DepthSampler, ReadsThroughTheLens) {
   const SlopeBehind slope(kLens);
   const Scene& scene = slope.scene;
   const DepthSampler sampler = scene.sampler();
-  int unseen = 0;
+  int outside = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       int raw_x = 0, raw_y = 0;
       if (!scene.map.raw_pixel(x, y, raw_x, raw_y)) {
-        ++unseen;
+        ++outside;
         ASSERT_EQ(sampler.at(x, y), 0);
         continue;
       }
       ASSERT_NEAR(sampler.at(x, y), 0.5 + 0.01 * raw_x + 0.02 * raw_y, kUnit);
     }
-  EXPECT_GT(unseen, 0);
+  EXPECT_GT(outside, 0);
 }
 
 // The sampler sums whole windows of one surface with SIMD vectors and all other windows reading by reading. A

@@ -81,7 +81,7 @@ Vector6 random_velocity(Random& random) {
 TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
   Random random(5);
   int read = 0;
-  int unseen = 0;
+  int without_depth = 0;
   for (const Distortion& lens : kStretchLenses) {
     const CameraModel camera = rolling_camera(lens);
     // The depth identifies one coordinate of the position where it was read; two scenes cover x and y.
@@ -104,7 +104,7 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
             const auto y = static_cast<int>(std::floor(p.y() + 0.5));
             const double depth = sampler.at(x, y);
             if (!found || depth == 0) {
-              ++unseen;
+              ++without_depth;
               continue;
             }
             const double got = stretch.at(side);
@@ -129,7 +129,7 @@ TEST(DepthStretch, ReadsWhereTheDepthImageShowsIt) {
     }
   }
   EXPECT_GT(read, 50000);
-  EXPECT_GT(unseen, 1000);
+  EXPECT_GT(without_depth, 1000);
 }
 
 // Near and far surfaces alternate. The stretch must read each surface where the depth image shows it, except

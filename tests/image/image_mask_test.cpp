@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaskWidth = 93;
 constexpr int kMaskHeight = 70;
-constexpr int kMostExcess_px = 6;  // by which is_free() errs on the safe side
+constexpr int kMostExcess_px = 6;  // by which is_free() keeps too far from masked pixels
 
 CameraModel masked_camera(const Distortion& distortion) {
   CameraModel camera;

@@ -27,7 +27,7 @@ CameraModel camera_with(const Distortion& distortion) {
   camera.distortion = distortion;
   return camera;
 }
-// kBarrel shows more than the ideal image, kPincushion leaves its corners unseen, kKinect does both.
+// kBarrel shows more than the ideal image, kPincushion does not contain its corners, kKinect does both.
 const Distortion kBarrel{-0.25, 0.06, 0, 0, 0};
 const Distortion kPincushion{0.12, 0.02, 0.002, -0.001, 0};
 const Distortion kKinect{0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
@@ -47,8 +47,9 @@ class Map {
   std::vector<std::byte> memory_;
 };
 
-// A bilinear read also touches the next pixel, so the last row and column count as unseen. Within one step of
-// the map from the border both answers are right: reach = 1/32 px widens the seen area, −1/32 px narrows it.
+// A bilinear read also touches the next pixel, so the last row and column count as outside of the image.
+// Within one step of the map from the border both answers are right: reach = 1/32 px widens the seen area,
+// −1/32 px narrows it.
 bool seen(const Vector2& raw, double reach = 0) {
   return raw.x() >= -reach && raw.y() >= -reach && raw.x() < kBentWidth - 1 + reach &&
          raw.y() < kBentHeight - 1 + reach;
@@ -215,17 +216,17 @@ TEST(Undistortion, RepeatsTheNearestBorderOutsideTheRawImage) {
   const Map owned(camera);
   GrayImage ideal(kBentWidth, kBentHeight);
   owned.map.undistort(raw.view(), ideal.view());
-  int unseen = 0;
+  int outside = 0;
   for (int y = 0; y < kBentHeight; ++y)
     for (int x = 0; x < kBentWidth; ++x) {
       const Vector2 at = distort_pixel(camera, Vector2(x, y));
       if (seen(at)) continue;
-      ++unseen;
+      ++outside;
       const Vector2 border(std::clamp(at.x(), 0.0, kBentWidth - 1 - kStep),
                            std::clamp(at.y(), 0.0, kBentHeight - 1 - kStep));
       ASSERT_NEAR(ideal.view().at(x, y), bilinear(raw.view(), border), 1.0) << x << " " << y;
     }
-  EXPECT_GT(unseen, 100);
+  EXPECT_GT(outside, 100);
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ TEST(ImuIntegrator, GivesNoPriorWithoutSamples) {
   EXPECT_FALSE(prior.rotation || prior.gravity);
 }
 
-TEST(ImuIntegrator, RefusesNonsense) {
+TEST(ImuIntegrator, RefusesInvalidArguments) {
   Imu imu;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(imu.integrator.add_gyro({10, Vector3::Zero()}));

@@ -66,25 +66,25 @@ void expect_same(const MappedCamera& a, const MappedCamera& b) {
 class MapFile : public testing::TestWithParam<int> {};
 
 TEST_P(MapFile, BehavesAsTheMapThatWasSaved) {
-  MappedCamera walked(GetParam()), loaded(GetParam());
+  MappedCamera saved(GetParam()), loaded(GetParam());
   for (int round = 0; round < 2; ++round) {
-    walked.walk(0, kFar);
-    walked.walk(kFar, 0);
+    saved.move(0, kFar);
+    saved.move(kFar, 0);
   }
-  const Bytes bytes = save(walked.map);
-  EXPECT_FALSE(walked.map.graph().loops().empty());
-  EXPECT_EQ(walked.map.counts().removed > 0, GetParam() == 12);
+  const Bytes bytes = save(saved.map);
+  EXPECT_FALSE(saved.map.graph().loops().empty());
+  EXPECT_EQ(saved.map.counts().removed > 0, GetParam() == 12);
   const Status status = load(bytes, loaded.map);
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(save(loaded.map), bytes);
-  walked.odometry.reset();
+  saved.odometry.reset();
   for (int view = 20; view < kTurn && !HasFailure(); ++view) {
-    walked.see(view);
+    saved.see(view);
     loaded.see(view);
-    expect_same(walked, loaded);
+    expect_same(saved, loaded);
   }
   EXPECT_TRUE(loaded.in_map.located);
-  EXPECT_EQ(save(walked.map), save(loaded.map));
+  EXPECT_EQ(save(saved.map), save(loaded.map));
 }
 
 INSTANTIATE_TEST_SUITE_P(LargeAndFull, MapFile, testing::Values(64, 12));
@@ -92,8 +92,8 @@ INSTANTIATE_TEST_SUITE_P(LargeAndFull, MapFile, testing::Values(64, 12));
 TEST(MapFile, ACameraThatIsSwitchedOnFindsItsPlace) {
   MappedCamera first(64);
   for (int round = 0; round < 2; ++round) {
-    first.walk(0, kFar);
-    first.walk(kFar, 0);
+    first.move(0, kFar);
+    first.move(kFar, 0);
   }
   const Bytes bytes = save(first.map);
   for (const int start : {10, 30, 50}) {
@@ -118,8 +118,8 @@ TEST(MapFile, ACameraThatIsSwitchedOnFindsItsPlace) {
 TEST(MapFile, ACameraInAnotherRoomDoesNotKnowWhereItIs) {
   MappedCamera first(64), second(64);
   for (int round = 0; round < 2; ++round) {
-    first.walk(0, kFar);
-    first.walk(kFar, 0);
+    first.move(0, kFar);
+    first.move(kFar, 0);
   }
   const Bytes bytes = save(first.map);
   ASSERT_TRUE(load(bytes, second.map).ok());
@@ -134,7 +134,7 @@ TEST(MapFile, ACameraInAnotherRoomDoesNotKnowWhereItIs) {
   const Bytes both = save(second.map);
   MappedCamera third(64);
   ASSERT_TRUE(load(both, third.map).ok());
-  third.walk(20, 50);
+  third.move(20, 50);
   EXPECT_TRUE(third.in_map.located);
   EXPECT_LT(third.error_m(49), 0.1);
 }
@@ -144,8 +144,8 @@ TEST(MapFile, ACameraInAnotherRoomDoesNotKnowWhereItIs) {
 TEST(MapFile, GivesTheSameBytesEverywhere) {
   constexpr std::uint64_t kGolden = 631951809076236731U;
   MappedCamera camera(12);
-  camera.walk(0, kFar);
-  camera.walk(kFar, 0);
+  camera.move(0, kFar);
+  camera.move(kFar, 0);
   Fingerprint bits;
   for (const std::byte byte : save(camera.map)) bits.add_byte(static_cast<std::uint8_t>(byte));
   EXPECT_EQ(bits.value(), kGolden);
@@ -177,8 +177,8 @@ class WrongMapFile : public testing::Test {
     static const Bytes bytes = [] {
       MappedCamera camera(12);
       for (int round = 0; round < 2; ++round) {
-        camera.walk(0, kFar);
-        camera.walk(kFar, 0);
+        camera.move(0, kFar);
+        camera.move(kFar, 0);
       }
       return save(camera.map);
     }();
@@ -314,7 +314,7 @@ TEST_F(WrongMapFile, NumbersThatCannotBe) {
   }
 }
 
-TEST(MapFile, RefusesWhatItCannotSaveOrLoad) {
+TEST(MapFile, RefusesToSaveAnEmptyMapOrIntoTooFewBytes) {
   Map map;
   Bytes bytes(100);
   SpanSink sink(bytes);
@@ -324,7 +324,7 @@ TEST(MapFile, RefusesWhatItCannotSaveOrLoad) {
   EXPECT_EQ(map.saved_bytes(), 0U);
   MappedCamera camera(12);
   EXPECT_EQ(camera.map.save(sink).code(), StatusCode::kNotFound);
-  camera.walk(0, 3);
+  camera.move(0, 3);
   const Status status = camera.map.save(sink);
   EXPECT_EQ(status.code(), StatusCode::kOutOfMemory);
   EXPECT_NE(std::string(status.message()).find("Map::saved_bytes()"), std::string::npos);
@@ -332,7 +332,7 @@ TEST(MapFile, RefusesWhatItCannotSaveOrLoad) {
 
 TEST(MapFile, TheHeaderSaysWhatIsNeeded) {
   MappedCamera camera(12);
-  camera.walk(0, kTurn);
+  camera.move(0, kTurn);
   const Bytes bytes = save(camera.map);
   SpanSource source(bytes);
   MapFileInfo info;

@@ -34,8 +34,8 @@ void say(const char* what, const MappedCamera& camera) {
 TEST(Map, CorrectsTheDriftWhereAPlaceComesBack) {
   MappedCamera camera(64);
   for (int round = 0; round < 3; ++round) {
-    camera.walk(0, kFar);
-    camera.walk(kFar, 0);
+    camera.move(0, kFar);
+    camera.move(kFar, 0);
   }
   camera.settle(0);
   say("there and back", camera);
@@ -47,7 +47,7 @@ TEST(Map, CorrectsTheDriftWhereAPlaceComesBack) {
 
 TEST(Map, FindsTheCameraThatWasCarriedBlind) {
   MappedCamera camera(64);
-  camera.walk(0, kTurn);
+  camera.move(0, kTurn);
   for (int i = 0; i < 40; ++i) camera.see(kDark);
   int frames = 0;
   for (int view = 30; view < 60; ++view) {
@@ -67,7 +67,7 @@ TEST(Map, FindsTheCameraThatWasCarriedBlind) {
 
 TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
   MappedCamera camera(64);
-  camera.walk(0, kTurn);
+  camera.move(0, kTurn);
   camera.odometry.reset();
   camera.see(40);
   EXPECT_LT(camera.result.T_world_camera.t.norm(), 1e-9);
@@ -91,10 +91,10 @@ TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
 TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   MappedCamera camera(64);
   for (int round = 0; round < 3; ++round) {
-    camera.walk(0, kTurn);
-    camera.walk(kTurn, 0);
+    camera.move(0, kTurn);
+    camera.move(kTurn, 0);
   }
-  camera.walk(0, 50);
+  camera.move(0, 50);
   const std::uint32_t last_of_the_first_room = camera.in_map.keyframe;
   const int compared = camera.map.counts().compared;
   // Wheels measure that the camera moves on by ten metres in the dark, into a room with the same walls.
@@ -106,8 +106,8 @@ TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   camera.see(30, wheels);
   EXPECT_GT(camera.result.T_world_camera.t.norm(), 5);
   EXPECT_LT(camera.result.pose_covariance(0, 0), 0.1);
-  camera.walk(31, kTurn);
-  camera.walk(kTurn, 0);
+  camera.move(31, kTurn);
+  camera.move(kTurn, 0);
   camera.settle(0);
   say("looks alike", camera);
   EXPECT_GT(camera.map.counts().compared, compared + 3) << "the views look alike";
@@ -122,8 +122,8 @@ TEST(Map, StaysWithinItsCapacityRoundAfterRound) {
   MappedCamera camera(12);
   std::vector<double> errors;
   for (int round = 0; round < 6; ++round) {
-    camera.walk(0, kFar);
-    camera.walk(kFar, 0);
+    camera.move(0, kFar);
+    camera.move(kFar, 0);
     errors.push_back(camera.error_m(1));
   }
   camera.settle(0);
@@ -157,7 +157,7 @@ TEST(Map, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(bits.value(), kGolden);
 }
 
-TEST(Map, AKeyframeTakesNoMoreThanItSays) {
+TEST(Map, AKeyframeTakesAtMostTheStatedBytes) {
   for (const int keyframes : {8, 63, 64, 65, 255, 256, 257, 511, 512}) {
     MapLimits limits;
     limits.keyframes = keyframes;
@@ -168,7 +168,7 @@ TEST(Map, AKeyframeTakesNoMoreThanItSays) {
   }
 }
 
-TEST(Map, RefusesWhatItCannotUse) {
+TEST(Map, RefusesInvalidArguments) {
   const CameraModel camera;
   Map map;
   std::vector<std::byte> memory(100);

@@ -52,7 +52,7 @@ Matrix6 covariance(double sigma_m, double sigma_rad) {
   return d.asDiagonal();
 }
 
-// A round walk of n keyframes, which ends where it began; the truth.
+// A closed trajectory of n keyframes, which ends where it began; the truth.
 std::vector<Se3> circle(int n) {
   std::vector<Se3> poses;
   for (int k = 0; k < n; ++k) {
@@ -64,7 +64,7 @@ std::vector<Se3> circle(int n) {
 }
 
 // The chain of a noisy odometry along these poses.
-void walk(PoseGraph& graph, const std::vector<Se3>& truth, std::uint64_t seed) {
+void append_all(PoseGraph& graph, const std::vector<Se3>& truth, std::uint64_t seed) {
   Random random(seed);
   for (std::size_t k = 0; k < truth.size(); ++k) {
     const Se3 motion = k == 0 ? truth[0] : truth[k - 1].inverse() * truth[k];
@@ -151,7 +151,7 @@ TEST(PoseGraph, FindsTheSolutionOfADenseSolver) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const std::vector<Se3> truth = circle(25);
     Graph g(30);
-    walk(g.graph, truth, seed);
+    append_all(g.graph, truth, seed);
     Random random(seed, 7);
     for (const auto& [a, b] : {std::pair{0, 24}, {3, 20}, {1, 23}}) {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
@@ -179,7 +179,7 @@ TEST(PoseGraph, BoundsTheWorkOfAStep) {
   constexpr int kNodes = 512;
   const std::vector<Se3> truth = circle(kNodes);
   Graph g(kNodes);
-  walk(g.graph, truth, 5);
+  append_all(g.graph, truth, 5);
   g.graph.add_loop(g.graph.slot_at(0), g.graph.last(), truth.front().inverse() * truth.back(),
                    covariance(0.01, 0.01));
   const int steps = g.solve();
@@ -191,11 +191,11 @@ TEST(PoseGraph, BoundsTheWorkOfAStep) {
   EXPECT_LT((g.graph.node(g.graph.last()).T_map_keyframe.t - truth.back().t).norm(), 0.05);
 }
 
-TEST(PoseGraph, MovesWhatWasNotSeenAndKeepsWhatWas) {
+TEST(PoseGraph, MovesUncertainMotionsAndKeepsCertainOnes) {
   // Between keyframes 9 and 10 nothing was seen: the odometry went on at a wrong place.
   const std::vector<Se3> truth = circle(20);
   Graph g(20);
-  walk(g.graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
+  append_all(g.graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
   g.graph.append({rotation_exp({0.3, -2, 0.4}), {30, -20, 10}}, covariance(100, 3));
   for (std::size_t k = 11; k < 20; ++k)
     g.graph.append(truth[k - 1].inverse() * truth[k], covariance(kStep_m, kStep_rad));
@@ -214,7 +214,7 @@ TEST(PoseGraph, APartMovesAsAWholeToWhereItsPlaceIsFound) {
   for (const bool swapped : {false, true}) {
     Graph g(20);
     PoseGraph& graph = g.graph;
-    walk(graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
+    append_all(graph, std::vector<Se3>(truth.begin(), truth.begin() + 10), 3);
     graph.append(Se3(), covariance(100, 3), graph.next_id());
     for (std::size_t k = 11; k < 20; ++k)
       graph.append(truth[k - 1].inverse() * truth[k], covariance(kStep_m, kStep_rad));
@@ -273,11 +273,11 @@ TEST(PoseGraph, TheCovarianceIsAtLeastTheMarginalOfTheDenseProblem) {
 
 // At each step the stated covariance must contain the error: what a loop tells may not make it small before
 // the pose has moved.
-TEST(PoseGraph, TheCovarianceShrinksNotBeforeThePoseMoves) {
+TEST(PoseGraph, TheCovarianceShrinksOnlyWithThePose) {
   constexpr int kNodes = 200;
   const std::vector<Se3> truth = circle(kNodes);
   Graph g(kNodes);
-  walk(g.graph, truth, 5);
+  append_all(g.graph, truth, 5);
   const std::uint16_t last = g.graph.last();
   const auto nees = [&] {
     const PoseGraph::Node& node = g.graph.node(last);
@@ -300,7 +300,7 @@ TEST(PoseGraph, TheCovarianceShrinksNotBeforeThePoseMoves) {
 TEST(PoseGraph, ARemovedNodeLeavesItsMotionsAndLoops) {
   const std::vector<Se3> truth = circle(10);
   Graph g(10);
-  walk(g.graph, truth, 4);
+  append_all(g.graph, truth, 4);
   g.graph.add_loop(g.graph.slot_at(1), g.graph.slot_at(8), truth[1].inverse() * truth[8],
                    covariance(0.01, 0.01));
   const std::vector<Se3> before = poses_of(g.graph);
@@ -325,7 +325,7 @@ TEST(PoseGraph, ARemovedNodeLeavesItsMotionsAndLoops) {
 TEST(PoseGraph, KeepsTheMoreCertainLoopsWhenFull) {
   const std::vector<Se3> truth = circle(6);
   Graph g(6);
-  walk(g.graph, truth, 1);
+  append_all(g.graph, truth, 1);
   double sigma = 0.1;
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = i + 2; j < 6; ++j, sigma -= 0.005)

@@ -12,7 +12,7 @@
 namespace plvo {
 namespace {
 
-// Of this rank, with standard deviations over many orders of magnitude.
+// A covariance of this rank, with standard deviations over many orders of magnitude.
 Matrix6 random_covariance(Random& random, int rank) {
   Matrix6 C = Matrix6::Zero();
   Vector6 deviation;
@@ -28,7 +28,7 @@ Matrix6 random_covariance(Random& random, int rank) {
   return C;
 }
 
-TEST(Covariance, WhatIsOneStaysAsItIs) {
+TEST(Covariance, LeavesAValidCovarianceUnchanged) {
   Random random(1);
   for (int i = 0; i < 500; ++i) {
     const Matrix6 before = random_covariance(random, i % 7);
@@ -39,7 +39,7 @@ TEST(Covariance, WhatIsOneStaysAsItIs) {
   }
 }
 
-TEST(Covariance, WhatIsNoneBecomesOneNearby) {
+TEST(Covariance, RepairsAnInvalidCovarianceToANearbyOne) {
   Random random(2);
   for (int i = 0; i < 500; ++i) {
     Matrix6 C = random_covariance(random, 6);
@@ -65,7 +65,7 @@ TEST(Covariance, WhatIsNoneBecomesOneNearby) {
   }
 }
 
-TEST(Covariance, NoVarianceIsBeyondItsBoundAndCorrelationsStay) {
+TEST(Covariance, BoundsVariancesAndKeepsCorrelations) {
   Random random(3);
   for (int i = 0; i < 200; ++i) {
     Matrix6 C = random_covariance(random, 6) * 1e12;
@@ -79,7 +79,7 @@ TEST(Covariance, NoVarianceIsBeyondItsBoundAndCorrelationsStay) {
   }
 }
 
-TEST(Covariance, WhatIsNotFiniteIsRefused) {
+TEST(Covariance, RefusesMatricesThatAreNotFinite) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Matrix6 C = Matrix6::Identity();
@@ -94,7 +94,7 @@ TEST(Covariance, WhatIsNotFiniteIsRefused) {
 }
 
 // A lever arm of a kilometre, taken and given back: the position's variance is all but cancelled.
-TEST(Covariance, ALeverArmThatIsTakenBackLeavesOne) {
+TEST(Covariance, StaysValidAfterAReversedLeverArm) {
   Random random(4);
   int spoilt = 0;
   for (int i = 0; i < 100; ++i) {

@@ -10,7 +10,7 @@
 namespace plvo {
 namespace {
 
-// Of motions, whose rotations are surer than their translations.
+// A covariance of a motion, with smaller variances of the rotation than of the translation.
 Matrix6 some_covariance(std::mt19937_64& random, double sigma) {
   std::normal_distribution<double> normal;
   Matrix6 root;
@@ -37,10 +37,10 @@ struct Said {
   Vector2 with, without;
 };
 
-// Frames that are matched with a keyframe, which errs by a + v, and with the frame before, which errs by q
-// more than that frame's own pose; a is the same for ever, v and q are new. The weights take all for new.
-// What then comes out errs by e, whose covariance is known exactly from frame to frame, as that of e and a
-// together.
+// Frames that are matched with a keyframe and with the frame before. The matches with the keyframe have the
+// error a + v. Those with the frame before have the error q in addition to that of the frame's pose. a is the
+// same for all frames; v and q are independent. The weights of the estimate assume that all are independent.
+// The covariance of the resulting error e, jointly with a, follows exactly from frame to frame.
 Said after(int frames, double share, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const Matrix6 R = some_covariance(random, 0.01), Q = some_covariance(random, 0.003);
@@ -58,7 +58,7 @@ Said after(int frames, double share, std::uint64_t seed) {
   return {ratios(C + D, of_e), ratios(C, of_e)};
 }
 
-TEST(RepeatedError, IsWhatTheCovarianceLacksExactly) {
+TEST(CommonModeError, EqualsTheMissingCovarianceOfALinearModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     for (const double share : {0.0, 0.3, 0.6, 1.0})
       for (const int frames : {2, 10, 100}) {
@@ -71,7 +71,7 @@ TEST(RepeatedError, IsWhatTheCovarianceLacksExactly) {
       }
 }
 
-TEST(RepeatedError, IsNoneWithoutOthersAndStaysWithoutABase) {
+TEST(CommonModeError, IsZeroWithoutOtherReferencesAndKeptWithoutABase) {
   std::mt19937_64 random(3);
   const Matrix6 H = test::inverse(some_covariance(random, 0.01)), D = some_covariance(random, 0.02);
   EXPECT_LT(common_mode_error({H, Matrix6::Zero()}, D, 0.6).norm(), 1e-12 * D.norm());
@@ -80,7 +80,7 @@ TEST(RepeatedError, IsNoneWithoutOthersAndStaysWithoutABase) {
 }
 
 // The keyframe goes out of view: the two errors cannot be more alike than both being one.
-TEST(RepeatedError, IsNoMoreThanErrorsThatAreWhollyAlike) {
+TEST(CommonModeError, IsAtMostThatOfFullyCorrelatedErrors) {
   std::mt19937_64 random(5);
   for (const double grown : {1.0, 10.0, 1e4}) {
     const Matrix6 R = grown * some_covariance(random, 0.01), S = some_covariance(random, 0.003);

@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(KindsAndLosses, Gradient,
 // The gauge: which end is called A, in either frame, how long the measured stretch of the landmark is stated
 // to be, and a common rotation of the reference axes (which turns the basis across every line) must not show
 // in C_L.
-TEST(Gauge, DoesNotShowInTheCovariance) {
+TEST(Gauge, DoesNotChangeTheCovariance) {
   Gaussian gaussian(35);
   Bench bench;
   const SimulatedPair pair = test::simulate(gaussian, 0, 12);

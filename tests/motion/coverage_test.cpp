@@ -44,7 +44,7 @@ TEST(Coverage, ALineCountsForTheCellsThatItSpansUpToFour) {
   EXPECT_DOUBLE_EQ(coverage.evidence(line(1)), 8);
 }
 
-TEST(Coverage, WhatLiesBeyondTheGridCountsToItsBorder) {
+TEST(Coverage, FeaturesBeyondTheGridCountInItsBorderCells) {
   Coverage coverage;
   coverage.count(point_at(50, -50, 1));
   coverage.count(point_at(60, -70, 1));

@@ -92,7 +92,7 @@ TEST(Estimator, TheMotionOfTheLargerPartOfTheSceneWins) {
 }
 
 // Without the room the object is all there is.
-TEST(Estimator, ALonelyObjectIsTheScene) {
+TEST(Estimator, KeepsAMotionWithoutARivalInTheScene) {
   Gaussian gaussian(24);
   Bench bench;
   TwoMotions scene(gaussian, 60);
@@ -104,7 +104,7 @@ TEST(Estimator, ALonelyObjectIsTheScene) {
   EXPECT_LT(test::nees(estimate.T_current_reference, scene.object, test::inverse(estimate.C_H)), 30);
 }
 
-TEST(Estimator, NothingToWorkWith) {
+TEST(Estimator, NoMatchesGiveTooFewFeatures) {
   Bench bench;
   const SimulatedPair pair;
   const MotionEstimate estimate = bench.estimate(pair);
@@ -143,7 +143,7 @@ struct DrawnPair {
   MotionEstimate drawn;
 };
 
-TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
+TEST(Estimator, RefinesAnAgreeingPredictionWithoutHypotheses) {
   DrawnPair pair(17, 200, 40, 0.2);
   ASSERT_EQ(pair.drawn.status, StatusCode::kOk);
   Vector6 off;
@@ -161,7 +161,7 @@ TEST(Estimator, AnEstimateThatHoldsIsRefinedWithoutHypotheses) {
 }
 
 // Nothing, little or much of the matches may agree with an estimate, at first or when it is refined.
-TEST(Estimator, HoweverFarOffAnEstimateIsTheMotionIsFound) {
+TEST(Estimator, FindsTheMotionFromAnyInitialEstimate) {
   DrawnPair pair(23, 100, 30, 0.3);
   ASSERT_EQ(pair.drawn.status, StatusCode::kOk);
   Vector6 off;
@@ -175,7 +175,7 @@ TEST(Estimator, HoweverFarOffAnEstimateIsTheMotionIsFound) {
 }
 
 // As the odometry stops: what is left is small beside what the matches can tell.
-TEST(Estimator, ALastStepUnseenIsAsGoodAsSeen) {
+TEST(Estimator, ALastStepWithoutEvaluationIsAsAccurate) {
   Gaussian gaussian(19);
   Bench bench;
   for (int trial = 0; trial < 30; ++trial) {
@@ -183,17 +183,17 @@ TEST(Estimator, ALastStepUnseenIsAsGoodAsSeen) {
     const Se3 near = boxplus(pair.truth, 3e-3 * gaussian.vector<6>());
     const MotionStart start(&near, {}, true);
     const MotionEstimate exact = bench.estimate(pair, {}, 42, start, {.step_tolerance = 1e-12});
-    const MotionEstimate unseen = bench.estimate(pair, {}, 42, start, {.decrease_tolerance = 2e-2});
+    const MotionEstimate unchecked = bench.estimate(pair, {}, 42, start, {.decrease_tolerance = 2e-2});
     ASSERT_EQ(exact.status, StatusCode::kOk);
-    ASSERT_EQ(unseen.status, StatusCode::kOk);
-    EXPECT_LE(unseen.lm.iterations, exact.lm.iterations);
+    ASSERT_EQ(unchecked.status, StatusCode::kOk);
+    EXPECT_LE(unchecked.lm.iterations, exact.lm.iterations);
     const double left =
-        test::nees(unseen.T_current_reference, exact.T_current_reference, test::inverse(exact.C_H));
+        test::nees(unchecked.T_current_reference, exact.T_current_reference, test::inverse(exact.C_H));
     EXPECT_LT(left, 0.05 * 0.05) << trial;
   }
 }
 
-TEST(Estimator, NaNsAreLeftOut) {
+TEST(Estimator, LeavesOutMatchesWithNaN) {
   Gaussian gaussian(12);
   SimulatedPair pair = test::simulate(gaussian, 60, 20);
   pair.points_reference[3].p.x() = kNaN;
@@ -211,7 +211,7 @@ TEST(Estimator, NaNsAreLeftOut) {
   for (int i : {3, 4, 5}) EXPECT_EQ(bench.points[0].inliers()[static_cast<std::size_t>(i)], 0);
 }
 
-TEST(Estimator, OneWrongHugeCovarianceDoesNoHarm) {
+TEST(Estimator, MatchesWithAHugeCovarianceDoNotChangeTheEstimate) {
   Gaussian gaussian(13);
   SimulatedPair pair = test::simulate(gaussian, 60, 20);
   Bench bench;
@@ -261,7 +261,7 @@ TEST(Estimator, ParallelLinesAreDegenerate) {
   expect_refused(pair);
 }
 
-TEST(Estimator, CoplanarFeaturesAreFine) {
+TEST(Estimator, CoplanarFeaturesDetermineTheMotion) {
   Gaussian gaussian(16);
   SimulatedPair pair;
   pair.truth = test::random_motion(gaussian);
@@ -275,7 +275,7 @@ TEST(Estimator, CoplanarFeaturesAreFine) {
   EXPECT_EQ(bench.estimate(pair).status, StatusCode::kOk) << "lines alone";
 }
 
-TEST(Estimator, NoiseAloneIsNoConsensus) {
+TEST(Estimator, RandomMatchesGiveNoConsensus) {
   Gaussian gaussian(17);
   const SimulatedPair pair = test::simulate(gaussian, 60, 20, 1.0);
   Bench bench;
@@ -284,7 +284,7 @@ TEST(Estimator, NoiseAloneIsNoConsensus) {
   expect_finite(estimate);
 }
 
-TEST(Estimator, BoundsHold) {
+TEST(Estimator, IterationsStayWithinTheirBounds) {
   Gaussian gaussian(18);
   const SimulatedPair pair = test::simulate(gaussian, 100, 30, 0.9);
   Bench bench;
@@ -297,7 +297,7 @@ TEST(Estimator, BoundsHold) {
   expect_finite(estimate);
 }
 
-TEST(Estimator, APredictionIsHypothesisZero) {
+TEST(Estimator, ThePredictionIsTheFirstHypothesis) {
   Gaussian gaussian(19);
   const SimulatedPair pair = test::simulate(gaussian, 60, 20, 0.5);
   Bench bench;
@@ -313,7 +313,7 @@ TEST(Estimator, APredictionIsHypothesisZero) {
   expect_finite(bench.estimate(pair, {}, 1, &broken));
 }
 
-TEST(Estimator, AFullArenaIsSaid) {
+TEST(Estimator, ReportsATooSmallArena) {
   Gaussian gaussian(20);
   const SimulatedPair pair = test::simulate(gaussian, 60, 0);
   Bench bench;
@@ -325,7 +325,7 @@ TEST(Estimator, AFullArenaIsSaid) {
             StatusCode::kOutOfMemory);
 }
 
-TEST(Estimator, ScratchIsGivenBackAndItsSizeIsKnown) {
+TEST(Estimator, ReleasesItsScratchAndTakesTheStatedSize) {
   Gaussian gaussian(21);
   const SimulatedPair pair = test::simulate(gaussian, 100, 30);
   constexpr std::size_t kNeeded = [] {
@@ -390,7 +390,7 @@ class PlaneSamples final : public ConstraintSet {
   std::span<const Sample> samples_;
 };
 
-TEST(Estimator, AThirdKindMovesInWithoutTouchingRansacOrTheSolver) {
+TEST(Estimator, AcceptsAnotherKindOfConstraint) {
   Gaussian gaussian(22);
   double error_without = 0, error_with = 0, sum_nees = 0;
   for (int trial = 0; trial < 50; ++trial) {

@@ -84,7 +84,7 @@ struct DenseTwelve {
   Matrix6 A, B;
 };
 
-TEST(TwoReferences, MarginaliseTheirPoseAsADenseProblemDoes) {
+TEST(TwoReferences, EliminationOfThePoseEqualsADenseProblem) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     TwoReferences two(seed, 40, 0);
     const Matrix6 C = some_covariance(seed);
@@ -117,7 +117,7 @@ TEST(TwoReferences, MarginaliseTheirPoseAsADenseProblemDoes) {
   }
 }
 
-TEST(TwoReferences, ACovarianceWithoutSomeDirectionsIsTakenAsItIs) {
+TEST(TwoReferences, AcceptsASingularCovariance) {
   // Known exactly but for one direction: rank one, which has no inverse and no Cholesky factor of its own.
   TwoReferences two(8, 40, 0);
   const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);

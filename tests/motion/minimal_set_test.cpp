@@ -66,7 +66,7 @@ TEST_P(Kinds, ExactDataGiveTheExactMotion) {
   EXPECT_GT(solved, 80);
 }
 
-TEST_P(Kinds, NoisyDataAreNotThrownAway) {
+TEST_P(Kinds, AcceptsNoisyData) {
   const int points = GetParam();
   Gaussian gaussian(52);
   Bench bench;
@@ -115,7 +115,7 @@ TEST(MinimalSet, DegenerateSetsAreRejected) {
             MinimalSetStatus::kSolved);
 }
 
-TEST(MinimalSet, WhatIsNotRigidIsRejected) {
+TEST(MinimalSet, RejectsSetsWithoutARigidMotion) {
   Gaussian gaussian(54);
   const Se3 T = test::random_motion(gaussian);
   const Vector3 p(0.1, 0.2, 2), right(1, 0, 0), up(0, 1, 0), ahead(0, 0, 1);

@@ -30,7 +30,7 @@ struct OnePrior {
   PriorConstraint set;
 };
 
-TEST(MotionPrior, RefusesWhatIsNone) {
+TEST(MotionPrior, RefusesInvalidPriors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(MotionPrior().validate().ok()) << "nothing is said, and nothing is wrong";
   MotionPrior good;
@@ -114,7 +114,7 @@ TEST(PriorConstraint, AddsItsInformationToThatOfVision) {
 }
 
 // All lines parallel: nothing is seen of the motion along them.
-TEST(PriorConstraint, HoldsWhatVisionLeavesOpen) {
+TEST(PriorConstraint, DeterminesDirectionsThatVisionLeavesOpen) {
   Gaussian gaussian(7);
   SimulatedPair pair;
   pair.truth = test::random_motion(gaussian);
@@ -195,7 +195,7 @@ TEST(PriorConstraint, AGyroDecidesWhichOfTwoMotionsIsTheCameras) {
   }
 }
 
-TEST(PriorConstraint, TheJointCovarianceIsHonest) {
+TEST(PriorConstraint, TheJointCovarianceMatchesTheErrors) {
   Gaussian gaussian(11);
   double nees = 0;
   constexpr int kTrials = 300;
@@ -220,7 +220,7 @@ TEST(PriorConstraint, TheJointCovarianceIsHonest) {
 
 // The prior is of the motion from the last frame, the estimate from a keyframe whose distance to it is
 // uncertain: the prior alone must come out as what both covariances make.
-TEST(PriorConstraint, OfTheLastFrameIsCarriedToTheKeyframe) {
+TEST(PriorConstraint, IsTransformedFromTheLastFrameToTheKeyframe) {
   Gaussian gaussian(13);
   const Se3 T_last_keyframe = test::random_motion(gaussian);
   const Se3 T_current_last = test::random_motion(gaussian);

@@ -47,7 +47,7 @@ SimulatedPair falsified(SimulatedPair pair, const NuisanceParameters& shared) {
   return pair;
 }
 
-TEST(NuisanceParameters, ATurnThatWasNotKnownMovesPointsAsTheShutterSays) {
+TEST(NuisanceParameters, TheAngularRateErrorMovesPointsByTheirRowTime) {
   const CameraModel camera = rolling_camera();
   const NuisanceParameters shared = nuisance_parameters();
   Gaussian gaussian(3);
@@ -67,7 +67,7 @@ TEST(NuisanceParameters, ATurnThatWasNotKnownMovesPointsAsTheShutterSays) {
   }
 }
 
-TEST(NuisanceParameters, DepthsErrorGrowsWithItsSquareAlongTheRay) {
+TEST(NuisanceParameters, TheDepthErrorGrowsWithTheSquareOfDepthAlongTheRay) {
   NuisanceParameters shared = nuisance_parameters();
   shared.value[NuisanceField::kAngularRate] = 0.002;
   const Vector3 ray(0.3, -0.2, 1);
@@ -77,14 +77,15 @@ TEST(NuisanceParameters, DepthsErrorGrowsWithItsSquareAlongTheRay) {
   }
 }
 
-TEST(NuisanceParameters, AGlobalShutterHasNoErrorOfTurning) {
+TEST(NuisanceParameters, AGlobalShutterHasNoAngularRateError) {
   const NuisanceParameters shared(Exposure(), 1, 0);
   EXPECT_FALSE(shared.any());
   EXPECT_EQ(shared.sigma(0), 0);
 }
 
-// Gradient of either kind by the shared errors against central differences of its cost.
-TEST(NuisanceParameters, TheGradientByThemIsThatOfTheCost) {
+// The gradient of points and of lines with respect to the nuisance parameters, compared with central
+// differences of the cost.
+TEST(NuisanceParameters, TheirGradientMatchesDifferencesOfTheCost) {
   Gaussian gaussian(4);
   for (const bool of_lines : {false, true}) {
     Bench bench;
@@ -119,7 +120,7 @@ TEST(NuisanceParameters, TheGradientByThemIsThatOfTheCost) {
 }
 
 // With points alone the whole problem is a quadratic in β: one elimination is exact.
-TEST(NuisanceParameters, AreEliminatedAsADenseSystemIs) {
+TEST(NuisanceParameters, EliminationEqualsADenseSystem) {
   Gaussian gaussian(5);
   Bench bench;
   NuisanceParameters shared = nuisance_parameters();
@@ -158,7 +159,7 @@ TEST(NuisanceParameters, AreEliminatedAsADenseSystemIs) {
 }
 
 // What the model is for: measurements with such errors, estimated with and without it.
-TEST(NuisanceParameters, TheCovarianceKnowsOfThem) {
+TEST(NuisanceParameters, TheCovarianceContainsTheirUncertainty) {
   Gaussian gaussian(6);
   constexpr int kTrials = 200;
   double with = 0, without = 0, error_with = 0, error_without = 0;

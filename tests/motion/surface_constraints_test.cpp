@@ -103,7 +103,7 @@ TEST(SurfaceConstraints, TheGradientIsThatOfTheCost) {
   }
 }
 
-TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
+TEST(SurfaceConstraints, AStrideOfFourEqualsASetOfEveryFourthMatch) {
   Gaussian gaussian(21);
   const Walls walls(gaussian, room(), 40, 0.004, 0.03);
   Walls fewer = walls;
@@ -124,7 +124,7 @@ TEST(SurfaceConstraints, EveryFourthAloneIsAsIfThereWereNoOthers) {
 }
 
 // The slow, obvious statement: all parameters in one dense system, match by match, those of the set last.
-TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
+TEST(SurfaceConstraints, EliminationOfCommonErrorsEqualsADenseSystem) {
   Gaussian gaussian(12);
   Walls walls(gaussian, room(), 40, 0.004, 0.02, {1.2, -0.7});
   for (SurfaceMatch& match : walls.matches) match.delay_s = gaussian.uniform(-0.02, 0.02);
@@ -151,7 +151,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
     Dense V(3, kAll);
     V << Dense::Identity(3, 3), -Dense(skew(T.R * match.p_reference)), F, Dense(match.common);
     const DenseVector n = match.normal;
-    // Weights are those of where the solve began, with none of the shared errors.
+    // The weights are those at the start of the solve, without nuisance parameters.
     double weight = 1;
     (void)kKernel(set.constraints.mahalanobis_squared(i, walls.truth), weight);
     const Dense M =
@@ -175,7 +175,7 @@ TEST(SurfaceConstraints, WhatTheyShareIsEliminatedAsADenseSystemIs) {
   EXPECT_NEAR(cost, expected_cost, 1e-9 * plain);
 }
 
-TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
+TEST(SurfaceConstraints, TheCovarianceMatchesTheErrors) {
   Gaussian gaussian(13);
   constexpr int kTrials = 300;
   double nees = 0;
@@ -200,7 +200,7 @@ TEST(SurfaceConstraints, TheCovarianceIsThatOfTheErrors) {
 
 // Walls, floor and ceiling of a corridor along z; the normals are off by two degrees, as those of small
 // windows are.
-TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
+TEST(SurfaceConstraints, ACorridorsWallsDoNotConstrainMotionAlongIt) {
   Gaussian gaussian(14);
   constexpr int kTrials = 100;
   double along = 0;
@@ -229,7 +229,7 @@ TEST(SurfaceConstraints, ACorridorsWallsSayNothingAlongIt) {
   EXPECT_GT(across, 3e6);
 }
 
-TEST(SurfaceConstraints, JudgesItsOwnAndStaysOutOfRansac) {
+TEST(SurfaceConstraints, SelectsItsOwnInliersOutsideOfRansac) {
   Gaussian gaussian(15);
   Walls walls(gaussian, room(), 50, 0.004, 0.01);
   walls.matches[3].p_current += 0.1 * walls.matches[3].normal;

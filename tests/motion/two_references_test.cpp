@@ -43,7 +43,7 @@ TEST(TwoReferences, WithAnExactPoseAreOneProblem) {
     }
 }
 
-// Of the pair's matches every second one, the first of them or the one after it.
+// Every second match of the pair, from the match with this index on.
 SimulatedPair half_of(const SimulatedPair& pair, std::size_t first) {
   SimulatedPair half = pair;
   half.point_matches.clear();
@@ -55,7 +55,7 @@ SimulatedPair half_of(const SimulatedPair& pair, std::size_t first) {
   return half;
 }
 
-TEST(ThreeReferences, TwoOfThemWithOnePoseAreOne) {
+TEST(ThreeReferences, TwoReferencesWithOnePoseEqualOne) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     // Points alone: their information does not depend on where landmarks have settled.
     TwoReferences two(seed, 40, 0);
@@ -115,7 +115,7 @@ TEST(TwoReferences, WithAnExactPoseGiveTheEstimateOfOne) {
   }
 }
 
-TEST(TwoReferences, AnExactPoseAndAnUnknownOneAreTheLimits) {
+TEST(TwoReferences, ExactAndUnknownPosesAreTheLimits) {
   TwoReferences two(7, 30, 10);
   const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
   const std::span<ConstraintSet* const> first(sets.data(), 2);
@@ -141,7 +141,7 @@ TEST(TwoReferences, AnExactPoseAndAnUnknownOneAreTheLimits) {
 
 // A pose that is wrong by many of its SDs, with robust weights: the solution is a minimum of the cost over
 // the motion and the pose together, and both come near the truth.
-TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
+TEST(TwoReferences, EstimatesAReferencePoseThatIsFarOff) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     TwoReferences two(seed, 60, 0);
     const auto sets = two.sets_of(two.pairs[0], two.pairs[1], 1);
@@ -156,7 +156,7 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
     const LmSummary summary = solver.solve(problem, {});
     ASSERT_TRUE(converged(summary.status)) << static_cast<int>(summary.status);
 
-    // Of the motion, and of the pose in its SDs, about the solution.
+    // The cost around the solution, as a function of the motion, and of the pose in units of its SDs.
     const MotionReference found = problem.poses()[1];
     const auto cost = [&](const Vector6& of_motion, const Vector6& of_pose) {
       MotionReferences exact;
@@ -178,9 +178,9 @@ TEST(TwoReferences, APoseThatIsFarOffIsEstimatedWithTheMotion) {
   }
 }
 
-// The pose and the shared errors are eliminated together: what both are moved to, the motion held, is what
-// one dense system of them says.
-TEST(TwoReferences, APoseAndNuisanceParametersMoveAsADenseSystemSays) {
+// The pose and the nuisance parameters are eliminated together: for a given motion, both move as the solution
+// of one dense system of both says.
+TEST(TwoReferences, PosesAndNuisanceParametersEqualADenseSystem) {
   CameraModel camera;
   camera.readout_s = 0.03;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

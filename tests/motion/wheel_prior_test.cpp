@@ -92,7 +92,7 @@ TEST(WheelPrior, DrivesStraightAheadAlongTheCamerasAxis) {
   EXPECT_NEAR(turn.t.z(), -0.2 * (1 - std::cos(0.1)), 1e-12);
 }
 
-TEST(WheelPrior, StepsInPiecesGiveTheSameMotion) {
+TEST(WheelPrior, DividedStepsGiveTheSameMotion) {
   std::vector<WheelStep> pieces;
   for (const WheelStep& step : some_steps())
     for (int k = 0; k < 7; ++k) pieces.push_back({step.seconds / 7, step.twist, step.covariance});
@@ -105,7 +105,7 @@ TEST(WheelPrior, StepsInPiecesGiveTheSameMotion) {
 }
 
 // Rounding of the series where it is longest, and a step without a turn.
-TEST(WheelPrior, HoldsForHalfATurnAndForNone) {
+TEST(WheelPrior, IsCorrectForHalfATurnAndForNoRotation) {
   WheelStep step{1, Vector6::Zero(), Matrix6::Identity()};
   step.twist << 3, 1, 0, 0, 0, 3.14159;
   EXPECT_LT(boxminus(motion(prior_of({step}, 0, {})), slow_motion({step}).inverse()).norm(), 1e-3);
@@ -152,7 +152,7 @@ TEST(WheelPrior, CovarianceIsTheScatterOfMonteCarlo) {
   }
 }
 
-TEST(WheelPrior, RefusesWhatIsNoStep) {
+TEST(WheelPrior, RefusesInvalidSteps) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const std::vector<WheelStep>& steps, double error_s, const Se3& T,
                           const char* word) {

@@ -18,7 +18,7 @@ namespace plvo {
 namespace {
 
 constexpr int kImageWidth = 320, kImageHeight = 240;
-constexpr int kFramesOfWalk = 40;
+constexpr int kFrames = 40;
 
 // Changes the images of a frame.
 using ImageChange = void (*)(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth);
@@ -56,7 +56,7 @@ void bumper(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth
     }
 }
 
-struct WalkOutcome {
+struct Outcome {
   double worst_m = 0;     // largest error of a position
   double worst_nees = 0;  // of a position that is called tracked: squared, by the covariance of the pose
   int lost = 0;
@@ -64,16 +64,16 @@ struct WalkOutcome {
   int low_keypoints = 0;  // in the lowest fifth of the last image
 };
 
-WalkOutcome walk_with(ImageChange change) {
+Outcome track_with(ImageChange change) {
   ProceduralSequence sequence(kImageWidth, kImageHeight);
   const Limits limits{kImageWidth, kImageHeight};
   std::vector<std::byte> memory(required_bytes(limits));
   Odometry odometry;
   const Status status = odometry.init(memory, sequence.camera(), Config(), limits);
   EXPECT_TRUE(status.ok()) << status.message();
-  WalkOutcome outcome;
+  Outcome outcome;
   const Se3 T_first_world = ProceduralSequence::T_world_camera(0).inverse();
-  for (int i = 0; i < kFramesOfWalk; ++i) {
+  for (int i = 0; i < kFrames; ++i) {
     RgbdFrame frame = sequence.render(i);
     std::vector<std::uint8_t> colour(frame.colour.data, frame.colour.data + 3 * kImageWidth * kImageHeight);
     std::vector<std::uint16_t> depth(frame.depth.data, frame.depth.data + kImageWidth * kImageHeight);
@@ -100,14 +100,14 @@ WalkOutcome walk_with(ImageChange change) {
 }
 
 TEST(Carried, NothingIsCarriedWhereNothingTravelsWithTheCamera) {
-  const WalkOutcome outcome = walk_with(no_change);
+  const Outcome outcome = track_with(no_change);
   EXPECT_EQ(outcome.told, "");
   EXPECT_LT(outcome.worst_m, 0.02);
   EXPECT_GT(outcome.low_keypoints, 0);
 }
 
 TEST(Carried, APartOfTheRobotIsLeftOutAndTold) {
-  const WalkOutcome outcome = walk_with(bumper);
+  const Outcome outcome = track_with(bumper);
   EXPECT_NE(outcome.told.find("rows 180 to 239"), std::string::npos) << outcome.told;
   EXPECT_EQ(outcome.lost, 0);
   EXPECT_LT(outcome.worst_m, 0.02);
@@ -117,7 +117,7 @@ TEST(Carried, APartOfTheRobotIsLeftOutAndTold) {
 // The dots seem to be a world at rest, until enough of them lie on surfaces whose depths have changed. Left
 // in, they would keep the camera where it began, half a metre beside the truth.
 TEST(Carried, DotsOfAProjectorAreFoundByTheDepthBehindThem) {
-  const WalkOutcome outcome = walk_with(dots);
+  const Outcome outcome = track_with(dots);
   EXPECT_NE(outcome.told, "");
   EXPECT_LT(outcome.worst_m, 0.35);
   EXPECT_EQ(outcome.low_keypoints, 0);

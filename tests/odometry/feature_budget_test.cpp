@@ -150,7 +150,7 @@ TEST_F(BudgetedOdometry, ReplacesAKeyframeWithTooManyFeatures) {
 }
 
 TEST_F(BudgetedOdometry, EqualDurationsGiveEqualBits) {
-  const auto walk = [this](const Config& config, bool tell) {
+  const auto track = [this](const Config& config, bool tell) {
     init(config);
     std::vector<std::uint64_t> prints;
     for (int i = 0; i < 10; ++i) {
@@ -159,12 +159,12 @@ TEST_F(BudgetedOdometry, EqualDurationsGiveEqualBits) {
     }
     return prints;
   };
-  const auto first = walk(budgeted(), true);
-  EXPECT_EQ(walk(budgeted(), true), first);
-  const auto plain = walk(Config{}, false);
+  const auto first = track(budgeted(), true);
+  EXPECT_EQ(track(budgeted(), true), first);
+  const auto plain = track(Config{}, false);
   EXPECT_NE(plain, first);
-  EXPECT_EQ(walk(Config{}, true), plain) << "durations have no effect without a budget";
-  EXPECT_EQ(walk(budgeted(), false), plain) << "a budget has no effect without durations";
+  EXPECT_EQ(track(Config{}, true), plain) << "durations have no effect without a budget";
+  EXPECT_EQ(track(budgeted(), false), plain) << "a budget has no effect without durations";
 }
 
 TEST_F(BudgetedOdometry, RefusesABudgetOutOfRange) {

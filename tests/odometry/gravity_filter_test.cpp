@@ -146,11 +146,11 @@ TEST(GravityFilter, LevelsTheWorldByAReading) {
 // the first pose, and with the smaller covariance after more readings.
 TEST(GravityFilter, TiltOfALevelWorldAgreesWithItsCovariance) {
   constexpr double kNoise = 0.05, kOffset = 0.02, kStep = 1e-3;
-  constexpr int kWalks = 400, kReadings = 60;
+  constexpr int kRuns = 400, kReadings = 60;
   const Vector3 y(0, 1, 0);
   Gaussian random(11);
   double nees_first = 0, nees_last = 0, first = 0, last = 0;
-  for (int walk = 0; walk < kWalks; ++walk) {
+  for (int run = 0; run < kRuns; ++run) {
     Matrix3 R_true = rotation_exp(normal3(random, 0.4));
     const Vector3 offset = normal3(random, kOffset);
     const auto reading = [&] {
@@ -169,8 +169,8 @@ TEST(GravityFilter, TiltOfALevelWorldAgreesWithItsCovariance) {
       const Vector2 omega(-off.z(), off.x());
       Matrix2 C;
       C << pose.covariance(3, 3), pose.covariance(3, 5), pose.covariance(5, 3), pose.covariance(5, 5);
-      tilt += omega.squaredNorm() / kWalks;
-      nees += omega.dot(Vector2(C.inverse() * omega)) / kWalks;
+      tilt += omega.squaredNorm() / kRuns;
+      nees += omega.dot(Vector2(C.inverse() * omega)) / kRuns;
     };
     look(first, nees_first);
     for (int i = 0; i < kReadings; ++i) {
@@ -183,7 +183,7 @@ TEST(GravityFilter, TiltOfALevelWorldAgreesWithItsCovariance) {
     }
     look(last, nees_last);
   }
-  // 2 degrees of freedom over 400 walks: the mean has an SD of 0.1.
+  // 2 degrees of freedom over 400 runs: the mean has an SD of 0.1.
   EXPECT_NEAR(nees_first, 2, 0.4);
   EXPECT_NEAR(nees_last, 2, 0.4);
   EXPECT_NEAR(std::sqrt(first), std::sqrt(2.0) * std::hypot(kNoise, kOffset), 0.01);
@@ -215,7 +215,7 @@ struct Drift {
 
 // A camera that looks around. The motions between keyframes have errors of the stated covariance; its
 // accelerometer has an offset.
-Drift walk(std::uint64_t seed, bool gravity) {
+Drift drift(std::uint64_t seed, bool gravity) {
   Gaussian random(seed);
   constexpr int kSteps = 1500;
   constexpr double kStep_rad = 0.004, kReading = 0.05, kOffset = 0.03;
@@ -254,20 +254,20 @@ Drift walk(std::uint64_t seed, bool gravity) {
 
 TEST(GravityFilter, StopsTheDriftOfRollAndPitch) {
   double held = 0, free = 0, heading = 0, nees = 0;
-  constexpr int kWalks = 30;
-  for (int seed = 1; seed <= kWalks; ++seed) {
-    const Drift with = walk(static_cast<std::uint64_t>(seed), true);
-    const Drift without = walk(static_cast<std::uint64_t>(seed), false);
-    held += with.tilt_rad * with.tilt_rad / kWalks;
-    free += without.tilt_rad * without.tilt_rad / kWalks;
-    heading += with.heading_rad * with.heading_rad / kWalks;
-    nees += with.nees / kWalks;
+  constexpr int kRuns = 30;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const Drift with = drift(static_cast<std::uint64_t>(seed), true);
+    const Drift without = drift(static_cast<std::uint64_t>(seed), false);
+    held += with.tilt_rad * with.tilt_rad / kRuns;
+    free += without.tilt_rad * without.tilt_rad / kRuns;
+    heading += with.heading_rad * with.heading_rad / kRuns;
+    nees += with.nees / kRuns;
   }
   // 0.004 rad √1500 about each of two axes: 0.22 rad.
   EXPECT_GT(std::sqrt(free), 0.15);
   EXPECT_LT(std::sqrt(held), 0.05);
   EXPECT_GT(std::sqrt(heading), 0.08) << "gravity does not correct the heading";
-  EXPECT_NEAR(nees, 1, 3 * std::sqrt(1.0 / kWalks))
+  EXPECT_NEAR(nees, 1, 3 * std::sqrt(1.0 / kRuns))
       << "three standard deviations of the mean of 2 · 30 squares";
 }
 

@@ -19,7 +19,7 @@ TEST(LandmarkRecord, IsTrustedUntilItDisagreedMoreOftenThanItAgreed) {
   EXPECT_TRUE(record.trusted());
 }
 
-TEST(LandmarkRecord, AsManyFramesUndoIt) {
+TEST(LandmarkRecord, IsTrustedAgainAfterAsManyAgreements) {
   LandmarkRecord record;
   for (int i = 0; i < 1000; ++i) record.add(true);
   const int most = record.balance();
@@ -31,7 +31,7 @@ TEST(LandmarkRecord, AsManyFramesUndoIt) {
   EXPECT_TRUE(record.trusted());
 }
 
-TEST(LandmarkRecord, ABadOneIsNoEvidenceAndDoesNotCrowdItsCell) {
+TEST(LandmarkRecord, AnUntrustedLandmarkHasNoEvidenceAndTakesNoneFromItsCell) {
   Point3d good, bad;
   good.p = bad.p = {0, 0, 2};
   bad.record.add(false);
@@ -50,7 +50,7 @@ TEST(LandmarkRecord, ABadOneIsNoEvidenceAndDoesNotCrowdItsCell) {
 }
 
 // Tracks of two points and a line, of which one point and the line do not agree with the motion.
-TEST(LandmarkRecords, AFrameIsTakenIntoTheLandmarksThatItFound) {
+TEST(LandmarkRecords, UpdatesTheLandmarksThatAFrameFound) {
   std::array<Keypoint, 3> keypoints{};
   std::array<Point3d, 3> points{};
   std::array<Line3d, 2> lines{};

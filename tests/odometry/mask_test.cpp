@@ -37,10 +37,10 @@ std::vector<std::uint8_t> used_pixels() {
 
 enum class Content { kRoom, kNoise, kPart };
 
-// A walk through the procedural room, with something else in the masked pixels.
-class MaskedWalk {
+// A sequence of the procedural room, with something else in the masked pixels.
+class MaskedSequence {
  public:
-  explicit MaskedWalk(Config config = {}, Limits limits = {kWide, kHigh}, bool with_mask = true) {
+  explicit MaskedSequence(Config config = {}, Limits limits = {kWide, kHigh}, bool with_mask = true) {
     limits.mask = with_mask;
     memory_.resize(required_bytes(limits));
     if (with_mask) config.mask = {used_.data(), kWide, kHigh, kWide};
@@ -164,7 +164,7 @@ std::uint64_t print_of(const TrackResult& result, const FeatureView& view) {
 
 TEST(Mask, WhatLiesInMaskedPixelsHasNoInfluence) {
   for (const Setting& setting : all_settings()) {
-    MaskedWalk room(setting.config, setting.limits), noise(setting.config, setting.limits);
+    MaskedSequence room(setting.config, setting.limits), noise(setting.config, setting.limits);
     int tracked = 0;
     for (int i = 0; i < 10; ++i) {
       const TrackResult a = room.see(i, Content::kRoom);
@@ -185,19 +185,19 @@ TEST(Mask, WorkInTwoHalvesGivesTheSameBits) {
   };
   Limits limits{kWide, kHigh};
   limits.cores = 2;
-  MaskedWalk one, two(config, limits);
+  MaskedSequence one, two(config, limits);
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(fingerprint(one.see(i, Content::kRoom)), fingerprint(two.see(i, Content::kNoise))) << i;
 }
 
 TEST(Mask, NoFeatureAndNoMatchLiesInMaskedPixels) {
   for (const Setting& setting : all_settings()) {
-    MaskedWalk walk(setting.config, setting.limits);
-    const MaskedPixels masked(walk.camera());
+    MaskedSequence masked_sequence(setting.config, setting.limits);
+    const MaskedPixels masked(masked_sequence.camera());
     int keypoints = 0, segments = 0, tracks = 0;
     for (int i = 0; i < 10; ++i) {
-      (void)walk.see(i, Content::kPart);
-      const FeatureView view = walk.odometry.features();
+      (void)masked_sequence.see(i, Content::kPart);
+      const FeatureView view = masked_sequence.odometry.features();
       for (const Keypoint& k : view.keypoints) {
         ++keypoints;
         EXPECT_FALSE(
@@ -266,10 +266,10 @@ TEST(Mask, NoSurfaceSampleLiesInMaskedPixels) {
 // Without a mask, the part of the robot is the scene that stands still.
 TEST(Mask, APartOfTheRobotInViewDoesNoHarm) {
   const auto worst_error_m = [](bool with_mask, Content content) {
-    MaskedWalk walk({}, {kWide, kHigh}, with_mask);
+    MaskedSequence masked_sequence({}, {kWide, kHigh}, with_mask);
     double worst = 0;
     for (int i = 0; i < 30; ++i) {
-      const TrackResult result = walk.see(i, content);
+      const TrackResult result = masked_sequence.see(i, content);
       const Se3 truth =
           ProceduralSequence::T_world_camera(0).inverse() * ProceduralSequence::T_world_camera(i);
       worst = std::max(worst, static_cast<double>((result.T_world_camera.t - truth.t).norm()));
@@ -290,7 +290,7 @@ TEST(Mask, APartOfTheRobotInViewDoesNoHarm) {
 TEST(Mask, AWhiteMaskGivesTheBitsOfNoMask) {
   const std::vector<std::uint8_t> white(kWide * kHigh, 1);
   Limits limits{kWide, kHigh};
-  MaskedWalk without({}, limits, false);
+  MaskedSequence without({}, limits, false);
   limits.mask = true;
   Config config;
   config.mask = {white.data(), kWide, kHigh, kWide};
@@ -305,14 +305,14 @@ TEST(Mask, AWhiteMaskGivesTheBitsOfNoMask) {
 
 // The sensor delivers an image again, but its clock goes on.
 TEST(Mask, RepeatedImagesAreFoundBehindABurntInClock) {
-  MaskedWalk walk;
-  for (int i = 0; i < 4; ++i) EXPECT_FALSE(walk.see(i, Content::kNoise).repeated);
-  RgbdFrame again = walk.render(3, Content::kNoise);
+  MaskedSequence masked_sequence;
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(masked_sequence.see(i, Content::kNoise).repeated);
+  RgbdFrame again = masked_sequence.render(3, Content::kNoise);
   again.stamp_ns += 10'000'000;
-  EXPECT_TRUE(walk.odometry.track(again).repeated);
+  EXPECT_TRUE(masked_sequence.odometry.track(again).repeated);
 }
 
-TEST(Mask, RefusesWhatIsNoMaskOfTheCamera) {
+TEST(Mask, RefusesInvalidMasks) {
   const std::vector<std::uint8_t> pixels(kWide * kHigh, 255), black(kWide * kHigh, 0);
   const CameraModel camera = ProceduralSequence(kWide, kHigh).camera();
   const auto init_with = [&](const GrayView& mask, bool room = true) {

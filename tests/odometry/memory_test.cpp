@@ -105,7 +105,7 @@ TEST(Memory, AcceptsAMisalignedBlockOfTheRequiredSize) {
   EXPECT_TRUE(odometry.init(std::span(memory).subspan(1), camera, Config{}, kLimits).ok());
 }
 
-TEST(Memory, ThePageIsTrue) {
+TEST(Memory, ThePageHasTheMeasuredBytes) {
   if (sizeof(void*) != 8) GTEST_SKIP() << "the page is about 64-bit machines";
   std::stringstream committed;
   committed << std::ifstream(PLVO_MEMORY_DOC).rdbuf();

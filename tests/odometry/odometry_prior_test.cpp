@@ -288,7 +288,7 @@ TEST(OdometryReset, RestoresTheStateAfterInit) {
   for (int i = 0; i < 8; ++i) EXPECT_EQ(fingerprint(used.track(i)), fingerprint(fresh.track(i))) << i;
 }
 
-TEST(OdometrySetPose, MovesTheWorld) {
+TEST(OdometrySetPose, SetsTheWorldOfTheFollowingPoses) {
   WithPrior plain, moved;
   const Se3 T_new{rotation_exp({0.3, -0.4, 0.5}), {10, -20, 30}};
   Matrix6 C = Matrix6::Identity() * 1e-4;
@@ -315,7 +315,7 @@ TEST(OdometrySetPose, MovesTheWorld) {
   EXPECT_EQ(first.pose_covariance, C);
 }
 
-TEST(OdometrySetPose, RefusesNonsense) {
+TEST(OdometrySetPose, RefusesInvalidPoses) {
   Odometry closed;
   EXPECT_EQ(closed.set_pose({}, Matrix6::Zero()).code(), StatusCode::kInvalidArgument);
   WithPrior instance;

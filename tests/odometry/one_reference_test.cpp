@@ -18,7 +18,7 @@ Limits with_references(Limits limits, int references) {
 }
 
 // One hash per frame, of its result, its features and their tracks, as the public API shows them.
-std::vector<std::uint64_t> walk(Config config, const Limits& limits) {
+std::vector<std::uint64_t> track(Config config, const Limits& limits) {
   config.references.max_lost_s = 0.06;
   ProceduralSequence sequence(limits.width, limits.height);
   std::vector<std::byte> memory(required_bytes(limits));
@@ -62,16 +62,16 @@ TEST(OneReference, GivesTheSameBitsInLessMemory) {
   const Limits two = with_references(kOne, 2);
   EXPECT_LT(required_bytes(kOne), required_bytes(two));
   for (const Config& config : {keyframe_only(), Config::paper()})
-    EXPECT_EQ(walk(config, kOne), walk(config, two));
+    EXPECT_EQ(track(config, kOne), track(config, two));
 }
 
 TEST(OneReference, AllowsAKeyframeThatChangesWithEveryFrame) {
   Config config = keyframe_only();
   config.references.keyframe_inlier_ratio = 1;
-  EXPECT_EQ(walk(config, Limits::tiny()), walk(config, with_references(Limits::tiny(), 2)));
+  EXPECT_EQ(track(config, Limits::tiny()), track(config, with_references(Limits::tiny(), 2)));
 }
 
-TEST(OneReference, RefusesAPolicyOfTwo) {
+TEST(OneReference, RefusesAPolicyWithTwoReferences) {
   constexpr Limits kLimits = Limits::tiny();
   std::vector<std::byte> memory(required_bytes(kLimits));
   Odometry odometry;

@@ -45,7 +45,7 @@ class ProceduralCamera {
   int taken_ = 0;
 };
 
-// Of the pose in a world that view 0 defines.
+// The error of the pose, in a world that view 0 defines.
 inline Vector6 pose_error(const TrackResult& result, int view) {
   const Se3 first = ProceduralSequence::T_world_camera(0);
   return boxminus(result.T_world_camera, first.inverse() * ProceduralSequence::T_world_camera(view));

@@ -17,9 +17,9 @@ using test::ProceduralCamera;
 constexpr int kDark = ProceduralCamera::kDark;
 
 // Thirty frames a second.
-class Walk : public ProceduralCamera {
+class CameraWithLosses : public ProceduralCamera {
  public:
-  explicit Walk(int kept_keyframes, const Config& config = quick_to_give_up())
+  explicit CameraWithLosses(int kept_keyframes, const Config& config = quick_to_give_up())
       : ProceduralCamera(kept_keyframes, config, 33'333'333) {}
   static Config quick_to_give_up() {
     Config config;
@@ -37,13 +37,13 @@ constexpr int kAway = 50;  // the camera's position after the loss
 
 TEST(Recovery, ResumesAtTheKeyframeAfterACoveredLens) {
   for (const int kept : {0, 1}) {
-    Walk walk(kept);
+    CameraWithLosses camera(kept);
     TrackResult before;
-    for (int view = 0; view <= kOut; ++view) before = walk.see(view);
-    for (int i = 0; i < 10; ++i) EXPECT_EQ(walk.see(kDark).state, TrackState::kLost);
+    for (int view = 0; view <= kOut; ++view) before = camera.see(view);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(camera.see(kDark).state, TrackState::kLost);
     // Uncovered, five views later.
-    const TrackResult after = walk.see(kOut + 5);
-    EXPECT_EQ(after.returned, kept > 0);
+    const TrackResult after = camera.see(kOut + 5);
+    EXPECT_EQ(after.relocalised, kept > 0);
     EXPECT_EQ(after.state, kept > 0 ? TrackState::kTracking : TrackState::kInitialising);
     const double error = distance_to_truth(after, kOut + 5);
     std::printf("%d kept: %.1f mm beside the truth\n", kept, 1e3 * error);
@@ -53,28 +53,28 @@ TEST(Recovery, ResumesAtTheKeyframeAfterACoveredLens) {
     } else {
       EXPECT_GT(error, 0.03) << "without relocalisation the error is large";
     }
-    const TrackResult next = walk.see(kOut + 6);
+    const TrackResult next = camera.see(kOut + 6);
     EXPECT_EQ(next.state, TrackState::kTracking) << next.status.message();
-    EXPECT_FALSE(next.returned);
+    EXPECT_FALSE(next.relocalised);
   }
 }
 
 TEST(Recovery, RestoresTheOldPoseAtAKeptKeyframe) {
   for (const int kept : {0, 1, 2}) {
-    Walk walk(kept);
-    for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
-    for (int i = 0; i < 12; ++i) (void)walk.see(kDark);
+    CameraWithLosses camera(kept);
+    for (int view = 0; view <= kOut; ++view) (void)camera.see(view);
+    for (int i = 0; i < 12; ++i) (void)camera.see(kDark);
     // Elsewhere: a restart at a pose whose error is the unobserved motion.
-    TrackResult result = walk.see(kAway);
+    TrackResult result = camera.see(kAway);
     EXPECT_EQ(result.state, TrackState::kInitialising);
-    EXPECT_FALSE(result.returned);
+    EXPECT_FALSE(result.relocalised);
     EXPECT_GT(distance_to_truth(result, kAway), 0.2);
     int returns = 0;
     for (int view = kAway - 1; view >= 0; --view) {
       const double sigma = std::sqrt(result.pose_covariance(0, 0));
-      result = walk.see(view);
+      result = camera.see(view);
       ASSERT_EQ(result.state, TrackState::kTracking) << result.status.message();
-      if (result.returned) {
+      if (result.relocalised) {
         ++returns;
         std::printf("%d kept: back at view %d, SD %.0f mm before, %.2f mm after\n", kept, view, 1e3 * sigma,
                     1e3 * std::sqrt(result.pose_covariance(0, 0)));
@@ -96,24 +96,24 @@ TEST(Recovery, RestoresTheOldPoseAtAKeptKeyframe) {
 TEST(Recovery, RejectsASimilarViewBeyondTheUncertainty) {
   // The process noise allows at most a millimetre per second of unobserved motion. So a similar view from a
   // few centimetres away must be another place.
-  Config config = Walk::quick_to_give_up();
+  Config config = CameraWithLosses::quick_to_give_up();
   config.references.process_noise_m_per_s = config.references.process_noise_rad_per_s = 1e-3;
-  Walk walk(1, config);
+  CameraWithLosses camera(1, config);
   TrackResult before;
-  for (int view = 0; view <= kOut; ++view) before = walk.see(view);
-  for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
-  const TrackResult after = walk.see(kOut + 5);
-  EXPECT_FALSE(after.returned);
+  for (int view = 0; view <= kOut; ++view) before = camera.see(view);
+  for (int i = 0; i < 10; ++i) (void)camera.see(kDark);
+  const TrackResult after = camera.see(kOut + 5);
+  EXPECT_FALSE(after.relocalised);
   EXPECT_EQ(after.state, TrackState::kInitialising);
   EXPECT_EQ(after.T_world_camera.t, before.T_world_camera.t);
 }
 
 TEST(Recovery, SetPoseDropsTheKeptKeyframes) {
-  Walk walk(1);
-  for (int view = 0; view <= kOut; ++view) (void)walk.see(view);
-  for (int i = 0; i < 10; ++i) (void)walk.see(kDark);
-  ASSERT_TRUE(walk.odometry.set_pose(Se3(), Matrix6::Identity()).ok());
-  EXPECT_FALSE(walk.see(kOut).returned);
+  CameraWithLosses camera(1);
+  for (int view = 0; view <= kOut; ++view) (void)camera.see(view);
+  for (int i = 0; i < 10; ++i) (void)camera.see(kDark);
+  ASSERT_TRUE(camera.odometry.set_pose(Se3(), Matrix6::Identity()).ok());
+  EXPECT_FALSE(camera.see(kOut).relocalised);
 }
 
 TEST(KeptKeyframes, ReplacesTheOldest) {

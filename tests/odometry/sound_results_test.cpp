@@ -131,7 +131,7 @@ TEST(SoundResults, ANewLevelWorldWaitsForGravity) {
   EXPECT_LT((start.T_world_camera.R * gravity.gravity->down - Vector3(0, 1, 0)).norm(), 1e-9);
 }
 
-TEST(SoundResults, AreCheckedBeforeTheyAreReturned) {
+TEST(SoundResults, EveryResultIsCheckedOnReturn) {
   TrackResult result;
   EXPECT_TRUE(make_sound(result));
   result.pose_covariance = Matrix6::Identity() * 1e9;

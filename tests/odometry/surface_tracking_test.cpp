@@ -84,10 +84,10 @@ struct Pair {
   SurfaceForm form;
 };
 
-Se3 walk() { return {rotation_exp({0.01, -0.03, 0.02}), {0.02, -0.01, -0.06}}; }
+Se3 motion() { return {rotation_exp({0.01, -0.03, 0.02}), {0.02, -0.01, -0.06}}; }
 
 TEST(SurfaceTracking, FindsTheSurfacesAtTheTrueMotion) {
-  Pair pair(closed(corridor()), walk(), 1);
+  Pair pair(closed(corridor()), motion(), 1);
   ASSERT_GT(pair.features.samples.size(), 60U);
   EXPECT_GT(pair.storage.size(), 0.7 * static_cast<double>(pair.features.samples.size()));
   const SurfaceConstraints set = pair.constraints();
@@ -103,12 +103,12 @@ TEST(SurfaceTracking, ARoomFixesTheMotionButACorridorLeavesItsAxisOpen) {
   double along_room = 0, along = 0, across = 0;
   constexpr int kPairs = 6;
   for (std::uint64_t seed = 1; seed <= kPairs; ++seed) {
-    const Vector3 axis = walk().R.col(2);
-    const Matrix3 room = Pair(closed(corridor()), walk(), seed).information().H.block<3, 3>(0, 0);
-    const Matrix3 open = Pair(corridor(), walk(), seed).information().H.block<3, 3>(0, 0);
+    const Vector3 axis = motion().R.col(2);
+    const Matrix3 room = Pair(closed(corridor()), motion(), seed).information().H.block<3, 3>(0, 0);
+    const Matrix3 open = Pair(corridor(), motion(), seed).information().H.block<3, 3>(0, 0);
     along_room += axis.dot(room * axis) / kPairs;
     along += axis.dot(open * axis) / kPairs;
-    across += walk().R.col(0).dot(open * walk().R.col(0)) / kPairs;
+    across += motion().R.col(0).dot(open * motion().R.col(0)) / kPairs;
   }
   // 1/1e3 corresponds to 30 mm: the information along the corridor's axis must not claim more.
   EXPECT_LT(std::abs(along), 1e3);
@@ -131,11 +131,11 @@ TEST(SurfaceTracking, RejectsAnotherSurface) {
   for (const SurfaceMatch& match : found) EXPECT_LT(std::abs(match.normal.z()), 0.5);
 }
 
-struct Walked {
+struct Tracked {
   std::vector<TrackResult> results;
   double error_m = 0;
 };
-Walked walk_with(int surfaces, bool used = true) {
+Tracked track_with(int surfaces, bool used = true) {
   Limits limits = Limits::qvga();
   limits.surfaces = surfaces;
   ProceduralSequence sequence(kWidth, kHeight);
@@ -145,23 +145,24 @@ Walked walk_with(int surfaces, bool used = true) {
   config.surfaces = used;
   const Status status = odometry.init(memory, sequence.camera(), config, limits);
   EXPECT_TRUE(status.ok()) << status.message();
-  Walked walked;
+  Tracked tracked;
   for (int i = 0; i < 15; ++i) {
-    walked.results.push_back(odometry.track(i == 8 ? sequence.render_dark(i) : sequence.render(i)));
+    tracked.results.push_back(odometry.track(i == 8 ? sequence.render_dark(i) : sequence.render(i)));
     const Se3 expected =
         ProceduralSequence::T_world_camera(0).inverse() * ProceduralSequence::T_world_camera(i);
     if (i != 8)
-      walked.error_m = std::max(walked.error_m, (walked.results.back().T_world_camera.t - expected.t).norm());
+      tracked.error_m =
+          std::max(tracked.error_m, (tracked.results.back().T_world_camera.t - expected.t).norm());
   }
   EXPECT_LE(odometry.memory_peak(), memory.size());
-  return walked;
+  return tracked;
 }
 
 TEST(SurfacesInTheOdometry, AreUsedIfLimitsAllowThem) {
-  const Walked with = walk_with(200);
-  const Walked again = walk_with(200);
-  const Walked without = walk_with(0);
-  const Walked unused = walk_with(200, false);
+  const Tracked with = track_with(200);
+  const Tracked again = track_with(200);
+  const Tracked without = track_with(0);
+  const Tracked unused = track_with(200, false);
   EXPECT_LT(with.error_m, 0.02);
   for (std::size_t i = 0; i < with.results.size(); ++i) {
     EXPECT_EQ(with.results[i].state, without.results[i].state);

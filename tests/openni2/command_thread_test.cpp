@@ -43,7 +43,7 @@ TEST(CommandThread, IdlesBetweenCommands) {
 // The thread executes every accepted command and refuses later ones, and every caller returns. In an earlier
 // version the thread could end between the two, and a caller that had just handed over a command got an
 // exception or waited forever.
-TEST(CommandThread, AnEndLeavesNobodyBehind) {
+TEST(CommandThread, EndingReleasesAllWaitingCalls) {
   constexpr int kRounds = 200;
   constexpr int kCallers = 4;
   long accepted = 0;

@@ -68,11 +68,11 @@ TEST(CarriedCells, WithoutNewEvidenceVotesFallUntilTheCellIsTriedAgain) {
   EXPECT_EQ(references, 27);
 }
 
-TEST(CarriedCells, AConvictionTakesTheCellsAround) {
+TEST(CarriedCells, ACertainFrameMarksTheCellsAroundToo) {
   CarriedCells image = empty_cells();
-  image.convict(counts_at(0, 1));
+  image.mark_carried(counts_at(0, 1));
   EXPECT_EQ(image.count(), 4);  // a corner of the image
-  image.convict(counts_at(CarriedCells::kColumns * 5 + 5, 1));
+  image.mark_carried(counts_at(CarriedCells::kColumns * 5 + 5, 1));
   EXPECT_EQ(image.count(), 4 + 9);
   image.forget();
   EXPECT_EQ(image.count(), 0);
@@ -81,7 +81,7 @@ TEST(CarriedCells, AConvictionTakesTheCellsAround) {
 
 TEST(CarriedCells, KeypointsThereLoseTheir3DPoints) {
   CarriedCells image = empty_cells();
-  image.convict(counts_at(image.cell_of(Vector2(100, 100)), 1));
+  image.mark_carried(counts_at(image.cell_of(Vector2(100, 100)), 1));
   std::vector<std::byte> memory(1 << 20);
   Arena arena(memory);
   PointFeatures features;

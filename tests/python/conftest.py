@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated walk of 24 small frames, with its true poses."""
+"""A simulated sequence of 24 small frames, with its true poses."""
 import os
 import subprocess
 import sys
@@ -12,7 +12,7 @@ PLVO = os.environ["PLVO_BINARY"]
 
 
 @pytest.fixture(scope="session")
-def walk(tmp_path_factory):
+def recording(tmp_path_factory):
     folder = tmp_path_factory.mktemp("recorded") / "walk"
     subprocess.run([PLVO, "simulate", "--out", folder, "--frames", "24", "--size", "320x240", "--quiet"], check=True)
     return folder

@@ -12,14 +12,14 @@ import plvo
 WRITE_BAG = os.environ["PLVO_WRITE_BAG"]
 
 
-def write_bag(walk, file, prefix="", *imu):
-    subprocess.run([WRITE_BAG, walk, file, prefix, *imu], check=True)
+def write_bag(recording, file, prefix="", *imu):
+    subprocess.run([WRITE_BAG, recording, file, prefix, *imu], check=True)
     return file
 
 
 @pytest.fixture(scope="module")
-def bag(walk, tmp_path_factory):
-    return write_bag(walk, tmp_path_factory.mktemp("bag") / "walk.bag", "", "imu")
+def bag(recording, tmp_path_factory):
+    return write_bag(recording, tmp_path_factory.mktemp("bag") / "walk.bag", "", "imu")
 
 
 def assert_same(results, expected):
@@ -31,10 +31,10 @@ def assert_same(results, expected):
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
-def test_run_gives_the_bits_of_the_folder(walk, bag):
-    assert_same(plvo.run(bag), plvo.run(walk))
+def test_run_gives_the_bits_of_the_folder(recording, bag):
+    assert_same(plvo.run(bag), plvo.run(recording))
     assert_same(plvo.run(str(bag), config=plvo.Config(features="points"), cores=2),
-                plvo.run(walk, config=plvo.Config(features="points")))
+                plvo.run(recording, config=plvo.Config(features="points")))
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
@@ -48,19 +48,19 @@ def test_imu_in_axes_of_its_own_is_that_of_the_command_line(bag, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
-def test_imu_gives_the_bits_of_the_folder(walk, bag):
-    with_imu = list(plvo.run(walk, imu=True))
+def test_imu_gives_the_bits_of_the_folder(recording, bag):
+    with_imu = list(plvo.run(recording, imu=True))
     assert_same(plvo.run(bag, imu=True), with_imu)
-    assert not np.array_equal(with_imu[-1].covariance, list(plvo.run(walk))[-1].covariance)
+    assert not np.array_equal(with_imu[-1].covariance, list(plvo.run(recording))[-1].covariance)
 
 
-def test_the_camera_is_the_bags_or_ones_own(walk, bag):
+def test_the_camera_is_the_bags_or_ones_own(recording, bag):
     with pytest.warns(RuntimeWarning, match="does not say how the colour camera's shutter rolls"):
         sequence = plvo.Sequence(bag)
-    camera = plvo.Sequence(walk).camera
+    camera = plvo.Sequence(recording).camera
     assert (sequence.camera.width, sequence.camera.fx, sequence.camera.cy) == (camera.width, camera.fx, camera.cy)
     assert sequence.camera.depth_units_per_metre == 5000 and len(sequence) == 24
-    frame, expected = next(sequence), next(plvo.Sequence(walk))
+    frame, expected = next(sequence), next(plvo.Sequence(recording))
     assert np.array_equal(frame.colour, expected.colour) and np.array_equal(frame.depth, expected.depth)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -71,11 +71,11 @@ def test_the_camera_is_the_bags_or_ones_own(walk, bag):
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
-def test_topics_by_name(walk, tmp_path):
-    front = write_bag(walk, tmp_path / "front.bag", "/front", "imu")
+def test_topics_by_name(recording, tmp_path):
+    front = write_bag(recording, tmp_path / "front.bag", "/front", "imu")
     assert len(plvo.Sequence(front)) == 24, "the only ones of their kind"
     named = {"colour": "/front/camera/rgb/image_color", "depth": "/front/camera/depth/image", "gyro": "/front/imu"}
-    assert_same(plvo.run(front, imu=True, topics=named), plvo.run(walk, imu=True))
+    assert_same(plvo.run(front, imu=True, topics=named), plvo.run(recording, imu=True))
     with pytest.raises(plvo.Error, match="there are no images on /back; images are on: /front") as raised:
         plvo.Sequence(front, topics={"depth": "/back"})
     assert raised.value.code == "not_found"
@@ -84,16 +84,16 @@ def test_topics_by_name(walk, tmp_path):
     with pytest.raises(ValueError, match="'color' is none of colour, depth"):
         plvo.Sequence(front, topics={"color": "/front"})
     with pytest.raises(ValueError, match="for a ROS bag"):
-        plvo.Sequence(walk, topics={"depth": "/front"})
+        plvo.Sequence(recording, topics={"depth": "/front"})
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
-def test_true_poses_lie_beside_the_bag(walk, bag, tmp_path):
+def test_true_poses_lie_beside_the_bag(recording, bag, tmp_path):
     results = list(plvo.run(bag))
     with pytest.raises(plvo.Error, match="put the true ones beside it, as walk-groundtruth.txt"):
         plvo.evaluate(bag, results)
-    (tmp_path / "walk-groundtruth.txt").write_bytes((walk / "groundtruth.txt").read_bytes())
-    assert plvo.evaluate(tmp_path / "walk.bag", results) == plvo.evaluate(walk / "groundtruth.txt", results)
+    (tmp_path / "walk-groundtruth.txt").write_bytes((recording / "groundtruth.txt").read_bytes())
+    assert plvo.evaluate(tmp_path / "walk.bag", results) == plvo.evaluate(recording / "groundtruth.txt", results)
 
 
 def test_what_is_no_bag_is_refused(tmp_path):
@@ -105,10 +105,10 @@ def test_what_is_no_bag_is_refused(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore:the calibration does not say")
-def test_a_bag_cut_short_is_warned_of(walk, bag, tmp_path):
+def test_a_bag_cut_short_is_warned_of(recording, bag, tmp_path):
     whole = bag.read_bytes()
     (tmp_path / "cut.bag").write_bytes(whole[: len(whole) * 7 // 10])
     with pytest.warns(RuntimeWarning, match="cut.bag is cut short"):
         results = list(plvo.run(tmp_path / "cut.bag"))
     assert 10 < len(results) < 24
-    assert_same(results, list(plvo.run(walk))[: len(results)])
+    assert_same(results, list(plvo.run(recording))[: len(results)])

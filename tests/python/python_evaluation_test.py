@@ -13,15 +13,15 @@ PLVO = os.environ["PLVO_BINARY"]
 
 
 @pytest.fixture(scope="module")
-def tracked(walk, tmp_path_factory):
+def tracked(recording, tmp_path_factory):
     files = tmp_path_factory.mktemp("tracked")
     outputs = ["--out", files / "t", "--covariance", files / "c", "--motions", files / "m"]
-    subprocess.run([PLVO, "run", walk, "--quiet", *outputs], check=True)
+    subprocess.run([PLVO, "run", recording, "--quiet", *outputs], check=True)
     return files
 
 
-def command(walk, tracked, *more):
-    arguments = [PLVO, "eval", "--gt", walk / "groundtruth.txt", "--est", tracked / "t", "--json", "-", *more]
+def command(recording, tracked, *more):
+    arguments = [PLVO, "eval", "--gt", recording / "groundtruth.txt", "--est", tracked / "t", "--json", "-", *more]
     return json.loads(subprocess.run(arguments, check=True, capture_output=True).stdout)
 
 
@@ -34,27 +34,27 @@ def close(a, b):
     return a == pytest.approx(b, rel=1e-3, abs=1e-7) if isinstance(a, float) else a == b
 
 
-def test_of_a_file(walk, tracked):
-    found = plvo.evaluate(walk / "groundtruth.txt", tracked / "t", rpe_deltas=["1f", "0.2s"])
-    assert found == command(walk, tracked, "--rpe-delta", "1f", "--rpe-delta", "0.2s")
+def test_of_a_file(recording, tracked):
+    found = plvo.evaluate(recording / "groundtruth.txt", tracked / "t", rpe_deltas=["1f", "0.2s"])
+    assert found == command(recording, tracked, "--rpe-delta", "1f", "--rpe-delta", "0.2s")
     assert 0 < found["ate_m"]["rmse"] < 0.02
 
 
-def test_of_the_folder_itself(walk, tracked):
-    assert plvo.evaluate(walk, tracked / "t") == plvo.evaluate(walk / "groundtruth.txt", tracked / "t")
+def test_of_the_folder_itself(recording, tracked):
+    assert plvo.evaluate(recording, tracked / "t") == plvo.evaluate(recording / "groundtruth.txt", tracked / "t")
     with pytest.raises(plvo.Error, match="has neither groundtruth.txt nor"):
         plvo.evaluate(tracked, tracked / "t")
 
 
-def test_of_results(walk, tracked):
-    found = plvo.evaluate(walk / "groundtruth.txt", plvo.run(walk))
-    expected = command(walk, tracked, "--rpe-delta", "1f", "--rpe-delta", "1s", "--est-covariance", tracked / "c", "--est-motions",
+def test_of_results(recording, tracked):
+    found = plvo.evaluate(recording / "groundtruth.txt", plvo.run(recording))
+    expected = command(recording, tracked, "--rpe-delta", "1f", "--rpe-delta", "1s", "--est-covariance", tracked / "c", "--est-motions",
                        tracked / "m")
     assert "rpe" in found and "ate_m" in found
     assert close(found, expected)
 
 
-def test_the_truth_is_fitted(walk, tracked, tmp_path):
+def test_the_truth_is_fitted(recording, tracked, tmp_path):
     def rows(delay):
         for i in range(500):
             a, b, c = (0.2 * math.sin(0.01 * i * f) for f in (2.1, 1.7, 2.9))
@@ -67,21 +67,21 @@ def test_the_truth_is_fitted(walk, tracked, tmp_path):
     assert found == command(tmp_path, tmp_path, "--fit-truth")
     assert found["truth_fit"]["clock_ms"] == pytest.approx(20, abs=0.1)
     with pytest.raises(plvo.Error, match="the truth cannot be fitted"):  # too short
-        plvo.evaluate(walk, tracked / "t", fit_truth=True)
+        plvo.evaluate(recording, tracked / "t", fit_truth=True)
     with pytest.raises(ValueError, match="interpolated"):
-        plvo.evaluate(walk, tracked / "t", sampling="nearest", fit_truth=True)
+        plvo.evaluate(recording, tracked / "t", sampling="nearest", fit_truth=True)
 
 
-def test_errors_are_the_librarys_words(walk, tracked, tmp_path):
+def test_errors_are_the_librarys_words(recording, tracked, tmp_path):
     with pytest.raises(plvo.Error) as error:
         plvo.evaluate(tmp_path / "nowhere.txt", tracked / "t")
     assert error.value.code == "not_found"
     with pytest.raises(ValueError, match="1f, 0.5s or 2m"):
-        plvo.evaluate(walk / "groundtruth.txt", tracked / "t", rpe_deltas=["1 hour"])
+        plvo.evaluate(recording / "groundtruth.txt", tracked / "t", rpe_deltas=["1 hour"])
     with pytest.raises(ValueError, match="interpolated or nearest"):
-        plvo.evaluate(walk / "groundtruth.txt", tracked / "t", sampling="somehow")
-    results = list(plvo.run(walk))
+        plvo.evaluate(recording / "groundtruth.txt", tracked / "t", sampling="somehow")
+    results = list(plvo.run(recording))
     with pytest.raises(ValueError, match="increase"):
-        plvo.evaluate(walk / "groundtruth.txt", results + results)
+        plvo.evaluate(recording / "groundtruth.txt", results + results)
     with pytest.raises(plvo.Error):
-        plvo.evaluate(walk / "groundtruth.txt", results[:1])
+        plvo.evaluate(recording / "groundtruth.txt", results[:1])

@@ -21,12 +21,12 @@ def mapped(sequence, room):
     return found
 
 
-def test_gives_the_map_of_plvo_run(walk, tmp_path):
-    sequence = plvo.Sequence(walk)
+def test_gives_the_map_of_plvo_run(recording, tmp_path):
+    sequence = plvo.Sequence(recording)
     room = plvo.Map(sequence.camera, keyframes=8)
     found = mapped(sequence, room)
     room.save(tmp_path / "python.map")
-    subprocess.run([PLVO, "run", walk, "--quiet", "--map", "8", "--map-out", tmp_path / "run.map"], check=True)
+    subprocess.run([PLVO, "run", recording, "--quiet", "--map", "8", "--map-out", tmp_path / "run.map"], check=True)
     assert (tmp_path / "python.map").read_bytes() == (tmp_path / "run.map").read_bytes()
     assert sorted(os.listdir(tmp_path)) == ["python.map", "run.map"]
     result, in_map = found[-1]
@@ -39,8 +39,8 @@ def test_gives_the_map_of_plvo_run(walk, tmp_path):
     assert room.loops == 0 and room.memory_bytes > 1e5
 
 
-def test_a_loaded_map_does_not_know_where_the_camera_is_until_it_sees_a_place(walk, tmp_path):
-    sequence = plvo.Sequence(walk)
+def test_a_loaded_map_does_not_know_where_the_camera_is_until_it_sees_a_place(recording, tmp_path):
+    sequence = plvo.Sequence(recording)
     room = plvo.Map(sequence.camera, keyframes=8)
     mapped(sequence, room)
     room.settle()
@@ -48,15 +48,15 @@ def test_a_loaded_map_does_not_know_where_the_camera_is_until_it_sees_a_place(wa
     again = plvo.Map(sequence.camera, keyframes=8)
     again.load(tmp_path / "walk.map")
     assert again.keyframes == room.keyframes
-    sequence = plvo.Sequence(walk)
+    sequence = plvo.Sequence(recording)
     odometry = plvo.Odometry(sequence.camera)
     in_map = again.update(odometry, odometry.track(*next(sequence)))
     assert not in_map.located and in_map.covariance[0, 0] > 1e3
     assert again.keyframe_pose(in_map.keyframe) is None
 
 
-def test_what_cannot_be_loaded_is_refused(walk, tmp_path):
-    camera = plvo.Sequence(walk).camera
+def test_what_cannot_be_loaded_is_refused(recording, tmp_path):
+    camera = plvo.Sequence(recording).camera
     room = plvo.Map(camera)
     (tmp_path / "text.map").write_text("no map")
     for call, code, words in (

@@ -17,33 +17,33 @@ import plvo
 PLVO = os.environ["PLVO_BINARY"]
 
 
-def frames_of(walk, count=24):
+def frames_of(recording, count=24):
     """Copies, to be kept."""
-    sequence = plvo.Sequence(walk)
+    sequence = plvo.Sequence(recording)
     return sequence.camera, [plvo.Frame(f.colour.copy(), f.depth.copy(), *f[2:]) for f, _ in zip(sequence, range(count))]
 
 
-def test_run_gives_the_poses_and_covariances_of_the_command_line(walk, tmp_path):
-    subprocess.run([PLVO, "run", walk, "--quiet", "--out", tmp_path / "t", "--covariance", tmp_path / "c"], check=True)
+def test_run_gives_the_poses_and_covariances_of_the_command_line(recording, tmp_path):
+    subprocess.run([PLVO, "run", recording, "--quiet", "--out", tmp_path / "t", "--covariance", tmp_path / "c"], check=True)
     poses, covariances = np.loadtxt(tmp_path / "t"), np.loadtxt(tmp_path / "c")
-    results = [result for result in plvo.run(walk) if result.has_pose]
+    results = [result for result in plvo.run(recording) if result.has_pose]
     assert len(results) == len(poses) == 24
     for result, pose, covariance in zip(results, poses, covariances):
         assert np.array_equal(np.round(np.hstack([result.position, result.quaternion]), 9), pose[1:])
         assert np.allclose(result.covariance.ravel(), covariance[1:], rtol=1e-9, atol=0)
 
 
-def test_run_is_the_odometry_frame_by_frame(walk):
-    camera, frames = frames_of(walk, 6)
+def test_run_is_the_odometry_frame_by_frame(recording):
+    camera, frames = frames_of(recording, 6)
     odometry = plvo.Odometry(camera, plvo.Config())
-    for frame, expected in zip(frames, plvo.run(walk)):
+    for frame, expected in zip(frames, plvo.run(recording)):
         result = odometry.track(frame.colour, frame.depth, frame.stamp_ns, frame.depth_stamp_ns)
         assert np.array_equal(result.T_world_camera, expected.T_world_camera)
         assert np.array_equal(result.covariance, expected.covariance)
 
 
-def test_a_result_says_what_the_library_knows(walk):
-    first, *_, last = list(plvo.run(walk))
+def test_a_result_says_what_the_library_knows(recording):
+    first, *_, last = list(plvo.run(recording))
     assert (first.state, first.code, first.message) == ("initialising", "ok", "")
     assert last.state == "tracking" and last.has_pose
     assert last.stamp == pytest.approx(last.stamp_ns * 1e-9)
@@ -60,18 +60,18 @@ def test_a_result_says_what_the_library_knows(walk):
     assert "tracking" in repr(last)
 
 
-def test_settings_change_the_estimate(walk):
-    both = [r.position for r in plvo.run(walk)][-1]
-    points = [r for r in plvo.run(walk, config=plvo.Config(features="points", reference="previous"))][-1]
+def test_settings_change_the_estimate(recording):
+    both = [r.position for r in plvo.run(recording)][-1]
+    points = [r for r in plvo.run(recording, config=plvo.Config(features="points", reference="previous"))][-1]
     assert points.lines.inliers == 0 and points.points.inliers > 0
     assert not np.array_equal(both, points.position)
-    paper = [r.position for r in plvo.run(walk, config=plvo.Config(preset="paper"))][-1]
+    paper = [r.position for r in plvo.run(recording, config=plvo.Config(preset="paper"))][-1]
     assert not np.array_equal(both, paper)
     assert plvo.Config(seed=7).seed == 7
 
 
-def test_images_are_read_where_they_lie(walk):
-    camera, frames = frames_of(walk, 3)
+def test_images_are_read_where_they_lie(recording):
+    camera, frames = frames_of(recording, 3)
 
     def track(change):
         odometry = plvo.Odometry(camera)
@@ -92,8 +92,8 @@ def test_images_are_read_where_they_lie(walk):
     assert grey.state == "tracking"
 
 
-def test_features_are_views_of_what_is_drawn(walk):
-    camera, frames = frames_of(walk, 2)
+def test_features_are_views_of_what_is_drawn(recording):
+    camera, frames = frames_of(recording, 2)
     odometry = plvo.Odometry(camera)
     for frame in frames:
         result = odometry.track(*frame)
@@ -112,13 +112,13 @@ def test_features_are_views_of_what_is_drawn(walk):
     assert (features.line_tracks < [len(features.reference_segments), len(features.segments)]).all()
 
 
-def test_before_the_first_frame_there_are_no_features(walk):
-    features = plvo.Odometry(plvo.Sequence(walk).camera).features()
+def test_before_the_first_frame_there_are_no_features(recording):
+    features = plvo.Odometry(plvo.Sequence(recording).camera).features()
     assert features.image.size == 0 and len(features.keypoints) == 0
 
 
-def test_a_sequence_gives_frames_without_copies(walk):
-    sequence = plvo.Sequence(walk)
+def test_a_sequence_gives_frames_without_copies(recording):
+    sequence = plvo.Sequence(recording)
     assert len(sequence) == 24
     assert (sequence.camera.width, sequence.camera.height) == (320, 240)
     frame = next(sequence)
@@ -130,10 +130,10 @@ def test_a_sequence_gives_frames_without_copies(walk):
     assert len(list(sequence)) == 22
 
 
-def test_arrays_outlive_what_they_look_into(walk):
+def test_arrays_outlive_what_they_look_into(recording):
     """A view holds on to its owner."""
-    covariance = list(plvo.run(walk))[-1].covariance
-    colour = next(plvo.Sequence(walk)).colour
+    covariance = list(plvo.run(recording))[-1].covariance
+    colour = next(plvo.Sequence(recording)).colour
     assert np.linalg.eigvalsh(covariance).min() > 0
     assert colour.mean() > 0
 
@@ -174,7 +174,7 @@ def test_lenses(tmp_path):
     assert error.value.code == "invalid_argument"
 
 
-def test_errors_are_the_librarys_words(walk, tmp_path):
+def test_errors_are_the_librarys_words(recording, tmp_path):
     with pytest.raises(plvo.Error, match="tum-fr1") as error:
         plvo.Camera.builtin("nikon")
     assert error.value.code == "not_found"
@@ -191,7 +191,7 @@ def test_errors_are_the_librarys_words(walk, tmp_path):
     with pytest.raises(ValueError, match="distortion"):
         plvo.Camera(640, 480, 525, 525, 320, 240, (1, 2, 3))
 
-    camera, (first, second) = frames_of(walk, 2)
+    camera, (first, second) = frames_of(recording, 2)
     odometry = plvo.Odometry(camera)
     odometry.track(*second)
     with pytest.raises(plvo.Error, match="not later"):
@@ -210,8 +210,8 @@ def test_errors_are_the_librarys_words(walk, tmp_path):
         odometry.track(first.colour[:, :, :2], first.depth, second.stamp_ns + 1)
 
 
-def test_a_dark_frame_is_lost_and_the_next_one_goes_on(walk):
-    camera, frames = frames_of(walk, 5)
+def test_a_dark_frame_is_lost_and_the_next_one_goes_on(recording):
+    camera, frames = frames_of(recording, 5)
     odometry = plvo.Odometry(camera)
     results = []
     for i, frame in enumerate(frames):
@@ -222,26 +222,26 @@ def test_a_dark_frame_is_lost_and_the_next_one_goes_on(walk):
     assert results[2].message and not results[2].has_pose
 
 
-def test_a_damaged_image_costs_its_frame(walk, tmp_path):
+def test_a_damaged_image_costs_its_frame(recording, tmp_path):
     copy = tmp_path / "walk"
-    subprocess.run(["cp", "-r", walk, copy], check=True)
+    subprocess.run(["cp", "-r", recording, copy], check=True)
     sorted((copy / "depth").iterdir())[3].write_bytes(b"no picture")
     with pytest.warns(RuntimeWarning, match="depth"):
         results = list(plvo.run(copy))
     assert len(results) == 23 and results[-1].state == "tracking"
 
 
-def test_numbered_frames_are_a_sequence_too(walk, tmp_path):
+def test_numbered_frames_are_a_sequence_too(recording, tmp_path):
     for kind, listed in (("color", "rgb"), ("depth", "depth")):
         (tmp_path / kind).mkdir()
-        for number, image in enumerate(sorted((walk / listed).iterdir())[:5]):
+        for number, image in enumerate(sorted((recording / listed).iterdir())[:5]):
             if number != 2:
                 shutil.copy(image, tmp_path / kind / f"{number}.png")
-    shutil.copy(walk / "calibration.txt", tmp_path)
+    shutil.copy(recording / "calibration.txt", tmp_path)
     with pytest.warns(RuntimeWarning, match="the first is 2"):
         frames = [(f.stamp_ns, f.colour.copy(), f.depth.copy()) for f in plvo.Sequence(tmp_path)]
     assert [frame[0] for frame in frames] == [0, 33_333_333, 100_000_000, 133_333_333]
-    listed = frames_of(walk, 5)[1]
+    listed = frames_of(recording, 5)[1]
     for (_, colour, depth), expected in zip(frames, listed[:2] + listed[3:]):
         assert np.array_equal(colour, expected.colour) and np.array_equal(depth, expected.depth)
 
@@ -258,9 +258,9 @@ def png(array):
     )
 
 
-def test_images_above_the_limit_are_scaled_down(walk, tmp_path):
+def test_images_above_the_limit_are_scaled_down(recording, tmp_path):
     """Each pixel as a block of 8; down by 2 it is one of 4."""
-    frame = frames_of(walk, 1)[1][0]
+    frame = frames_of(recording, 1)[1][0]
     for name, image in (("rgb", frame.colour), ("depth", frame.depth)):
         (tmp_path / f"{name}.png").write_bytes(png(image.repeat(8, 0).repeat(8, 1)))
         (tmp_path / f"{name}.txt").write_text(f"1.0 {name}.png\n")
@@ -273,35 +273,35 @@ def test_images_above_the_limit_are_scaled_down(walk, tmp_path):
     assert np.array_equal(small.depth, frame.depth.repeat(4, 0).repeat(4, 1))
 
 
-def test_data_that_look_wrong_are_warned_of(walk, tmp_path):
+def test_data_that_look_wrong_are_warned_of(recording, tmp_path):
     copy = tmp_path / "walk"
-    subprocess.run(["cp", "-r", walk, copy], check=True)
+    subprocess.run(["cp", "-r", recording, copy], check=True)
     for image in (copy / "depth").iterdir():
         image.write_bytes(png(np.zeros((240, 320), np.uint16)))
     with pytest.warns(RuntimeWarning, match="the depth images are empty: of the first 24 frames"):
         assert len(list(plvo.Sequence(copy))) == 24
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(list(plvo.Sequence(walk))) == 24
-    assert plvo.evaluate(walk, plvo.run(walk))["scale"]["best_fit"] == pytest.approx(1, abs=0.05)
+        assert len(list(plvo.Sequence(recording))) == 24
+    assert plvo.evaluate(recording, plvo.run(recording))["scale"]["best_fit"] == pytest.approx(1, abs=0.05)
 
 
-def test_what_is_assumed_is_warned_of(walk, tmp_path):
+def test_what_is_assumed_is_warned_of(recording, tmp_path):
     (tmp_path / "c.txt").write_text("277 277 159.5 119.5\n")
     with pytest.warns(RuntimeWarning, match="depth"):
-        plvo.Sequence(walk, tmp_path / "c.txt")
+        plvo.Sequence(recording, tmp_path / "c.txt")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        plvo.Sequence(walk, plvo.Sequence(walk).camera)
+        plvo.Sequence(recording, plvo.Sequence(recording).camera)
 
 
-def test_threads_track_executor(walk):
+def test_threads_track_executor(recording):
     """Each its own odometry: the same results as one after the other."""
-    expected = [r.T_world_camera for r in plvo.run(walk)]
+    expected = [r.T_world_camera for r in plvo.run(recording)]
     found = {}
 
     def work(name):
-        found[name] = [r.T_world_camera for r in plvo.run(walk)]
+        found[name] = [r.T_world_camera for r in plvo.run(recording)]
 
     threads = [threading.Thread(target=work, args=(i,)) for i in range(3)]
     for thread in threads:
@@ -312,10 +312,10 @@ def test_threads_track_executor(walk):
     assert all(np.array_equal(poses, expected) for poses in found.values())
 
 
-def test_track_lets_other_threads_run(walk):
+def test_track_lets_other_threads_run(recording):
     """While one thread tracks, another counts. With the interpreter locked the counter would stand still from the
     beginning of a call to its end; an odometry that is used twice at once says so."""
-    camera, frames = frames_of(walk, 12)
+    camera, frames = frames_of(recording, 12)
     odometry = plvo.Odometry(camera)
     refused, done = [], threading.Event()
 

@@ -48,23 +48,23 @@ def install(python, what):
     pip(python, "install", "--no-index", "--config-settings", f"build={os.environ['PLVO_BUILD']}", what)
 
 
-def check(python, walk, tmp_path):
+def check(python, recording, tmp_path):
     version = run(PLVO, "--version").split()[1]
     assert f"Version: {version}\n" in pip(python, "show", "plvo")
-    run(PLVO, "run", walk, "--quiet", "--out", tmp_path / "t.txt")
+    run(PLVO, "run", recording, "--quiet", "--out", tmp_path / "t.txt")
     rows = [line.split(" ", 1)[1] for line in (tmp_path / "t.txt").read_text().splitlines() if not line.startswith("#")]
-    assert run(python, "-c", PROGRAM, walk).splitlines() == rows
+    assert run(python, "-c", PROGRAM, recording).splitlines() == rows
     pip(python, "uninstall", "--yes", "plvo")
     assert not list(python.parent.parent.rglob("*plvo*"))
 
 
-def test_of_a_checkout(python, walk, tmp_path):
+def test_of_a_checkout(python, recording, tmp_path):
     install(python, ROOT)
-    check(python, walk, tmp_path)
+    check(python, recording, tmp_path)
 
 
-def test_of_its_source_distribution(python, walk, tmp_path):
+def test_of_its_source_distribution(python, recording, tmp_path):
     program = "import sys; sys.path.insert(0, sys.argv[1]); import wheel_backend; print(wheel_backend.build_sdist(sys.argv[2]))"
     name = run(sys.executable, "-B", "-c", program, ROOT / "tools/packaging", tmp_path).strip()
     install(python, tmp_path / name)
-    check(python, walk, tmp_path)
+    check(python, recording, tmp_path)

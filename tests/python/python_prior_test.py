@@ -13,7 +13,7 @@ PLVO = os.environ["PLVO_BINARY"]
 
 @pytest.fixture(scope="module")
 def covered(tmp_path_factory):
-    """A walk with a hand over the lens for five frames."""
+    """A sequence with a hand over the lens for five frames."""
     folder = tmp_path_factory.mktemp("covered") / "walk"
     subprocess.run(
         [PLVO, "simulate", "--out", folder, "--scene", "desk", "--size", "320x240", "--frames", "24", "--covered", "12:17",
@@ -118,8 +118,8 @@ def test_set_pose_and_reset(covered):
         odometry.set_pose(np.ones((4, 4)))
 
 
-def test_a_level_world_waits_for_gravity(walk, tmp_path):
-    sequence = plvo.Sequence(walk)
+def test_a_level_world_waits_for_gravity(recording, tmp_path):
+    sequence = plvo.Sequence(recording)
     odometry = plvo.Odometry(sequence.camera, plvo.Config(level_world=True))
     waiting = odometry.track(*next(sequence))
     assert waiting.state == "initialising" and not waiting.has_pose and "waiting for gravity" in waiting.message
@@ -127,8 +127,8 @@ def test_a_level_world_waits_for_gravity(walk, tmp_path):
     first = odometry.track(*next(sequence), prior=plvo.MotionPrior(gravity=(down, 0.01 * np.eye(3))))
     assert first.has_pose
     assert np.allclose(first.T_world_camera[:3, :3] @ down / np.linalg.norm(down), [0, 1, 0], atol=1e-12)
-    subprocess.run([PLVO, "run", walk, "--imu", "--level", "--quiet", "--out", tmp_path / "t"], check=True)
-    positions = [r.position for r in plvo.run(walk, imu=True, config=plvo.Config(level_world=True)) if r.has_pose]
+    subprocess.run([PLVO, "run", recording, "--imu", "--level", "--quiet", "--out", tmp_path / "t"], check=True)
+    positions = [r.position for r in plvo.run(recording, imu=True, config=plvo.Config(level_world=True)) if r.has_pose]
     assert np.allclose(positions, np.loadtxt(tmp_path / "t")[:, 1:4], atol=1e-8)
 
 

@@ -33,15 +33,15 @@ assert len(ends) == 8 and len(set(ends)) == 1, ends
 
 
 @pytest.mark.parametrize("attempt", range(3))
-def test_threads_are_the_first_to_use_arrays(walk, attempt):
+def test_threads_are_the_first_to_use_arrays(recording, attempt):
     """subprocess ends a hang with TimeoutExpired."""
-    subprocess.run([sys.executable, "-c", FIRST, walk], check=True, timeout=180)
+    subprocess.run([sys.executable, "-c", FIRST, recording], check=True, timeout=180)
 
 
-def test_threads_that_meet_in_a_sequence_are_told_so(walk):
+def test_threads_that_meet_in_a_sequence_are_told_so(recording):
     """Each frame goes to one of them, and no read fails otherwise."""
     for _ in range(4):
-        sequence, start, stamps, refused, others = plvo.Sequence(walk), threading.Barrier(8), [], [], []
+        sequence, start, stamps, refused, others = plvo.Sequence(recording), threading.Barrier(8), [], [], []
 
         def read():
             start.wait()
@@ -61,5 +61,5 @@ def test_threads_that_meet_in_a_sequence_are_told_so(walk):
         for thread in threads:
             thread.join()
         assert not others
-        assert sorted(stamps) == [frame.stamp_ns for frame in plvo.Sequence(walk)]
+        assert sorted(stamps) == [frame.stamp_ns for frame in plvo.Sequence(recording)]
         assert set(refused) <= {"this Sequence is at work in another thread; give each thread its own"}

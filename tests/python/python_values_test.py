@@ -13,8 +13,8 @@ from python_stubs_test import runtime_parameters
 
 
 @pytest.fixture(scope="module", name="results")
-def tracked(walk):
-    return list(plvo.run(walk))
+def tracked(recording):
+    return list(plvo.run(recording))
 
 
 def test_a_camera_has_its_matrix_and_says_what_it_is():
@@ -55,10 +55,10 @@ def variants(cls):
 
 
 @pytest.fixture(scope="module", name="values")
-def all_values(walk, results):
+def all_values(recording, results):
     """Of each class that is a value some that differ."""
-    cameras = [plvo.Camera.builtin("tum-fr1"), plvo.Camera.builtin("7scenes"), plvo.Camera.read(walk / "calibration.txt")]
-    sequence = plvo.Sequence(walk)
+    cameras = [plvo.Camera.builtin("tum-fr1"), plvo.Camera.builtin("7scenes"), plvo.Camera.read(recording / "calibration.txt")]
+    sequence = plvo.Sequence(recording)
     odometry, places = plvo.Odometry(sequence.camera), plvo.Map(sequence.camera, keyframes=8)
     in_map = [places.update(odometry, odometry.track(*frame)) for frame in sequence]
     lost = plvo.Odometry(sequence.camera).track(np.zeros((240, 320), np.uint8), np.zeros((240, 320), np.uint16), 1)
@@ -99,10 +99,10 @@ def test_copies_and_pickled_values_are_equal(values):
                 assert all(same(getattr(value, name), getattr(other, name)) for name in attributes)
 
 
-def test_pickled_values_give_the_same_bits(walk):
+def test_pickled_values_give_the_same_bits(recording):
     def run(camera, config, prior, keep):
         odometry = plvo.Odometry(keep(camera), keep(config))
-        return [odometry.track(*frame, prior=keep(prior)) for frame, _ in zip(plvo.Sequence(walk), range(6))]
+        return [odometry.track(*frame, prior=keep(prior)) for frame, _ in zip(plvo.Sequence(recording), range(6))]
 
     camera = plvo.Camera(320, 240, 277.1, 278.2, 159.3, 119.4, (0.01, 0, 0, 0.001, 1e-3), 5000, 0.01, 0.002, 0.005, stamp_sigma_s=1e-4)
     prior = plvo.MotionPrior(rotation=(EYE, 1e-3 * EYE), translation=([0, 0, -0.01], 1e-3 * EYE), gravity=([0, 1, 0], 1e-2 * EYE),
@@ -125,8 +125,8 @@ def test_what_is_no_pickled_value_is_refused():
         plvo.Config.__new__(plvo.Config).__setstate__(("0.0.1", state))
 
 
-def test_what_is_no_value_cannot_be_pickled(walk):
-    sequence = plvo.Sequence(walk)
+def test_what_is_no_value_cannot_be_pickled(recording):
+    sequence = plvo.Sequence(recording)
     for thing in (sequence, plvo.Odometry(sequence.camera), plvo.Map(sequence.camera, keyframes=8), plvo.Imu(), sequence.imu()):
         with pytest.raises(TypeError, match="cannot pickle"):
             pickle.dumps(thing)
@@ -134,8 +134,8 @@ def test_what_is_no_value_cannot_be_pickled(walk):
             copy.deepcopy(thing)
 
 
-def test_frames_and_errors_can_be_pickled(walk):
-    frame = next(plvo.Sequence(walk))
+def test_frames_and_errors_can_be_pickled(recording):
+    frame = next(plvo.Sequence(recording))
     for other in (pickle.loads(pickle.dumps(frame)), copy.deepcopy(frame)):
         assert type(other) is plvo.Frame and all(map(same, frame, other))
     with pytest.raises(plvo.Error) as raised:
@@ -161,13 +161,13 @@ def test_values_say_what_they_are(values):
     assert repr(values[plvo.MapResult][0]) == "<plvo.MapResult located=True recognised=False keyframe=1 removed=0>"
 
 
-def test_a_sequence_ends_with_its_block(walk):
-    with plvo.Sequence(walk) as sequence:
+def test_a_sequence_ends_with_its_block(recording):
+    with plvo.Sequence(recording) as sequence:
         frame = next(sequence)
     assert frame.colour.any()
     with pytest.raises(ValueError, match="the with block of this sequence has ended"):
         next(sequence)
-    with pytest.raises(ZeroDivisionError), plvo.Sequence(walk):
+    with pytest.raises(ZeroDivisionError), plvo.Sequence(recording):
         raise ZeroDivisionError
 
 
@@ -176,15 +176,15 @@ def test_a_missing_file_fails_at_the_call(tmp_path):
         plvo.run(tmp_path / "nowhere")
 
 
-def test_a_trajectory_is_saved_as_others_read_it(walk, results, tmp_path):
+def test_a_trajectory_is_saved_as_others_read_it(recording, results, tmp_path):
     trajectory = plvo.Trajectory(results)
     assert len(trajectory) == sum(result.has_pose for result in results)
     assert trajectory.positions.shape == (len(trajectory), 3) and trajectory.quaternions.shape == (len(trajectory), 4)
     assert trajectory == plvo.Trajectory(iter(results)) != plvo.Trajectory([])
     assert pickle.loads(pickle.dumps(trajectory)) == trajectory
     trajectory.save(tmp_path / "t.txt")
-    saved = plvo.evaluate(walk, tmp_path / "t.txt")
-    direct = plvo.evaluate(walk, results)
+    saved = plvo.evaluate(recording, tmp_path / "t.txt")
+    direct = plvo.evaluate(recording, results)
     assert saved["poses"] == direct["poses"]
     assert saved["ate_m"]["rmse"] == pytest.approx(direct["ate_m"]["rmse"], abs=1e-8)
     with pytest.raises(TypeError, match="results: expected plvo.Result objects, got int"):

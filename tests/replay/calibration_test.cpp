@@ -428,7 +428,7 @@ TEST(Calibration, ReadsASeparateDepthCamera) {
   EXPECT_TRUE(says(c.validate(640, 480), "fx and fy must be numbers from 1 to 100000"));
 }
 
-// Two cameras of the same kind, side by side.
+// Two cameras of the same kind on one mount.
 TEST(Calibration, ReadsADepthOffsetWithoutPinhole) {
   Calibration c;
   ASSERT_TRUE(read_text("525 525 319.5 239.5 1000\ndepth_tx -0.025\n", c).ok());

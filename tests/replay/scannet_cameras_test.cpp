@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ScanNet's two cameras give bit for bit the same as a calibration.txt with the same numbers. A walk with
-// depth of half the size gives about the poses of the full size.
+// ScanNet's two cameras give bit for bit the same as a calibration.txt with the same numbers. A sequence
+// with depth of half the size gives about the poses of the full size.
 #include "plvo/replay/calibration/scannet_cameras.hpp"
 
 #include <gtest/gtest.h>

@@ -113,12 +113,12 @@ TEST_F(SequenceCalibration, ReportsWhatPlainTumNumbersOmit) {
   const std::string all = missing("walk", "517.3 516.5 318.6 255.3 5000");
   EXPECT_TRUE(has_text(all, "by its numbers this is TUM's camera tum-fr1")) << all;
   EXPECT_TRUE(has_text(all,
-                       "does not say: the lens, the rolling shutter, when depth is exposed, what the "
-                       "stamps err; --camera-model tum-fr1 says it"))
+                       "does not say: the lens, the rolling shutter, when depth is exposed, the "
+                       "errors of the stamps; --camera-model tum-fr1 says it"))
       << all;
   const std::string lens =
       missing("walk", "517.306408 516.469215 318.643040 255.313989 5000 0.262 -0.953 -0.005 0.0026 1.163");
-  EXPECT_TRUE(has_text(lens, "does not say: the rolling shutter, when depth is exposed, what the")) << lens;
+  EXPECT_TRUE(has_text(lens, "does not say: the rolling shutter, when depth is exposed, the errors")) << lens;
   EXPECT_TRUE(has_text(missing("walk", "520.9 521.0 325.1 249.7"), "tum-fr2"));
   EXPECT_TRUE(has_text(missing("walk", "535.4 539.2 320.1 247.6 5000"), "tum-fr3"));
   // The driver's numbers identify no camera, but the name of the recording does; so does that of a bag.

@@ -52,7 +52,7 @@ TEST(WheelFiles, RoundTrip) {
   }
 }
 
-TEST(WheelFiles, NameTheLineThatIsWrongAndLeaveOutWhatIsNotLater) {
+TEST(WheelFiles, NameInvalidLinesAndSkipStampsThatDoNotIncrease) {
   const TemporaryFolder folder;
   WheelRecording read;
   const auto refused = [&](const std::string& text, StatusCode code, const std::string& words) {
@@ -88,7 +88,7 @@ Se3 slow_drive(double from_s, double to_s) {
   return T;
 }
 
-TEST(WheelPriors, PriorsOfFramesBetweenSamplesAreTheDrivenWay) {
+TEST(WheelPriors, PriorsBetweenSamplesEqualTheDrivenMotion) {
   WheelConfig config;
   config.T_base_camera = {rotation_exp({0.3, -1, 0.2}), {0.3, 0.1, 0.4}};
   WheelPriors wheels;
@@ -126,7 +126,7 @@ TEST(WheelPriors, StandardDeviationsOfTheFileComeBeforeTheShareOfTheSpeed) {
               2e-4);
 }
 
-TEST(WheelPriors, SayNothingWhereSamplesAreMissing) {
+TEST(WheelPriors, GiveNoPriorWhereSamplesAreMissing) {
   WheelRecording recording = driven(100);
   recording.samples.erase(recording.samples.begin() + 30, recording.samples.begin() + 50);  // 0.4 s
   WheelPriors wheels;
@@ -171,7 +171,7 @@ TEST(WheelPriors, SamplesThatComeOneByOneAreThoseOfARecording) {
   EXPECT_FALSE(one_by_one.add({kWheelStart * 2, {std::nan(""), 0, 0}, Vector3::Zero()}));
 }
 
-TEST(WheelPriors, TheLastVelocityIsHeldForAWhileAndGrowsUnsure) {
+TEST(WheelPriors, TheLastVelocityIsHeldForAWhileWithAGrowingCovariance) {
   const auto prior_of = [](double hold_s, int samples, double stamp_s) {
     WheelConfig config;
     config.hold_s = hold_s;
@@ -209,7 +209,7 @@ TEST(WheelPriors, TheOldestSamplesAreForgotten) {
   EXPECT_NEAR(prior.translation->t_now_before.norm(), 0.03, 1e-9);
 }
 
-TEST(WheelPriors, RefuseAConfigurationThatIsNone) {
+TEST(WheelPriors, RefuseAnInvalidConfiguration) {
   const auto refused = [](auto spoil, const char* word) {
     WheelConfig config;
     spoil(config);

@@ -148,10 +148,10 @@ def main():
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="plvo_report_") as folder:
         run_page, eval_page, estimate = (os.path.join(folder, n) for n in ("run.html", "eval.html", "estimate.txt"))
-        walk, covariance = os.path.join(folder, HOSTILE), os.path.join(folder, "covariance.txt")
-        subprocess.run([plvo, "simulate", "--scene", "bare", "--size", "320x240", "--frames", "8", "--out", walk, "--quiet"], check=True)
-        subprocess.run([plvo, "run", walk, "--quiet", "--out", estimate, "--covariance", covariance, "--report", run_page], check=True)
-        subprocess.run([plvo, "eval", "--gt", os.path.join(walk, "groundtruth.txt"), "--est", estimate, "--est-covariance",
+        recording, covariance = os.path.join(folder, HOSTILE), os.path.join(folder, "covariance.txt")
+        subprocess.run([plvo, "simulate", "--scene", "bare", "--size", "320x240", "--frames", "8", "--out", recording, "--quiet"], check=True)
+        subprocess.run([plvo, "run", recording, "--quiet", "--out", estimate, "--covariance", covariance, "--report", run_page], check=True)
+        subprocess.run([plvo, "eval", "--gt", os.path.join(recording, "groundtruth.txt"), "--est", estimate, "--est-covariance",
                         covariance, "--report", eval_page], check=True, stdout=subprocess.DEVNULL)
         parts = ["Trajectory", "Errors against the ground truth", "Position error, x", "Orientation error, z"]
         for size in ("1280,900", "500,900"):  # a screen; the narrowest window that headless Chromium makes

@@ -45,7 +45,7 @@ def jpeg(array):
     return out.getvalue()
 
 
-class Walk(SimulatedFolder):
+class Recording(SimulatedFolder):
     """A simulated folder, as arrays."""
 
     def __init__(self, folder):
@@ -62,7 +62,7 @@ class RosRecordings(unittest.TestCase):
         cls.base = pathlib.Path(cls.scratch.name)
         made = plvo("simulate", "--scene", "bare", "--size", "160x120", "--seed", "3", "--quiet", "--frames", "6", "--out", cls.base / "walk")
         assert made.returncode == 0, made.stderr
-        cls.walk = Walk(cls.base / "walk")
+        cls.recording = Recording(cls.base / "walk")
         cls.poses = cls.poses_of(cls, cls.base / "walk")
 
     @classmethod
@@ -83,16 +83,16 @@ class RosRecordings(unittest.TestCase):
         self.assertEqual(self.poses_of(recording, *options), poses or self.poses, str(recording))
 
     def info(self, wire, stamp):
-        return ros.camera_info(wire, stamp, self.walk.width, self.walk.height, *self.walk.camera, lens=self.walk.lens)
+        return ros.camera_info(wire, stamp, self.recording.width, self.recording.height, *self.recording.camera, lens=self.recording.lens)
 
     def messages(self, wire, colour=None, depth=None):
         """colour, depth: (topic, type, function of stamp and array), else raw images."""
-        w, h = self.walk.width, self.walk.height
+        w, h = self.recording.width, self.recording.height
         colour = colour or (COLOUR, "sensor_msgs/Image", lambda t, a: ros.image(wire, t, w, h, "rgb8", 3 * w, a.tobytes()))
         depth = depth or (DEPTH, "sensor_msgs/Image", lambda t, a: ros.image(
             wire, t, w, h, "32FC1", 4 * w, np.where(a > 0, a / UNITS, np.nan).astype("<f4").tobytes()))
         result = []
-        for stamp, rgb, depth_stamp, units in self.walk.frames:
+        for stamp, rgb, depth_stamp, units in self.recording.frames:
             late = stamp + 40_000_000
             result.append((INFO, "sensor_msgs/CameraInfo", late, self.info(wire, stamp)))
             result.append((depth[0], depth[1], late, depth[2](depth_stamp, units)))
@@ -176,7 +176,7 @@ class RosRecordings(unittest.TestCase):
         self.assertEqual(plvo("run", f"{file}.zst", TMPDIR=str(temporary)).returncode, 0)
         self.assertEqual(list(temporary.iterdir()), [])
         # A folder of images stays one if a recording lies in it.
-        for number, (_, rgb, _, units) in enumerate(self.walk.frames):
+        for number, (_, rgb, _, units) in enumerate(self.recording.frames):
             Image.fromarray(rgb).save(self.folder / f"frame-{number:06}.color.png")
             Image.fromarray(units).save(self.folder / f"frame-{number:06}.depth.png")
         self.assertEqual(json.loads(plvo("info", self.folder, "--json", "-").stdout)["format"], "folder of images")
@@ -197,11 +197,11 @@ class RosRecordings(unittest.TestCase):
         containers.write_db3(file, self.messages("cdr_le"))
         for command in (("info", folder, "--json", file), ("info", file, "--json", file), ("run", folder, "--out", file),
                         ("eval", "--gt", folder, "--est", "e", "--json", file), ("convert", folder, "--out", file),
-                        ("info", self.walk.folder, "--json", self.walk.folder / "rgb.txt")):
+                        ("info", self.recording.folder, "--json", self.recording.folder / "rgb.txt")):
             run = plvo(*command)
             self.assertNotEqual(run.returncode, 0, command)
         self.expect_equal(folder)
-        self.expect_equal(self.walk.folder)
+        self.expect_equal(self.recording.folder)
 
     def test_compressed_topics(self):
         for wire in ("cdr_le", "ros1"):
@@ -216,10 +216,10 @@ class RosRecordings(unittest.TestCase):
                 self.expect_equal(file, "--depth-scale", UNITS)
 
     def folder_of(self, name, colour, depth):
-        """A copy of the walk whose images went through the functions."""
+        """A copy of the recording whose images went through the functions."""
         copy = self.folder / name
-        shutil.copytree(self.walk.folder, copy)
-        for (_, rgb, _, units), c, d in zip(self.walk.frames, self.walk.rows("rgb.txt"), self.walk.rows("depth.txt")):
+        shutil.copytree(self.recording.folder, copy)
+        for (_, rgb, _, units), c, d in zip(self.recording.frames, self.recording.rows("rgb.txt"), self.recording.rows("depth.txt")):
             Image.fromarray(colour(rgb)).save(copy / c[1])
             Image.fromarray(depth(units)).save(copy / d[1])
         return copy
@@ -261,13 +261,13 @@ class RosRecordings(unittest.TestCase):
     def test_truth(self):
         for kind in ("nav_msgs/Odometry", "geometry_msgs/PoseStamped"):
             messages = self.messages("cdr_le")
-            for row in self.walk.rows("groundtruth.txt"):
-                stamp = self.walk.ns(row[0])
+            for row in self.recording.rows("groundtruth.txt"):
+                stamp = self.recording.ns(row[0])
                 messages.append(("/truth", kind, stamp, ros.pose("cdr_le", kind, stamp, [float(x) for x in row[1:]])))
             file = self.folder / "a.mcap"
             containers.write_mcap(file, messages)
             results = []
-            for recording in (file, self.walk.folder):
+            for recording in (file, self.recording.folder):
                 run = plvo("run", recording, "--json", self.folder / "j", "--quiet")
                 self.assertEqual(run.returncode, 0, run.stderr)
                 results.append(json.loads((self.folder / "j").read_text())["evaluation"])
@@ -277,38 +277,38 @@ class RosRecordings(unittest.TestCase):
 
     def test_gyro_and_accelerometer(self):
         messages = self.messages("cdr_be")
-        for rate, force in zip(self.walk.rows("gyroscope.txt"), self.walk.rows("accelerometer.txt")):
-            stamp = self.walk.ns(rate[0])
+        for rate, force in zip(self.recording.rows("gyroscope.txt"), self.recording.rows("accelerometer.txt")):
+            stamp = self.recording.ns(rate[0])
             messages.append(("/imu", "sensor_msgs/Imu", stamp, ros.imu("cdr_be", stamp, map(float, rate[1:]), map(float, force[1:]))))
         file = self.folder / "a.db3"
         containers.write_db3(file, messages)
-        self.expect_equal(file, "--imu", poses=self.poses_of(self.walk.folder, "--imu"))
+        self.expect_equal(file, "--imu", poses=self.poses_of(self.recording.folder, "--imu"))
 
     def own_depth_camera(self, x):
         """A folder whose depth has a camera x metres from that of colour."""
         copy = self.folder / "own"
-        shutil.copytree(self.walk.folder, copy)
-        fx, fy, cx, cy = self.walk.camera
+        shutil.copytree(self.recording.folder, copy)
+        fx, fy, cx, cy = self.recording.camera
         with open(copy / "calibration.txt", "a", encoding="utf-8") as file:
             file.write(f"depth_fx {fx - 3}\ndepth_fy {fy - 3}\ndepth_cx {cx + 1}\ndepth_cy {cy}\ndepth_tx {x}\n")
         return copy
 
     def realsense(self, wire, infrared="mono8"):
         """As the RealSense Viewer records, with infrared beside colour."""
-        w, h = self.walk.width, self.walk.height
-        fx, fy, cx, cy = self.walk.camera
+        w, h = self.recording.width, self.recording.height
+        fx, fy, cx, cy = self.recording.camera
         stream = "/device_0/sensor_0/Depth_0", "/device_0/sensor_1/Color_0", "/device_0/sensor_0/Infrared_1"
         identity = [0, 0, 0, 0, 0, 0, 1]
-        begin = self.walk.frames[0][0]
+        begin = self.recording.frames[0][0]
         messages = [
             ("/device_0/sensor_0/option/Depth Units/value", "std_msgs/Float32", begin, ros.float32(wire, 1 / UNITS)),
             (stream[0] + "/info/camera_info", "sensor_msgs/CameraInfo", begin,
              ros.camera_info(wire, 0, w, h, fx - 3, fy - 3, cx + 1, cy, model="Brown Conrady", frame="0")),
             (stream[1] + "/info/camera_info", "sensor_msgs/CameraInfo", begin,
-             ros.camera_info(wire, 0, w, h, fx, fy, cx, cy, lens=self.walk.lens, model="Brown Conrady", frame="1")),
+             ros.camera_info(wire, 0, w, h, fx, fy, cx, cy, lens=self.recording.lens, model="Brown Conrady", frame="1")),
             (stream[0] + "/tf/0", "geometry_msgs/Transform", begin, ros.transform(wire, identity)),
             (stream[1] + "/tf/0", "geometry_msgs/Transform", begin, ros.transform(wire, [0.015, 0, 0, 0, 0, 0, 1]))]
-        for stamp, rgb, depth_stamp, units in self.walk.frames:
+        for stamp, rgb, depth_stamp, units in self.recording.frames:
             grey = rgb[:, :, 1].astype(np.uint8 if infrared == "mono8" else "<u2")
             messages += [
                 (stream[2] + "/image/data", "sensor_msgs/Image", stamp, ros.image(
@@ -348,7 +348,7 @@ class RosRecordings(unittest.TestCase):
         names = {topic for topic, *_ in messages}
         colour, depth, info = (next(name for name in names if name.endswith(of.removeprefix("/camera")))
                                for of in (COLOUR, DEPTH, INFO))
-        w, h = self.walk.width, self.walk.height
+        w, h = self.recording.width, self.recording.height
         blank = ros.image("cdr_le", messages[0][2], w, h, "16UC1", 2 * w, bytes(2 * w * h), "camera")
         back = [("/back/depth/image_raw", "sensor_msgs/Image", messages[0][2], blank)]
         file = self.folder / "a.mcap"
@@ -365,8 +365,8 @@ class RosRecordings(unittest.TestCase):
         self.expect_equal(file, "--colour-topic", colour, "--info-topic", info)
 
     def test_depth_of_another_frame(self):
-        w, h = self.walk.width, self.walk.height
-        fx, fy, cx, cy = self.walk.camera
+        w, h = self.recording.width, self.recording.height
+        fx, fy, cx, cy = self.recording.camera
         raw = ("/camera/depth/image_rect_raw", "sensor_msgs/Image", lambda t, a: ros.image(
             "cdr_le", t, w, h, "16UC1", 2 * w, a.astype("<u2").tobytes(), "depth_optical"))
         messages = [("/tf_static", "tf2_msgs/TFMessage", 1, ros.transforms("cdr_le", [
@@ -404,7 +404,7 @@ class RosRecordings(unittest.TestCase):
         told = plvo("info", self.folder / "a.mcap")
         self.assertEqual(told.returncode, 1)
         self.assertIn("plvo run cannot start: no topic has images of depth", told.stdout)
-        told = plvo("info", self.walk.folder, "--json", "-")
+        told = plvo("info", self.recording.folder, "--json", "-")
         self.assertEqual(json.loads(told.stdout)["frames"], 6, told.stderr)
 
     def test_convert(self):
@@ -419,10 +419,10 @@ class RosRecordings(unittest.TestCase):
     def test_convert_writes_the_true_poses(self):
         kind = "nav_msgs/Odometry"
         messages = self.messages("cdr_le")
-        rows = [[float(x) for x in row] for row in self.walk.rows("groundtruth.txt")]
+        rows = [[float(x) for x in row] for row in self.recording.rows("groundtruth.txt")]
         for topic in ("/truth", "/wheels"):
-            for row, text in zip(rows, self.walk.rows("groundtruth.txt")):
-                stamp = self.walk.ns(text[0])
+            for row, text in zip(rows, self.recording.rows("groundtruth.txt")):
+                stamp = self.recording.ns(text[0])
                 messages.append((topic, kind, stamp, ros.pose("cdr_le", kind, stamp, row[1:])))
         file, folder = self.folder / "a.mcap", self.folder / "converted"
         containers.write_mcap(file, messages)
@@ -452,7 +452,7 @@ class RosRecordings(unittest.TestCase):
         self.assertIn("has groundtruth.txt already", told.stderr)
 
     def test_convert_writes_the_wheels(self):
-        begin = self.walk.frames[0][0]
+        begin = self.recording.frames[0][0]
         for wire, variances in (("cdr_le", [0.04, 0.01, 0, 0, 0, 0.25]), ("ros1", [0.04, 0, 0, 0, 0, 0.25])):
             messages = self.messages(wire)
             for k in range(5):  # backwards, and the last twice

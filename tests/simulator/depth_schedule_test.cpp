@@ -201,7 +201,7 @@ TEST(DepthSchedule, ColourDoesNotDependOnIt) {
   }
 }
 
-TEST(DepthSchedule, RefusesWhatCannotBe) {
+TEST(DepthSchedule, RefusesInvalidOptions) {
   const auto refused = [](auto change) {
     SimulatorOptions options = bare_room();
     change(options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the simulated camera promises as an RgbdCamera: bytes that depend on the seed alone, stamps, the
-// closed walk, and plain words for options that cannot be.
+// closed trajectory, and plain words for options that cannot be.
 #include <cstring>
 #include <limits>
 
@@ -29,7 +29,7 @@ TEST(SimulatedCamera, SameSeedSameBytesWhateverTheThreads) {
   }
 }
 
-TEST(SimulatedCamera, AnotherSeedIsAnotherRoomAndAnotherWalk) {
+TEST(SimulatedCamera, AnotherSeedGivesAnotherRoomAndTrajectory) {
   SimulatorOptions options = small_options(SceneName::kBare);
   const std::vector<Shot> a = shoot(options);
   options.seed = 2;
@@ -81,7 +81,7 @@ TEST(SimulatedCamera, StampsIncreaseAndTheStreamEnds) {
   EXPECT_EQ(camera->next(frame).code(), StatusCode::kEndOfStream);
 }
 
-TEST(SimulatedCamera, TheWalkIsClosedAndMovesLikeAHand) {
+TEST(SimulatedCamera, TheTrajectoryIsClosedAndMovesLikeAHand) {
   for (const int frames : {2, 90, 1200}) {
     SimulatorOptions options = small_options(SceneName::kBare);
     options.frames = frames;
@@ -99,7 +99,7 @@ TEST(SimulatedCamera, TheWalkIsClosedAndMovesLikeAHand) {
       path_m += step.head<3>().norm();
       widest_rad = std::max(widest_rad, step.tail<3>().norm());
       farthest_m = std::max(farthest_m, step.head<3>().norm());
-      // The walk is continuous: also at its end.
+      // The trajectory is continuous, also at its end.
       const Vector6 half =
           boxminus(camera->ground_truth(camera->stamp_ns(k) - 16'666'000), camera->pose(k - 1));
       EXPECT_LT(half.head<3>().norm(), 0.04);
@@ -107,12 +107,12 @@ TEST(SimulatedCamera, TheWalkIsClosedAndMovesLikeAHand) {
     EXPECT_LT(farthest_m, 0.06) << frames;  // 1.8 m/s
     EXPECT_LT(widest_rad, 0.06) << frames;  // 100 °/s
     if (frames > 2) {
-      EXPECT_GT(path_m / (frames / 30.0), 0.15);  // it does walk
+      EXPECT_GT(path_m / (frames / 30.0), 0.15);  // the camera moves on
     }
   }
 }
 
-TEST(SimulatedCamera, RefusesWhatCannotBe) {
+TEST(SimulatedCamera, RefusesInvalidOptions) {
   std::unique_ptr<SimulatedCamera> camera;
   const auto code = [&](auto change) {
     SimulatorOptions options = small_options(SceneName::kBare);

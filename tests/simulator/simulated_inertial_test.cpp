@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated gyro and accelerometer against the poses of the walk, the noise against what is stated, and
+// The simulated gyro and accelerometer against the true poses, the noise against what is stated, and
 // the covered lens.
 #include <algorithm>
 #include <cmath>

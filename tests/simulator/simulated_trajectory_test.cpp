@@ -86,7 +86,7 @@ TEST_F(RecordedTrajectory, MovesAsRecordedInsideTheRoom) {
     const Vector3 second = trajectory.at(t + 0.01).t - 2 * trajectory.at(t).t + trajectory.at(t - 0.01).t;
     EXPECT_LT(second.norm(), 3 * 1.5e-4) << t;
   }
-  // It begins where and as the walk does.
+  // It begins with the heading of the generated trajectory.
   const Vector3 forward = trajectory.at(0).R.col(2);
   EXPECT_NEAR(plvo::atan2(forward.y(), forward.x()), static_cast<double>(scene_->stroll.front().yaw), 1e-6);
 }
@@ -103,7 +103,7 @@ TEST_F(RecordedTrajectory, DrivesACameraUntilItsEnd) {
   EXPECT_TRUE(camera->next(frame).ok());
 }
 
-TEST_F(RecordedTrajectory, RefusesWhatIsNone) {
+TEST_F(RecordedTrajectory, RefusesInvalidTrajectories) {
   Trajectory trajectory;
   EXPECT_EQ(load(trajectory).code(), StatusCode::kNotFound);
   write("# nothing\n");
@@ -122,15 +122,15 @@ TEST_F(RecordedTrajectory, RefusesWhatIsNone) {
   EXPECT_EQ(load(trajectory).code(), StatusCode::kDamaged);
 }
 
-TEST(HandHeldTrajectory, WalksThroughNothing) {
+TEST(HandHeldTrajectory, KeepsClearOfAllSolids) {
   for (const SceneName name :
        {SceneName::kCorridor, SceneName::kStaircase, SceneName::kHall, SceneName::kDesk, SceneName::kBare}) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
       const std::unique_ptr<sim::Scene> scene = sim::build_scene(name, seed);
       for (const double duration_s : {5.0, 120.0}) {  // the stroll, and the round where there is one
-        const Trajectory walk = Trajectory::hand_held(*scene, seed, duration_s);
+        const Trajectory trajectory = Trajectory::hand_held(*scene, seed, duration_s);
         for (double t = 0; t < duration_s; t += 0.25) {
-          const Vector3 p = walk.at(t).t;
+          const Vector3 p = trajectory.at(t).t;
           const sim::Float3 eye{static_cast<float>(p.x()), static_cast<float>(p.y()),
                                 static_cast<float>(p.z())};
           for (const sim::Solid& solid : scene->solids) {
@@ -147,7 +147,7 @@ TEST(HandHeldTrajectory, WalksThroughNothing) {
   }
 }
 
-TEST_F(RecordedTrajectory, TakesTheRealOnes) {
+TEST_F(RecordedTrajectory, AcceptsRecordedTrajectories) {
   const char* shared = std::getenv("PLVO_SHARED");
   const std::filesystem::path folder =
       std::filesystem::path(shared != nullptr ? shared : "") / "data/tum_groundtruth";

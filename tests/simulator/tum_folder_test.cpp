@@ -122,7 +122,7 @@ TEST_F(TumFolder, StopsWhenAsked) {
   EXPECT_EQ(lines(root_ / "x/rgb.txt").size(), 1U);
 }
 
-TEST_F(TumFolder, LeavesAnotherRecordingAlone) {
+TEST_F(TumFolder, DoesNotOverwriteARecording) {
   fs::create_directories(root_ / "x");
   std::ofstream(root_ / "x/rgb.txt") << "mine\n";
   const Status status = write_tum_folder(*camera_, (root_ / "x").string());
@@ -130,7 +130,7 @@ TEST_F(TumFolder, LeavesAnotherRecordingAlone) {
   EXPECT_EQ(lines(root_ / "x/rgb.txt").at(0), "mine");
 }
 
-TEST_F(TumFolder, SaysWhyItCannotWrite) {
+TEST_F(TumFolder, ReportsWriteErrors) {
   std::ofstream(root_ / "file") << "not a folder";
   const Status status = write_tum_folder(*camera_, (root_ / "file/inside").string());
   EXPECT_EQ(status.code(), StatusCode::kIo);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One walk through the procedural room as three folders with the same images and the same stamps: TUM's
+// One sequence of the procedural room as three folders with the same images and the same stamps: TUM's
 // layout, that of 7-Scenes and that of ScanNet's exports. In the latter two, some pixels without depth are
 // 65535, as in 7-Scenes.
 #pragma once

@@ -88,7 +88,7 @@ class View {
     return nearest;
   }
 
-  // Of a ray beside one that met the wall across `axis`: most meet the same.
+  // Grey level of a ray beside one that met the wall across `axis`: most rays meet the same wall.
   int grey(const Vector3& ray, int axis) {
     double s = 0, t = 0;
     if (!meets(ray, axis, distance(ray, axis), s, t)) {

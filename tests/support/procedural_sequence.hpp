@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A deterministic RGB-D sequence without files: a camera walks and turns inside a box-shaped room whose walls
-// carry textured tiles (corners) and dark strips (lines). Only + − × ÷ and integer hashes, so every machine
-// renders the same bytes; through the same lens that its camera() states. Depth in millimetres with steps,
-// noise and holes.
+// A deterministic RGB-D sequence without files: a camera moves and rotates inside a box-shaped room whose
+// walls carry textured tiles (corners) and dark strips (lines). Only + − × ÷ and integer hashes, so every
+// machine renders the same bytes; through the same lens that its camera() states. Depth in millimetres with
+// steps, noise and holes.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A short walk through a simulated room, recorded by the program under test.
+// A short sequence of a simulated room, recorded by the program under test.
 #pragma once
 
 #include <gtest/gtest.h>

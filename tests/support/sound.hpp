@@ -10,9 +10,9 @@
 
 namespace plvo::test {
 
-// Of correlations: relative to the standard deviations.
+// Tolerance of correlations, that is relative to the standard deviations.
 inline constexpr double kSoundTolerance = 1e-8;
-// What is unsure beyond this in m² or rad² says nothing.
+// Bounds on the variances, in m² or rad².
 inline constexpr double kMostVariance[6] = {1e6, 1e6, 1e6, 9.87, 9.87, 9.87};
 
 inline bool is_sound_covariance(const Matrix6& C) {
@@ -40,11 +40,11 @@ inline bool is_sound_pose(const Se3& T) {
 // A reason when there is no new pose, and numbers that fit the state.
 inline bool is_sound_state(const TrackResult& result) {
   switch (result.state) {
-    case TrackState::kInitialising: return !result.returned;
-    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.returned);
+    case TrackState::kInitialising: return !result.relocalised;
+    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.relocalised);
     case TrackState::kLost:
     case TrackState::kPredicted:
-      return !result.status.ok() && result.status.message()[0] != '\0' && !result.returned;
+      return !result.status.ok() && result.status.message()[0] != '\0' && !result.relocalised;
   }
   return false;
 }

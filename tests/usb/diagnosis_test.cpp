@@ -218,7 +218,7 @@ TEST(Diagnosis, OnlyOneFileNamePatternIsADriver) {
 }
 
 // Sensors observe private spaces, so not every user of the machine may access them.
-TEST(UdevRule, LetsInWhoSitsThereAndTheGroupAlone) {
+TEST(UdevRule, GrantsAccessToTheSeatAndTheGroupOnly) {
   std::ifstream file(PLVO_UDEV_RULE);
   int rules = 0;
   for (std::string line; std::getline(file, line);) {

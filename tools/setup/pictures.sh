@@ -30,7 +30,7 @@ show() {
   fi
   for frame in "${@:2}"; do pictures+=("$folder/overlay/$(printf %06d "$frame").png"); done
 }
-# save NAME: writes the picture: what was shown, side by side.
+# save NAME: writes the pictures in a row as one.
 save() {
   convert "${pictures[@]}" -bordercolor white -border 1x0 +append -quality 75 "docs/images/$1.jpg"
   pictures=()

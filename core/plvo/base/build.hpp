@@ -15,7 +15,7 @@ inline constexpr bool kSizeOptimised = false;
 
 // SIMD vectors (base/simd.hpp) are plain loops, and algorithms use their scalar version. This holds for
 // size-optimised code, and for processors without SIMD registers, where compilers would expand each operation
-// lane by lane. The results are the same.
+// element by element. The results are the same.
 #if defined(PLVO_SIZE_OPTIMISED) || !(defined(__SSE2__) || defined(__ARM_NEON))
 #define PLVO_SIMD_LOOPS
 inline constexpr bool kSimdLoops = true;

@@ -54,7 +54,7 @@ using Int16x8 = std::int16_t __attribute__((vector_size(16)));
 using Int32x4 = std::int32_t __attribute__((vector_size(16)));
 
 // Widens eight bytes to 16 bits each.
-inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int16x8& lanes) {
+inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int16x8& vector) {
   // Interleaves the bytes with zeros: one instruction. GCC 12 compiles a plain conversion to five, or
   // converts byte by byte.
   static_assert(std::endian::native == std::endian::little);
@@ -63,17 +63,17 @@ inline __attribute__((always_inline)) void widen_bytes(std::uint64_t bytes, Int1
   Bytes eight;
   std::memcpy(&eight, &words, sizeof eight);
   const Bytes wide = in_turns(eight, Bytes{});
-  std::memcpy(&lanes, &wide, sizeof lanes);
+  std::memcpy(&vector, &wide, sizeof vector);
 }
 
 // Loads eight bytes and widens them to 16 bits each.
-inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Int16x8& lanes) {
+inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* bytes, Int16x8& vector) {
   std::uint64_t eight;
   std::memcpy(&eight, bytes, sizeof eight);
-  widen_bytes(eight, lanes);
+  widen_bytes(eight, vector);
 }
 
-// Loads four bytes from each of four addresses into one 32-bit lane each.
+// Loads four bytes from each of four addresses into one 32-bit element each.
 inline __attribute__((always_inline)) void load_words(const std::uint8_t* const places[4], Int32x4& words) {
   std::int32_t four[4];
   for (int i = 0; i < 4; ++i) std::memcpy(&four[i], places[i], sizeof four[i]);
@@ -97,54 +97,54 @@ inline __attribute__((always_inline)) void load_bytes(const std::uint8_t* const 
 
 // Loads four numbers from each of two addresses.
 inline __attribute__((always_inline)) void load_halves(const std::int16_t* first, const std::int16_t* second,
-                                                       Int16x8& lanes) {
+                                                       Int16x8& vector) {
   using Words = std::uint64_t __attribute__((vector_size(16)));
   std::uint64_t four[2];
   std::memcpy(&four[0], first, sizeof four[0]);
   std::memcpy(&four[1], second, sizeof four[1]);
   const Words words = {four[0], four[1]};
-  std::memcpy(&lanes, &words, sizeof lanes);
+  std::memcpy(&vector, &words, sizeof vector);
 }
 
-inline __attribute__((always_inline)) void load(const std::int16_t* from, Int16x8& lanes) {
-  std::memcpy(&lanes, from, sizeof lanes);
+inline __attribute__((always_inline)) void load(const std::int16_t* from, Int16x8& vector) {
+  std::memcpy(&vector, from, sizeof vector);
 }
 
-inline __attribute__((always_inline)) void store(const Int16x8& lanes, std::int16_t* to) {
-  std::memcpy(to, &lanes, sizeof lanes);
+inline __attribute__((always_inline)) void store(const Int16x8& vector, std::int16_t* to) {
+  std::memcpy(to, &vector, sizeof vector);
 }
 
-inline __attribute__((always_inline)) void store(const Int32x4& lanes, std::int32_t* to) {
-  std::memcpy(to, &lanes, sizeof lanes);
+inline __attribute__((always_inline)) void store(const Int32x4& vector, std::int32_t* to) {
+  std::memcpy(to, &vector, sizeof vector);
 }
 
-// Stores the lanes as eight bytes. Each value must lie in 0 … 255.
-inline __attribute__((always_inline)) void store_bytes(const Int16x8& lanes, std::uint8_t* to) {
+// Stores the vector as eight bytes. Each value must lie in 0 … 255.
+inline __attribute__((always_inline)) void store_bytes(const Int16x8& vector, std::uint8_t* to) {
 #ifdef __SSE2__
-  const auto packed = __builtin_ia32_packuswb128(lanes, lanes);
+  const auto packed = __builtin_ia32_packuswb128(vector, vector);
   std::memcpy(to, &packed, 8);
 #else
   using EightBytes = std::uint8_t __attribute__((vector_size(8)));
-  const EightBytes eight = __builtin_convertvector(lanes, EightBytes);
+  const EightBytes eight = __builtin_convertvector(vector, EightBytes);
   std::memcpy(to, &eight, sizeof eight);
 #endif
 }
 
-// Per lane: low = min(low, value), high = max(high, value).
+// Per element: low = min(low, value), high = max(high, value).
 inline __attribute__((always_inline)) void take_range(const Int32x4& value, Int32x4& low, Int32x4& high) {
   low = value < low ? value : low;
   high = value > high ? value : high;
 }
 
-// Per lane: limits the value to low … high.
-inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t high, Int16x8& lanes) {
+// Per element: limits the value to low … high.
+inline __attribute__((always_inline)) void clamp(std::int16_t low, std::int16_t high, Int16x8& vector) {
   const Int16x8 least = Int16x8{} + low;
   const Int16x8 most = Int16x8{} + high;
-  lanes = lanes < least ? least : lanes;
-  lanes = lanes > most ? most : lanes;
+  vector = vector < least ? least : vector;
+  vector = vector > most ? most : vector;
 }
 
-// Per lane: a · b / 2^16, rounded down.
+// Per element: a · b / 2^16, rounded down.
 inline __attribute__((always_inline)) void multiply_high(const Int16x8& a, const Int16x8& b, Int16x8& high) {
 #ifdef __SSE2__
   high = __builtin_ia32_pmulhw128(a, b);
@@ -155,27 +155,28 @@ inline __attribute__((always_inline)) void multiply_high(const Int16x8& a, const
 #endif
 }
 
-// Adds the lanes that are four apart: four sums of a, then four sums of b.
+// Adds the elements that are four apart: four sums of a, then four sums of b.
 inline __attribute__((always_inline)) void add_halves(const Int16x8& a, const Int16x8& b, Int16x8& sums) {
   sums = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
          __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-// Adds adjacent lanes: two sums of a, then two sums of b.
+// Adds adjacent elements: two sums of a, then two sums of b.
 inline __attribute__((always_inline)) void add_pairs(const Int32x4& a, const Int32x4& b, Int32x4& sums) {
   sums = __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
 }
 
 // Joins two vectors of 32-bit values into one. The values must fit in 16 bits.
-inline __attribute__((always_inline)) void narrow(const Int32x4& first, const Int32x4& last, Int16x8& lanes) {
+inline __attribute__((always_inline)) void narrow(const Int32x4& first, const Int32x4& last,
+                                                  Int16x8& vector) {
 #ifdef __SSE2__
-  lanes = __builtin_ia32_packssdw128(first, last);
+  vector = __builtin_ia32_packssdw128(first, last);
 #else
   Int16x8 low, high;
   std::memcpy(&low, &first, sizeof low);
   std::memcpy(&high, &last, sizeof high);
   static_assert(std::endian::native == std::endian::little);
-  lanes = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+  vector = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
 #endif
 }
 
@@ -191,7 +192,7 @@ inline __attribute__((always_inline)) void dot_pairs(const Int16x8& a, const Int
 #ifdef __SSE2__
   sums = __builtin_ia32_pmaddwd128(a, b);
 #else
-  // A 32-bit lane holds two values; the first is the lower half.
+  // A 32-bit element holds two values; the first is the lower half.
   static_assert(std::endian::native == std::endian::little);
   Int32x4 both_a, both_b;
   std::memcpy(&both_a, &a, sizeof both_a);
@@ -200,28 +201,28 @@ inline __attribute__((always_inline)) void dot_pairs(const Int16x8& a, const Int
 #endif
 }
 
-// Returns a mask whose bit i is set if lane i is negative.
-inline __attribute__((always_inline)) unsigned negative_mask(const Int16x8& lanes) {
+// Returns a mask whose bit i is set if element i is negative.
+inline __attribute__((always_inline)) unsigned negative_mask(const Int16x8& vector) {
 #ifdef __SSE2__
-  const auto packed = __builtin_ia32_packsswb128(lanes, lanes);
+  const auto packed = __builtin_ia32_packsswb128(vector, vector);
   return static_cast<unsigned>(__builtin_ia32_pmovmskb128(packed)) & 0xffU;
 #else
   using EightBytes = std::int8_t __attribute__((vector_size(8)));
-  const EightBytes bytes = __builtin_convertvector(lanes >> 15, EightBytes);
+  const EightBytes bytes = __builtin_convertvector(vector >> 15, EightBytes);
   std::uint64_t eight;
   std::memcpy(&eight, &bytes, sizeof eight);
   return gather_bytes(eight);
 #endif
 }
 
-inline __attribute__((always_inline)) unsigned negative_mask(const Int32x4& lanes) {
+inline __attribute__((always_inline)) unsigned negative_mask(const Int32x4& vector) {
 #ifdef __SSE2__
   using Floats = float __attribute__((vector_size(16)));
   Floats same;
-  std::memcpy(&same, &lanes, sizeof same);
+  std::memcpy(&same, &vector, sizeof same);
   return static_cast<unsigned>(__builtin_ia32_movmskps(same));
 #else
-  const Int32x4 bits = (lanes >> 31) & Int32x4{1, 2, 4, 8};
+  const Int32x4 bits = (vector >> 31) & Int32x4{1, 2, 4, 8};
   return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
 #endif
 }

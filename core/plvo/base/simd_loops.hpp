@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The SIMD vectors and operations of base/simd.hpp as loops over plain arrays, for size-optimised code and as
-// a reference for tests. Each lane is computed by itself and wraps at its size. An expression of several
-// operations is one loop: assigning it to a vector evaluates it lane by lane.
+// a reference for tests. Each element is computed by itself and wraps at its size. An expression of several
+// operations is one loop: assigning it to a vector evaluates it element by element.
 #pragma once
 
 #include <algorithm>
@@ -23,21 +23,21 @@ template <typename Number_, int kCount_>
 struct SimdLoop {
   using Number = Number_;
   static constexpr int kCount = kCount_;
-  Number lane[kCount];
+  Number elements[kCount];
 
   SimdLoop() = default;
   template <typename... Numbers>
   requires(sizeof...(Numbers) == kCount) constexpr SimdLoop(Numbers... numbers)
-      : lane{static_cast<Number>(numbers)...} {}
+      : elements{static_cast<Number>(numbers)...} {}
   template <typename At>
   __attribute__((always_inline)) constexpr SimdLoop(const SimdExpression<Number, kCount, At>& expression) {
-    for (int i = 0; i < kCount; ++i) lane[i] = expression[i];
+    for (int i = 0; i < kCount; ++i) elements[i] = expression[i];
   }
-  constexpr Number& operator[](int i) { return lane[i]; }
-  constexpr const Number& operator[](int i) const { return lane[i]; }
+  constexpr Number& operator[](int i) { return elements[i]; }
+  constexpr const Number& operator[](int i) const { return elements[i]; }
   template <typename Int16x8>
   __attribute__((always_inline)) constexpr void operator+=(const Int16x8& b) {
-    for (int i = 0; i < kCount; ++i) lane[i] = static_cast<Number>(lane[i] + b[i]);
+    for (int i = 0; i < kCount; ++i) elements[i] = static_cast<Number>(elements[i] + b[i]);
   }
 };
 
@@ -90,7 +90,7 @@ template <SimdLike A>
 __attribute__((always_inline)) constexpr auto operator>>(const A& a, int bits) {
   return each<A>([&a, bits](int i) { return a[i] >> bits; });
 }
-// Sets all bits of a lane where the comparison holds, else none.
+// Sets all bits of an element where the comparison holds, else none.
 template <SimdLike A>
 __attribute__((always_inline)) constexpr auto operator!=(const A& a, typename A::Number b) {
   return each<A>([&a, b](int i) { return a[i] != b ? -1 : 0; });
@@ -99,8 +99,8 @@ __attribute__((always_inline)) constexpr auto operator!=(const A& a, typename A:
 using Int16x8 = SimdLoop<std::int16_t, 8>;
 using Int32x4 = SimdLoop<std::int32_t, 4>;
 
-inline void load_bytes(const std::uint8_t* bytes, Int16x8& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = bytes[i];
+inline void load_bytes(const std::uint8_t* bytes, Int16x8& vector) {
+  for (int i = 0; i < 8; ++i) vector[i] = bytes[i];
 }
 
 inline void load_bytes(const std::uint8_t* const places[4], Int16x8& first_two, Int16x8& others) {
@@ -108,24 +108,24 @@ inline void load_bytes(const std::uint8_t* const places[4], Int16x8& first_two, 
   for (int i = 0; i < 8; ++i) others[i] = places[2 + i / 4][i % 4];
 }
 
-inline void load_halves(const std::int16_t* first, const std::int16_t* second, Int16x8& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = i < 4 ? first[i] : second[i - 4];
+inline void load_halves(const std::int16_t* first, const std::int16_t* second, Int16x8& vector) {
+  for (int i = 0; i < 8; ++i) vector[i] = i < 4 ? first[i] : second[i - 4];
 }
 
-inline void load(const std::int16_t* from, Int16x8& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = from[i];
+inline void load(const std::int16_t* from, Int16x8& vector) {
+  for (int i = 0; i < 8; ++i) vector[i] = from[i];
 }
 
-inline void store(const Int16x8& lanes, std::int16_t* to) {
-  for (int i = 0; i < 8; ++i) to[i] = lanes[i];
+inline void store(const Int16x8& vector, std::int16_t* to) {
+  for (int i = 0; i < 8; ++i) to[i] = vector[i];
 }
 
-inline void store(const Int32x4& lanes, std::int32_t* to) {
-  for (int i = 0; i < 4; ++i) to[i] = lanes[i];
+inline void store(const Int32x4& vector, std::int32_t* to) {
+  for (int i = 0; i < 4; ++i) to[i] = vector[i];
 }
 
-inline void store_bytes(const Int16x8& lanes, std::uint8_t* to) {
-  for (int i = 0; i < 8; ++i) to[i] = static_cast<std::uint8_t>(lanes[i]);
+inline void store_bytes(const Int16x8& vector, std::uint8_t* to) {
+  for (int i = 0; i < 8; ++i) to[i] = static_cast<std::uint8_t>(vector[i]);
 }
 
 inline void multiply_high(const Int16x8& a, const Int16x8& b, Int16x8& high) {
@@ -146,8 +146,8 @@ inline void add_pairs(const Int32x4& a, const Int32x4& b, Int32x4& sums) {
   }
 }
 
-inline void narrow(const Int32x4& first, const Int32x4& last, Int16x8& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = static_cast<std::int16_t>(i < 4 ? first[i] : last[i - 4]);
+inline void narrow(const Int32x4& first, const Int32x4& last, Int16x8& vector) {
+  for (int i = 0; i < 8; ++i) vector[i] = static_cast<std::int16_t>(i < 4 ? first[i] : last[i - 4]);
 }
 
 inline void interleave(const Int16x8& a, const Int16x8& b, Int16x8& first, Int16x8& last) {
@@ -161,8 +161,8 @@ inline void dot_pairs(const Int16x8& a, const Int16x8& b, Int32x4& sums) {
   for (int i = 0; i < 4; ++i) sums[i] = a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1];
 }
 
-inline void clamp(std::int16_t low, std::int16_t high, Int16x8& lanes) {
-  for (int i = 0; i < 8; ++i) lanes[i] = std::clamp(lanes[i], low, high);
+inline void clamp(std::int16_t low, std::int16_t high, Int16x8& vector) {
+  for (int i = 0; i < 8; ++i) vector[i] = std::clamp(vector[i], low, high);
 }
 
 inline void take_range(const Int32x4& value, Int32x4& low, Int32x4& high) {
@@ -173,9 +173,9 @@ inline void take_range(const Int32x4& value, Int32x4& low, Int32x4& high) {
 }
 
 template <SimdLike A>
-inline unsigned negative_mask(const A& lanes) {
+inline unsigned negative_mask(const A& vector) {
   unsigned bits = 0;
-  for (int i = 0; i < A::kCount; ++i) bits |= (lanes[i] < 0 ? 1U : 0U) << i;
+  for (int i = 0; i < A::kCount; ++i) bits |= (vector[i] < 0 ? 1U : 0U) << i;
   return bits;
 }
 

@@ -8,8 +8,8 @@ Status wrong_count(const char* words, std::size_t count) {
   return Status(StatusCode::kInvalidArgument, words).append(static_cast<std::ptrdiff_t>(count));
 }
 
-// The names that librealsense gives to plumb_bob and to two lenses that are not its like, unless their
-// coefficients are 0.
+// The name that librealsense gives to plumb_bob, and the names of two other lenses. These two mean no
+// distortion if their coefficients are 0, and are refused otherwise.
 constexpr std::string_view kRealSensePlumbBob = "Brown Conrady";
 
 bool is_undistorted(std::string_view model, std::span<const double> coefficients) {

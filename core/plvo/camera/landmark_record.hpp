@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a landmark of a reference has moved so far: as the camera's motion says, or otherwise. What moves
-// otherwise belongs to an object of its own, is a reflection, or has a wrong depth. Its features are still
-// matched and tested, but they are no evidence for a motion (coverage.hpp).
+// The record of a landmark of a reference: in how many frames it agreed with the camera's motion. A landmark
+// that mostly did not is part of a moving object, is a reflection, or has a wrong depth. It is still matched
+// and tested, but it is no evidence for a motion (coverage.hpp).
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class LandmarkRecord {
   explicit LandmarkRecord(int balance)
       : balance_(static_cast<std::int8_t>(std::clamp(balance, -kMost, int{kMost}))) {}
 
-  // Frames in which it agreed with the motion, less those in which it did not; at most kMost of either.
+  // Frames in which it agreed with the motion, minus those in which it did not; within ±kMost.
   int balance() const { return balance_; }
   bool trusted() const { return balance_ >= 0; }
   // Takes in one frame in which the landmark was found.

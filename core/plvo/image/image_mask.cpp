@@ -4,7 +4,7 @@
 namespace plvo {
 namespace {
 
-// In the middle of the grey levels, the masked area raises the contrast of what surrounds it least.
+// The middle of the grey levels adds least contrast at the border of the masked area.
 constexpr std::uint8_t kMaskedGrey = 128;
 constexpr std::uint8_t kFarthest = 255;
 

@@ -5,8 +5,8 @@
 // The content of masked pixels has no influence: they become grey before the image is undistorted and
 // smoothed, and their depth becomes "no depth". The border of the grey area is no edge of the scene, so
 // features must keep away from it by the reach of the windows in which they are detected and registered.
-// is_free() answers for the undistorted image, from a table of distances: one per block of 4 × 4 pixels. It
-// errs on the safe side, by at most 6 px.
+// is_free() answers for the undistorted image, from a table of distances: one per block of 4 × 4 pixels. Up
+// to 6 px beyond the reach of a masked pixel it may still answer no; within the reach it never answers yes.
 #pragma once
 
 #include <algorithm>

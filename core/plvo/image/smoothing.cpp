@@ -29,7 +29,8 @@ std::uint8_t binomial5(const std::uint16_t* s) {
   return static_cast<std::uint8_t>((sum + 128) >> 8);
 }
 
-// Eight outputs at once, from sums of at most 16 · 255. Each lane of a dot product weights two adjacent sums.
+// Eight outputs at once, from sums of at most 16 · 255. Each element of a dot product weights two adjacent
+// sums.
 void binomial5_of_eight(const std::uint16_t* s, std::uint8_t* out) {
   constexpr Int16x8 kBefore = {1, 4, 1, 4, 1, 4, 1, 4}, kHere = {6, 4, 6, 4, 6, 4, 6, 4},
                     kAfter = {1, 0, 1, 0, 1, 0, 1, 0};

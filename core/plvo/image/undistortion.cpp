@@ -11,14 +11,14 @@ namespace plvo {
 namespace {
 
 constexpr int kWeightBits = 7;  // fraction bits of a position in the blend
-constexpr int kLaneBits = 10;   // fraction bits of a position within a row of a cell
-constexpr int kLaneShift = 16 - kLaneBits;
+constexpr int kRowBits = 10;    // fraction bits of a position within a row of a cell
+constexpr int kRowShift = 16 - kRowBits;
 // Limits within a row, in px: kMostWay for the distance of a pixel from the first one, kMostOutside for the
-// distance of the first one from the border of the raw image. Their sum fits in a 16-bit lane, and kMostWay
-// times the longest stride fits in 15 bits.
+// distance of the first one from the border of the raw image. Their sum fits in a 16-bit element, and
+// kMostWay times the longest stride fits in 15 bits.
 constexpr std::int32_t kMostWay = 10;
 constexpr std::int32_t kMostOutside = 20;
-static_assert((kMostWay + 1 + kMostOutside) << kLaneBits < 1 << 15);
+static_assert((kMostWay + 1 + kMostOutside) << kRowBits < 1 << 15);
 
 constexpr std::int64_t pair_of(double x, double y) {
   return round_to<std::int64_t>(x * 65536) * (std::int64_t{1} << 32) + round_to<std::int64_t>(y * 65536);
@@ -26,12 +26,13 @@ constexpr std::int64_t pair_of(double x, double y) {
 std::int64_t pair_of(const Vector2& v) { return pair_of(v.x(), v.y()); }
 
 constexpr std::int16_t to_lane(std::int32_t q16) {
-  return static_cast<std::int16_t>((q16 + (1 << (kLaneShift - 1))) >> kLaneShift);
+  return static_cast<std::int16_t>((q16 + (1 << (kRowShift - 1))) >> kRowShift);
 }
 
 // The last bits of x and y of a cell's position (units of 2^-16 px) store its kind. Plain: the cell is
-// complete, and its rows fit the 16-bit lanes. Near: plain, and its pixels have nearly the same arrangement
-// in the raw image (NearCell). Shifted: near, and all its pixels have the same whole-pixel offset.
+// complete, and its rows fit the 16-bit elements. Near: plain, and its pixels have nearly the same
+// arrangement in the raw image (NearCell). Shifted: near, and all its pixels have the same whole-pixel
+// offset.
 constexpr std::int64_t kKinds = (std::int64_t{1} << 32) + 1;
 constexpr std::int64_t kPlain = 1;
 constexpr std::int64_t kNear = kKinds;
@@ -47,7 +48,7 @@ std::uint8_t blend(const std::uint8_t* from, std::ptrdiff_t stride, std::int32_t
   const std::int32_t fx = x & kWeightMask;
   const std::int32_t upper = (above[0] << kWeightBits) + (above[1] - above[0]) * fx;
   const std::int32_t lower = (below[0] << kWeightBits) + (below[1] - below[0]) * fx;
-  // Computes half of the change first, as blend_eight does to fit 16-bit lanes.
+  // Computes half of the change first, as blend_eight does to fit 16-bit elements.
   const std::int32_t half = ((lower - upper) * (y & kWeightMask)) >> (kWeightBits + 1);
   return static_cast<std::uint8_t>((upper + 2 * half + kWeightOne / 2) >> kWeightBits);
 }
@@ -134,7 +135,7 @@ struct UndistortionMap::NearCell {
   static constexpr int kToWeight = kBits - kWeightBits;
   static constexpr std::int32_t kHalf = 1 << (kFractionBits - 1);
   static constexpr std::int16_t kRound = 1 << (kToWeight - 1);
-  static constexpr std::int16_t lane(std::int32_t q16) {
+  static constexpr std::int16_t element(std::int32_t q16) {
     constexpr int kShift = kFractionBits - kBits;
     return static_cast<std::int16_t>((q16 + (1 << (kShift - 1))) >> kShift);
   }
@@ -147,12 +148,12 @@ struct UndistortionMap::NearCell {
 
     __attribute__((always_inline)) Axis(std::int32_t at, std::int32_t right, std::int32_t down,
                                         std::int32_t twist, std::int32_t bend_right, std::int32_t bend_down)
-        : base((at - kHalf) >> kFractionBits), bend(lane(bend_down)) {
+        : base((at - kHalf) >> kFractionBits), bend(element(bend_down)) {
       constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
       constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
-      first = kSteps * lane(right) + kBows * lane(bend_right) +
-              static_cast<std::int16_t>(lane(at - (base << kFractionBits)) + kRound);
-      step = kSteps * lane(twist) + lane(down);
+      first = kSteps * element(right) + kBows * element(bend_right) +
+              static_cast<std::int16_t>(element(at - (base << kFractionBits)) + kRound);
+      step = kSteps * element(twist) + element(down);
     }
     // For a shifted cell: moves the whole-pixel part of the offsets, which all pixels share, into base.
     __attribute__((always_inline)) void shift() {
@@ -293,7 +294,7 @@ struct UndistortionMap::PlainStart {
       : base(std::clamp<std::int32_t>(q16 >> kFractionBits, 0, last >> kFractionBits)) {
     constexpr std::int32_t kMost = kMostOutside << kFractionBits;
     at = static_cast<std::int16_t>(std::clamp<std::int32_t>(q16 - (base << kFractionBits), -kMost, kMost) >>
-                                   kLaneShift);
+                                   kRowShift);
     low = static_cast<std::int16_t>(std::max<std::int32_t>(-base * kWeightOne, INT16_MIN));
     high = static_cast<std::int16_t>(
         std::min<std::int32_t>((last >> (kFractionBits - kWeightBits)) - base * kWeightOne, INT16_MAX));
@@ -306,7 +307,7 @@ void UndistortionMap::undistort_plain(const Cell& cell, int first, int last, Gra
   const Cell c = cell;  // a local copy, which writes to out cannot alias
   constexpr Int16x8 kSteps = {0, 1, 2, 3, 4, 5, 6, 7};
   constexpr Int16x8 kBows = {bow(0), bow(1), bow(2), bow(3), bow(4), bow(5), bow(6), bow(7)};
-  constexpr int kToWeight = kLaneBits - kWeightBits;
+  constexpr int kToWeight = kRowBits - kWeightBits;
   constexpr std::int16_t kRound = 1 << (kToWeight - 1);
   const Int16x8 bent_x = kBows * to_lane(x_of(c.bend_right)) + kRound;
   const Int16x8 bent_y = kBows * to_lane(y_of(c.bend_right)) + kRound;

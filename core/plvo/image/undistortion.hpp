@@ -141,7 +141,7 @@ class UndistortionMap {
     return static_cast<std::uint32_t>(x - 1) < static_cast<std::uint32_t>(last_x_ - 1) &&
            static_cast<std::uint32_t>(y - 1) < static_cast<std::uint32_t>(last_y_ - 1);
   }
-  // True if the rows of a complete cell fit the 16-bit lanes.
+  // True if the rows of a complete cell fit the 16-bit elements.
   bool is_plain(const Cell& c) const;
   // True if, in addition, the pixels have nearly the same arrangement in the raw image. shifted: all of them
   // have the same whole-pixel offset.

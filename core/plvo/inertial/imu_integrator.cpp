@@ -25,8 +25,8 @@ constexpr double kMostOffsetVariance = 1;
 // Differences of stamps within this bound fit into 64 bits.
 constexpr std::int64_t kFarthest_ns = std::int64_t{1} << 61;
 bool is_stamp(std::int64_t ns) { return ns >= -kFarthest_ns && ns <= kFarthest_ns; }
-// Bound on the difference of the rotations by vision and by the gyro that a run corrects the offset by, in
-// standard deviations.
+// Bound on the difference between the rotations by vision and by the gyro over a run, in standard deviations.
+// A larger difference is scaled down to the bound.
 constexpr double kMostSigmas = 5;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -185,8 +185,8 @@ void ImuIntegrator::start_run(const ObservedRotation& first) {
   has_run_ = true;
 }
 
-// Covariance of the rotation by the gyro minus that by vision, apart from the offset. The errors of vision at
-// the ends of the run are taken as independent; the reference itself has none.
+// Covariance of the rotation by the gyro minus that by vision, without the part of the offset. The errors of
+// vision at the ends of the run are taken as independent; that of the reference itself is zero.
 Matrix3 ImuIntegrator::noise_of_run() const {
   const Vector3 angle = turn_.transpose() * rotation_log(run_.R_last_first);
   Vector3 variance;
@@ -219,7 +219,7 @@ void ImuIntegrator::finish_run() {
   for (int i = 0; i < 3; ++i) variance_[i] *= std::clamp(left(i, i), 0.0, 1.0);
 }
 
-// A run ends with its reference, or as soon as it says more about the offset than is known.
+// A run ends with its reference, or as soon as it determines the offset better than it is known.
 void ImuIntegrator::correct(const ObservedRotation& observed) {
   const bool starts = observed.reference_stamp_ns == observed.stamp_ns;
   if (starts || !has_run_ || !has_rotation_ || run_.last.stamp_ns != before_ns_ ||

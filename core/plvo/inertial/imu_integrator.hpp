@@ -12,10 +12,10 @@
 // part). The gyro's offset is a separate state that correct() estimates. The accelerometer's mean over the
 // interval gives the direction of gravity.
 //
-// An offset shows in the rotation over several frames. Between neighbouring frames it is less than the error
-// of vision, and the errors of neighbouring frames are not independent, because both are matched with the
-// same reference. So correct() compares the rotation by the gyro with that by vision over a run of frames
-// with one reference, and uses each run once.
+// The offset is observable in the rotation over several frames. Between neighbouring frames its effect is
+// less than the error of vision, and the errors of neighbouring frames are not independent, because both are
+// matched with the same reference. So correct() compares the rotation by the gyro with that by vision over a
+// run of frames with one reference, and uses each run once.
 #pragma once
 
 #include <cstddef>

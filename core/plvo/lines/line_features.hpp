@@ -20,7 +20,7 @@ struct LineFeatures {
   std::span<Line3d> lines;                // camera frame
   std::size_t count_3d = 0;
   bool lifted = false;              // 3D lines have been searched for
-  std::span<Exposure> lifted_with;  // one: the motion that the lines were lifted with
+  std::span<Exposure> lifted_with;  // size 1: the exposure with which the lines were lifted
 
   // Removes all segments and limits the capacity.
   void clear(std::size_t capacity) {

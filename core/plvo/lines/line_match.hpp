@@ -29,7 +29,7 @@ struct LineMatchConfig {
   double same_line_px = 3;
   double same_line_rad = 0.07;
 
-  // For a motion that is known.
+  // Settings for a motion that is known.
   static constexpr LineMatchConfig guided() { return {.max_angle_rad = 0.1, .max_offset_px = 8}; }
 };
 
@@ -60,8 +60,8 @@ constexpr LineMatchScratch take_line_match_scratch(Arena& memory, std::size_t re
           memory.take<std::uint16_t>("line match", references)};
 }
 
-// Where the line between two points in the current camera's frame is seen, for match_lines: only the ends of
-// the segment are set. A line that reaches behind the camera goes far outside the image, where it has no
+// Projects the line between two points in the current camera's frame, for match_lines. Only the ends of the
+// segment are set. A line that reaches behind the camera is placed far outside the image, where it has no
 // match.
 Segment project_line(const Pinhole& pinhole, const Vector3& a, const Vector3& b);
 

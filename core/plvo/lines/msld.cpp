@@ -176,11 +176,11 @@ struct Parts {
   Int16x8 positive{}, negative{};
 };
 
-void repeat(Gradient g, Int16x8& lanes) {
+void repeat(Gradient g, Int16x8& vector) {
   std::int32_t both;
   std::memcpy(&both, &g, sizeof both);
   const Int32x4 four = Int32x4{} + both;
-  std::memcpy(&lanes, &four, sizeof lanes);
+  std::memcpy(&vector, &four, sizeof vector);
 }
 
 // Reads four columns row by row. Columns from `columns` on have no gradient.
@@ -222,7 +222,7 @@ class FourColumns {
     load_halves(&gradients[0].x, &gradients[2].x, four);
   }
 
-  // The same for four positions at once. A lane holds four adjacent bytes; the first of them is the left
+  // The same for four positions at once. An element holds four adjacent bytes; the first of them is the left
   // neighbour, or the pixel above or below.
   void read(Int16x8& four) const {
     constexpr int kLow = 0xffff, kByte = 0xff;

@@ -8,7 +8,7 @@ namespace {
 
 // Standard deviation of a detected keypoint between views that differ, in pixels of its level.
 constexpr double kDetectedSigma_px = 1;
-// A loop needs so many inliers, and this share of the matches of points.
+// A loop needs at least this many inliers, and this share of the point matches as inliers.
 constexpr int kLeastLoopInliers = 20;
 constexpr double kLeastLoopShare = 0.4;
 // Bounds on the standard deviations of the motion in its worst direction.
@@ -73,7 +73,8 @@ LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeat
   match_points(views.old_points, views.anywhere, views.new_points, camera.width, camera.height, everywhere,
                scratch, views.point_matches);
 
-  // First the points alone. Lines are matched where that motion puts them, and join the estimate.
+  // The first estimate is from points alone. Lines are matched where its motion puts them, and join the
+  // second estimate.
   Se3 T_new_old;
   for (const bool with_lines : {false, true}) {
     if (with_lines) match_lines_after(T_new_old, old_view, new_view, views, scratch);

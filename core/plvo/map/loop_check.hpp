@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether two keyframes of the map show the same place, and the motion between them: descriptors are matched
-// over the whole image, and the estimator that tracks (motion_estimator.hpp) judges the matches, points
-// first, then points and lines.
+// Decides whether two keyframes of the map show the same place, and estimates the motion between them.
+// Descriptors are matched over the whole image. The estimator of the tracking (motion_estimator.hpp) then
+// finds a motion from the points, and a better one from points and lines.
 #pragma once
 
 #include "plvo/base/arena.hpp"
@@ -22,7 +22,7 @@ struct LoopMeasurement {
   int inliers = 0;                       // points and lines
 };
 
-// Settings of the estimator, and the camera that the features are of.
+// Settings of the estimator, and the camera of the features.
 struct LoopCheck {
   CameraModel camera;
   MotionConfig motion;

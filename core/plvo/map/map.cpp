@@ -11,17 +11,17 @@
 namespace plvo {
 namespace {
 
-// Keyframes that joined in a row see the same place anyway: no loops are searched among so many.
+// This many keyframes in a row show the same place anyway, so no loops are searched among them.
 constexpr std::uint32_t kRecentKeyframes = 5;
-// Comparisons of this many keyframes in a row must agree.
+// The hypotheses of this many keyframes in a row are compared with each other.
 constexpr std::uint32_t kJudgedKeyframes = 10;
-// A keyframe is compared only where at least so many descriptors voted for it alone, or more for several.
+// The score that a keyframe needs to be compared: that of six descriptors that vote for it alone.
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
-// While the place is not known, all that looks alike at all is compared: there is nothing else to do.
+// While the place is unknown, the score of a single such descriptor suffices.
 constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
-// A place is recognised when so many comparisons agree.
+// A place is recognised when this many hypotheses agree.
 constexpr int kLeastAgreeing = 3;
-// One that contradicts them counts if it has this share of their inliers.
+// A hypothesis that contradicts them counts if it has this share of their inliers.
 constexpr double kRivalShare = 0.5;
 // Probability with which a correct loop passes a test of its motion. The covariances of the odometry state
 // its errors within this factor.
@@ -32,8 +32,8 @@ constexpr double kUnknownPosition_m2 = 1e4, kUnknownRotation_rad2 = 10;
 // Two views are of the same place if the camera moved by less than this share of the scene's depth, or turned
 // by less than this angle; see view_distance().
 constexpr double kSameViewMove = 0.5, kSameViewTurn_rad = 0.5;
-// A motion more uncertain than this was not seen (m² + rad²): what it separates is not recent, and
-// comparisons whose difference is more uncertain neither agree nor contradict.
+// A motion more uncertain than this (m² + rad²) counts as unobserved: keyframes before it are not recent, and
+// two hypotheses whose difference is more uncertain neither agree nor contradict.
 constexpr double kMostSeenVariance = 0.1;
 // Neighbours that are searched anew for each frame.
 constexpr int kRefreshedPerFrame = 2;
@@ -123,9 +123,9 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   const FrameFeatures& features = *view.features;
   const bool measured = result.state == TrackState::kTracking && result.stamp_ns == features.stamp_ns &&
                         result.reference_stamp_ns == keyframe_stamp_ns_;
-  // A world starts anew with a message, or after Odometry::reset() with a pose that is as certain as at
-  // first.
-  const bool unseen =
+  // The motion is unobserved where a new world starts. The odometry says so by a message; after
+  // Odometry::reset() the pose is as certain as that of the first frame.
+  const bool unobserved =
       !follows_camera_ ||
       (result.state == TrackState::kInitialising &&
        (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace()));
@@ -133,7 +133,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   Matrix6 covariance = Matrix6::Zero();
   if (memory_.graph.size() == 0) {
     T_previous_this = view.T_world_camera;  // the map begins as the world
-  } else if (unseen) {
+  } else if (unobserved) {
     covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
     covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
   } else if (measured) {
@@ -146,8 +146,8 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
                                     view.T_world_camera, result.pose_covariance);
   }
   if (!is_judged_) judge(out);
-  // Taken before a keyframe makes room, which may be the latest one.
-  const bool begins_part = memory_.graph.size() == 0 || unseen;
+  // To be read before a keyframe is removed, which may be the latest one.
+  const bool begins_part = memory_.graph.size() == 0 || unobserved;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {
@@ -192,8 +192,8 @@ bool Map::settle() {
   return out.recognised;
 }
 
-// How much two views differ: in depths of the scene moved, and in the angle turned. Below 1 each shows what
-// the other does. Nothing is known of views of different parts.
+// How much two views differ, by the translation as a share of the scene's depth and by the angle. Below 1
+// they show the same. For views of different parts of the map it is unknown.
 float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
   if (memory_.graph.node(a).part != memory_.graph.node(b).part) return MapMemory::Neighbour::kUnknown;
   const Se3& A = memory_.graph.node(a).T_map_keyframe;
@@ -206,7 +206,8 @@ float Map::view_distance(std::uint16_t a, std::uint16_t b) const {
   return static_cast<float>(sqrt(std::max(0.0, move + turn)));
 }
 
-// Also makes the node the neighbour of those that it is nearer to than theirs.
+// Finds the neighbour of a node, and makes the node the neighbour of those nodes whose present neighbour is
+// farther from them.
 void Map::find_neighbour(std::uint16_t slot) {
   MapMemory::Neighbour nearest;
   for (std::size_t k = 0; k < memory_.graph.size(); ++k) {
@@ -219,8 +220,9 @@ void Map::find_neighbour(std::uint16_t slot) {
   memory_.neighbours[slot] = nearest;
 }
 
-// Of the two views that differ least, the later one goes; the first keyframe, which defines the map, stays.
-// If no two views show the same place, the latest keyframe goes: the old places stay.
+// The keyframe that a full map removes. It is the later one of the two whose views differ least, but never
+// the first keyframe, which defines the map. If no two views show the same place, it is the latest keyframe:
+// the old places stay.
 std::uint16_t Map::least_needed() const {
   std::uint16_t least = memory_.graph.last();
   float distance = 1;
@@ -286,8 +288,8 @@ void Map::compare_next() {
   hypotheses_[hypothesis_count_++] = latest;
 }
 
-// Whether the map's own uncertainty allows the motion: along the chain, or from the first keyframe to each of
-// the two, whichever is known better.
+// Whether the motion lies within the map's own uncertainty: that along the chain between the two keyframes,
+// or that of their poses relative to the first keyframe, whichever is smaller.
 bool Map::plausible(const Hypothesis& h) const {
   const PoseGraph::Node& a = memory_.graph.node(h.old_slot);
   const PoseGraph::Node& b = memory_.graph.node(h.new_slot);
@@ -306,7 +308,7 @@ Matrix6 Map::between(std::uint16_t a, std::uint16_t b, const Vector3& t) const {
   return about_position(chain, t).trace() < about_position(both, t).trace() ? chain : both;
 }
 
-// Each of the two puts the latest part of the map somewhere: they agree if it is the same place.
+// Each of two hypotheses gives the latest part of the map a pose. They agree if these poses do.
 Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const PoseGraph::Node& new_a = memory_.graph.node(a.new_slot);
   const PoseGraph::Node& new_b = memory_.graph.node(b.new_slot);
@@ -316,8 +318,8 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   const Se3& old_b = memory_.graph.node(b.old_slot).T_map_keyframe;
   const Se3 by_a = old_a * a.loop.T_old_new * new_a.T_map_keyframe.inverse() * new_b.T_map_keyframe;
   const Se3 by_b = old_b * b.loop.T_old_new;
-  // The errors of both loops and of the map around the old views; then of the motion between the new ones,
-  // turned as the loop turns it.
+  // The covariances of both loops and of the map between the old views; then that of the motion between the
+  // new views, rotated by the loop.
   Matrix6 covariance = about_position(between(a.old_slot, b.old_slot, by_b.t) +
                                           motion_in_map(old_a, a.loop.T_old_new, a.loop.covariance) +
                                           motion_in_map(old_b, b.loop.T_old_new, b.loop.covariance),
@@ -332,8 +334,8 @@ Map::Relation Map::compare(const Hypothesis& a, const Hypothesis& b) const {
   return lies_within(boxminus(by_a, by_b), covariance) ? Relation::kAgree : Relation::kContradict;
 }
 
-// After the last comparison of a keyframe: the best of its hypotheses joins with those that agree with it, if
-// they are enough and none contradicts.
+// Called after the last comparison of a keyframe. The best of its hypotheses and those that agree with it
+// become loops, if they are enough and no hypothesis contradicts them.
 void Map::judge(MapResult& out) {
   is_judged_ = true;
   if (hypothesis_count_ == 0) return;

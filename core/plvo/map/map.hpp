@@ -13,8 +13,8 @@
 // look alike (place_index.hpp), one for each frame, by the estimator (loop_check.hpp). A place is recognised
 // when several comparisons agree on one motion, none contradicts them, and the motion lies within the
 // uncertainty of the map. The loops then join the pose graph (pose_graph.hpp), which is solved in steps, one
-// for each frame. When the map is full, the keyframe goes whose view another one has as well; one that is the
-// only view of a place stays.
+// for each frame. When the map is full, a keyframe is removed whose view another one shows as well; the only
+// view of a place stays.
 //
 // Like the odometry, a map takes all memory at init, allocates nothing, and gives the same bits everywhere.
 #pragma once
@@ -42,15 +42,15 @@ struct MapResult {
   // until a place is recognised; T_map_world has no meaning until then.
   bool located = false;
   Se3 T_map_world;
-  // Covariance of T_map_world · T_world_camera, of its ⊞-perturbation in the axes of the map. Large until a
-  // place is recognised, where the odometry did not see the motion.
+  // Covariance of the ⊞-perturbation of T_map_world · T_world_camera, in the axes of the map. After a motion
+  // that the odometry did not observe it is large until a place is recognised.
   Matrix6 pose_covariance = Matrix6::Zero();
-  // The latest keyframe and the pose of the camera relative to it; id 0: there is none yet. With
-  // keyframe_pose() of a later time, a past pose of the camera takes the corrections that came since.
+  // The latest keyframe (0: there is none yet) and the pose of the camera relative to it. Composed with
+  // keyframe_pose() at a later time, it gives this past pose with the corrections that were made since.
   std::uint32_t keyframe = 0;
   Se3 T_keyframe_camera;
   bool recognised = false;  // a place, in this frame
-  // A keyframe that made room in this frame, and its pose relative to one that stays.
+  // A keyframe that was removed in this frame, and its pose relative to one that stays.
   std::uint32_t removed = 0, removed_into = 0;
   Se3 T_into_removed;
 };
@@ -98,25 +98,26 @@ class Map {
   Status init(std::span<std::byte> memory, const CameraModel& camera, const Config& config,
               const MapLimits& limits);
 
-  // Takes the result of a frame right after Odometry::track(). Does a bounded part of the work that waits.
+  // To be called with the result of a frame right after Odometry::track(). Does a bounded part of the pending
+  // work.
   MapResult update(const Odometry& odometry, const TrackResult& result);
 
-  // Does all the work that waits, however long it takes; for the end of a run. Returns whether a place was
+  // Does all pending work, however long it takes; for the end of a recording. Returns whether a place was
   // recognised.
   bool settle();
 
   // Calls settle(), then writes the map. kNotFound: it holds no keyframe yet. map_file.hpp has the format.
   Status save(ByteSink& sink);
-  // Bytes that save() writes. After settle() it is exact; before, loops may join.
+  // Bytes that save() writes. It is exact after settle(), which may add loops.
   std::size_t saved_bytes() const;
-  // Replaces the map by a saved one, which behaves as that one did: the same bits, if the limits are the
-  // same. The camera is not located until it sees a place of the map; its keyframes join the same graph.
+  // Replaces the map by a saved one. With the same limits it then gives the same bits as the map that was
+  // saved. The camera is not located until it recognises a place; its keyframes join the same graph.
   // Not ok(): the map is empty, and the message says why. kOutOfMemory: these MapLimits hold less.
   Status load(ByteSource& source);
 
   const PoseGraph& graph() const { return memory_.graph; }
   MapFeatures features(std::size_t slot) const { return memory_.features.at(slot); }
-  // As in the result of the latest frame, with what settle() found since.
+  // As MapResult::located of the latest frame, but includes what settle() found since.
   bool located() const { return follows_camera_ && memory_.graph.is_placed(memory_.graph.last()); }
   // The pose of a keyframe as it is known now; nothing if it was removed, or if its place in the map is not
   // known.

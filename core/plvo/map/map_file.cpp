@@ -19,7 +19,7 @@ constexpr std::size_t kLoopBytes = 2 * 2 + kPoseBytes + kMatrixBytes;
 constexpr std::size_t kEndBytes = 4;
 // Ids below this leave room for more keyframes than a camera makes in years.
 constexpr std::uint32_t kMostId = 1U << 30;
-// Bounds on what is read, far beyond what a map holds: no square of it is infinite.
+// Bounds on the numbers of a file. They are far beyond those of a map, and their squares are finite.
 constexpr double kMostCoordinate_m = 1e8, kMostEntry = 1e20;
 constexpr float kMostReach_m = 1e5F, kMostLineVariance_m2 = 1e6F;
 
@@ -189,7 +189,7 @@ MapFileInfo Map::file_info() const {
 
 std::size_t Map::saved_bytes() const { return ready_ ? file_info().bytes() : 0; }
 
-// The neighbours are known as well as after many frames, in the saved map and in the loaded one.
+// Finds the neighbours of all nodes, so that the saved map and the loaded one have the same.
 void Map::find_all_neighbours() {
   std::fill(memory_.neighbours.begin(), memory_.neighbours.end(), MapMemory::Neighbour());
   for (std::size_t k = 0; k < memory_.graph.size(); ++k) find_neighbour(memory_.graph.slot_at(k));

@@ -11,7 +11,7 @@
 //   loop       slots (2 u16) · T_older_newer · covariance
 //   end        CRC-32 of all after the header
 //
-// The version rises with every change, and when descriptors come to mean something else.
+// The version rises with every change of the format or of the descriptors.
 #pragma once
 
 #include <cstdint>
@@ -26,24 +26,26 @@ namespace plvo {
 struct MapFileInfo {
   static constexpr std::uint32_t kVersion = 1;
 
-  // Of the undistorted images: the map's points are pixels of this pinhole. The lens may be another one.
+  // Size and pinhole of the undistorted images, in whose pixels the map's points lie. A camera with another
+  // lens may have the same.
   int width = 0, height = 0;
   Pinhole pinhole;
   std::uint32_t keyframes = 0, loops = 0, points = 0, lines = 0;
   std::uint32_t most_points = 0, most_lines = 0;  // of a keyframe
 
-  // Of the whole file.
+  // Size of the whole file.
   std::size_t bytes() const;
   // The smallest limits that hold this map.
   MapLimits limits() const;
-  // A camera that Map::init takes for this map.
+  // A camera with which Map::init accepts this map.
   CameraModel camera() const;
 };
 
-// Reads the header. kDamaged: these bytes are no map, or a damaged one; kUnsupported: another version.
+// Reads the header. kDamaged: the bytes are not a map, or the header is damaged; kUnsupported: another
+// version.
 Status read_map_info(ByteSource& source, MapFileInfo& info);
 
-// Of the largest map that Map::save writes.
+// Size of the largest map that Map::save writes.
 std::size_t most_map_file_bytes();
 
 }  // namespace plvo

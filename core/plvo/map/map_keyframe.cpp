@@ -41,7 +41,7 @@ Point3d unpack(const MapPoint& point, const Pinhole& pinhole, double sigma_px) {
                        kSigmaUnit_m * point.sigma_100um);
 }
 
-// The ends are rounded first, so that packing what was unpacked changes nothing of them.
+// The ends are rounded first, so that packing an unpacked line changes nothing.
 MapLine pack(const Line3d& line) {
   MapLine packed;
   packed.a = to_floats(line.a);

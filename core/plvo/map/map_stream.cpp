@@ -38,16 +38,16 @@ void Crc32::add(std::span<const std::byte> bytes) {
 }
 
 void MapWriter::flush() {
-  const std::span<const std::byte> piece = std::span(piece_).first(size_);
-  if (status_.ok() && !piece.empty()) status_ = sink_.write(piece);
+  const std::span<const std::byte> bytes = std::span(block_).first(size_);
+  if (status_.ok() && !bytes.empty()) status_ = sink_.write(bytes);
   size_ = 0;
 }
 
 void MapWriter::bytes(std::span<const std::byte> bytes) {
   crc_.add(bytes);
   for (const std::byte byte : bytes) {
-    piece_[size_++] = byte;
-    if (size_ == piece_.size()) flush();
+    block_[size_++] = byte;
+    if (size_ == block_.size()) flush();
   }
 }
 

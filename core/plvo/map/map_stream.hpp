@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a map leaves the memory and comes back: bytes that the caller takes or gives piece by piece (a file, a
-// flash memory, a link). Numbers are little-endian, whatever the processor; all bytes enter a checksum.
+// Streams for saving and loading a map. The caller takes or gives the bytes in blocks, with a file, a flash
+// memory or a link. Numbers are little-endian on every processor; all bytes enter a checksum.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace plvo {
 
 class ByteSink {
  public:
-  // Takes the whole piece.
-  virtual Status write(std::span<const std::byte> piece) = 0;
+  // Takes all bytes.
+  virtual Status write(std::span<const std::byte> bytes) = 0;
 
  protected:
   ~ByteSink() = default;  // never deleted through a base pointer
@@ -25,23 +25,23 @@ class ByteSink {
 
 class ByteSource {
  public:
-  // Fills the whole piece. Not ok() where so many bytes are not left.
-  virtual Status read(std::span<std::byte> piece) = 0;
+  // Fills all bytes. Not ok() if fewer are left.
+  virtual Status read(std::span<std::byte> bytes) = 0;
 
  protected:
   ~ByteSource() = default;
 };
 
-// Both in a block of memory of the caller's. Inline, so that a program with RTTI has their type information,
-// which the core has not.
+// Both streams over a block of the caller's memory. They are inline because a program with RTTI needs type
+// information that the core, built without RTTI, lacks.
 class SpanSink final : public ByteSink {
  public:
   explicit SpanSink(std::span<std::byte> memory) : memory_(memory) {}
-  Status write(std::span<const std::byte> piece) override {
-    if (piece.size() > memory_.size() - size_)
+  Status write(std::span<const std::byte> bytes) override {
+    if (bytes.size() > memory_.size() - size_)
       return {StatusCode::kOutOfMemory, "the map takes more bytes than there are: see Map::saved_bytes()"};
-    std::copy(piece.begin(), piece.end(), memory_.begin() + static_cast<std::ptrdiff_t>(size_));
-    size_ += piece.size();
+    std::copy(bytes.begin(), bytes.end(), memory_.begin() + static_cast<std::ptrdiff_t>(size_));
+    size_ += bytes.size();
     return {};
   }
   std::size_t size() const { return size_; }  // bytes that were written
@@ -54,11 +54,11 @@ class SpanSink final : public ByteSink {
 class SpanSource final : public ByteSource {
  public:
   explicit SpanSource(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  Status read(std::span<std::byte> piece) override {
-    if (piece.size() > bytes_.size())
+  Status read(std::span<std::byte> bytes) override {
+    if (bytes.size() > bytes_.size())
       return {StatusCode::kDamaged, "the map is cut off: its end is missing; make it anew, or take a copy"};
-    std::copy_n(bytes_.begin(), piece.size(), piece.begin());
-    bytes_ = bytes_.subspan(piece.size());
+    std::copy_n(bytes_.begin(), bytes.size(), bytes.begin());
+    bytes_ = bytes_.subspan(bytes.size());
     return {};
   }
   std::size_t left() const { return bytes_.size(); }
@@ -77,7 +77,7 @@ class Crc32 {
   std::uint32_t state_ = 0xffffffff;
 };
 
-// Collects numbers into pieces. After a failure it takes any number and does nothing.
+// Collects numbers into blocks. After a failure it ignores all numbers.
 class MapWriter {
  public:
   explicit MapWriter(ByteSink& sink) : sink_(sink) {}
@@ -90,14 +90,14 @@ class MapWriter {
   void matrix(const Matrix6& m);
   // The checksum of all that was written since the last one.
   void checksum();
-  // Hands over what was collected.
+  // Writes the last block.
   Status finish();
 
  private:
   void flush();
 
   ByteSink& sink_;
-  std::array<std::byte, 512> piece_;
+  std::array<std::byte, 512> block_;
   std::size_t size_ = 0;
   Crc32 crc_;
   Status status_;

@@ -11,7 +11,7 @@ namespace {
 
 using KeyBits = std::array<std::array<std::uint8_t, PlaceIndex::kKeyBits>, PlaceIndex::kTables>;
 
-// Different bits for every table: the first of a random order of all 256.
+// The bits of every table are different: they are the first ones in a random order of all 256.
 constexpr KeyBits draw_key_bits() {
   std::array<std::uint8_t, 256> order{};
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint8_t>(i);
@@ -51,7 +51,7 @@ std::uint32_t& PlaceIndex::head(std::size_t table, const Descriptor& descriptor)
   return heads_[table * lists_ + (spread & (lists_ - 1))];
 }
 
-// A new entry comes first; the last of a full list falls out.
+// A new entry comes first; a full list drops its last one.
 void PlaceIndex::insert(std::size_t table, std::span<const Descriptor> stored, std::size_t entry) {
   std::uint32_t& first = head(table, stored[entry]);
   next(table, entry) = first;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which keyframes of the map look like this one. Binary descriptors that are near each other agree in most
-// bits. So a few of the bits, drawn once, are a key that both often have in common; a table from keys to
-// descriptors finds one from the other without comparing all (bit sampling: Indyk & Motwani, STOC 1998;
-// several tables over different bits: Norouzi, Punjani & Fleet, CVPR 2012). It needs no training.
+// Finds the keyframes of the map that look like a given one. Binary descriptors near each other agree in most
+// bits. So a key of a few bits, drawn once, is often the same for both, and a table from keys to descriptors
+// finds one from the other without comparing all (bit sampling: Indyk & Motwani, STOC 1998; several tables
+// over different bits: Norouzi, Punjani & Fleet, CVPR 2012). It needs no training.
 //
-// Each descriptor of the query votes for the keyframes that have one near to it. A vote is divided by the
-// number of keyframes that it goes to: what is everywhere says nothing about the place (inverse document
-// frequency: Sivic & Zisserman, ICCV 2003).
+// Each descriptor of the query votes for the keyframes that have a descriptor near to it. The vote is divided
+// by the number of these keyframes: a descriptor that is everywhere says nothing about the place (inverse
+// document frequency: Sivic & Zisserman, ICCV 2003).
 //
-// Every list has a bound, so each call does: adding and removing a descriptor visit at most kListLength
-// entries for each table; a query compares at most kTables · kListLength descriptors with each of its own.
+// The length of every list is bounded, and so is the time of each call: adding and removing a descriptor
+// visit at most kListLength entries for each table; a query compares each of its descriptors with at most
+// kTables · kListLength others.
 #pragma once
 
 #include <array>
@@ -53,8 +54,8 @@ class PlaceIndex {
   void add(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
   void remove(std::span<const Descriptor> stored, std::size_t slot, std::size_t count);
 
-  // For a map that is saved: the tables in which a descriptor is, one bit each. A descriptor that fell out of
-  // a full list is missing there. When all are added again in the same order, the lists are the same.
+  // The tables that contain a descriptor, one bit each, for a map that is saved. A full list has lost its
+  // oldest descriptors. When all descriptors are added again in the same order, the lists are the same.
   std::uint8_t tables_of(std::span<const Descriptor> stored, std::size_t entry);
   void add_to_tables(std::span<const Descriptor> stored, std::size_t entry, std::uint8_t tables);
 
@@ -65,7 +66,8 @@ class PlaceIndex {
 
  private:
   static constexpr std::uint32_t kEnd = 0xffffffff;
-  // A power of two of lists for each table: one for two to four descriptors, at most one for each key.
+  // Number of lists of a table: a power of two, one list for two to four descriptors, at most one for each
+  // key.
   static constexpr std::size_t lists(std::size_t entries) {
     std::size_t n = 1;
     while (4 * n <= entries && n < (std::size_t{1} << kKeyBits)) n *= 2;

@@ -9,7 +9,7 @@
 namespace plvo {
 namespace {
 
-// Added to the variances of every motion, so that none is exact: 0.1 mm, 0.1 mrad.
+// Added to the variances of every motion, so that no motion is exact: (0.1 mm)², (0.1 mrad)².
 constexpr double kMotionFloor = 1e-8;
 // The iterations end when rᵀ C r is below this share of its first value, or below this number.
 constexpr double kGainShare = 1e-8, kGainEnough = 1e-6;
@@ -156,7 +156,7 @@ PoseGraph::Removed PoseGraph::remove(std::uint16_t slot) {
   removed.into = order_[into_next ? position + 1 : position - 1];
   removed.T_into_removed = nodes_[removed.into].T_map_keyframe.inverse() * node.T_map_keyframe;
 
-  // The loops, with the measured motion to the node that takes them.
+  // Moves the loops of the removed node to its neighbour, by the measured motion between the two.
   const Se3 T_slot_into = into_next ? next->T_previous_keyframe : node.T_previous_keyframe.inverse();
   const Matrix6 C_slot_into = into_next
                                   ? next->motion_covariance
@@ -209,7 +209,7 @@ Matrix6 PoseGraph::chain_covariance(std::uint16_t a, std::uint16_t b) const {
   return sum;
 }
 
-// What the iterations have reached so far is kept; the rest begins anew.
+// Keeps the progress of the iterations so far, and begins a new linearisation.
 void PoseGraph::note_change() {
   if (phase_ == Phase::kIterate && iteration_ > 0) (void)apply();
   phase_ = Phase::kIdle;
@@ -253,8 +253,8 @@ void PoseGraph::linearise() {
   if (edge_ == count_ + loop_count_) begin_iterations();
 }
 
-// If the path over `from` is more certain, the covariance of `node` is that of this path: but only where the
-// poses agree with the motion between the two. While the graph is solved for they may not yet.
+// Sets the covariance of `node` to that of the path over `from`, if this path is more certain and the poses
+// agree with the motion between the two nodes. They may disagree until the graph is solved.
 void PoseGraph::relax(Node& node, const Node& from, const Se3& T_from_node, const Matrix6& between) const {
   if (node.position == 0) return;
   const Matrix6 covariance = from.covariance + between;
@@ -364,8 +364,8 @@ bool PoseGraph::iterate() {
   return false;
 }
 
-// Moves the poses; those that joined since the linearisation move with the last one. Returns whether any
-// moved far.
+// Moves the poses. Nodes that were added since the linearisation move with the last one before them. Returns
+// whether any pose moved far.
 bool PoseGraph::apply() {
   Vector6 x = Vector6::Zero();
   bool moved = false;

@@ -10,8 +10,8 @@
 // gradients (as the subgraph of Dellaert, Carlson, Ila, Ni & Thorpe, IROS 2010). A loop only adds the sum of
 // the y that it spans. Loops have Huber's loss; their weights are renewed with each linearisation.
 //
-// Nodes between which some motion is not known at all are of different parts. A part whose place is found
-// moves there at once, as a whole.
+// Nodes with an unknown motion between them belong to different parts of the graph. When the place of a part
+// is found, the whole part moves there at once.
 //
 // step() does a bounded part of the work: it linearises at most kEdgesPerStep edges, or takes at most
 // kIterationsPerStep iterations, each of which visits every edge once.
@@ -38,8 +38,8 @@ class PoseGraph {
     Se3 T_map_keyframe;
     Se3 T_previous_keyframe;                      // as measured; unused in the first node
     Matrix6 motion_covariance = Matrix6::Zero();  // of its ⊞-perturbation
-    // Covariance of the perturbation (ρ, ω), along the path through the graph on which it is smallest. The
-    // other paths would only make it smaller.
+    // Covariance of the perturbation (ρ, ω), along the path through the graph on which it is smallest. It is
+    // an upper bound: the other paths would only make it smaller.
     Matrix6 covariance = Matrix6::Zero();
     std::uint32_t id = 0;    // 1, 2, … in the order of the chain; 0: the slot is free
     std::uint32_t part = 0;  // the id of the node with which the part began
@@ -80,32 +80,32 @@ class PoseGraph {
   std::span<const Loop> loops() const { return loops_.first(loop_count_); }
 
   // Adds a node at the end of the chain, and returns its slot. The graph must not be full. The first node
-  // defines the map: for it, the motion is its pose, and has no covariance. part: of the node; none: that of
-  // the node before.
+  // defines the map: the motion is its pose, without covariance. Without `part`, the node belongs to the part
+  // of the node before.
   std::uint16_t append(const Se3& T_previous_keyframe, const Matrix6& covariance,
                        std::optional<std::uint32_t> part = std::nullopt);
   // The id of the node that is appended next.
   std::uint32_t next_id() const { return next_id_; }
   // Whether the pose of a node is known relative to the first one.
   bool is_placed(std::size_t slot) const { return nodes_[slot].part == at(0).part; }
-  // If the nodes are of two parts, the one that began later moves to where the motion puts it, and becomes
-  // one with the other.
+  // If the nodes belong to two parts, the part that began later moves to where the motion puts it, and is
+  // merged with the other.
   void join_parts(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
-  // Adds a measured motion. If there is no room, the most uncertain loop gives way.
+  // Adds a measured motion. If there is no room, it replaces the most uncertain loop.
   void add_loop(std::uint16_t a, std::uint16_t b, const Se3& T_a_b, const Matrix6& covariance);
   // Removes a node. Its neighbours' motions are composed; its loops go to the neighbour whose motion is more
   // certain. There must be another node.
   Removed remove(std::uint16_t slot);
 
-  // For a map from a file: after clear(), the nodes in the order of the chain, each to a slot that is free
-  // and below the capacity, then the loops.
+  // Restores a map from a file. After clear(), restore the nodes in the order of the chain, each to a slot
+  // that is free and below the capacity, then the loops.
   void restore(std::uint16_t slot, const Node& node);
   void restore(const Loop& loop) { keep_loop(loop); }
 
   // Covariance of the perturbation of x_b − x_a along the chain.
   Matrix6 chain_covariance(std::uint16_t a, std::uint16_t b) const;
 
-  // Does a part of the work.
+  // Does a bounded part of the solution.
   void step();
   bool idle() const { return phase_ == Phase::kIdle && !changed_; }
 

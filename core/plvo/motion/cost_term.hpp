@@ -49,7 +49,7 @@ class CostTerm {
   // Whether the term excludes the motion, whatever the others say.
   virtual bool contradicts(const Se3&) const { return false; }
 
-  // reference: index of the reference that the residuals are with (motion_problem.hpp); default 0.
+  // reference: index of the reference to which the residuals belong (motion_problem.hpp); default 0.
   // correlation: between any two residuals. Errors that the features of a scene share do not average out, so
   // n residuals weigh as much as n / (1 + (n − 1) correlation) independent ones. weight: an additional factor
   // for each, below 1 where another term uses the same measurements.
@@ -62,8 +62,8 @@ class CostTerm {
   double correlation() const { return correlation_; }
   double weight() const { return weight_; }
 
-  // One flag per match or sample; none for a term that is not made of these. RANSAC or begin() writes them;
-  // the refinement and the caller read them.
+  // One flag per match or sample; empty for a term without matches and samples. RANSAC or begin() writes
+  // them; the refinement and the caller read them.
   std::span<std::uint8_t> inliers() { return inliers_; }
   std::span<const std::uint8_t> inliers() const { return inliers_; }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a scene features stand for. A scene may hold more than one motion, and the camera's is that of
-// the larger part of the scene, not that of the most features: an object or a part of the robot may have most
-// of the texture, but it is smaller than the room. So the evidence of a feature is the size of what it stands
-// for. The image is divided into square cells, and the features of a cell share its evidence: its width,
-// which is in proportion to the depth. A line has that of all the cells that it spans. A landmark with a bad
-// record has no evidence.
+// The evidence of features: the size of the part of the scene that they represent. A scene may contain more
+// than one motion, and the camera's is that of the larger part of the scene, not that of the most features:
+// an object or a part of the robot may have most of the texture, but it is smaller than the room. The image
+// is divided into square cells. The evidence of a cell is its width at the depth of its features, and they
+// share it. A line has the evidence of all cells that it spans. A landmark with a bad record has no evidence.
 #pragma once
 
 #include <algorithm>
@@ -21,15 +20,15 @@ namespace plvo {
 // matches: in four frames of five of recordings, and in each frame of three rendered rooms.
 inline constexpr double kWorldAtRest = 0.75;
 
-// Evidence does not tell which of two motions is the camera's if the one explains this share of what the
-// other does.
+// Evidence does not decide which of two motions is the camera's if one motion explains at least this share of
+// the evidence that the other explains.
 inline constexpr double kComparableShare = 0.8;
 constexpr bool are_comparable(double evidence, double other) {
   return evidence > kComparableShare * other && other > kComparableShare * evidence;
 }
 
-// The part of the scene that a feature stands for: its place in camera coordinates, z > 0, and the length of
-// its image in the plane z = 1 (0 for a point).
+// The part of the scene that a feature represents: its position in camera coordinates, z > 0, and the length
+// of its image in the plane z = 1 (0 for a point).
 struct Extent {
   Vector3 middle;
   double length = 0;
@@ -43,7 +42,7 @@ inline Extent extent_of(const Point3d& point) { return {point.p, 0, point.record
   return {0.5 * (line.a + line.b), sqrt(image.squaredNorm()), line.record.trusted()};
 }
 
-// The features of one frame: first all of them are counted, then their evidence is asked for.
+// The features of one frame. First count all of them, then ask for the evidence of each.
 class Coverage {
  public:
   Coverage() { clear(); }
@@ -53,7 +52,9 @@ class Coverage {
     std::uint8_t& features = crowd_[cell_of(extent.middle)];
     if (features < 255) ++features;
   }
-  // In depths (m) of a cell. A feature that was not counted counts as one that shares its cell with no other.
+  // Evidence of a feature: its depth in m, to which the width of its cell is proportional, times the cells of
+  // a line, divided by the number of features in the cell. A feature that was not counted has its cell for
+  // itself.
   double evidence(const Extent& extent) const {
     if (!extent.trusted) return 0;
     const double cells = std::min(1 + extent.length / kCellSide, kMostCellsOfALine);
@@ -61,8 +62,8 @@ class Coverage {
   }
 
  private:
-  // In the plane z = 1: 40 pixels of a Kinect. The grid is wider than any lens without fisheye; what lies
-  // beyond counts to its border.
+  // In the plane z = 1: 40 pixels of a Kinect. The grid is wider than the image of any lens but a fisheye;
+  // features beyond it count as in its border.
   static constexpr double kCellSide = 0.075;
   static constexpr int kCells = 32;
   // A line that spans more cells counts as this many.

@@ -20,8 +20,8 @@ constexpr double kFarSigmas = 10;
 constexpr int kMaxWideRounds = 4;
 // The estimate fails with kNoConsensus if a smaller share of the usable matches are inliers.
 constexpr double kMinInlierShare = 0.1;
-// If a prior contradicts the first motion, another one is taken that it does not contradict and that explains
-// this share of the evidence. Wrong motions explain less.
+// If a prior contradicts the first motion, another motion is taken that the prior does not contradict and
+// that explains at least this share of the evidence. Wrong motions explain less.
 constexpr double kShareOfUncontradicted = 0.2;
 // Smallest ratio of the eigenvalues of the information matrix (scaled to a unit diagonal). Below it the
 // inverse is dominated by rounding errors.

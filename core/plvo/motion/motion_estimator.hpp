@@ -30,10 +30,10 @@ struct MotionEstimate {
   // Evidence (coverage.hpp) that the motion explains, in m, and its share of that of all matches.
   double evidence = 0;
   double explained = 0;
-  // Whether another motion than the first one with a consensus was taken: it has more evidence, or a prior
-  // contradicts the first one.
+  // Whether this is not the first motion with a consensus, but another one that has more evidence or, where a
+  // prior contradicts the first, is not contradicted.
   bool is_other = false;
-  // Whether a prior excludes the motion: what the sensors measured cannot be one motion of the camera.
+  // Whether a prior contradicts the motion: the other sensors measured a different one.
   bool contradicted = false;
   MotionsToCurrent motions;  // T_current_reference for every reference; their poses are estimated jointly
   // C_H (23): covariance of the ⊞-perturbation (v, ω) of T_current_reference with the robust weights, (Σ w Jᵀ
@@ -57,8 +57,7 @@ struct MotionEstimate {
 };
 
 // Initial values of the motion and of the nuisance parameters of the current frame. estimated: the prediction
-// was already estimated from these frames; hypotheses are then drawn only if the matches do not agree with
-// it.
+// was already estimated from these frames; hypotheses are then drawn only if the matches disagree with it.
 struct MotionStart {
   MotionStart(const Se3* T_predicted, const NuisanceParameters& nuisance_parameters = {},
               bool is_estimated = false)
@@ -68,7 +67,7 @@ struct MotionStart {
   const Se3* prediction;
   NuisanceParameters shared;
   bool estimated;
-  bool others = true;  // look for another motion where this one explains too little
+  bool others = true;  // search for another motion if this one explains too little
 };
 
 // Fills `estimate`. sets: at most kMaxConstraintSets, in a fixed order. others: terms that RANSAC does not

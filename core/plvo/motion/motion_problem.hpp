@@ -24,8 +24,8 @@ inline constexpr std::size_t kMaxTerms = kMaxConstraintSets + 1 + kMaxReferences
 // The information is stored for the first terms only: all but the surfaces.
 inline constexpr std::size_t kInformedTerms = kMaxConstraintSets + 1;
 
-// The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. What does not
-// fit is left out.
+// The terms of the cost, in a fixed order: the sets that RANSAC draws from, then all others. Terms beyond the
+// capacity are left out.
 class CostTerms {
  public:
   CostTerms() = default;
@@ -49,7 +49,7 @@ class CostTerms {
   std::size_t count_ = 0;
 };
 
-// A frame that the current frame is matched with. The motion is estimated relative to the base, reference 0.
+// A frame with which the current frame is matched. The motion is estimated relative to the base, reference 0.
 // The pose of any other reference relative to the base is known with a covariance C (of the ⊞-perturbation of
 // T_reference_base). It is estimated jointly with the motion and eliminated. If H is the Schur complement on
 // the reference's own motion, the elimination leaves (H⁻¹ + B C Bᵀ)⁻¹, where B is the derivative of

@@ -4,8 +4,9 @@
 namespace plvo {
 namespace {
 
-// Squared Mahalanobis distance. The error of an estimate adds to that of the prior, and a prior is seldom as
-// good as its covariance: in three simulated rooms at rest the distance stayed below 29, with a gyro.
+// Squared Mahalanobis distance beyond which the prior contradicts a motion. It is far above a quantile of χ²,
+// because the estimate has an error too, and a prior is seldom as good as its covariance: in three simulated
+// rooms at rest the distance stayed below 29, with a gyro.
 constexpr double kContradiction = 50;
 
 }  // namespace

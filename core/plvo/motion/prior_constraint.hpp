@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The propagated prior of other sensors as a term of the cost. Its residual is r = T ⊟ T_propagated,
 // translation before rotation; it adds ½ ρ(rᵀ C⁻¹ r) to the cost (21). RANSAC does not judge it, because a
-// hypothesis is arbitrary in directions that vision does not determine. If it contradicts the images, Huber's
-// loss bounds its influence; but of two motions that the images show, the one that it does not contradict is
-// the camera's.
+// hypothesis is arbitrary in directions that vision does not determine. If the prior contradicts the images,
+// Huber's loss bounds its influence. If the images show two motions and it contradicts one of them, the other
+// is taken as the camera's.
 #pragma once
 
 #include "plvo/math/cholesky.hpp"

@@ -21,9 +21,9 @@ constexpr double kFreshScale = 4;
 constexpr double kFreshShare = 0.5;
 // Maximum number of sets drawn from the consensus to find one that is not degenerate.
 constexpr int kDegeneracyDraws = 200;
-// run_beside: a motion that is worth finding explains this share of the matches that are left. A hypothesis
-// is dropped unless so many of this many of them agree with it (bail-out test: Capel, "An effective bail-out
-// test for RANSAC consensus scoring", BMVC 2005).
+// run_beside: a motion is only of interest if it explains this share of the remaining matches. A hypothesis
+// is dropped unless at least kLeastPromising of kTested of them agree with it (bail-out test: Capel, "An
+// effective bail-out test for RANSAC consensus scoring", BMVC 2005).
 constexpr double kShareBeside = 0.4;
 constexpr std::size_t kTested = 16;
 constexpr int kLeastPromising = 5;

@@ -57,9 +57,9 @@ class SurfaceConstraints final : public CostTerm {
 
   std::size_t size() const { return matches_.size(); }
   int dof() const override { return 1; }
-  // r² / σ². σ² does not contain the errors that the matches share. Where these are visible, the matches
-  // weigh less (gate, robust loss, the learning of σ²); on real sensors this works better than a model of the
-  // shared errors (docs/theory/noise.md).
+  // r² / σ². σ² does not contain the common errors of the matches. Where these are large, the matches have
+  // less weight (gate, robust loss, learnt σ²); on real sensors this works better than a model of the common
+  // errors (docs/theory/noise.md).
   double mahalanobis_squared(std::size_t i, const Se3& T) const;
   void begin(const Se3& T, const NuisanceParameters& shared, const RobustKernel& kernel,
              std::size_t every) override;

@@ -9,9 +9,9 @@
 //   C = s max(s, error_s) J Q Jᵀ,
 // and compose_covariance joins the steps.
 //
-// The camera sits at T_base_camera, which counts as exact: T_now_before = T_base_camera⁻¹ T_before_now⁻¹
-// T_base_camera. inverse_covariance and compose_covariance carry the covariance along. MotionPrior has no
-// place for the correlation of rotation and position: it is left out.
+// The pose of the camera on the robot, T_base_camera, is taken as exact: T_now_before = T_base_camera⁻¹
+// T_before_now⁻¹ T_base_camera. inverse_covariance and compose_covariance transform the covariance.
+// MotionPrior has no correlation of rotation and position: it is left out.
 #pragma once
 
 #include <span>
@@ -31,9 +31,9 @@ struct WheelStep {
 // The motion of the base since the frame before, step by step, oldest first.
 class BaseMotion {
  public:
-  // error_s: for how long an error of the twist lasts (slip, a wheel that is larger than stated). After a
-  // longer time t the variance is Q error_s t. Errors of different steps are independent; an error that
-  // outlasts a step therefore counts as larger in each of them.
+  // error_s: the duration for which an error of the twist lasts (slip, a wheel that is larger than stated).
+  // After a longer time t the variance is Q error_s t. Errors of different steps are taken as independent, so
+  // an error that outlasts a step has a larger variance in each step.
   //
   // Returns kInvalidArgument, and adds nothing, for numbers that are not finite, and a step that is not
   // longer than 0 s or turns by more than π.

@@ -34,7 +34,7 @@ struct Limits {
   int references = 2;
   // Horizontal bands of the image in which segments are searched one after the other, 1 … 8. All bands use
   // the same memory: with a single band tiny() would not fit within 512 KiB. A segment that crosses a border
-  // between bands comes out as two.
+  // between bands is found as two.
   int line_bands = 1;
   // Number of keyframes kept after a loss, 0 … 4 (3 with 3 references). Each is as large as a reference
   // (kept_keyframes.hpp).
@@ -48,8 +48,8 @@ struct Limits {
   // without the masked readings.
   bool mask = false;
   static constexpr Limits vga() { return {}; }
-  // A quarter of VGA's pixels and features. More features make a frame's estimate better; but on a processor
-  // that cannot keep up with the camera, a higher frame rate improves the motion more
+  // A quarter of VGA's pixels and features. With more features the estimate of a frame is better. But on a
+  // processor that cannot keep up with the camera, a higher frame rate improves the motion more
   // (docs/decisions/qvga_capacities.md).
   static constexpr Limits qvga() { return {320, 240, 100, 64, 2, 1, 0, 1, 0}; }
   // Fits within 512 KiB, with Config::tiny().
@@ -67,8 +67,8 @@ enum class ReferencePolicy : std::uint8_t {
   // Matches with the keyframe and a recent frame (ReferenceConfig::recent_frames) in one estimate. The
   // keyframe keeps the drift small; the recent frame shares most features with the current one.
   kKeyframeAndPrevious,
-  // Matches with these and the previous keyframe. The drift is smaller where the camera walks, but not where
-  // it rotates fast; time and memory grow (docs/decisions/window.md).
+  // Matches with these and the previous keyframe. The drift is smaller where the camera moves on, but not
+  // where it rotates fast; time and memory grow (docs/decisions/window.md).
   kWindow,
 };
 constexpr int references_of(ReferencePolicy policy) {
@@ -101,8 +101,8 @@ struct NoiseConfig {
   // there are none.
   double angular_rate_error_rad_per_s = 0.1;
   double shared_depth_m = 0.001;  // at 1 m
-  // Correlation between the residuals of any two points, or lines, of a frame. It stands for other shared
-  // errors (reflections, the lens, the clock), which do not average out either.
+  // Correlation between the residuals of any two points, or lines, of a frame. It models other common errors
+  // (reflections, the lens, the clock), which do not average out either.
   double point_correlation = 0.1;
   double line_correlation = 0.02;
   double surface_correlation = 0.1;
@@ -118,15 +118,14 @@ struct ReferenceConfig {
   int recent_frames = 3;
   // A keyframe is kept while at least this share of its features are inliers.
   double keyframe_inlier_ratio = 0.3;
-  // kWindow: a keyframe is replaced sooner, below the first share. It is still matched beside the next one
-  // down to the second share.
+  // kWindow: a keyframe is replaced when the share of its features that are inliers falls below the first
+  // number. It is still matched as the older keyframe down to the second one.
   double window_inlier_ratio = 0.35;
   double older_inlier_ratio = 0.2;
   // When every frame has been lost for this long, the odometry gives up the references and starts anew from
-  // the last good pose. The covariance of that pose then grows by the unobserved motion: this fast (SD per
-  // second), and by the motion of a camera that went on as before. Where Limits have memory for a kept
-  // keyframe, a lost frame is matched with the lost frame before as well, and tracking starts anew as soon as
-  // they agree.
+  // the last good pose. The covariance of that pose then grows by the process noise below (SD per second),
+  // and by the motion of a camera that kept its velocity. Where Limits have memory for a kept keyframe, a
+  // lost frame is also matched with the lost frame before, and tracking restarts as soon as they agree.
   double max_lost_s = 0.5;
   double process_noise_m_per_s = 0.5;
   double process_noise_rad_per_s = 0.5;

@@ -11,27 +11,28 @@
 
 namespace plvo {
 
-// (v, ω) per second of the scene in the camera's axes (exposure.hpp), a mean over measured_ns.
+// The velocity (v, ω) per second of the scene in the camera's axes (exposure.hpp), a mean over measured_ns.
 struct Velocity {
   Vector6 value = Vector6::Zero();
   std::int64_t measured_ns = 0;  // 0: the velocity is not known
 
   bool known() const { return measured_ns > 0; }
-  // Whether the search for the next motion starts from it, elapsed_ns after it was measured: over more than
-  // this multiple of its own interval a prediction is worse than none.
+  // Whether the search for the next motion starts from this velocity, elapsed_ns after it was measured. Over
+  // more than a multiple of its own interval, a prediction is worse than no prediction.
   bool predicts(std::int64_t elapsed_ns) const {
     constexpr int kLongestPrediction = 3;
     return static_cast<double>(elapsed_ns) < kLongestPrediction * static_cast<double>(measured_ns);
   }
-  // Whether it completes the priors of other sensors, elapsed_ns after it was measured; after that the camera
-  // is taken to stand still. Nothing corrects such a motion, and its process noise covers it.
+  // Whether this velocity completes the priors of other sensors, elapsed_ns after it was measured. Later, the
+  // camera is taken to stand still. Such a motion is not corrected; the process noise covers its error.
   bool continues(std::int64_t elapsed_ns) const {
     constexpr std::int64_t kLongest_ns = 300'000'000;
     return known() && measured_ns <= kLongest_ns && elapsed_ns <= kLongest_ns;
   }
 };
 
-// Whether the mean velocity of an interval describes the exposure at its end: over a longer one it does not.
+// Whether the mean velocity of an interval describes the exposure at its end. That of a long interval does
+// not.
 inline bool describes_exposure(std::int64_t interval_ns) {
   constexpr std::int64_t kLongest_ns = 200'000'000;
   return interval_ns > 0 && interval_ns <= kLongest_ns;
@@ -43,8 +44,9 @@ Vector6 mean_velocity(const Se3& T_now_before, double seconds);
 Se3 motion_at(const Vector6& velocity, double seconds);
 
 // Velocity during the exposure of the current frame. recent: mean since the last good frame. before: that of
-// the last good frame, over the interval before it. The change goes on by half: all of it would add its noise
-// too. Its value at the end of the interval is half of the change away from the mean.
+// the last good frame, over the interval before it. Under a constant acceleration, the velocity at the end of
+// the interval is recent + (recent − before) / 2. Half of this correction is used: all of it would add too
+// much of its noise.
 Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before);
 
 // Variance of an unobserved motion from from_s to to_s after the last observation, with this SD per second.

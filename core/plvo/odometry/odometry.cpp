@@ -90,7 +90,7 @@ Odometry::Odometry() = default;
   result.pose_covariance.setZero();
   result.motion_covariance.setZero();
   result.mean_brightness = 0;
-  result.returned = result.repeated = false;
+  result.relocalised = result.repeated = false;
   result.state = TrackState::kLost;
   result.status = {
       StatusCode::kDegenerate,
@@ -140,7 +140,7 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   TrackResult result = conclude(frame, tracked, prior);
 
   // Relocalise: where the view of an earlier keyframe is back.
-  if (result.state == TrackState::kTracking && !result.returned) relocalise(frame, tracked, result);
+  if (result.state == TrackState::kTracking && !result.relocalised) relocalise(frame, tracked, result);
   result.mean_brightness = brightness;
   result.stage_ns = times;
   return result;

@@ -94,19 +94,20 @@ class Odometry {
   // frame.
   TrackResult track(const RgbdFrame& input, const MotionPrior& prior);
   // Tracks with the samples of a gyro and an accelerometer that wait in `imu`, and corrects the gyro's offset
-  // by what was seen. Every frame must be tracked so, as the samples of the others are missing. A refused
-  // frame uses up no samples. wheels: a motion measured beside it; its rotation counts where the gyro tells
-  // none.
+  // by the estimated rotation. Every frame must be tracked by this function: `imu` must give the samples of
+  // all intervals. A refused frame uses up no samples. wheels: the motion by wheels; its rotation is used
+  // where the gyro measures none.
   TrackResult track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels = MotionPrior());
 
   // Restores the state after init: the next usable frame defines the world, and the learnt noise is
   // forgotten. The time budget stays, because it depends on the machine.
   void reset();
   // Sets the pose of the last frame that has one, in a world of the caller's, with the covariance of its
-  // ⊞-perturbation; before the first frame, that of the first usable one. The direction of gravity is learnt
-  // anew. Variances beyond the bound of covariance.hpp are set to the bound. Returns kInvalidArgument, and
-  // changes nothing: before init, for a matrix that is not a rotation (to 1e-6), a position beyond 1e8 m, a
-  // covariance that is not symmetric or has a negative eigenvalue, or numbers that are not finite.
+  // ⊞-perturbation. Before the first frame it sets the pose of the first usable one. The direction of gravity
+  // is learnt anew. Variances beyond the bound of covariance.hpp are set to the bound. Returns
+  // kInvalidArgument, and changes nothing: before init, for a matrix that is not a rotation (to 1e-6), a
+  // position beyond 1e8 m, a covariance that is not symmetric or has a negative eigenvalue, or numbers that
+  // are not finite.
   Status set_pose(const Se3& T_world_camera, const Matrix6& covariance);
 
   // For Config::budget: the duration of the last call of track(), by the caller's clock. The number of
@@ -141,7 +142,7 @@ class Odometry {
     bool new_world = false;  // the position in the old world is not known any more
     bool usable = false;     // kLose: the frame has enough features for the next one to be matched with it
   };
-  // A pose after a motion that was not seen.
+  // A pose after a motion that the images did not observe.
   struct SensedPose {
     Se3 T_camera_reference;
     Matrix6 motion_covariance;
@@ -155,7 +156,7 @@ class Odometry {
   TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
   bool wants_points() const;
 
-  // odometry_predict.cpp: where the camera is expected, and from where it is looked for.
+  // odometry_predict.cpp: the predicted pose of the camera and the references.
   PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
   Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
   double depth_after_colour_s(std::int64_t stamp_ns) const;
@@ -239,7 +240,7 @@ class Odometry {
   std::int64_t lost_since_ns_ = 0;  // stamp of the first lost frame
   ImageRepeats repeats_;
   CarriedCells carried_;
-  int carried_told_ = 0;  // cells of them that a status has told
+  int carried_told_ = 0;  // number of carried cells when a status last reported them
   Se3 T_world_depth_;     // where the camera was when the last depth image came
   bool has_depth_pose_ = false;
   bool depth_has_stopped_ = false;

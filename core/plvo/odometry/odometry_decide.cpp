@@ -48,10 +48,10 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
     decision.status = stopped_depth(first_word);
   } else if (tracked.ok()) {
     decision.outcome = Decision::Outcome::kTrack;
-    if (tracked.new_piece)
+    if (tracked.restarted)
       decision.status = {StatusCode::kOk,
-                         "a new piece of the trajectory starts: the motion before it was not seen, and the "
-                         "covariance includes it"};
+                         "tracking restarts from the lost frame before: the motion up to that frame was not "
+                         "observed, and the covariance includes it"};
     decision.kept = still_good();
   } else if (window_.has_keyframe()) {
     decision.outcome = Decision::Outcome::kLose;
@@ -121,8 +121,8 @@ Window::Kept Odometry::still_good() const {
   return kept;
 }
 
-// Whether the last estimate found this share of the frame's features; the frame was its reference of this
-// index.
+// Whether this share of the features of the frame in `slot` were inliers of the last estimate. The frame was
+// the reference of this index.
 bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
   const FrameFeatures& features = window_[slot].features;
   std::size_t available = features.lines.count_3d;

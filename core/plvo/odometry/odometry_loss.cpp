@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Part of the odometry: frames after a loss. Each is searched from the references first. Where that fails, it
-// is matched with the lost frame before: if the two agree, tracking goes on in a new piece of the trajectory.
-// The piece begins at the last good pose, with the unobserved motion in its covariance.
-// The old keyframe is kept (kept_keyframes.hpp); when its view comes back, the pieces are joined
-// (recovery.cpp). After some time the references are given up.
+// Part of the odometry: frames after a loss. The motion of each is searched from the references first. Where
+// that fails, the frame is matched with the lost frame before. If the two agree, tracking restarts from that
+// lost frame, whose pose is the last good one with the unobserved motion in the covariance. The old keyframe
+// is kept (kept_keyframes.hpp). When its view comes back, the camera is relocalised (recovery.cpp). After
+// some time the references are given up.
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/tracking/motion_search.hpp"
@@ -16,7 +16,8 @@ namespace plvo {
                                                    TrackedMotion& tracked) {
   if (!window_.has_keyframe() || search_from_lost(input, prior, frame, predicted, tracked)) return;
   if (!lost_too_long(input.stamp_ns)) return;
-  // The views of the references are out of sight. Unless one comes back, this frame starts anew.
+  // The references are out of view. Unless a kept keyframe is recognised, tracking starts anew from this
+  // frame.
   window_.give_up();
   resume(frame, tracked);
 }
@@ -48,11 +49,11 @@ namespace plvo {
 // Searches for the motion since the lost frame. If it is found, that frame is the keyframe from now on.
 bool Odometry::search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
                                 PredictedMotion& predicted, TrackedMotion& tracked) {
-  // Two equal images agree, and yet show no motion.
+  // Two equal images would agree on no motion, which is not measured.
   if (!window_.has_lost() || repeats_.colour_is_repeated()) return false;
   predict_from_lost(input, prior, predicted);
   search_motion(frame, memory_.tracking, tracked);
-  tracked.new_piece = tracked.ok();
+  tracked.restarted = tracked.ok();
   if (tracked.ok())
     window_.go_on_from_lost();
   else
@@ -65,8 +66,8 @@ bool Odometry::lost_too_long(std::int64_t stamp_ns) const {
          static_cast<double>(elapsed_ns(lost_since_ns_, stamp_ns)) * 1e-9 >= config_->references.max_lost_s;
 }
 
-// Called for each lost frame. A usable one stays for the next frame. Its pose is the last good one with the
-// unobserved motion since then, or that of the priors.
+// Called for each lost frame. A usable one is kept for the next frame. Its pose is the last good one with the
+// covariance of the unobserved motion since then, or the pose by the priors.
 void Odometry::note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior) {
   if (!is_lost_) lost_since_ns_ = frame.stamp_ns();
   is_lost_ = true;

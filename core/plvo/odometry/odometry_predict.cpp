@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Part of the odometry: what is known of a frame's motion before its features are associated, and its pose
-// where they never are.
+// Part of the odometry: the prediction of a frame's motion before its features are associated, and the pose
+// of a frame without an observed motion.
 #include <algorithm>
 
 #include "plvo/math/covariance.hpp"
@@ -34,7 +34,7 @@ namespace plvo {
   return predicted;
 }
 
-// A repeated depth image is as old as when it came first, whatever its stamp.
+// For a repeated depth image, the stamp of its first delivery counts.
 double Odometry::depth_after_colour_s(std::int64_t stamp_ns) const {
   if (!camera_.depth_timing.known) return 0;
   // Stamps farther apart than this do not belong to one frame.
@@ -69,8 +69,8 @@ Reference Odometry::reference_of(int slot, std::int64_t stamp_ns, const Predicte
   return reference;
 }
 
-// The motion since the last good frame, if the camera went on as before for as long as its velocity was
-// measured over, and has stood still since.
+// The motion since the last good frame of a camera that kept its velocity for as long as the interval over
+// which that was measured, and then stood still.
 Se3 Odometry::coasted_motion(std::int64_t stamp_ns) const {
   const Window::Frame& last = window_.last_frame();
   if (!last.velocity.continues(0)) return {};
@@ -80,7 +80,7 @@ Se3 Odometry::coasted_motion(std::int64_t stamp_ns) const {
 }
 
 // The last good pose, with the uncertainty of the unobserved motion since then: the process noise, and as one
-// standard deviation the motion of a camera that went on as before. Tracking is mostly lost in fast motion.
+// standard deviation the motion of a camera that kept its velocity. Tracking is mostly lost in fast motion.
 [[gnu::noinline]] PoseWithCovariance Odometry::unobserved_pose(std::int64_t stamp_ns) const {
   const Window::Frame& last = window_.last_frame();
   PoseWithCovariance pose = last.pose;

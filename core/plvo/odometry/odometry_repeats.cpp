@@ -17,8 +17,8 @@ constexpr double kMovedSinceDepth = 0.01;
 
 }  // namespace
 
-// Whether the frame shows what the last frame with a pose shows. A lost frame is searched again even if it is
-// repeated: there is no pose to predict from.
+// Whether the frame has the colour image of the last frame with a pose. After a lost frame, the motion is
+// searched even if the image is repeated: there is no pose from which to predict.
 bool Odometry::is_passed_over() const {
   return window_.has_last() && !is_lost_ && repeats_.colour_is_repeated();
 }

@@ -46,10 +46,10 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
                                                const MotionPrior& prior, const TrackedMotion& tracked) {
   const MotionEstimate& motion = tracked.motion;
   const Window::Kept& kept = decision.kept;
-  if (!tracked.returned) show_tracks();
+  if (!tracked.relocalised) show_tracks();
   // A frame that has come back to an earlier keyframe was not matched with the references.
   const std::span<const Reference> matched =
-      tracked.returned ? std::span<const Reference>() : frame.predicted.references();
+      tracked.relocalised ? std::span<const Reference>() : frame.predicted.references();
   for (std::size_t r = 0; r < matched.size(); ++r)
     if (FrameFeatures* features = window_.find(matched[r].features); features != nullptr)
       note_records(memory_.tracking.tracks(r), *features);
@@ -87,13 +87,13 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   learn(config_->noise, tracked.observed, noise_);
   window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
   note_depth();
-  result.returned = tracked.returned;
+  result.relocalised = tracked.relocalised;
   report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
   return result;
 }
 
-// Says where the image shows what travels with the camera: when it is found, and when it has grown to twice
-// as many cells.
+// A status that says where in the image something travels with the camera. It is given when this is found,
+// and again when it has grown to more than twice as many cells.
 Status Odometry::tell_carried() {
   if (carried_.count() <= 2 * carried_told_) return {};
   carried_told_ = carried_.count();
@@ -109,8 +109,8 @@ Status Odometry::tell_carried() {
       .append(bounds.bottom - 1);
 }
 
-// Makes the current frame the keyframe and the last good one, without a motion before it; or waits for one
-// that can be that.
+// Makes the current frame the keyframe and the last good frame, without a motion before it. A frame that
+// cannot be that is left out, and the odometry waits for the next one.
 [[gnu::noinline]] TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
                                               const MotionPrior& prior, const TrackedMotion& tracked) {
   if (decision.new_world) forget_world();

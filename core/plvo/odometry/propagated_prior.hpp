@@ -12,7 +12,7 @@ namespace plvo {
 
 class PropagatedPrior {
  public:
-  // Called at a good frame: no motion since then.
+  // Called at a good frame: the motion begins there.
   void restart() {
     *this = PropagatedPrior();
     whole_ = true;

@@ -53,14 +53,14 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
 // Called before tracking starts anew: takes up the kept keyframe again if its view is back. Otherwise there
 // is no motion, and the lines are lifted without one.
 [[gnu::noinline]] void Odometry::resume(const CurrentFrame& frame, TrackedMotion& tracked) {
-  tracked.returned = false;
+  tracked.relocalised = false;
   if (!window_.kept().empty()) {
     const int slot = window_.kept().latest();
     // The camera is taken to stand still: its velocity before the loss is out of date.
-    tracked.returned = recognise(slot, frame, Vector6::Zero(), unobserved_pose(frame.stamp_ns()), tracked);
-    if (tracked.returned) window_.resume(slot);
+    tracked.relocalised = recognise(slot, frame, Vector6::Zero(), unobserved_pose(frame.stamp_ns()), tracked);
+    if (tracked.relocalised) window_.resume(slot);
   }
-  if (tracked.returned) return;
+  if (tracked.relocalised) return;
   tracked.motion.status = StatusCode::kNoConsensus;
   tracked.points = tracked.lines = {};
   tracked.ransac_iterations = tracked.lm_iterations = 0;
@@ -83,7 +83,7 @@ bool Odometry::recognise(int slot, const CurrentFrame& frame, const Vector6& vel
   const Window::Frame& last = window_.last_frame();  // the frame just tracked
   if (!recognise(slot, frame, last.velocity.value, last.pose, tracked)) return;
   move_to_relocalised_pose(slot, tracked.motion);
-  result.returned = true;
+  result.relocalised = true;
   report(last.pose, last.velocity.value, result);
 }
 

@@ -44,7 +44,7 @@ struct TrackResult {
   TrackState state = TrackState::kInitialising;
   Status status;
   std::int64_t stamp_ns = 0;
-  std::int64_t reference_stamp_ns = 0;  // of the frame that this one was matched against
+  std::int64_t reference_stamp_ns = 0;  // of the frame with which this one was matched
 
   // Camera to world. The world is the camera frame of the first frame, unless Config::level_world or
   // set_pose() define another. The covariance is that of the ⊞-perturbation (position, then orientation; m
@@ -63,7 +63,7 @@ struct TrackResult {
   FeatureCounts points;
   FeatureCounts lines;
   // The pose was corrected: the camera recognised the view of a keyframe from before a loss.
-  bool returned = false;
+  bool relocalised = false;
   // The colour image is that of the frame before, so no motion was measured: the pose is predicted, and its
   // covariance includes the process noise. The state is kTracking, and the status is ok() with a message.
   bool repeated = false;

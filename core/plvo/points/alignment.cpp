@@ -163,7 +163,7 @@ Template make_template(const Patch& patch, const WindowMask& mask, const WindowM
   constexpr Int16x8 kBits = {1, 2, 4, 8, 16, 32, 64, 128};
   Int32x4 total = {};
   for (std::size_t y = 0; y < kRows; ++y) {
-    const Int16x8 on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // all bits of a lane, or none
+    const Int16x8 on = (kBits & static_cast<std::int16_t>(mask[y])) != 0;  // all bits of an element, or none
     const Int16x8 one = on & std::int16_t{1};
     const Int16x8 gx =
         ((difference[y] + difference[y + 2]) * kWhole[0] + difference[y + 1] * kWhole[1] + std::int16_t{4}) >>

@@ -30,7 +30,7 @@ void CarriedCells::vote(const Counts& stayed, const Counts& moved) {
   count_carried();
 }
 
-void CarriedCells::convict(const Counts& stayed) {
+void CarriedCells::mark_carried(const Counts& stayed) {
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column) {
       if (stayed[static_cast<std::size_t>(row * kColumns + column)] == 0) continue;

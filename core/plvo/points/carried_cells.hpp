@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the image that show what travels with the camera: the robot's own bumper, text burnt into the
-// image, dots that the camera's projector throws on the scene. Their features are found again at the same
-// pixels while the rest of the image flows. They contradict the motion of the camera, so keypoints there have
-// no 3D point.
+// The parts of the image that travel with the camera: the robot's own bumper, text burnt into the image, dots
+// that the camera's projector throws on the scene. Their features are found again at the same pixels while
+// the rest of the image flows. They contradict the motion of the camera, so keypoints there have no 3D point.
 //
 // The image is divided into cells, and each cell has a vote. A frame that becomes a reference raises the vote
 // of a cell in which more features stayed at their pixels than moved along with the scene, and lowers that of
@@ -39,9 +38,9 @@ class CarriedCells {
   // Takes in a frame. stayed: features that are found at the same pixels, although the camera's motion moves
   // them; moved: features that are found where that motion puts them.
   void vote(const Counts& stayed, const Counts& moved);
-  // A single frame leaves no doubt: the cells with features that stayed, and the cells beside them, are
-  // carried.
-  void convict(const Counts& stayed);
+  // Takes in a frame that alone is certain: the cells with features that stayed, and the cells beside them,
+  // are carried at once.
+  void mark_carried(const Counts& stayed);
 
   // The cell of a pixel; of one outside the image, the nearest cell.
   std::size_t cell_of(const Vector2& pixel) const;
@@ -60,7 +59,8 @@ class CarriedCells {
   void remove_points(PointFeatures& points) const;
 
  private:
-  // Cells are carried once three references agree. After so many references all votes fall by one.
+  // A cell is carried when its vote reaches kCarried: three references agree. After kMemory references all
+  // votes fall by one.
   static constexpr std::uint8_t kCarried = 3;
   static constexpr std::uint8_t kMost = 12;
   static constexpr int kMemory = 30;

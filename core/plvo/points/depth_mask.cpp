@@ -17,9 +17,9 @@ constexpr int kRim = 2;
 // Relative depth tolerance. A steep surface changes its depth by this much over a window; pixels that differ
 // more belong to another surface.
 constexpr double kSameSurface = 0.06;
-// Pixels without depth belong to the keypoint's surface where its readings surround them: where every square
-// of 2 · kHole + 1 pixels around them contains one. Beside an edge there is such a square without one, on the
-// other surface, whatever the width of the shadow between the two.
+// Pixels without depth belong to the keypoint's surface if readings of this surface surround them: if every
+// square of side 2 · kHole + 1 that contains the pixel contains such a reading. Beside an edge this is not
+// so, whatever the width of the shadow between the two surfaces.
 constexpr int kHole = 1;
 
 constexpr int kSurfaceReach = kWindowReach + kRim;

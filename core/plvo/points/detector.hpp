@@ -20,7 +20,7 @@
 
 namespace plvo {
 
-// The odometry uses the defaults; the tests of the detector vary them.
+// The odometry uses these defaults; only tests of the detector change them.
 struct DetectorConfig {
   int levels = 3;  // number of searched pyramid levels, 1 … Pyramid::kMaxLevels
   int cell_px =

@@ -13,7 +13,7 @@
 
 namespace plvo {
 
-// The odometry varies the radius alone.
+// The odometry changes only the radius.
 struct PointMatchConfig {
   double radius_px = 30;  // level-0 pixels around the prediction; if the search fails, a second one is wider
   int max_distance = 64;  // Hamming, of 256 bits

@@ -28,7 +28,7 @@ inline constexpr int kAlignmentSide = 8;
 inline constexpr int kAlignmentPixels = kAlignmentSide * kAlignmentSide;
 inline constexpr std::size_t kMostAlignmentWindows = 128;
 // A step is trusted if this many windows agree, about three per motion parameter, and if most of the visible
-// windows agree. The scene of the others has changed, or their position was wrong.
+// windows agree. A window disagrees if its part of the scene has changed or its position is wrong.
 inline constexpr int kLeastAgreeingWindows = 20;
 inline constexpr double kLeastAgreeingShare = 0.5;
 

@@ -109,17 +109,17 @@ inline Status refuse(const char* why) { return {StatusCode::kInvalidArgument, wh
 // kOutOfMemory, and how many bytes are needed.
 Status too_small(const char* for_what, std::size_t needed, std::size_t bytes);
 
-// Of the caller's block, from the first address that the core likes on. bytes: more than kArenaAlignment.
+// The part of the caller's block that begins at the first aligned address. bytes: more than kArenaAlignment.
 std::span<std::byte> aligned_part(void* memory, std::size_t bytes);
 
 plvo_camera to_c(const CameraModel& model);
-// kInvalidArgument for a lens that is none; the rest is for CameraModel::validate.
+// kInvalidArgument for an unknown lens model; CameraModel::validate checks the rest.
 Status take_camera(const plvo_camera* given, CameraModel& model);
 // As give_struct; kInvalidArgument where the caller's struct has no room for the lens.
 Status give_camera(const plvo_camera& whole, plvo_camera* caller);
 
-// State, stamps, poses and covariances of what plvo_track gave. kInvalidArgument for a state that is none;
-// the numbers are unchecked.
+// State, stamps, poses and covariances of a result of plvo_track. kInvalidArgument for an unknown state; the
+// numbers are not checked.
 Status take_result(const plvo_result* given, TrackResult& result);
 
 }  // namespace plvo::c

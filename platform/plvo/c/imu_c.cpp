@@ -18,7 +18,7 @@ struct plvo_imu {
   plvo::ImuIntegrator integrator;
 };
 static_assert(std::is_trivially_destructible_v<plvo_imu> && std::is_trivially_destructible_v<plvo::ImuSample>,
-              "nobody ends it: the caller takes the memory back");
+              "it is never destroyed: the caller only frees its memory");
 
 namespace plvo::c {
 namespace {

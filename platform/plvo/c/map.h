@@ -74,7 +74,7 @@ PLVO_API size_t plvo_map_loops(const plvo_map* map);
 typedef int32_t (*plvo_map_write)(void* context, const void* bytes, size_t count);
 typedef int32_t (*plvo_map_read)(void* context, void* bytes, size_t count);
 
-/* Settles the map, then writes it in pieces. plvo_map_saved_bytes says how many bytes that is: exactly after
+/* Settles the map, then writes it in blocks. plvo_map_saved_bytes says how many bytes that is: exactly after
  * plvo_map_settle; before, pairs may join. The bytes are the same on every platform. PLVO_NOT_FOUND: it holds
  * no keyframe yet. Write to a new file, and rename it when it is whole. */
 PLVO_API plvo_status plvo_map_save(plvo_map* map, plvo_map_write write, void* context);

@@ -13,7 +13,8 @@
 struct plvo_map {
   plvo::Map map;
 };
-static_assert(std::is_trivially_destructible_v<plvo_map>, "nobody ends it: the caller takes the memory back");
+static_assert(std::is_trivially_destructible_v<plvo_map>,
+              "it is never destroyed: the caller only frees its memory");
 
 namespace plvo::c {
 namespace {
@@ -172,14 +173,14 @@ std::size_t plvo_map_saved_bytes(const plvo_map* map) { return map == nullptr ? 
 
 plvo_status plvo_map_save(plvo_map* map, plvo_map_write write, void* context) {
   if (map == nullptr) return to_c(refuse(plvo::c::kNoMap));
-  if (write == nullptr) return to_c(refuse("write is NULL: nobody takes the map"));
+  if (write == nullptr) return to_c(refuse("write is NULL: it must take the bytes of the map"));
   plvo::c::CallerSink sink(write, context);
   return to_c(map->map.save(sink));
 }
 
 plvo_status plvo_map_load(plvo_map* map, plvo_map_read read, void* context) {
   if (map == nullptr) return to_c(refuse(plvo::c::kNoMap));
-  if (read == nullptr) return to_c(refuse("read is NULL: nobody gives the map"));
+  if (read == nullptr) return to_c(refuse("read is NULL: it must give the bytes of the map"));
   plvo::c::CallerSource source(read, context);
   return to_c(map->map.load(source));
 }

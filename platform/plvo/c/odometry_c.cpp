@@ -14,7 +14,7 @@
 #include "plvo/odometry/odometry.hpp"
 
 static_assert(std::is_trivially_destructible_v<plvo_odometry>,
-              "nobody ends it: the caller takes the memory back");
+              "it is never destroyed: the caller only frees its memory");
 
 namespace {
 
@@ -144,7 +144,7 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   whole.mean_brightness = result.mean_brightness;
   static_assert(sizeof whole.stage_ns / sizeof *whole.stage_ns == plvo::kStageCount);
   std::copy(result.stage_ns.begin(), result.stage_ns.end(), whole.stage_ns);
-  whole.returned = result.returned ? 1 : 0;
+  whole.relocalised = result.relocalised ? 1 : 0;
   whole.feature_step = result.feature_step;
   whole.repeated = result.repeated ? 1 : 0;
   plvo::c::give_struct(whole, caller);

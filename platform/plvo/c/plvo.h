@@ -210,7 +210,7 @@ typedef struct plvo_result {
   int32_t ransac_iterations, lm_iterations;
   double mean_brightness; /* 0 … 255 */
   int64_t stage_ns[5];    /* PLVO_STAGE_…; zero without plvo_config.stage_clock */
-  int32_t returned;       /* 1: the pose was put right at a view from before a loss */
+  int32_t relocalised;    /* 1: the view of a keyframe from before a loss corrected the pose */
   int32_t feature_step;   /* of plvo_config.frame_budget_ns: 0, all the features that fit, to 8 */
   /* 1: the colour image is that of the frame before, so the pose is predicted; the state is PLVO_TRACKING,
    * the status PLVO_OK with a message. */

@@ -19,7 +19,7 @@ class ArrivalClock {
   // host_ns: posix_monotonic_ns() when it came; of every frame, in order.
   void frame_arrived(std::int64_t stamp_ns, std::int64_t host_ns);
 
-  // Nothing before the first frame.
+  // Returns nothing before the first frame.
   std::optional<std::int64_t> stamp_of(std::int64_t host_ns) const;
 
  private:

@@ -5,8 +5,8 @@ namespace plvo {
 namespace {
 
 bool continues_the_last_frame(const TrackResult& base) {
-  if (base.returned || base.state == TrackState::kInitialising) return false;
-  // A new piece of the trajectory is told by a message; so is a repeated image, whose motion is predicted.
+  if (base.relocalised || base.state == TrackState::kInitialising) return false;
+  // A restart from a lost frame has a message; so has a repeated image, whose motion is predicted.
   return base.state == TrackState::kPredicted || base.repeated || base.status.message()[0] == '\0';
 }
 

@@ -18,9 +18,8 @@ struct Twist {
 
 class MotionTwist {
  public:
-  // base: a result with a pose, of the base (result_of_base). Returns nothing where the motion since the
-  // frame before was not measured: for a first frame, after a new piece of the trajectory, and where the pose
-  // was corrected.
+  // base: a result with a pose, of the base (result_of_base). Returns nothing if the motion since the frame
+  // before was not measured: for a first frame, for a restart from a lost frame, and for a corrected pose.
   std::optional<Twist> of(const TrackResult& base);
   // The pose of the last frame has been set: the motion to the next one is measured from it.
   void move_to(const Se3& T_odom_base) { last_.T_world_camera = T_odom_base; }

@@ -91,7 +91,7 @@ inline py::array matrix_4x4(const Se3& T) {
   return copy_of(matrix);
 }
 
-// Checks that the pixels of a row lie side by side; rows may be any distance apart.
+// Checks that the pixels of a row are contiguous; rows may be any distance apart.
 inline void check_rows(const py::array& array, const std::string& name, py::ssize_t pixel_bytes) {
   constexpr py::ssize_t kMostPixels = py::ssize_t{1} << 20;
   if (array.shape(0) < 1 || array.shape(1) < 1 || array.shape(0) > kMostPixels ||
@@ -99,7 +99,7 @@ inline void check_rows(const py::array& array, const std::string& name, py::ssiz
     refuse_array(name, "an image has at least one pixel and at most 2^20 a side");
   const bool packed = array.strides(1) == pixel_bytes && (array.ndim() == 2 || array.strides(2) == 1);
   if (!packed || array.strides(0) < pixel_bytes * array.shape(1))
-    refuse_array(name, "the pixels of a row must lie side by side; pass numpy.ascontiguousarray(…)");
+    refuse_array(name, "the pixels of a row must be contiguous; pass numpy.ascontiguousarray(…)");
 }
 
 inline ColourView colour_view(const py::array& array, bool bgr) {

@@ -68,7 +68,7 @@ void bind_result(py::module_& module) {
       .def_readonly("ransac_iterations", &TrackResult::ransac_iterations)
       .def_readonly("lm_iterations", &TrackResult::lm_iterations)
       .def_readonly("mean_brightness", &TrackResult::mean_brightness)
-      .def_readonly("returned", &TrackResult::returned)
+      .def_readonly("relocalised", &TrackResult::relocalised)
       .def_readonly("repeated", &TrackResult::repeated)
       .def_readonly("feature_step", &TrackResult::feature_step)
       .def("__repr__", &describe);

@@ -25,8 +25,8 @@ struct WheelConfig {
   double error_s = 0.5;                        // how long an error lasts (wheel_prior.hpp)
   double longest_gap_s = 0.25;                 // between samples; over a longer one there is no prior
 
-  // Of wheels that are read as they come: so long the last velocity is taken to go on, where later samples
-  // are not there yet. It may change meanwhile by these accelerations, times that time.
+  // For wheels that are read live: if later samples have not arrived yet, the last velocity is taken to go on
+  // for this long. Its uncertainty grows by these accelerations, times that time.
   double hold_s = 0;
   double acceleration_mps2 = 1, acceleration_rps2 = 2;
 

@@ -37,10 +37,10 @@ bool with_colour(const SimulatorOptions& options) {
 }  // namespace
 
 struct SimulatedCamera::Parts {
-  Parts(const SimulatorOptions& chosen, std::unique_ptr<sim::Scene> room, sim::Trajectory walk)
+  Parts(const SimulatorOptions& chosen, std::unique_ptr<sim::Scene> room, sim::Trajectory path)
       : options(chosen),
         scene(std::move(room)),
-        trajectory(std::move(walk)),
+        trajectory(std::move(path)),
         lighting(chosen.light, chosen.seed),
         carried(chosen, *scene),
         things(chosen, trajectory, *scene),
@@ -234,7 +234,7 @@ ImageView<const float> SimulatedCamera::exact_depth() const {
 
 Status SimulatedCamera::next(RgbdFrame& frame) {
   Parts& parts = *parts_;
-  if (parts.next >= parts.frames) return Status(StatusCode::kEndOfStream, "the simulated walk is over");
+  if (parts.next >= parts.frames) return Status(StatusCode::kEndOfStream, "the simulated sequence is over");
   const int k = parts.next++;
   const CameraModel& camera = parts.options.camera;
   const std::int64_t stamp = stamp_ns(k);

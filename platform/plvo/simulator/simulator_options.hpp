@@ -82,7 +82,7 @@ struct SimulatorOptions {
   SceneName scene = SceneName::kCorridor;
   LightName light = LightName::kConstant;
   std::uint64_t seed = 1;
-  // Rooms of the same plan and paint, on the same walk, that differ in grain, wear and prints.
+  // Rooms of the same plan and paint, with the same trajectory, that differ in grain, wear and prints.
   std::uint32_t storey = 0;
   int frames = 300;
   double fps = 30;

@@ -30,7 +30,7 @@ int finish(const Status& status);
 
 // run DIR…, tum DIR…, worker …
 void add_sequences(CLI::App& app, int& exit_code);
-// lighting, walk
+// lighting, sequence
 void add_lighting(CLI::App& app, int& exit_code);
 // stages [DIR]
 void add_stages(CLI::App& app, int& exit_code);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo_bench: plvo and its peers side by side. docs/developer/bench.md.
+// plvo_bench: compares plvo with its peers. docs/developer/bench.md.
 #include <fmt/core.h>
 
 #include <exception>
@@ -67,7 +67,7 @@ int finish(const Status& status) {
 int main(int argc, char** argv) {
   plvo::ignore_broken_outputs();
   plvo::hold_standard_streams();
-  CLI::App app("plvo and its peers, side by side", "plvo_bench");
+  CLI::App app("Compares plvo with its peers", "plvo_bench");
   app.require_subcommand(1);
   int exit_code = 0;
   plvo::bench::add_sequences(app, exit_code);

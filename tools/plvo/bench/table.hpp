@@ -8,7 +8,7 @@
 
 namespace plvo::bench {
 
-inline constexpr const char* kIdentity = "never moves";
+inline constexpr const char* kIdentity = "zero motion";
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // shown as –
 
 struct Table {

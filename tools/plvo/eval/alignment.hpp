@@ -22,7 +22,7 @@ struct AbsoluteError {
 };
 AbsoluteError absolute_trajectory_error(const std::vector<Se3>& estimate, const std::vector<Se3>& truth);
 
-// Returns the error of a camera that never moves: the alignment puts its single position at the centroid of
+// Returns the error of the zero-motion baseline: the alignment puts its single position at the centroid of
 // the truth.
 Statistics identity_absolute_error(const std::vector<Se3>& truth);
 

@@ -127,8 +127,8 @@ Consistency pose_consistency(const PairedPoses& poses, const std::vector<Stamped
   for (std::size_t i = 1; i < errors.size();
        ++i) {  // the first pose defines the world: no error, no covariance
     if (const StampedCovariance* c = find(covariances, errors[i].stamp_ns); c != nullptr) {
-      const Vector3 walked = poses.estimate[0].R * (poses.truth[0].inverse() * poses.truth[i]).t;
-      accumulator.add(errors[i].error, c->covariance + truth_sigma.of_motion(walked));
+      const Vector3 travelled = poses.estimate[0].R * (poses.truth[0].inverse() * poses.truth[i]).t;
+      accumulator.add(errors[i].error, c->covariance + truth_sigma.of_motion(travelled));
     }
   }
   return accumulator.finish(accumulator.count());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kUsualScale = 0.05;  // off by no more
 constexpr double kExplained = 0.5;    // of the ATE, at most, may be left after scaling
-// The ratio of the error that is left to that of a camera that never moves is the standard deviation of the
+// The ratio of the error that is left to that of the zero-motion baseline is the standard deviation of the
 // scale, if the errors of all poses are one error. The scale must differ from 1 by so many.
 constexpr double kScaleSigmas = 3;
 constexpr double kFarNees = 2;  // times as much as expected, or as little

@@ -116,7 +116,7 @@ std::string to_text(const Evaluation& e) {
             e.estimate_poses, e.sampling == GroundTruthSampling::kNearest ? "nearest stamp" : "interpolated",
             e.duration_s, e.path_m);
   if (e.truth_fit) add_truth_fit(text, *e.truth_fit, e.second_before_fit);
-  text.line("identity: what a camera that never moves would score\n");
+  text.line("identity: the zero-motion baseline, an estimate without any motion\n");
   text.line("{:<28} {:>10} {:>9} {:>9} {:>9}   {:>8} {:>8} {:>8} {:>8}", "", "RMSE mm", "median", "p95",
             "max", "RMSE deg", "median", "p95", "max");
   for (const RpeResult& r : e.rpe) add_rpe(text, r);

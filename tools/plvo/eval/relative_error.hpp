@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Relative pose error, equation (27) of Lu & Song after Sturm et al. (IROS 2012): with estimates P and truth
 // Q, E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) over all pairs (i, j) that lie one delta apart. Each result also has
-// the error of a camera that never moves (P = identity), as a baseline.
+// the error of the zero-motion baseline (P = identity).
 #pragma once
 
 #include <cstdint>

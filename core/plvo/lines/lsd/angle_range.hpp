@@ -20,7 +20,7 @@ inline constexpr auto kOnes = [] {
   return ones;
 }();
 
-// Sets all bits of lane i if bit i is set.
+// Sets all bits of element i if bit i is set.
 inline Int16x8 chosen(unsigned bits) {
   return ((Int16x8{} + static_cast<std::int16_t>(bits)) & Int16x8{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
@@ -32,7 +32,7 @@ class AngleRange {
       : least_(static_cast<Angle>(middle - tolerance)),
         beyond_(static_cast<std::uint16_t>(2 * tolerance + 1)) {
 #ifndef PLVO_SIMD_LOOPS
-    // SIMD lanes are signed, so the range is shifted to begin at the least 16-bit number.
+    // SIMD elements are signed, so the range is shifted to begin at the least 16-bit number.
     origins_ = Int16x8{} + static_cast<Angle>(least_ - INT16_MIN);
     ends_ = Int16x8{} + static_cast<Angle>(INT16_MIN + beyond_);
 #endif
@@ -76,7 +76,7 @@ class AngleSum {
     load(eight, angles);
     const Int16x8 beyond = angles - from_;
     Int32x4 pairs;
-    dot_pairs(beyond, chosen(bits), pairs);  // a chosen lane is −1
+    dot_pairs(beyond, chosen(bits), pairs);  // a chosen element is −1
     minus_ += pairs;
   }
   std::int32_t beyond() const { return -(minus_[0] + minus_[1] + minus_[2] + minus_[3]); }

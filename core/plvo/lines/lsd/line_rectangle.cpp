@@ -18,14 +18,14 @@ namespace {
 std::int32_t to_fixed(double value, double one) { return round_to<std::int32_t>(value * one); }
 
 // Sums over one run, relative to its block: the pixels' magnitudes, the magnitudes times x, and times x².
-struct PieceMass {
+struct RunMass {
   std::int32_t m, mx, mxx;
 };
 
-PieceMass weigh(const std::int16_t* magnitudes, unsigned bits) {
+RunMass weigh(const std::int16_t* magnitudes, unsigned bits) {
   constexpr std::int16_t kMagnitude = (1 << LevelLineField::kReleaseBit) - 1;
   if constexpr (kSimdLoops) {
-    PieceMass of{};
+    RunMass of{};
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
       const int x = lowest_bit(rest);
       const int w = magnitudes[x] & kMagnitude;
@@ -52,15 +52,15 @@ struct Range {
   std::int32_t low, high;
 };
 
-// Packs two 16-bit numbers into one of 32 bits, and reads four of those as lanes.
+// Packs two 16-bit numbers into one of 32 bits, and reads four of those as one vector.
 std::int32_t pair_of(int x, int y) {
   return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xffffU) | static_cast<std::uint32_t>(y)
                                                                                    << 16);
 }
 Int16x8 pairs(const Int32x4& four) {
-  Int16x8 lanes;
-  std::memcpy(&lanes, &four, sizeof lanes);
-  return lanes;
+  Int16x8 vector;
+  std::memcpy(&vector, &four, sizeof vector);
+  return vector;
 }
 
 // Least and greatest x · dx + y · dy, and y · dx − x · dy, in 2^-14 px. For each run, its first and its last
@@ -94,7 +94,7 @@ Range about(Range range, std::int64_t centre_q22) {
 }  // namespace
 
 void GradientMass::add(const LevelLineField& field, PixelRun seed, PixelRun run) {
-  const PieceMass of = weigh(field.magnitude_and_releases.data() + field.index(run) * kBlockPixels, run.bits);
+  const RunMass of = weigh(field.magnitude_and_releases.data() + field.index(run) * kBlockPixels, run.bits);
   const std::int64_t x = run.block * kBlockPixels - first_x(seed);
   const std::int64_t y = run.row - seed.row;
   const std::int64_t run_mx = of.m * x + of.mx;

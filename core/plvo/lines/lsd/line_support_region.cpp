@@ -119,11 +119,11 @@ void release(LevelLineField& field, PixelRun run) {
   constexpr std::int16_t kReleases = (1 << (16 - LevelLineField::kReleaseBit)) - 1;
   static_assert(kMaxReleases <= kReleases);
   std::int16_t* const magnitudes = field.magnitude_and_releases.data() + at * kBlockPixels;
-  Int16x8 lanes;
-  load(magnitudes, lanes);
-  const Int16x8 may =
-      (((lanes >> LevelLineField::kReleaseBit) & kReleases) != std::int16_t{kMaxReleases}) & chosen(run.bits);
-  const Int16x8 more = lanes + (may & std::int16_t{1 << LevelLineField::kReleaseBit});
+  Int16x8 vector;
+  load(magnitudes, vector);
+  const Int16x8 may = (((vector >> LevelLineField::kReleaseBit) & kReleases) != std::int16_t{kMaxReleases}) &
+                      chosen(run.bits);
+  const Int16x8 more = vector + (may & std::int16_t{1 << LevelLineField::kReleaseBit});
   store(more, magnitudes);
   std::uint8_t& open = field.open()[at];
   open = static_cast<std::uint8_t>(open | negative_mask(may));

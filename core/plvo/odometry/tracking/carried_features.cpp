@@ -24,7 +24,7 @@ constexpr int kLeastContradicted = 30;
 // and this share of its inliers must lie in cells with such points.
 constexpr int kTimesTheSupport = 3;
 constexpr double kShareAmong = 0.25;
-// A line is asked for at so many places along it.
+// A line is looked up in the cells at this many places along it.
 constexpr int kPlacesOfLine = 5;
 
 Vector2 pixel_of(const Keypoint& keypoint) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the features that travel with the camera (carried_cells.hpp), in two ways.
 //
-// Where the motion of the camera is known, features that it moves in the image are looked for at the pixels
-// where they were. Each reference votes.
+// If the motion of the camera is known, features that should have moved in the image are searched at the
+// pixels where they were. Each reference votes.
 //
-// Where most of the image travels with the camera, the estimate itself is misled: everything seems to be at
-// rest. Then the features that did not stay agree on another motion, and they lie among those that stayed. A
-// surface has one motion, so one of the two is light that falls on it or is mirrored by it. What stays at its
-// pixels is the camera's own.
+// If most of the image travels with the camera, the estimate itself is misled: everything seems to be at
+// rest. Then the features that did not stay at their pixels agree on another motion, and they lie among those
+// that stayed. A surface has one motion, so one of the two kinds of features is light that falls on it or is
+// mirrored by it. The features that stay at their pixels are those that travel with the camera.
 #pragma once
 
 #include <span>
@@ -32,8 +32,8 @@ StayedMatches count_stayed(std::span<const Reference> references, std::span<cons
                            const CarriedCells& cells);
 // Whether the estimate may be misled: most points stayed, and most other matches disagree.
 bool may_be_misled(const StayedMatches& before);
-// Whether many points stayed at their pixels although their depths changed: what they show is light, not a
-// place on a surface.
+// Whether many points stayed at their pixels although their depths changed: they are light, not places on a
+// surface.
 bool depth_contradicts(const StayedMatches& before);
 // Moves the points that stayed to the end of the tracks and leaves them out. Returns the size before.
 std::size_t leave_stayed_out(const Reference& reference, ReferenceTracks& tracks);

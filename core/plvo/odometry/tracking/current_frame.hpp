@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that is being tracked, the frames that it is matched with, and what is known of its motion before
-// its features are associated.
+// The frame that is being tracked, its references, and the prediction of its motion before its features are
+// associated.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace plvo {
 
-// A frame to match with.
+// A frame with which the current one is matched.
 struct Reference {
   const FrameFeatures* features = nullptr;
   Se3 T_current_predicted;  // T_current_reference as predicted

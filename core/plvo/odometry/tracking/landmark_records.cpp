@@ -62,7 +62,7 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
     reference.lines.lines[tracks.lines[i].reference].record.add(tracks.line_inliers[i] != 0);
 }
 
-// Not inlined: the cells are on the stack during it alone.
+// Not inlined: the cells are on the stack only during this function.
 [[gnu::noinline]] void inherit_records(std::span<const Reference> references,
                                        const ReferenceTracking& tracking, const CurrentFrame& current) {
   RecordsByCell cells(current);

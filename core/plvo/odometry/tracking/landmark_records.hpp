@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps the records of the references' landmarks (landmark_record.hpp). A landmark that was found but does
-// not agree with the motion of the frame moves otherwise. Without a record, a moving object would be as
-// credible in each new reference as the room, and would be believed as soon as it fills enough of the image.
+// not agree with the motion of the frame moves by itself. Without records, a moving object would have the
+// same weight in each new reference as the room, and the estimate would follow it as soon as it fills enough
+// of the image.
 #pragma once
 
 #include <span>
@@ -15,9 +16,9 @@ namespace plvo {
 // of the frame's estimate.
 void note_records(const ReferenceTracks& tracks, FrameFeatures& reference);
 
-// Gives records to the landmarks of the current frame, which becomes a reference: the mean of those that were
-// found in the same part of the image, but a new landmark has to prove itself if that is negative. tracking:
-// the frame's matches with the references.
+// Gives records to the landmarks of the current frame, which becomes a reference. Each gets the mean record
+// of the landmarks that were found in the same part of the image; if this is negative, the new landmark is
+// not trusted at first. tracking: the frame's matches with the references.
 void inherit_records(std::span<const Reference> references, const ReferenceTracking& tracking,
                      const CurrentFrame& current);
 

@@ -9,23 +9,23 @@
 namespace plvo {
 namespace {
 
-// A first motion is accepted if at least this share of the evidence that it puts into the image is found. A
-// wrongly aligned image mostly finds less than a tenth. A search by features finds up to a fifth when it is a
-// brick off before a wall that repeats itself. A correct motion in a blurred image may find as little: it is
-// not refused, but other motions are searched as well.
+// A first motion is accepted if at least this share of the evidence that it puts into the image is found.
+// After a wrong alignment of the image, mostly less than a tenth is found. Before a wall that repeats itself,
+// a motion that is wrong by one brick finds up to a fifth. A correct motion in a blurred image may find as
+// little: it is not refused, but other motions are searched as well.
 constexpr double kAcceptedShareByImage = 0.1;
 constexpr double kAcceptedShareByFeatures = 0.2;
-// Features are registered again where the estimate is another motion than that of the start, so many times in
-// all: those that move so are now found.
+// If the estimate is another motion than that of the start, features are registered again with the estimate,
+// at most this many times in all: features that follow the new motion are then found.
 constexpr int kMostRegistrations = 3;
 // The image may be aligned to an object. Where the aligned and the predicted motion differ by more than this
 // in the plane z = 1 (4 px of a Kinect), a glance at both tells which one to start from. Otherwise
 // registration finds the same features from both.
 constexpr double kSameStart = 4.0 / 525;
 // The estimates of two glances are different motions if they differ by more than this in the plane z = 1 (2
-// px of a Kinect). Of comparable ones that from the prediction is taken, because a camera goes on as it
-// moved. If they are the same motion, the image is nearer to it than a prediction that is 4 px off, unless
-// the other estimate explains more and they are not comparable.
+// px of a Kinect). If both explain about as much, the one from the prediction is taken, because a camera
+// mostly keeps its velocity. If they are the same motion, the aligned one is taken, because it is nearer to
+// it than a prediction that is 4 px off; but not if it explains clearly less.
 constexpr double kOtherMotion = 2.0 / 525;
 // A motion that a prior contradicts counts as explaining this share of what it explains.
 constexpr double kWorthOfContradicted = 0.25;
@@ -103,7 +103,7 @@ bool is_findable(const Reference& reference) {
 
 }  // namespace
 
-// Not inlined: its variables are on the stack during the search alone.
+// Not inlined: its variables are on the stack only during the search.
 [[gnu::noinline]] void search_motion(const CurrentFrame& current, ReferenceTracking& tracking,
                                      TrackedMotion& tracked) {
   const std::span<const Reference> references = current.predicted.references();

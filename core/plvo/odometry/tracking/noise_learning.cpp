@@ -17,8 +17,8 @@ constexpr double kMedian4 = 3.3567;
 // Squared distances, in the model's SDs, beyond which a residual is a wrong match rather than noise. RANSAC
 // takes residuals within the 99 % quantile of χ² as inliers: 11.34 for the three degrees of freedom of a
 // point, 13.28 for the four of a line. Noise with twice the SD of the models must stay observable, so the
-// bounds here are four times these. A surface sample has one degree of freedom; its residual is only far off
-// while the scale is not learnt yet. So it has the bound of points, 6.7 SDs.
+// bounds here are four times these. A surface sample has one degree of freedom. Its residual is large only
+// until the scale is learnt, so it has the bound of points, 6.7 SDs.
 constexpr double kFarthestPoint = 45;
 constexpr double kFarthestLine = 53;
 constexpr double kFarthestSurface = 45;

@@ -39,7 +39,7 @@ struct PointTracks {
   }
 };
 
-// What the tracker needs of the current frame.
+// The parts of the current frame that the tracker needs.
 struct TrackingView {
   const Pinhole& pinhole;
   const PointConfig& config;

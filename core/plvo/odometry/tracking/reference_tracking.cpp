@@ -16,7 +16,7 @@ constexpr LmOptions kRoughSolve{.max_iterations = 5, .step_tolerance = 3e-4};
 constexpr LmOptions kFineSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
 // Limits of the sparse alignment: rounds over a level, and Gauss–Newton steps in each. After a step smaller
-// than kAligned (m and rad) another round brings nothing.
+// than kAligned (m and rad), another round does not improve the result.
 constexpr int kCoarseRounds = 4;
 constexpr int kFineRounds = 1;
 constexpr int kStepsOfRound = 2;
@@ -192,7 +192,7 @@ void ReferenceTracking::estimate(const Association& association, const CurrentFr
   }
 }
 
-// Not inlined: its variables are off the stack when the motion is solved for.
+// Not inlined: its variables are no longer on the stack when the motion is solved for.
 [[gnu::noinline]] bool ReferenceTracking::align(const Reference& reference, const CurrentFrame& current,
                                                 Se3& T_current_reference) const {
   const CameraModel& camera = current.context.camera;
@@ -301,10 +301,10 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
     tracked.exposure = current_exposure(context.camera, reference.prior, tracked.motion.T_current_reference);
 }
 
-// Where the points that stayed at their pixels may mislead the estimate, looks for a motion of the other
-// matches. If there is one among them, those points travel with the camera. If it explains clearly more than
-// the estimate does, it is taken. If they are comparable, the estimate stays and its covariance contains
-// both.
+// If the points that stayed at their pixels may mislead the estimate, searches for a motion of the other
+// matches. If it is found among those points, they travel with the camera. If the other motion explains
+// clearly more than the estimate, it is taken. If both explain about as much, the estimate stays and its
+// covariance contains both.
 [[gnu::noinline]] void ReferenceTracking::look_beside_stayed(std::span<const Reference> references,
                                                              const CurrentFrame& current,
                                                              const Association& association,
@@ -322,7 +322,7 @@ void ReferenceTracking::find(const Reference& reference, const CurrentFrame& cur
   const bool agree =
       tracked.ok() && agree_among_stayed(stayed, references, tracks, current.context.camera, carried);
   const bool contradicted = !agree && depth_contradicts(stayed);
-  if (agree || contradicted) carried.convict(stayed.cells);
+  if (agree || contradicted) carried.mark_carried(stayed.cells);
   if (contradicted) {
     tracked.motion.status = StatusCode::kNoConsensus;
     return;

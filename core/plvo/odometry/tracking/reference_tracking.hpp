@@ -57,8 +57,8 @@ struct TrackedMotion {
   NoiseScales observed;   // observed scales of the noise
   MatchCounts points, lines;
   int ransac_iterations = 0, lm_iterations = 0;  // of all estimates that were tried
-  bool returned = false;                         // the base is a keyframe from before a loss
-  bool new_piece = false;                        // the base is a lost frame
+  bool relocalised = false;                      // the base is a keyframe from before a loss
+  bool restarted = false;                        // the base is a lost frame
 
   bool ok() const { return motion.status == StatusCode::kOk; }
   int inliers() const { return points.inliers + lines.inliers; }

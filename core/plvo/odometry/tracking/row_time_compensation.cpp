@@ -12,7 +12,7 @@ Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) 
                        static_cast<double>(prior.since_last_ns) * 1e-9);
 }
 
-// At the reference the mean of the intervals before and after it counts.
+// The velocity at the reference: the mean of those over the intervals before and after it.
 Vector6 reference_velocity(const PairPrior& prior, const Vector6& recent) {
   if (!prior.reference.known()) return recent;
   if (!prior.reference_is_last) return prior.reference.value;

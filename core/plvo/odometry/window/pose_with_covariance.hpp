@@ -6,7 +6,7 @@
 
 namespace plvo {
 
-// A pose with its covariance, and with the covariances of its error with those of gravity
+// A pose with its covariance, and with the cross-covariance of its error and those of gravity
 // (gravity_filter.hpp).
 struct PoseWithCovariance {
   Se3 T_world_camera;

@@ -129,7 +129,7 @@ void Window::give_up() {
   last_motion_ = recent_motion_ = {};
 }
 
-// A keyframe that no frame was tracked with takes no other's place.
+// A keyframe from which no frame was tracked does not replace a kept one.
 void Window::keep_keyframe() {
   if ((*this)[keyframe_].velocity.known() || !kept_.full()) kept_.keep(keyframe_);
 }

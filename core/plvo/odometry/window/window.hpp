@@ -3,12 +3,12 @@
 // window decides nothing: the caller assigns the roles.
 //
 //   current   the frame that is being tracked
-//   last      the last frame that has a pose; the velocity is that between it and the one before
+//   last      the last frame that has a pose; it and the frame before give the velocity
 //   keyframe  the base of the estimate: the current pose is chained to it
-//   recent    a later frame that is matched beside the keyframe; the keyframe itself where there is no other
+//   recent    a later frame that is matched beside the keyframe; without one, the keyframe itself
 //   older     the keyframe before, which is still matched (ReferencePolicy::kWindow)
 //   kept      keyframes from before a loss, which may come back into view (kept_keyframes.hpp)
-//   lost      the last lost frame, which the next one is matched with where the references fail
+//   lost      the last lost frame, with which the next one is matched if the references fail
 //
 // One frame can have several roles. Slots identify the frames. Memory: the features of as many frames as
 // Limits ask for, from the arena; two frames without a role share it (begin_frame()).
@@ -38,7 +38,8 @@ class Window {
   struct Frame {
     FrameFeatures features;  // the current frame has only these until it is tracked
     PoseWithCovariance pose;
-    // Since the last good frame before it. When the next frame is tracked, it becomes the mean of both sides.
+    // Mean velocity since the last good frame before. When the next frame is tracked, it becomes the mean
+    // over the intervals before and after this frame.
     Velocity velocity;
   };
   // Covariance of T_frame_keyframe.
@@ -52,7 +53,7 @@ class Window {
     bool keyframe = false, recent = false, older = false;
   };
 
-  // Memory for the features of as many frames as Limits ask for; an arena without memory counts it.
+  // Memory for the features of as many frames as Limits ask for; an arena without memory counts the bytes.
   using Features = std::array<FrameFeatures, kFrames>;
   static constexpr void allocate(Arena& memory, const Limits& limits, Features& features) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(limits.references + limits.kept_keyframes); ++i)
@@ -87,7 +88,7 @@ class Window {
   Frame& operator[](int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& operator[](int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
 
-  // The features of a frame of the window that were handed out to be read; nullptr if they are not its own.
+  // Mutable access to features that the window handed out as const; nullptr if they are not the window's.
   FrameFeatures* find(const FrameFeatures* features);
 
   Frame& current_frame() { return (*this)[current_]; }

@@ -11,8 +11,8 @@ namespace plvo {
 
 inline constexpr std::size_t kMostReaderBytes = std::size_t{512} << 20;
 
-// Of a list, a bag or a folder of numbered frames. Uncompressed 640x480 images of colour and depth would fill
-// 800 GB.
+// Images of a list, a bag or a folder of numbered frames. As many uncompressed 640x480 images of colour and
+// depth would fill 800 GB.
 inline constexpr std::size_t kMostImages = std::size_t{1} << 20;
 inline constexpr std::size_t kMostRows = std::size_t{1} << 21;      // of a table of numbers
 inline constexpr std::size_t kMostColumns = 256;                    // of one row

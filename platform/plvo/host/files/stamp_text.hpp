@@ -18,8 +18,8 @@ bool parse_stamp_ns(std::string_view seconds, std::int64_t& stamp_ns);
 // milliseconds, microseconds or nanoseconds.
 std::string stamp_error(std::string_view word);
 
-// Of stamps of images or poses in their order: words when the median step is longer than 3 s, and so looks
-// like another unit than seconds; else empty.
+// Stamps of images or poses, in their order. Returns a message if their median step is longer than 3 s, so
+// that their unit seems not to be seconds; else an empty string.
 std::string stamp_unit_doubt(const std::vector<std::int64_t>& stamps_ns);
 
 // The median of the steps forward; 0 without one.

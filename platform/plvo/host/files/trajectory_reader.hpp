@@ -45,7 +45,7 @@ struct TrajectorySource {
 // kitti_times has stamps.
 Status read_trajectory(const TrajectorySource& source, Trajectory& trajectory);
 
-// Of one stamp, those that came first stay first.
+// Sorts rows by stamp. Rows of equal stamp keep their order.
 template <typename Stamped>
 void sort_by_stamp(std::vector<Stamped>& rows) {
   std::stable_sort(rows.begin(), rows.end(),

@@ -96,7 +96,7 @@ std::optional<std::vector<std::uint8_t>> MavlinkOdometry::message(const TrackRes
     return std::nullopt;
   }
   const bool new_world = base.state == TrackState::kInitialising;
-  if (started_ && (base.returned || new_world)) ++resets_;
+  if (started_ && (base.relocalised || new_world)) ++resets_;
   started_ = true;
   MavlinkPayload payload = payload_of(base, twist, resets_);
   // MAVLink 2 leaves zeros at the end of the payload away.

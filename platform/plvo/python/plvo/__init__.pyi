@@ -315,7 +315,7 @@ class Result:
     def mean_brightness(self) -> float:
         """Mean of the grey image, 0 to 255."""
     @property
-    def returned(self) -> bool:
+    def relocalised(self) -> bool:
         """Whether the view of a keyframe from before a loss was recognised, which corrected the pose."""
     @property
     def repeated(self) -> bool:
@@ -627,7 +627,7 @@ class Odometry:
         Parameters
         ----------
         colour : ndarray
-            (height, width) grey or (height, width, 3) RGB, uint8. The pixels of a row lie side by side. Not copied.
+            (height, width) grey or (height, width, 3) RGB, uint8. The pixels of a row are contiguous. Not copied.
         depth : ndarray
             (height, width), uint16, in units of the camera; 0: none. Registered to colour. Not copied.
         stamp_ns : int
@@ -649,7 +649,7 @@ class Odometry:
         TypeError
             An array has another type of numbers.
         ValueError
-            An array has another number of dimensions, or its pixels do not lie side by side.
+            An array has another number of dimensions, or the pixels of a row are not contiguous.
         plvo.Error
             "invalid_argument": the size is not the camera's, or the stamp is not later; the odometry is as before.
         RuntimeError

@@ -136,11 +136,11 @@ std::string missing_of_tum(const fs::path& recording, const Calibration& calibra
   add(!known.distortion.is_zero() && said.distortion.is_zero(), "the lens");
   add(!calibration.readout_given, "the rolling shutter");
   add(known.depth_timing.known && !said.depth_timing.known, "when depth is exposed");
-  add(known.stamp_sigma_s > 0 && said.stamp_sigma_s == 0, "what the stamps err");
+  add(known.stamp_sigma_s > 0 && said.stamp_sigma_s == 0, "the errors of the stamps");
   if (missing.empty()) return {};
   return fmt::format(
       "by its {} this is TUM's camera {}, of which the calibration does not say: {}; "
-      "--camera-model {} says it, and errs less",
+      "--camera-model {} says it, and gives smaller errors",
       by_name.empty() ? "numbers" : "name", model, missing, model);
 }
 

@@ -30,7 +30,7 @@ struct SplinePoint {
 
 // Evaluates the closed uniform cubic B-spline at phase ∈ [0, 1). With winding, the heading grows by 2π per
 // lap.
-SplinePoint spline_at(const std::vector<WalkPoint>& points, double phase, bool winding) {
+SplinePoint spline_at(const std::vector<PathPoint>& points, double phase, bool winding) {
   const auto n = static_cast<int>(points.size());
   const double x = phase * n;
   const int k = std::min(static_cast<int>(x), n - 1);
@@ -42,7 +42,7 @@ SplinePoint spline_at(const std::vector<WalkPoint>& points, double phase, bool w
   for (int i = 0; i < 4; ++i) {
     const int index = k + i - 1;
     const int wrapped = (index + n) % n;
-    const WalkPoint& p = points[static_cast<std::size_t>(wrapped)];
+    const PathPoint& p = points[static_cast<std::size_t>(wrapped)];
     const double laps = winding ? (index < 0 ? -1 : (index >= n ? 1 : 0)) : 0;
     const double w = weights[static_cast<std::size_t>(i)];
     sum.position += w * Vector3(static_cast<double>(p.position.x), static_cast<double>(p.position.y),
@@ -53,7 +53,7 @@ SplinePoint spline_at(const std::vector<WalkPoint>& points, double phase, bool w
   return sum;
 }
 
-double spline_length(const std::vector<WalkPoint>& points, bool winding) {
+double spline_length(const std::vector<PathPoint>& points, bool winding) {
   constexpr int kSteps = 400;
   double length = 0;
   for (int i = 0; i < kSteps; ++i)
@@ -66,19 +66,19 @@ double spline_length(const std::vector<WalkPoint>& points, bool winding) {
 }  // namespace
 
 Trajectory Trajectory::hand_held(const Scene& scene, std::uint64_t seed, double duration_s) {
-  Trajectory walk;
-  walk.duration_s_ = duration_s;
+  Trajectory generated;
+  generated.duration_s_ = duration_s;
   const double reach_m = duration_s * static_cast<double>(scene.speed_mps);
   const double round_m = scene.round.empty() ? 0 : spline_length(scene.round, true);
   if (round_m > 0 && reach_m > 0.8 * round_m) {
-    walk.points_ = scene.round;
-    walk.winding_ = true;
-    walk.rounds_ = std::max(1, static_cast<int>(reach_m / round_m + 0.5));
+    generated.points_ = scene.round;
+    generated.winding_ = true;
+    generated.rounds_ = std::max(1, static_cast<int>(reach_m / round_m + 0.5));
   } else {
-    walk.points_ = scene.stroll;
+    generated.points_ = scene.stroll;
     const double stroll_m = spline_length(scene.stroll, false);
-    walk.rounds_ = std::max(1, static_cast<int>(reach_m / stroll_m + 0.5));
-    walk.extent_ = std::min(1.0, reach_m / stroll_m);
+    generated.rounds_ = std::max(1, static_cast<int>(reach_m / stroll_m + 0.5));
+    generated.extent_ = std::min(1.0, reach_m / stroll_m);
   }
 
   // Amplitudes per frequency band: translations x y z (m), rotations pitch yaw roll (rad). Each band's
@@ -95,7 +95,7 @@ Trajectory Trajectory::hand_held(const Scene& scene, std::uint64_t seed, double 
   }};
   for (std::size_t dof = 0; dof < 6; ++dof) {
     for (std::size_t k = 0; k < kWaves; ++k) {
-      Wave& wave = walk.waves_[dof][k];
+      Wave& wave = generated.waves_[dof][k];
       const double periods = kBand_hz[k] * (0.8 + 0.4 * random.uniform()) * duration_s;
       wave.periods = static_cast<int>(periods + 0.5);
       // A band too slow for a short trajectory is omitted, not sped up.
@@ -103,10 +103,10 @@ Trajectory Trajectory::hand_held(const Scene& scene, std::uint64_t seed, double 
       wave.phase_rad = 2 * kPi * random.uniform();
     }
   }
-  return walk;
+  return generated;
 }
 
-Se3 Trajectory::walk_at(double t_s) const {
+Se3 Trajectory::generated_at(double t_s) const {
   double phase = duration_s_ > 0 ? t_s / duration_s_ : 0;
   phase -= std::floor(phase);
   double lap = phase * rounds_;
@@ -159,7 +159,7 @@ Se3 Trajectory::recording_at(double t_s) const {
 
 Se3 Trajectory::at(double t_s) const {
   if (still_) t_s = 0;
-  return poses_.empty() ? walk_at(t_s) : recording_at(t_s);
+  return poses_.empty() ? generated_at(t_s) : recording_at(t_s);
 }
 
 }  // namespace plvo::sim

@@ -45,7 +45,7 @@ class Trajectory {
   };
   static constexpr int kWaves = 5;  // per degree of freedom
 
-  Se3 walk_at(double t_s) const;
+  Se3 generated_at(double t_s) const;
   Se3 recording_at(double t_s) const;
 
   bool still_ = false;
@@ -53,7 +53,7 @@ class Trajectory {
   double duration_s_ = 0;
   double scale_ = 1;
   // Generated trajectory:
-  std::vector<WalkPoint> points_;
+  std::vector<PathPoint> points_;
   double extent_ = 1;  // scale of the stroll about its first point
   int rounds_ = 1;
   bool winding_ = false;

@@ -83,7 +83,7 @@ Status Trajectory::from_tum(const std::string& path, const Scene& scene, Traject
     return Status(StatusCode::kDamaged, path.substr(0, 160)).append(" is shorter than 20 ms");
 
   // Rotates about the vertical so that the first view has the heading of the scene's stroll.
-  const WalkPoint& begin = scene.stroll.front();
+  const PathPoint& begin = scene.stroll.front();
   const double turn = static_cast<double>(begin.yaw) - heading(poses.front().R);
   const Matrix3 R_scene_recording = rotation_exp(Vector3(0, 0, turn));
   const Vector3 origin = poses.front().t;

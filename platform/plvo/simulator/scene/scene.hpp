@@ -22,7 +22,7 @@ struct PanelLight {
   float power = 10;  // irradiance at distance r straight ahead: power / (π r²)
 };
 
-struct WalkPoint {
+struct PathPoint {
   Float3 position;
   float yaw = 0;    // rad
   float pitch = 0;  // rad, upwards positive
@@ -53,8 +53,8 @@ struct Scene {
   // Control points of two closed paths (uniform cubic B-splines). The heading of the stroll returns without a
   // full turn, and a stroll of short duration is scaled down. The heading of the longer round may make a full
   // turn (empty: no round).
-  std::vector<WalkPoint> stroll;
-  std::vector<WalkPoint> round;
+  std::vector<PathPoint> stroll;
+  std::vector<PathPoint> round;
   float speed_mps = 0.55F;
   // A recorded trajectory is scaled and shifted until it stays inside this box.
   Float3 free_lo, free_hi;

@@ -46,20 +46,23 @@ void add_growth(CLI::App& app, int& exit_code) {
       "growth",
       "How a frame's cost grows: with the image, the capacity for features, hard images, along a sequence");
   command
-      ->add_option("folders", arguments->folders,
-                   "Recorded sequences in TUM's layout, for the table of a walk's frames (default: none)")
+      ->add_option(
+          "folders", arguments->folders,
+          "Recorded sequences in TUM's layout, for the table of the frames of a sequence (default: none)")
       ->type_name("DIR[=MODEL]");
-  command->add_option("--out", options.out, "For growth.md and the walks, which are rendered once")
+  command->add_option("--out", options.out, "For growth.md and the sequences, which are rendered once")
       ->required()
       ->type_name("DIR");
   command->add_option("--tables", options.tables, "Default: " + options.tables)->type_name("LIST");
-  command->add_option("--scene", arguments->scene, "Of the rendered walks (default desk)")->type_name("NAME");
+  command->add_option("--scene", arguments->scene, "Of the rendered sequences (default desk)")
+      ->type_name("NAME");
   command->add_option("--frames", options.frames, "Of each case (default 20)")
       ->check(CLI::Range(2, 1'000'000).description(""))
       ->type_name("NUMBER");
   command
-      ->add_option("--walk-frames", options.walk_frames,
-                   "Of the rendered and the recorded walks whose worst frames are looked at (default 150)")
+      ->add_option(
+          "--sequence-frames", options.sequence_frames,
+          "Of the rendered and the recorded sequences whose worst frames are looked at (default 150)")
       ->check(CLI::Range(2, 1'000'000).description(""))
       ->type_name("NUMBER");
   command->add_option("--repeats", options.repeats, "Of the CPU times, interleaved (default 3)")

@@ -52,13 +52,13 @@ class Planner {
   }
 
   void add_images() {
-    GrowthTable table{"Images that are hard on a detector", "images", {{"of the walk", 0}}};
+    GrowthTable table{"Images that are hard on a detector", "images", {{"of the sequence", 0}}};
     const auto image = [&](const char* name, Replacement replacement) {
       StageSetting setting;
       setting.replacement = replacement;
       const std::size_t measured = add_case(1, setting, options_.frames);
       table.rows.push_back({name, measured});
-      plan_.bounds.push_back({fmt::format("{}, worst frame / the walk's median", name), measured,
+      plan_.bounds.push_back({fmt::format("{}, worst frame / the sequence's median", name), measured,
                               Of::kWorstOfUsual, kMostOfHardImages});
     };
     image("noise", Replacement::kNoise);
@@ -67,28 +67,28 @@ class Planner {
     plan_.tables.push_back(table);
   }
 
-  void add_walks(const std::vector<NamedFolder>& recorded) {
-    plan_.walks = {"Frames of a walk", "sequence", {}};
+  void add_sequences(const std::vector<NamedFolder>& recorded) {
+    plan_.sequences = {"Frames of a sequence", "sequence", {}};
     const auto add = [&](const std::string& name, std::size_t measured) {
-      plan_.walks.rows.push_back({name, measured});
+      plan_.sequences.rows.push_back({name, measured});
       plan_.bounds.push_back({name + ", p99 / median", measured, Of::kP99OfMedian, kMostOfMedian});
     };
-    add("rendered walk", add_case(1, {}, options_.walk_frames));
+    add("rendered sequence", add_case(1, {}, options_.sequence_frames));
     for (const NamedFolder& sequence : recorded) {
-      plan_.cases.push_back({sequence, options_.walk_frames, {}, {}});
+      plan_.cases.push_back({sequence, options_.sequence_frames, {}, {}});
       add(sequence.sequence, plan_.cases.size() - 1);
     }
   }
 
  private:
   std::size_t add_case(double scale, const StageSetting& setting, std::size_t frames) {
-    SimulatorOptions walk;
-    walk.scene = options_.scene;
-    walk.frames = static_cast<int>(frames);
-    walk.camera = scaled(walk.camera, scale);
-    const std::string folder = fmt::format("{}_{}x{}_{}f", to_string(walk.scene), walk.camera.width,
-                                           walk.camera.height, walk.frames);
-    plan_.cases.push_back({{options_.out / folder, folder, ""}, frames, setting, walk});
+    SimulatorOptions rendering;
+    rendering.scene = options_.scene;
+    rendering.frames = static_cast<int>(frames);
+    rendering.camera = scaled(rendering.camera, scale);
+    const std::string folder = fmt::format("{}_{}x{}_{}f", to_string(rendering.scene), rendering.camera.width,
+                                           rendering.camera.height, rendering.frames);
+    plan_.cases.push_back({{options_.out / folder, folder, ""}, frames, setting, rendering});
     return plan_.cases.size() - 1;
   }
 
@@ -112,12 +112,12 @@ Status plan_growth(const GrowthOptions& options, const std::vector<NamedFolder>&
                              {20, 50, 100, 200, Limits{}.segments, 400});
     } else if (table == "images") {
       planner.add_images();
-    } else if (table == "walks") {
-      planner.add_walks(recorded);
+    } else if (table == "sequences") {
+      planner.add_sequences(recorded);
     } else {
-      return {
-          StatusCode::kInvalidArgument,
-          fmt::format("there is no table \"{}\"; choose of: sizes, points, segments, images, walks", table)};
+      return {StatusCode::kInvalidArgument,
+              fmt::format("there is no table \"{}\"; choose of: sizes, points, segments, images, sequences",
+                          table)};
     }
   }
   return {};

@@ -17,7 +17,7 @@ struct GrowthCase {
   NamedFolder sequence;  // folder of the frames
   std::size_t frames = 0;
   StageSetting setting;
-  std::optional<SimulatorOptions> walk;  // simulator options, if the sequence is rendered
+  std::optional<SimulatorOptions> rendering;  // simulator options, if the sequence is rendered
 };
 
 struct GrowthTable {
@@ -32,7 +32,7 @@ struct GrowthTable {
 struct GrowthPlan {
   std::vector<GrowthCase> cases;  // the first has 640×480 pixels and all defaults
   std::vector<GrowthTable> tables;
-  GrowthTable walks;  // evaluated over their length, not relative to the first case
+  GrowthTable sequences;  // evaluated over their length, not relative to the first case
 
   // An upper bound on the result of the case `measured`.
   struct Bound {
@@ -46,10 +46,10 @@ struct GrowthPlan {
 
 struct GrowthOptions {
   std::filesystem::path out;
-  std::string tables = "sizes,points,segments,images,walks";
+  std::string tables = "sizes,points,segments,images,sequences";
   SceneName scene = SceneName::kDesk;
   std::size_t frames = 20;
-  std::size_t walk_frames = 150;
+  std::size_t sequence_frames = 150;
   int repeats = 3;
   int jobs = 1;
 };

@@ -27,9 +27,9 @@ std::string describe(const GrowthCase& one) {
 Status render(const GrowthPlan& plan) {
   for (const GrowthCase& one : plan.cases) {
     std::error_code error;
-    if (!one.walk || fs::is_directory(one.sequence.folder, error)) continue;
+    if (!one.rendering || fs::is_directory(one.sequence.folder, error)) continue;
     print_to_stderr(fmt::format("rendering {}\n", one.sequence.sequence));
-    if (Status status = render_sequence(*one.walk, one.sequence.folder); !status.ok()) return status;
+    if (Status status = render_sequence(*one.rendering, one.sequence.folder); !status.ok()) return status;
   }
   return {};
 }

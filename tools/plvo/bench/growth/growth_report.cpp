@@ -63,7 +63,7 @@ double p99_of_median(std::vector<double> values) {
   return eval::quantile(values, 0.99) / eval::quantile(values, 0.5);
 }
 
-Table walk_table(const GrowthTable& shown, const std::vector<GrowthResult>& results) {
+Table sequence_table(const GrowthTable& shown, const std::vector<GrowthResult>& results) {
   Table table;
   table.header = {shown.first_column, "frames",          "lost", "median", "p99", "most",
                   "p99 / median",     "CPU p99 / median"};
@@ -103,8 +103,9 @@ std::string growth_report(const GrowthPlan& plan, const std::vector<GrowthResult
       results.front().frames.size(), plan.cases.front().sequence.sequence, results.front().times.size());
   for (const GrowthTable& table : plan.tables)
     text += fmt::format("\n{}\n\n{}", table.title, to_markdown(growth_table(table, results)));
-  if (!plan.walks.rows.empty())
-    text += fmt::format("\n{}\n\n{}", plan.walks.title, to_markdown(walk_table(plan.walks, results)));
+  if (!plan.sequences.rows.empty())
+    text +=
+        fmt::format("\n{}\n\n{}", plan.sequences.title, to_markdown(sequence_table(plan.sequences, results)));
   text += '\n';
   for (const GrowthPlan::Bound& bound : plan.bounds) text += verdict(bound, results);
   return text;

@@ -27,7 +27,7 @@ struct Result {
   int lost = 0;       // of these, frames without a motion estimate
   double path_m = 0;  // path length of the truth
   Accuracy estimate;
-  Accuracy identity;                         // a camera that never moves
+  Accuracy identity;                         // of the zero-motion baseline
   double cpu_median_ms = 0, cpu_p95_ms = 0;  // per frame, without the first one
   double peak_mb = 0;                        // resident, of the whole process
   double growth_mb = 0;  // part of the peak after the program was loaded and the sequence opened

@@ -26,12 +26,12 @@ void add_once(std::vector<T>& list, const T& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-double median_over_seeds(const std::vector<Walk>& walks, const SiteLight& place, const std::string& system,
-                         const Results& results, Value value) {
+double median_over_seeds(const std::vector<LitSequence>& sequences, const SiteLight& place,
+                         const std::string& system, const Results& results, Value value) {
   std::vector<double> values;
-  for (const Walk& walk : walks) {
-    const auto found = results.find({walk.sequence, system});
-    if (SiteLight{walk.site, walk.light} == place && found != results.end())
+  for (const LitSequence& sequence : sequences) {
+    const auto found = results.find({sequence.name, system});
+    if (SiteLight{sequence.site, sequence.light} == place && found != results.end())
       values.push_back(value(found->second));
   }
   return median(values);
@@ -50,23 +50,24 @@ struct Column {
 
 // Returns a row for each site and light, then for each light the mean over the sites (NaN if a value is
 // missing), then the ratio of these means.
-Table make_table(const std::vector<Walk>& walks, const std::vector<Column>& columns, const Results& results) {
+Table make_table(const std::vector<LitSequence>& sequences, const std::vector<Column>& columns,
+                 const Results& results) {
   Table table;
   table.header = {"site", "light"};
   table.text_columns = 2;
   for (const Column& column : columns) table.header.push_back(column.header);
   std::vector<SiteLight> places;
   std::vector<std::string> lights;
-  for (const Walk& walk : walks) {
-    add_once(places, SiteLight{walk.site, walk.light});
-    add_once(lights, walk.light);
+  for (const LitSequence& sequence : sequences) {
+    add_once(places, SiteLight{sequence.site, sequence.light});
+    add_once(lights, sequence.light);
   }
   std::map<std::string, std::vector<std::vector<double>>> values;  // light → column → sites
   for (const SiteLight& place : places) {
     std::vector<std::string> row = {place.site, place.light};
     values[place.light].resize(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const double value = median_over_seeds(walks, place, columns[i].system, results, columns[i].value);
+      const double value = median_over_seeds(sequences, place, columns[i].system, results, columns[i].value);
       values[place.light][i].push_back(value);
       row.push_back(cell(value, 1));
     }
@@ -86,8 +87,8 @@ Table make_table(const std::vector<Walk>& walks, const std::vector<Column>& colu
   return table;
 }
 
-// Returns every result of each walk and system, unrounded.
-Table exact_table(const std::vector<Walk>& walks, const std::vector<std::string>& systems,
+// Returns every result of each sequence and system, unrounded.
+Table exact_table(const std::vector<LitSequence>& sequences, const std::vector<std::string>& systems,
                   const Results& results) {
   constexpr int kDecimals = 6;
   Table table;
@@ -95,18 +96,14 @@ Table exact_table(const std::vector<Walk>& walks, const std::vector<std::string>
                   "lost",          "path_m",       "ted_mm",        "ted_deg", "rpe_s_mm",
                   "rpe_s_deg",     "rpe_frame_mm", "rpe_frame_deg", "ate_mm",  "identity_rpe_s_mm",
                   "cpu_median_ms", "cpu_p95_ms"};
-  for (const Walk& walk : walks) {
+  for (const LitSequence& sequence : sequences) {
     for (const std::string& system : systems) {
-      const auto found = results.find({walk.sequence, system});
+      const auto found = results.find({sequence.name, system});
       if (found == results.end()) continue;
       const Result& r = found->second;
       const Accuracy& a = r.estimate;
-      std::vector<std::string> row = {walk.site,
-                                      walk.light,
-                                      std::to_string(walk.seed),
-                                      system,
-                                      std::to_string(r.frames),
-                                      std::to_string(r.lost)};
+      std::vector<std::string> row = {sequence.site, sequence.light,           std::to_string(sequence.seed),
+                                      system,        std::to_string(r.frames), std::to_string(r.lost)};
       for (const double value :
            {r.path_m, a.ted_mm, a.ted_deg, a.rpe_second_mm, a.rpe_second_deg, a.rpe_frame_mm, a.rpe_frame_deg,
             a.ate_mm, r.identity.rpe_second_mm, r.cpu_median_ms, r.cpu_p95_ms})
@@ -119,7 +116,7 @@ Table exact_table(const std::vector<Walk>& walks, const std::vector<std::string>
 
 }  // namespace
 
-Report lighting_report(const std::vector<Walk>& walks, const std::vector<std::string>& systems,
+Report lighting_report(const std::vector<LitSequence>& sequences, const std::vector<std::string>& systems,
                        const std::vector<Result>& all) {
   Results results;
   for (const Result& result : merge_repeats(all)) results[{result.sequence, result.system}] = result;
@@ -131,13 +128,13 @@ Report lighting_report(const std::vector<Walk>& walks, const std::vector<std::st
   }
   Report report;
   report.name = "lighting";
-  report.title = "Closed walks under two lights";
-  report.table = make_table(walks, drift, results);
-  report.more = {make_table(walks, rpe, results)};
-  report.exact = exact_table(walks, systems, results);
+  report.title = "Closed sequences under two lights";
+  report.table = make_table(sequences, drift, results);
+  report.more = {make_table(sequences, rpe, results)};
+  report.exact = exact_table(sequences, systems, results);
   report.notes = {
       "First table: end-point drift (TED) in mm; second: RPE per second, RMSE in mm. Medians over the seeds; "
-      "simulated walks that end where they began. A lost frame keeps the last good pose and counts."};
+      "simulated sequences that end where they began. A lost frame keeps the last good pose and counts."};
   return report;
 }
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "plvo/bench/map/closed_walk.hpp"
+#include "plvo/bench/map/closed_sequence.hpp"
+#include "plvo/bench/map/evaluation.hpp"
 #include "plvo/bench/map/studies.hpp"
-#include "plvo/bench/map/walker.hpp"
 #include "plvo/eval/statistics.hpp"
 
 namespace plvo::bench {
@@ -28,26 +28,27 @@ std::string figures(const char* name, std::vector<double> ms) {
 }  // namespace
 
 void cost(const MapStudy& study) {
-  const ClosedWalk walk(simulated(study.scene, study.light, study.seed, study.width, study.amount));
-  MapWalker walker(walk.camera(), 256);
+  const ClosedSequence sequence(simulated(study.scene, study.light, study.seed, study.width, study.amount));
+  MapEvaluation evaluation(sequence.camera(), 256);
   std::int64_t number = 0;
-  for (int round = 0; round < kMostRounds && !walker.map.graph().full(); ++round)
-    for (int k = 0; k < walk.frames(); ++k, ++number) walker.see(walk.frame(number), walk.pose(number));
-  const std::vector<std::byte> file = walker.save();
-  const std::size_t keyframes = walker.map.graph().size();
-  const auto frames = static_cast<std::size_t>(walk.frames());
+  for (int round = 0; round < kMostRounds && !evaluation.map.graph().full(); ++round)
+    for (int k = 0; k < sequence.frames(); ++k, ++number)
+      evaluation.see(sequence.frame(number), sequence.pose(number));
+  const std::vector<std::byte> file = evaluation.save();
+  const std::size_t keyframes = evaluation.map.graph().size();
+  const auto frames = static_cast<std::size_t>(sequence.frames());
   std::vector<double> track(frames, 1e9), map(frames, 1e9);
   int joined = 0;  // keyframes, in a round
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
-    walker.load(file);
-    const int before = walker.map.counts().keyframes;
+    evaluation.load(file);
+    const int before = evaluation.map.counts().keyframes;
     for (std::size_t k = 0; k < frames; ++k) {
       const auto at = number + static_cast<std::int64_t>(k);
-      walker.see(walk.frame(at), walk.pose(at));
-      track[k] = std::min(track[k], walker.track_ms().back());
-      map[k] = std::min(map[k], walker.map_ms().back());
+      evaluation.see(sequence.frame(at), sequence.pose(at));
+      track[k] = std::min(track[k], evaluation.track_ms().back());
+      map[k] = std::min(map[k], evaluation.map_ms().back());
     }
-    joined = walker.map.counts().keyframes - before;
+    joined = evaluation.map.counts().keyframes - before;
   }
   std::vector<double> both;
   for (std::size_t k = 0; k < frames; ++k) both.push_back(track[k] + map[k]);

@@ -13,9 +13,9 @@ constexpr float kRoom_m = 0.25F;  // that a camera needs about it
 PosedCamera::PosedCamera(const SimulatorOptions& options)
     : options_(options),
       scene_(sim::build_scene(options.scene, options.seed)),
-      walk_(sim::Trajectory::hand_held(*scene_, options.seed, (options.frames - 1) / options.fps)),
+      trajectory_(sim::Trajectory::hand_held(*scene_, options.seed, (options.frames - 1) / options.fps)),
       lighting_(options.light, options.seed),
-      things_(options, walk_, *scene_),
+      things_(options, trajectory_, *scene_),
       renderer_(*scene_, options.camera, options.threads),
       sensor_(*scene_, options.camera, options.depth, options.seed, options.threads) {
   arrive();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated camera that is put to any pose of its room, where SimulatedCamera follows its walk.
+// A simulated camera that can be put at any pose in its room; SimulatedCamera follows a trajectory.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ namespace plvo::bench {
 
 class PosedCamera {
  public:
-  // T_world_camera at a time in seconds, at which the light is that of the walk.
+  // T_world_camera at a time in seconds. The light is that of SimulatedCamera at this time.
   using Motion = std::function<Se3(double t_s)>;
 
   explicit PosedCamera(const SimulatorOptions& options);
@@ -30,9 +30,9 @@ class PosedCamera {
 
   const CameraModel& model() const { return options_.camera; }
   double frame_s() const { return 1 / options_.fps; }
-  double duration_s() const { return walk_.duration_s(); }
-  // The walk that SimulatedCamera follows with the same options.
-  Se3 walk(double t_s) const { return walk_.at(t_s); }
+  double duration_s() const { return trajectory_.duration_s(); }
+  // T_world_camera on the trajectory that SimulatedCamera follows with the same options.
+  Se3 trajectory(double t_s) const { return trajectory_.at(t_s); }
 
   // The next frame is exposed as by a camera that has been there for long.
   void arrive() { film_.emplace(options_.camera, options_.seed, true, 1); }
@@ -44,7 +44,7 @@ class PosedCamera {
  private:
   SimulatorOptions options_;
   std::unique_ptr<sim::Scene> scene_;
-  sim::Trajectory walk_;
+  sim::Trajectory trajectory_;
   sim::Lighting lighting_;
   sim::Things things_;
   sim::Renderer renderer_;

@@ -6,21 +6,21 @@
 #include <optional>
 
 #include "plvo/base/random.hpp"
+#include "plvo/bench/map/evaluation.hpp"
 #include "plvo/bench/map/posed_camera.hpp"
 #include "plvo/bench/map/studies.hpp"
-#include "plvo/bench/map/walker.hpp"
 #include "plvo/map/loop_check.hpp"
 #include "plvo/math/trigonometry.hpp"
 
 namespace plvo::bench {
 namespace {
 
-constexpr int kFramesOfTheWalk = 1800;
+constexpr int kFramesOfTheSequence = 1800;
 // A sample is drawn evenly from each cell of distance, as a share of the scene's depth, and angle.
 constexpr std::array kShares = {0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0};
 constexpr std::array kAngles_deg = {0.0, 10.0, 20.0, 30.0, 45.0, 60.0};
 constexpr double kHeightShare = 0.3;  // of the other directions: people walk and robots roll
-constexpr int kTriesPerPair = 20;  // to find a place where the camera can be
+constexpr int kTriesPerPair = 20;     // to find a place where the camera can be
 
 // The keyframe that an odometry makes of a view.
 class ViewMaker {
@@ -77,7 +77,7 @@ class ViewMaker {
 
 void recall(const MapStudy& study) {
   const SimulatorOptions options =
-      simulated(study.scene, study.light, study.seed, study.width, kFramesOfTheWalk);
+      simulated(study.scene, study.light, study.seed, study.width, kFramesOfTheSequence);
   PosedCamera camera(options);
   ViewMaker maker(camera.model());
   Random random(study.seed, 0x7265);
@@ -91,7 +91,7 @@ void recall(const MapStudy& study) {
   std::string pairs;
   for (int k = 0; k < study.amount; ++k) {
     const double t_s = camera.duration_s() * (k + random.uniform()) / study.amount;
-    const Se3 T_world_old = camera.walk(t_s);
+    const Se3 T_world_old = camera.trajectory(t_s);
     if (!take(0, T_world_old, t_s)) continue;
     const double depth = maker.depth(0);
     for (std::size_t s = 0; s + 1 < kShares.size(); ++s) {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "plvo/bench/map/closed_walk.hpp"
+#include "plvo/bench/map/closed_sequence.hpp"
+#include "plvo/bench/map/evaluation.hpp"
 #include "plvo/bench/map/studies.hpp"
-#include "plvo/bench/map/walker.hpp"
 #include "plvo/host/files/trajectory_file.hpp"
 #include "plvo/host/resident_memory.hpp"
 
@@ -18,11 +18,12 @@ constexpr int kKeyframes = 128;
 }  // namespace
 
 void soak(const MapStudy& study) {
-  const ClosedWalk walk(simulated(study.scene, study.light, study.seed, study.width, kFramesOfARound));
-  MappedOdometry mapped(walk.camera(), kKeyframes);
+  const ClosedSequence sequence(
+      simulated(study.scene, study.light, study.seed, study.width, kFramesOfARound));
+  MappedOdometry mapped(sequence.camera(), kKeyframes);
   Odometry& odometry = mapped.odometry;
   Map& map = mapped.map;
-  const Se3 T_map_room = walk.pose(0).inverse();
+  const Se3 T_map_room = sequence.pose(0).inverse();
   // [round, lost, keyframes, loops so far, RMS error of the odometry and in the map (m), resident bytes] of
   // each round. Room is taken before the first frame, so that the list takes none.
   const std::int64_t rounds = study.amount / kFramesOfARound;
@@ -33,11 +34,11 @@ void soak(const MapStudy& study) {
     double odometry_sum = 0, map_sum = 0;
     for (std::int64_t k = 0; k < kFramesOfARound; ++k) {
       const std::int64_t number = round * kFramesOfARound + k;
-      const TrackResult result = odometry.track(walk.frame(number));
+      const TrackResult result = odometry.track(sequence.frame(number));
       const MapResult in_map = map.update(odometry, result);
       lost += result.state == TrackState::kLost ? 1 : 0;
       if (!has_pose(result)) continue;
-      const Vector3 truth = T_map_room * walk.pose(number).t;
+      const Vector3 truth = T_map_room * sequence.pose(number).t;
       ++posed;
       odometry_sum += (result.T_world_camera.t - truth).squaredNorm();
       if (!in_map.located) continue;

@@ -14,17 +14,17 @@ struct MapStudy {
   int amount = 0;   // frames, views or trials
 };
 
-// A walk of `amount` frames: the errors of odometry and map, each loop compared with the truth.
+// A sequence of `amount` frames: the errors of odometry and map, and of each loop.
 void patrol(const MapStudy& study);
-// Pairs of a view of the walk and another one at a distance and an angle: whether LoopCheck accepts them.
-// `amount`: views of the walk.
+// Pairs of a view of the sequence and another one at a distance and an angle: whether LoopCheck accepts them.
+// `amount`: views of the sequence.
 void recall(const MapStudy& study);
-// `amount` times the camera is put to a place near the mapped walk: carried there in the dark, and switched
-// on there.
+// The camera is put at `amount` places near the mapped trajectory: carried there in the dark, and switched on
+// there.
 void carried(const MapStudy& study);
-// `amount` frames of a closed walk, round and round.
+// `amount` frames of a closed trajectory, round after round.
 void soak(const MapStudy& study);
-// The time of a frame with a map of 256 keyframes and without, over `amount` frames.
+// The time of a frame with a map of 256 keyframes and without a map, over `amount` frames.
 void cost(const MapStudy& study);
 
 }  // namespace plvo::bench

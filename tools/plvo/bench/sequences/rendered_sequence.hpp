@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks of the simulated camera as folders in TUM's layout.
+// Sequences of the simulated camera as folders in TUM's layout.
 #pragma once
 
 #include <filesystem>

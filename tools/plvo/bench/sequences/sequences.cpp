@@ -26,7 +26,7 @@ constexpr const char* kPeer = "opencv-rgbd";  // its time is the unit of the las
 constexpr const char* kMean = "mean, weighted by frames";
 constexpr int kExactDecimals = 6;
 
-// Puts a row for a camera that never moves before the systems of each sequence.
+// Puts a row of the zero-motion baseline before the systems of each sequence.
 template <typename MakeRow>
 void add_rows(const std::vector<Result>& merged, MakeRow make_row, Table& table) {
   std::string sequence;
@@ -165,7 +165,7 @@ Report make_report(const SequencesOptions& options, const std::vector<Result>& r
         "\"paper\": Table 2 of Lu & Song (ICCV 2015), each figure over the whole sequence.");
   } else {
     report.name = "comparison";
-    report.title = "Side by side";
+    report.title = "Comparison";
     report.table = comparison_table(results, 0);
     report.exact = comparison_table(results, kExactDecimals);
   }

@@ -66,11 +66,11 @@ Status run_stages(const StagesOptions& options) {
   if (Status status = make_out(options.out); !status.ok()) return status;
   NamedFolder sequence;
   if (options.folder.empty()) {
-    const std::string name = fmt::format("walk_{}f", options.measuring.frames);
+    const std::string name = fmt::format("simulated_{}f", options.measuring.frames);
     sequence = {options.out / name, name, ""};
-    SimulatorOptions walk;
-    walk.frames = static_cast<int>(options.measuring.frames);
-    if (Status status = render_sequence(walk, sequence.folder); !status.ok()) return status;
+    SimulatorOptions rendering;
+    rendering.frames = static_cast<int>(options.measuring.frames);
+    if (Status status = render_sequence(rendering, sequence.folder); !status.ok()) return status;
   } else {
     std::vector<NamedFolder> named;
     if (Status status = name_folders({options.folder}, named); !status.ok()) return status;
@@ -104,9 +104,9 @@ void add_stages(CLI::App& app, int& exit_code) {
   options->measuring.frames = 20;
   CLI::App* command =
       app.add_subcommand("stages", "Where a frame's time goes: CPU and instructions by stage");
-  command->add_option("folder", options->folder, "A sequence in TUM's layout (default: a simulated walk)")
+  command->add_option("folder", options->folder, "A sequence in TUM's layout (default: a simulated sequence)")
       ->type_name("DIR[=MODEL]");
-  command->add_option("--out", options->out, "For the table, the profile and the walk")
+  command->add_option("--out", options->out, "For the table, the profile and the sequence")
       ->required()
       ->type_name("DIR");
   command->add_flag("--instructions", options->instructions,

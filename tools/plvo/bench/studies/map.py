@@ -75,7 +75,7 @@ def names(room):
 def patrols(found, frames):
     print(f"""## Patrols
 
-Walks of {frames} frames at 30 Hz, several rounds of the hall and the corridor, to and fro in the others, with `--map 256`.
+Sequences of {frames} frames at 30 Hz, several rounds of the hall and the corridor, to and fro in the others, with `--map 256`.
 
 - **lost**: frames without a pose. The images are small, and the hall is 13 × 10 m with a depth camera that sees 5 m: with 160×120 the
   camera is lost for a tenth to a fifth of the frames there, and most of the error is of the ways that were not seen. The patrols of
@@ -128,9 +128,9 @@ def recall(found, views):
     print(f"""
 ## Which views are recognised
 
-`LoopCheck` compares a view of a walk with another one of the same room: up to a whole depth of the scene away, in any direction
+`LoopCheck` compares a view of a sequence with another one of the same room: up to a whole depth of the scene away, in any direction
 that is free, and turned about the vertical by up to 60°. The depth of the scene is the median of the view's points. {views} views of each
-walk, a pair in each cell. The camera sees 63° of the room: turned by 30°, half of the view is a new one. Under the varying light the second view is of another time, when the lamp hangs otherwise. Shares of fewer than
+sequence, a pair in each cell. The camera sees 63° of the room: turned by 30°, half of the view is a new one. Under the varying light the second view is of another time, when the lamp hangs otherwise. Shares of fewer than
 {LEAST_PAIRS} pairs are left out. In the map three pairs must agree, so a place is recognised less often than a pair is accepted.
 
 ![share of accepted pairs over the distance, one curve for each angle]({PICTURE})""")
@@ -154,7 +154,7 @@ walk, a pair in each cell. The camera sees 63° of the room: turned by 30°, hal
 
 
 def draw(found, path):
-    """The curves of both lights side by side."""
+    """The curves of both lights, in two plots."""
     width, height, left, top = 330, 230, 46, 34
     colours = ["#1b4f9c", "#2a9d8f", "#c98a00", "#d1495b", "#7a5195"]
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {2 * (width + left) + 30} {height + top + 74}" font-family="sans-serif" '
@@ -187,8 +187,8 @@ def carried(found, trials):
     print(f"""
 ## Carried to a mapped place
 
-A map of 600 frames of a walk; then {trials} times the camera is put beside this walk, up to 0.3 m to each side and ahead, 0.1 m up or down, turned by
-up to 10° to the side and 5° otherwise, and walks on. **carried**: it saw the beginning of the walk, and was covered for a minute. The
+A map of 600 frames of a sequence; then {trials} times the camera is put beside this trajectory, up to 0.3 m to each side and ahead, 0.1 m up or down, turned by
+up to 10° to the side and 5° otherwise, and moves on. **carried**: it saw the beginning of the sequence, and was covered for a minute. The
 odometry may find itself by the keyframe that it kept. **switched on**: the odometry begins there, with the map from a file: the map alone
 must find the place. It is found in the first frame in which the map knows its position within 0.1 m (one standard deviation).
 
@@ -237,8 +237,8 @@ def cost(found, amount):
     print("""
 ## Time of a frame
 
-A closed walk, round and round until a map of 256 keyframes is full or for twenty rounds; then one more round is measured. For that the map
-is loaded and the round walked five times, and of each frame the least CPU time counts: the work is the same to the bit, so what is more was
+A closed trajectory, round after round until a map of 256 keyframes is full or for twenty rounds; then one more round is measured. For that the map
+is loaded and the round tracked five times, and of each frame the least CPU time counts: the work is the same to the bit, so what is more was
 other work of the machine. After the map is loaded, the camera must first be found, which makes more comparisons than usual. **new**: share of the frames that are a keyframe.""")
     rows = []
     for room, one in found:

@@ -46,7 +46,7 @@ CASES = [
 HEAD = """| case | lost | RPE mm/s | ATE mm | end: error ± SD mm | NEES (6) | inside 95 % |
 |---|---:|---:|---:|---:|---:|---:|"""
 NOTES = """`plvo simulate --scene SCENE {simulate} …`, then `plvo run` with default settings, with `--imu` (its gyro and
-accelerometer), with `--wheels` (its robot's wheels) or with `--mask` (the part of the robot). The camera walks unless it is said to be at rest.
+accelerometer), with `--wheels` (its robot's wheels) or with `--mask` (the part of the robot). The camera moves unless it is said to be at rest.
 
 - **lost**: frames without a pose, of 80.
 - **RPE**, **ATE**: RMSE of the motion over a second, and of the position after alignment.

@@ -45,7 +45,7 @@ void TrackSummary::add(const FrameRecord& record) {
   }
   // Where a pose is put right, and where a new world starts, it jumps, and the camera does not.
   const bool starts = result.state == TrackState::kInitialising && result.status.message()[0] != '\0';
-  if (has_pose_ && !result.returned && !starts) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
+  if (has_pose_ && !result.relocalised && !starts) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
   has_pose_ = true;
   last_pose_ = result.T_world_camera;
   if (result.state == TrackState::kInitialising) {
@@ -61,7 +61,7 @@ void TrackSummary::add(const FrameRecord& record) {
     return;
   }
   ++tracked_;
-  returned_ += result.returned ? 1 : 0;
+  relocalised_ += result.relocalised ? 1 : 0;
   point_inliers_.add(result.points.inliers);
   line_inliers_.add(result.lines.inliers);
 }
@@ -82,8 +82,8 @@ SummaryRows TrackSummary::frame_rows() const {
   if (repeated_ > 0)
     rows.emplace_back("repeated",
                       fmt::format("{} (the image of the frame before; pose predicted)", repeated_));
-  if (returned_ > 0)
-    rows.emplace_back("returned", fmt::format("{} (back at a view from before a loss)", returned_));
+  if (relocalised_ > 0)
+    rows.emplace_back("relocalised", fmt::format("{} (by a view from before a loss)", relocalised_));
   rows.emplace_back("lost", fmt::format("{}", lost_));
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) rows.emplace_back(fmt::format("  {} times", losses_[i]), last_loss_[i].message());
@@ -118,11 +118,12 @@ std::string TrackSummary::stage_table() const {
 }
 
 nlohmann::ordered_json TrackSummary::to_json() const {
-  nlohmann::ordered_json json = {
-      {"camera", camera_name},   {"interrupted", interrupted}, {"frames", frames_},
-      {"initialised", started_}, {"tracked", tracked_},        {"predicted", predicted_},
-      {"repeated", repeated_},   {"returned", returned_},      {"lost", lost_},
-      {"damaged", damaged_},     {"path_m", path_m_}};
+  nlohmann::ordered_json json = {{"camera", camera_name}, {"interrupted", interrupted},
+                                 {"frames", frames_},     {"initialised", started_},
+                                 {"tracked", tracked_},   {"predicted", predicted_},
+                                 {"repeated", repeated_}, {"relocalised", relocalised_},
+                                 {"lost", lost_},         {"damaged", damaged_},
+                                 {"path_m", path_m_}};
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) json["lost_reasons"][to_string(static_cast<StatusCode>(i))] = losses_[i];

@@ -27,7 +27,7 @@ class TrackSummary {
   std::uint64_t tracked() const { return tracked_; }  // got a motion
   std::uint64_t lost() const { return lost_; }
   std::uint64_t damaged() const { return damaged_; }
-  // A walk of a single frame has no motion to find, and fails in nothing.
+  // A sequence of a single frame has no motion to find and cannot fail.
   bool failed() const { return tracked_ == 0 && (lost_ > 0 || started_ == 0); }
   // "no frame could be tracked", and the words of the last loss of the most frequent kind.
   std::string why_failed() const;
@@ -48,7 +48,7 @@ class TrackSummary {
  private:
   static constexpr std::size_t kKinds = static_cast<std::size_t>(StatusCode::kNotConverged) + 1;
 
-  std::uint64_t frames_ = 0, started_ = 0, tracked_ = 0, predicted_ = 0, repeated_ = 0, returned_ = 0,
+  std::uint64_t frames_ = 0, started_ = 0, tracked_ = 0, predicted_ = 0, repeated_ = 0, relocalised_ = 0,
                 lost_ = 0, damaged_ = 0;
   std::uint64_t frames_with_fewer_features_ = 0;  // for the budget's sake
   int lowest_step_ = 0;

@@ -11,13 +11,13 @@
 namespace plvo::cli {
 namespace {
 
-// A Kinect sends an image in the time of one frame, and stamps its beginning. What its stamps say of the
-// exposure itself, and what the way through the USB adds, nobody has measured: some 20 ms.
+// A Kinect sends an image in the time of one frame, and stamps its beginning. The time from the exposure to
+// the stamp, and that through the USB, have not been measured: some 20 ms.
 constexpr std::int64_t kKinectDelay_ns = 33'000'000;
 constexpr std::string_view kKinectScheme = "freenect://";
 constexpr std::size_t kWaiting = 512;  // five seconds of readings
 
-// Axes: x right, y up, z forward. Of the sensor's noise nobody has measured anything either: a reading is
+// Axes: x right, y up, z forward. The noise of the sensor has not been measured either: a reading is
 // taken as good to 0.05 m/s² (its steps are 0.012), a hundred a second. A turn of 1 rad/s moves gravity by
 // 0.2 m/s² in the 20 ms of above, which is added to what a hand accelerates the camera by.
 ImuConfig kinect_config() {

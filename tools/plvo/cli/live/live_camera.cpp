@@ -51,7 +51,7 @@ void add_live_camera_options(CLI::App& command, LiveCameraOptions& options, Play
 void add_played_camera_options(CLI::App& command, LiveCameraOptions& options) {
   OptionGroup group(command);
   group.choice("--camera", options.simulated, Choices<bool>{{"sim", true}},
-               "The simulated camera, instead of a sensor: a walk of a minute, or of --frames N");
+               "The simulated camera, instead of a sensor: a sequence of a minute, or of --frames N");
   options.pace = Pace::kRealtime;
   group.choice("--pace", options.pace, Choices<Pace>{{"fast", Pace::kFast}, {"realtime", Pace::kRealtime}},
                "Of a recording and the simulated camera: as the stamps say (default), or as fast as it goes");

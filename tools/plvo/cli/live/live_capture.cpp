@@ -50,7 +50,7 @@ void LiveCapture::run() {
     const Status status = paced_.next(frame);
     if (status.ok()) {
       on_frame(frame);
-    } else if (!stop_) {  // a silence that nobody waits for any more is none
+    } else if (!stop_) {  // no trouble is reported once the command ends
       on_trouble(status);
     }
     poll_recording();

@@ -22,14 +22,15 @@ struct BaseOption {
   std::optional<Se3> T_odom_world;  // of the first pose, where it is
 
   const FrameNames& frames() const;
-  // Of the base, where there is one; of each frame, in order.
+  // The result of the base, if there is one, else of the camera. To be called for each frame, in order.
   TrackResult apply(const TrackResult& result);
-  // Of the same frame, after apply(): T_map_odom, and the covariance of the base in the map.
+  // The same for the map, after apply() for this frame: T_map_odom, and the covariance of the base in the
+  // map.
   MapPose apply(const MapPose& map, const TrackResult& result) const;
 };
 void add_base_option(OptionGroup& group, BaseOption& option);
-// Makes T_base_camera of the numbers; refuses a quaternion that is none, and the option where nothing that it
-// changes is written.
+// Converts the numbers to T_base_camera. Refuses a quaternion whose length is not 1, and the option if none
+// of the outputs that it changes is written.
 // `--level`, for commands that have `--imu` as well, without which it is refused.
 void add_level_option(OptionGroup& group, BaseOption& option);
 void check_level_option(const CLI::App& command, bool imu);

@@ -203,9 +203,9 @@ void check_camera_options(const CLI::App& command, const CameraOptions& options)
     refuse_group(command, kBagGroup, why);
     refuse_options(command, {"--associations", "--tolerance", "--rate", "--scale"}, why);
     if (options.frames.first != 0)
-      refuse("--frames", "a simulated walk starts at frame 0: give the number of frames, such as 100");
+      refuse("--frames", "a simulated sequence starts at frame 0: give the number of frames, such as 100");
     if (options.frames.end != FrameRange().end && options.frames.end > kMostSimulatedFrames)
-      refuse("--frames", fmt::format("a simulated walk has {} frames at most", kMostSimulatedFrames));
+      refuse("--frames", fmt::format("a simulated sequence has {} frames at most", kMostSimulatedFrames));
     return;
   }
   if (options.sequence.empty())

@@ -29,7 +29,7 @@ void add_odometry_options(CLI::App& command, OdometryOptions& options) {
                                {"window", ReferencePolicy::kWindow}},
       "What a frame is matched against: the frame before it, the last keyframe, both: the keyframe and "
       "a recent frame (default), or window: both and the keyframe before, which drifts less where the "
-      "camera walks and takes more time and memory; share/doc/plvo/decisions/window.md");
+      "camera travels and takes more time and memory; share/doc/plvo/decisions/window.md");
   group.number("--frame-budget", options.budget_ms, positive(1e6), "MS",
                "Fewer features after a frame that took more processor time than this, and more again when "
                "there is time to spare; results then depend on the machine");

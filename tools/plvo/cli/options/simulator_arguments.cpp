@@ -45,14 +45,15 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
   group.choice("--scene", arguments.scene,
                names_of({SceneName::kCorridor, SceneName::kStaircase, SceneName::kHall, SceneName::kDesk,
                          SceneName::kBare}),
-               "Room to walk through (default corridor)");
+               "Room through which the camera moves (default corridor)");
   group.choice("--light", arguments.light, names_of({LightName::kConstant, LightName::kVarying}),
                "varying: a lamp that swings and dims (default constant)");
   group.whole("--seed", arguments.seed, 0, UINT64_MAX,
-              "Another room, walk and noise of the same kind (default 1)");
-  group.whole("--storey", arguments.storey, 0, UINT32_MAX,
-              "Another room of the same plan and paint, on the same walk, with grain, wear and prints of its "
-              "own: it looks alike (default 0)");
+              "Another room, trajectory and noise of the same kind (default 1)");
+  group.whole(
+      "--storey", arguments.storey, 0, UINT32_MAX,
+      "Another room of the same plan and paint, with the same trajectory, with grain, wear and prints of its "
+      "own: it looks alike (default 0)");
   group.number("--fps", arguments.fps, {1, 1000}, "HZ", "Frames per second (default 30)");
   group.add("--size", "WIDTHxHEIGHT", "Image size in pixels (default 640x480)",
             [&arguments](const std::string& text) -> std::string {
@@ -101,10 +102,10 @@ void add_simulator_options(CLI::App& command, SimulatorArguments& arguments) {
              "0.2 0 0.5 "
              "-0.5 0.5 -0.5 0.5); plvo simulate writes its wheel_odometry.txt, too");
   group.path("--trajectory", arguments.trajectory,
-             "TUM trajectory along which the camera moves, instead of the seeded walk");
+             "TUM trajectory along which the camera moves, instead of the seeded one");
   group.whole("--threads", arguments.threads, 1, 256,
               "Threads of the rendering; the images do not depend on it (default 2)");
-  group.flag("--clean", arguments.clean, "No noise, no blur: the exact twin of the same walk");
+  group.flag("--clean", arguments.clean, "No noise, no blur: the exact twin of the same sequence");
 }
 
 Status make_simulator_options(const SimulatorArguments& arguments, int frames, SimulatorOptions& options) {

@@ -33,10 +33,9 @@ std::string RunSummary::to_text() const {
   for (const eval::RpeResult& r : evaluation->rpe) {
     const auto& [delta, estimate, still] = r;
     if (estimate.translation_m.count == 0) continue;
-    text += fmt::format(
-        "RPE over {:<13} {:.1f} mm, {:.3f} deg (a camera that never moves: {:.1f} mm, {:.3f} deg)\n",
-        delta.text, 1e3 * estimate.translation_m.rmse, estimate.rotation_deg.rmse,
-        1e3 * still.translation_m.rmse, still.rotation_deg.rmse);
+    text += fmt::format("RPE over {:<13} {:.1f} mm, {:.3f} deg (zero motion: {:.1f} mm, {:.3f} deg)\n",
+                        delta.text, 1e3 * estimate.translation_m.rmse, estimate.rotation_deg.rmse,
+                        1e3 * still.translation_m.rmse, still.rotation_deg.rmse);
   }
   text += fmt::format("ATE                    {:.1f} mm\n", 1e3 * evaluation->ate.position_m.rmse);
   if (map && map->ate_m) text += fmt::format("ATE in the map         {:.1f} mm\n", 1e3 * *map->ate_m);

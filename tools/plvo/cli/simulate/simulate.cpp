@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plvo simulate: a recording of a walk through a room that does not exist, with exact ground truth.
+// plvo simulate: the recording of a camera that moves through a simulated room, with exact ground truth.
 #include <fmt/core.h>
 
 #include <filesystem>

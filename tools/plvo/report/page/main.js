@@ -50,9 +50,9 @@ function metricsSection(m) {
     `NEES ${errors[k]}: ${m[k].mean.toFixed(2)} (6 is consistent), ` +
     `${(100 * m[k].inside_95_percent_bound).toFixed(0)} % inside the 95 % bound.`).join(" ");
   const section = table("errors-table", "Errors against the ground truth",
-    ["RMSE", "mm", "still", "\u00b0", "still"], rows,
+    ["RMSE", "mm", "zero motion", "\u00b0", "zero motion"], rows,
     `${m.poses} of ${m.estimate_poses} poses, ${m.duration_s.toFixed(2)} s, ${m.path_m.toFixed(2)} m. ` +
-    `\u201cStill\u201d is what a camera that never moves would score. ${nees}`);
+    `\u201cZero motion\u201d is the error of an estimate without any motion. ${nees}`);
   const pieces = data.by_distance;
   if (pieces && pieces.rows.length) section.append(table("by-distance", "Error against distance", pieces.head, pieces.rows));
   return section;

@@ -6,6 +6,6 @@
 
 namespace plvo::test {
 
-inline const std::filesystem::path& walk() { return simulated_sequence<6>(); }
+inline const std::filesystem::path& recorded_sequence() { return simulated_sequence<6>(); }
 
 }  // namespace plvo::test

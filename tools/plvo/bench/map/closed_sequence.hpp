@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of a closed walk, rendered once, so that it can be walked round and round: rendering takes
-// longer than tracking.
+// The images of a closed trajectory, rendered once and repeated for many rounds: rendering takes longer than
+// tracking.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace plvo::bench {
 
-class ClosedWalk {
+class ClosedSequence {
  public:
-  // options.frames: of a round.
-  explicit ClosedWalk(SimulatorOptions options);
+  // options.frames: the frames of one round.
+  explicit ClosedSequence(SimulatorOptions options);
 
   int frames() const { return static_cast<int>(poses_.size()); }
   const CameraModel& camera() const { return camera_; }
-  // Frame `number` of a walk of many rounds.
+  // Frame `number` of a sequence of many rounds.
   RgbdFrame frame(std::int64_t number) const;
   const Se3& pose(std::int64_t number) const { return poses_[place(number)]; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An odometry with a map beside it, on frames of which the true pose is known: every loop that joins the map
-// is compared with the truth.
+// Runs an odometry with a map on frames whose true poses are known, and compares every loop of the map with
+// the truth.
 #pragma once
 
 #include <cstdint>
@@ -43,18 +43,18 @@ class MappedOdometry {
   std::vector<std::byte> memory_, map_memory_;
 };
 
-class MapWalker : public MappedOdometry {
+class MapEvaluation : public MappedOdometry {
  public:
-  MapWalker(const CameraModel& camera, int keyframes);
+  MapEvaluation(const CameraModel& camera, int keyframes);
 
   // Tracks a frame; T_world_camera is the truth.
   void see(const RgbdFrame& frame, const Se3& T_world_camera);
-  // A frame in which there is nothing to see, as with a hand over the lens.
+  // Tracks a black frame without depth, as with a hand over the lens.
   void see_nothing(std::int64_t stamp_ns);
-  // At the end of a walk.
+  // To be called at the end of a sequence: the map finishes its work.
   void settle();
 
-  // The map as a file, and back: the camera begins anew, and nothing is known of its place.
+  // The map as a file, and back. After loading, the odometry starts anew with an unknown place in the map.
   std::vector<std::byte> save();
   void load(const std::vector<std::byte>& file);
   // Forgets the loops that were judged so far, not the places of the keyframes.
@@ -63,7 +63,7 @@ class MapWalker : public MappedOdometry {
   TrackResult result;
   MapResult in_map;
 
-  // Of each loop that joined.
+  // The error of each loop that the map accepted.
   const std::vector<PoseError>& loops() const { return loops_; }
   int wrong_loops() const;
   int lost() const { return lost_; }
@@ -71,8 +71,7 @@ class MapWalker : public MappedOdometry {
   const std::vector<double>& track_ms() const { return track_ms_; }
   const std::vector<double>& map_ms() const { return map_ms_; }
 
-  // The poses of the odometry, of the map and of the truth for all frames of which the map knows the place
-  // now.
+  // The poses by odometry, by the map and by the truth, for all frames that have a place in the map now.
   struct Poses {
     std::vector<Se3> odometry, map, truth;
     std::size_t frames = 0;  // with a pose of the odometry

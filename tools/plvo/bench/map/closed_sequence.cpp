@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/map/closed_walk.hpp"
+#include "plvo/bench/map/closed_sequence.hpp"
 
 #include <memory>
 
-#include "plvo/bench/map/walker.hpp"
+#include "plvo/bench/map/evaluation.hpp"
 #include "plvo/simulator/simulated_camera.hpp"
 
 namespace plvo::bench {
 
-ClosedWalk::ClosedWalk(SimulatorOptions options) {
+ClosedSequence::ClosedSequence(SimulatorOptions options) {
   const int round = options.frames++;  // the last pose is the first one again
   std::unique_ptr<SimulatedCamera> camera;
   need(SimulatedCamera::create(options, camera));
@@ -22,7 +22,7 @@ ClosedWalk::ClosedWalk(SimulatorOptions options) {
   }
 }
 
-RgbdFrame ClosedWalk::frame(std::int64_t number) const {
+RgbdFrame ClosedSequence::frame(std::int64_t number) const {
   RgbdFrame frame = frame_;
   frame.colour.data = colours_[place(number)].data();
   frame.depth.data = depths_[place(number)].data();

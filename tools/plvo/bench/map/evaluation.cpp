@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plvo/bench/map/walker.hpp"
+#include "plvo/bench/map/evaluation.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,8 +15,8 @@ namespace {
 class FileSink final : public ByteSink {
  public:
   explicit FileSink(std::vector<std::byte>& file) : file_(file) {}
-  Status write(std::span<const std::byte> piece) override {
-    file_.insert(file_.end(), piece.begin(), piece.end());
+  Status write(std::span<const std::byte> bytes) override {
+    file_.insert(file_.end(), bytes.begin(), bytes.end());
     return {};
   }
 
@@ -60,14 +60,14 @@ MappedOdometry::MappedOdometry(const CameraModel& camera, int keyframes) {
   need(map.init(map_memory_, camera, Config(), map_limits));
 }
 
-MapWalker::MapWalker(const CameraModel& camera, int keyframes)
+MapEvaluation::MapEvaluation(const CameraModel& camera, int keyframes)
     : MappedOdometry(camera, keyframes), camera_(camera) {
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   black_.resize(3 * pixels);
   no_depth_.resize(pixels);
 }
 
-void MapWalker::see(const RgbdFrame& frame, const Se3& T_world_camera) {
+void MapEvaluation::see(const RgbdFrame& frame, const Se3& T_world_camera) {
   truth_[frame.stamp_ns] = T_world_camera;
   const std::int64_t start_ns = posix_thread_cpu_ns();
   result = odometry.track(frame);
@@ -78,7 +78,7 @@ void MapWalker::see(const RgbdFrame& frame, const Se3& T_world_camera) {
     frames_.push_back({in_map.keyframe, in_map.T_keyframe_camera, result.T_world_camera, T_world_camera});
 }
 
-void MapWalker::see_nothing(std::int64_t stamp_ns) {
+void MapEvaluation::see_nothing(std::int64_t stamp_ns) {
   RgbdFrame frame;
   frame.stamp_ns = frame.depth_stamp_ns = stamp_ns;
   frame.colour = {black_.data(), camera_.width, camera_.height, std::ptrdiff_t{3} * camera_.width,
@@ -88,7 +88,7 @@ void MapWalker::see_nothing(std::int64_t stamp_ns) {
   update();
 }
 
-void MapWalker::update() {
+void MapEvaluation::update() {
   const Map::Counts before = map.counts();
   const std::int64_t start_ns = posix_thread_cpu_ns();
   in_map = map.update(odometry, result);
@@ -102,18 +102,18 @@ void MapWalker::update() {
   }
 }
 
-void MapWalker::settle() {
+void MapEvaluation::settle() {
   map.settle();
   judge_loops();
 }
 
 // A loop that went to a neighbour of a removed keyframe was judged before.
-void MapWalker::note_loops() {
+void MapEvaluation::note_loops() {
   for (const PoseGraph::Loop& loop : map.graph().loops())
     known_loops_.insert({map.graph().node(loop.older).id, map.graph().node(loop.newer).id});
 }
 
-void MapWalker::judge_loops() {
+void MapEvaluation::judge_loops() {
   for (const PoseGraph::Loop& loop : map.graph().loops()) {
     const std::uint32_t older = map.graph().node(loop.older).id, newer = map.graph().node(loop.newer).id;
     if (!known_loops_.insert({older, newer}).second) continue;
@@ -121,12 +121,12 @@ void MapWalker::judge_loops() {
   }
 }
 
-int MapWalker::wrong_loops() const {
+int MapEvaluation::wrong_loops() const {
   return static_cast<int>(
       std::count_if(loops_.begin(), loops_.end(), [](const PoseError& error) { return error.wrong(); }));
 }
 
-std::vector<std::byte> MapWalker::save() {
+std::vector<std::byte> MapEvaluation::save() {
   std::vector<std::byte> file;
   FileSink sink(file);
   need(map.save(sink));
@@ -135,7 +135,7 @@ std::vector<std::byte> MapWalker::save() {
 }
 
 // The keyframes that joined since the map was saved are gone, and their ids come again.
-void MapWalker::load(const std::vector<std::byte>& file) {
+void MapEvaluation::load(const std::vector<std::byte>& file) {
   SpanSource source(file);
   need(map.load(source));
   odometry.reset();
@@ -144,7 +144,7 @@ void MapWalker::load(const std::vector<std::byte>& file) {
   note_loops();
 }
 
-MapWalker::Poses MapWalker::poses() const {
+MapEvaluation::Poses MapEvaluation::poses() const {
   Poses all;
   for (const Frame& frame : frames_) {
     ++all.frames;
