@@ -8,11 +8,16 @@ namespace {
 
 // Standard deviation of a detected keypoint between views that differ, in pixels of its level.
 constexpr double kDetectedSigma_px = 1;
-// A loop needs at least this many inliers, and this share of the point matches as inliers.
+// A loop needs at least this many inliers, points and lines, and this share of the point matches as inliers.
+// Between desks of other rooms that look alike, less than half of the point matches agree.
 constexpr int kLeastLoopInliers = 20;
-constexpr double kLeastLoopShare = 0.4;
+constexpr double kLeastLoopShare = 0.5;
 // Bounds on the standard deviations of the motion in its worst direction.
 constexpr double kMostLoopSigma_m = 0.05, kMostLoopSigma_rad = 0.05;
+// The motion of the points alone only has to lead to the lines: fewer inliers suffice, and it may be less
+// certain. A few points in a wide room fix it to a tenth of a metre; with the lines, to a centimetre.
+constexpr int kLeastFirstInliers = 12;
+constexpr double kMostFirstSigma_m = 0.2, kMostFirstSigma_rad = 0.2;
 
 constexpr LmOptions kLoopSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
@@ -37,6 +42,10 @@ LoopCheck::LoopCheck(const CameraModel& of_camera, const Config& config)
       point_correlation(config.noise.point_correlation),
       line_correlation(config.noise.line_correlation),
       seed(config.seed) {
+  first_motion = motion;
+  first_motion.min_inliers = std::max(motion.min_inliers, kLeastFirstInliers);
+  first_motion.max_sigma_m = std::min(motion.max_sigma_m, kMostFirstSigma_m);
+  first_motion.max_sigma_rad = std::min(motion.max_sigma_rad, kMostFirstSigma_rad);
   motion.min_inliers = std::max(motion.min_inliers, kLeastLoopInliers);
   motion.max_sigma_m = std::min(motion.max_sigma_m, kMostLoopSigma_m);
   motion.max_sigma_rad = std::min(motion.max_sigma_rad, kMostLoopSigma_rad);
@@ -89,7 +98,8 @@ LoopMeasurement LoopCheck::operator()(const MapFeatures& old_view, const MapFeat
     const MotionStart start(with_lines ? &T_new_old : nullptr, NuisanceParameters(), with_lines);
     const std::span<MotionEstimate> estimate = scratch.take<MotionEstimate>("map check", 1);
     if (estimate.empty()) return loop;
-    estimate_motion(sets, {}, MotionReferences(), motion, kLoopSolve, seed, start, scratch, estimate[0]);
+    estimate_motion(sets, {}, MotionReferences(), with_lines ? motion : first_motion, kLoopSolve, seed, start,
+                    scratch, estimate[0]);
     if (estimate[0].status != StatusCode::kOk ||
         estimate[0].inliers[0] < kLeastLoopShare * static_cast<double>(points.size()))
       return loop;

@@ -25,7 +25,7 @@ struct LoopMeasurement {
 // Settings of the estimator, and the camera of the features.
 struct LoopCheck {
   CameraModel camera;
-  MotionConfig motion;
+  MotionConfig first_motion, motion;  // of the points alone; of points and lines
   double point_correlation = 0, line_correlation = 0;
   std::uint64_t seed = 1;
 

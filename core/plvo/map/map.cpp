@@ -19,8 +19,9 @@ constexpr std::uint32_t kJudgedKeyframes = 10;
 constexpr std::uint32_t kLeastScore = 6 * PlaceIndex::kWholeVote;
 // While the place is unknown, the score of a single such descriptor suffices.
 constexpr std::uint32_t kLeastScoreUnplaced = PlaceIndex::kWholeVote;
-// A place is recognised when this many hypotheses agree.
-constexpr int kLeastAgreeing = 3;
+// A place is recognised when this many hypotheses agree, with this many inliers together. Hypotheses of a
+// room that looks alike have few inliers each.
+constexpr int kLeastAgreeing = 3, kLeastInliersTogether = 120;
 // A hypothesis that contradicts them counts if it has this share of their inliers.
 constexpr double kRivalShare = 0.5;
 // Probability with which a correct loop passes a test of its motion. The covariances of the odometry state
@@ -344,15 +345,16 @@ void Map::judge(MapResult& out) {
   const Hypothesis* best = nullptr;
   for (const Hypothesis& h : all)
     if (h.new_slot == newest && (best == nullptr || h.loop.inliers > best->loop.inliers)) best = &h;
-  int agreeing = 0;
+  int agreeing = 0, inliers = 0;
   std::array<bool, kHypotheses> agrees{};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Relation relation = &all[i] == best ? Relation::kAgree : compare(all[i], *best);
     if (relation == Relation::kContradict && all[i].loop.inliers >= kRivalShare * best->loop.inliers) return;
     agrees[i] = relation == Relation::kAgree;
     agreeing += agrees[i] ? 1 : 0;
+    inliers += agrees[i] ? all[i].loop.inliers : 0;
   }
-  if (agreeing < kLeastAgreeing) return;
+  if (agreeing < kLeastAgreeing || inliers < kLeastInliersTogether) return;
   memory_.graph.join_parts(best->old_slot, best->new_slot, best->loop.T_old_new, best->loop.covariance);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Hypothesis& h = all[i];
