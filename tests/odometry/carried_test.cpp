@@ -18,7 +18,7 @@ namespace plvo {
 namespace {
 
 constexpr int kImageWidth = 320, kImageHeight = 240;
-constexpr int kFrames = 40;
+constexpr int kRecordedFrames = 40;
 
 // Changes the images of a frame.
 using ImageChange = void (*)(std::vector<std::uint8_t>& colour, std::vector<std::uint16_t>& depth);
@@ -73,7 +73,7 @@ Outcome track_with(ImageChange change) {
   EXPECT_TRUE(status.ok()) << status.message();
   Outcome outcome;
   const Se3 T_first_world = ProceduralSequence::T_world_camera(0).inverse();
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kRecordedFrames; ++i) {
     RgbdFrame frame = sequence.render(i);
     std::vector<std::uint8_t> colour(frame.colour.data, frame.colour.data + 3 * kImageWidth * kImageHeight);
     std::vector<std::uint16_t> depth(frame.depth.data, frame.depth.data + kImageWidth * kImageHeight);
