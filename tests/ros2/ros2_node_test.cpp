@@ -14,6 +14,8 @@
 namespace plvo {
 namespace {
 
+using diagnostic_msgs::msg::DiagnosticStatus;
+
 constexpr int kFrames = 8;
 constexpr const char* kAhead = "0.2 -0.1 0.5 -0.5 0.5 -0.5 0.5";  // the camera looks ahead
 

@@ -15,10 +15,10 @@
 #include <tf2_ros/transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
+#include "plvo/ros/ros_messages.hpp"
 #include "plvo/ros/ros_node.hpp"
 #include "plvo/ros1/raw_message.hpp"
 
@@ -35,12 +35,6 @@ RosNodeSettings read_parameters(const ros::NodeHandle& node, std::string& wrong)
       wrong = name + " has a value of another type than share/doc/plvo/user/robots.md names";
   });
   return settings;
-}
-
-RosPose pose_of(const geometry_msgs::Transform& transform) {
-  const auto& t = transform.translation;
-  const auto& q = transform.rotation;
-  return {{t.x, t.y, t.z}, {q.x, q.y, q.z, q.w}};
 }
 
 class Node {
@@ -113,7 +107,8 @@ class Node {
 
   std::optional<RosPose> look_up(const std::string& target, const std::string& source) {
     try {
-      return pose_of(tf_.lookupTransform(target, source, ros::Time(0)).transform);
+      const geometry_msgs::Transform found = tf_.lookupTransform(target, source, ros::Time(0)).transform;
+      return pose_of(found.translation, found.rotation);
     } catch (const tf2::TransformException&) {
       return std::nullopt;
     }
@@ -122,56 +117,16 @@ class Node {
   void publish(const RosEstimate& estimate) {
     nav_msgs::Odometry odometry;
     odometry.header.stamp.fromNSec(static_cast<std::uint64_t>(estimate.stamp_ns));
-    odometry.header.frame_id = settings_.odom_frame;
-    odometry.child_frame_id = settings_.base_frame;
-    const auto& t = estimate.pose.position;
-    const auto& q = estimate.pose.orientation;
-    odometry.pose.pose.position.x = t[0];
-    odometry.pose.pose.position.y = t[1];
-    odometry.pose.pose.position.z = t[2];
-    odometry.pose.pose.orientation.x = q[0];
-    odometry.pose.pose.orientation.y = q[1];
-    odometry.pose.pose.orientation.z = q[2];
-    odometry.pose.pose.orientation.w = q[3];
-    std::copy(estimate.pose_covariance.begin(), estimate.pose_covariance.end(),
-              odometry.pose.covariance.begin());
-    const auto& v = estimate.twist;
-    odometry.twist.twist.linear.x = v[0];
-    odometry.twist.twist.linear.y = v[1];
-    odometry.twist.twist.linear.z = v[2];
-    odometry.twist.twist.angular.x = v[3];
-    odometry.twist.twist.angular.y = v[4];
-    odometry.twist.twist.angular.z = v[5];
-    std::copy(estimate.twist_covariance.begin(), estimate.twist_covariance.end(),
-              odometry.twist.covariance.begin());
-    if (settings_.publish_tf) {
-      geometry_msgs::TransformStamped transform;
-      transform.header = odometry.header;
-      transform.child_frame_id = odometry.child_frame_id;
-      transform.transform.translation.x = t[0];
-      transform.transform.translation.y = t[1];
-      transform.transform.translation.z = t[2];
-      transform.transform.rotation = odometry.pose.pose.orientation;
-      broadcaster_.sendTransform(transform);
-    }
+    set_odometry(estimate, settings_, odometry);
+    if (settings_.publish_tf)
+      broadcaster_.sendTransform(transform_of<geometry_msgs::TransformStamped>(odometry));
     odometry_publisher_.publish(odometry);
   }
 
   void publish(const RosDiagnosis& diagnosis) {
-    diagnostic_msgs::DiagnosticStatus status;
-    status.name = ros::this_node::getName().substr(1) + ": odometry";
-    status.hardware_id = diagnosis.hardware_id;
-    status.message = diagnosis.message;
-    status.level = static_cast<std::int8_t>(diagnosis.level);
-    for (const auto& [key, value] : diagnosis.values) {
-      diagnostic_msgs::KeyValue pair;
-      pair.key = key;
-      pair.value = value;
-      status.values.push_back(pair);
-    }
     diagnostic_msgs::DiagnosticArray array;
     array.header.stamp = ros::Time::now();
-    array.status.push_back(status);
+    set_diagnosis(diagnosis, ros::this_node::getName().substr(1), array);
     diagnostics_publisher_.publish(array);
   }
 
@@ -181,13 +136,7 @@ class Node {
     return true;
   }
 
-  void set_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
-    const auto& p = message.pose.pose.position;
-    const auto& q = message.pose.pose.orientation;
-    RosCovariance covariance;
-    std::copy(message.pose.covariance.begin(), message.pose.covariance.end(), covariance.begin());
-    node_.set_pose(message.header.frame_id, {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}}, covariance);
-  }
+  void set_pose(const geometry_msgs::PoseWithCovarianceStamped& message) { set_pose_of(message, node_); }
 
   ros::NodeHandle public_, private_{"~"};
   std::string wrong_;

@@ -30,12 +30,13 @@
 #include <string>
 #include <type_traits>
 
+#include "plvo/ros/ros_messages.hpp"
 #include "plvo/ros/ros_node.hpp"
 
 namespace plvo {
 namespace {
 
-using diagnostic_msgs::msg::DiagnosticArray, diagnostic_msgs::msg::DiagnosticStatus;
+using diagnostic_msgs::msg::DiagnosticArray;
 using geometry_msgs::msg::PoseWithCovarianceStamped, geometry_msgs::msg::TransformStamped;
 using nav_msgs::msg::Odometry;
 using sensor_msgs::msg::CameraInfo, sensor_msgs::msg::Image, sensor_msgs::msg::Imu;
@@ -95,7 +96,8 @@ class OdometryNode : public rclcpp::Node {
           response->success = true;
         });
     set_pose_subscription_ = create_subscription<PoseWithCovarianceStamped>(
-        "~/set_pose", rclcpp::QoS(queue), [this](const PoseWithCovarianceStamped& pose) { set_pose(pose); });
+        "~/set_pose", rclcpp::QoS(queue),
+        [this](const PoseWithCovarianceStamped& pose) { set_pose_of(pose, node_); });
     // Best effort takes what drivers send of either reliability.
     const auto sensor = [](std::size_t depth) { return rclcpp::SensorDataQoS().keep_last(depth); };
     info_subscription_ = create_subscription<
@@ -150,9 +152,7 @@ class OdometryNode : public rclcpp::Node {
   std::optional<RosPose> look_up(const std::string& target, const std::string& source) {
     try {
       const TransformStamped found = tf_.lookupTransform(target, source, tf2::TimePointZero);
-      const auto& t = found.transform.translation;
-      const auto& q = found.transform.rotation;
-      return RosPose{{t.x, t.y, t.z}, {q.x, q.y, q.z, q.w}};
+      return pose_of(found.transform.translation, found.transform.rotation);
     } catch (const tf2::TransformException&) {
       return std::nullopt;
     }
@@ -161,46 +161,16 @@ class OdometryNode : public rclcpp::Node {
   void publish(const RosEstimate& estimate) {
     Odometry odometry;
     odometry.header.stamp = rclcpp::Time(estimate.stamp_ns);
-    odometry.header.frame_id = settings_.odom_frame;
-    odometry.child_frame_id = settings_.base_frame;
-    const auto& t = estimate.pose.position;
-    const auto& q = estimate.pose.orientation;
-    odometry.pose.pose.position.set__x(t[0]).set__y(t[1]).set__z(t[2]);
-    odometry.pose.pose.orientation.set__x(q[0]).set__y(q[1]).set__z(q[2]).set__w(q[3]);
-    odometry.pose.covariance = estimate.pose_covariance;
-    const auto& v = estimate.twist;
-    odometry.twist.twist.linear.set__x(v[0]).set__y(v[1]).set__z(v[2]);
-    odometry.twist.twist.angular.set__x(v[3]).set__y(v[4]).set__z(v[5]);
-    odometry.twist.covariance = estimate.twist_covariance;
-    if (settings_.publish_tf) {
-      TransformStamped transform;
-      transform.header = odometry.header;
-      transform.child_frame_id = odometry.child_frame_id;
-      transform.transform.translation.set__x(t[0]).set__y(t[1]).set__z(t[2]);
-      transform.transform.rotation = odometry.pose.pose.orientation;
-      broadcaster_.sendTransform(transform);
-    }
+    set_odometry(estimate, settings_, odometry);
+    if (settings_.publish_tf) broadcaster_.sendTransform(transform_of<TransformStamped>(odometry));
     odometry_publisher_->publish(odometry);
   }
 
   void publish(const RosDiagnosis& diagnosis) {
-    DiagnosticStatus status;
-    status.name = std::string(get_name()) + ": odometry";
-    status.hardware_id = diagnosis.hardware_id;
-    status.message = diagnosis.message;
-    status.level = static_cast<unsigned char>(diagnosis.level);
-    for (const auto& [key, value] : diagnosis.values)
-      status.values.push_back(diagnostic_msgs::msg::KeyValue().set__key(key).set__value(value));
     DiagnosticArray array;
     array.header.stamp = now();
-    array.status.push_back(status);
+    set_diagnosis(diagnosis, get_name(), array);
     diagnostics_publisher_->publish(array);
-  }
-
-  void set_pose(const PoseWithCovarianceStamped& message) {
-    const auto& p = message.pose.pose.position;
-    const auto& q = message.pose.pose.orientation;
-    node_.set_pose(message.header.frame_id, {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}}, message.pose.covariance);
   }
 
   RosNodeSettings settings_;
