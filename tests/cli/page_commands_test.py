@@ -5,12 +5,15 @@ recordings; or a test that this file names has it; or a reason stands here why i
 import os
 import pathlib
 import re
-import socket
 import subprocess
+import sys
 
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from free_port import free_port
+from user_pages import ROOT, blocks, missing_options, text_of_test
+
 PLVO = os.environ["PLVO_BINARY"]
 PAGES = [ROOT / "README.md", *(page for page in sorted((ROOT / "docs/user").glob("*.md")) if page.name != "robots.md")]
 
@@ -55,8 +58,8 @@ REASONS = {
 
 def commands(page):
     """The commands of a page's blocks, without comments, in their order."""
-    for block in re.findall(r"^```sh\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M):
-        for line in block.replace("\\\n", " ").splitlines():
+    for block in blocks(page.read_text(encoding="utf-8")):
+        for line in block.splitlines():
             command = " ".join(re.sub(r"(^|\s)#.*", "", line).split())
             if command:
                 yield command
@@ -81,10 +84,9 @@ def test_every_command_is_known():
 
 def test_the_named_tests_have_the_options():
     for command, name in IN_A_TEST.items():
-        text = next(path for path in ROOT.glob(f"tests/*/{name}.*") if path.suffix in (".cpp", ".py")).read_text(encoding="utf-8")
+        text = text_of_test(name)
         assert command.split()[1] in text, f"{command}: {name} has no {command.split()[1]}"
-        for option in re.findall(r"--[\w-]+", command):
-            assert option in text, f"{command}: {name} has no {option}"
+        assert not missing_options(command, text), f"{command}: not in {name}"
 
 
 @pytest.fixture(scope="module")
@@ -103,12 +105,6 @@ def folder(tmp_path_factory):
         subprocess.run([PLVO, "run", "walk", "--quiet", "--out", name], cwd=folder, check=True)
     subprocess.run([PLVO, "run", "monday", "--map", "256", "--map-out", "home.map", "--quiet"], cwd=folder, check=True)
     return folder
-
-
-def free_port():
-    with socket.socket() as free:  # those of the pages may be in use here
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
 
 
 def adapted(command):

@@ -5,13 +5,17 @@ import json
 import os
 import pathlib
 import re
-import socket
 import subprocess
+import sys
 
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from free_port import free_port
+from user_pages import ROOT, blocks, missing_options, text_of_test
+
 PAGE = (ROOT / "docs/user/robots.md").read_text(encoding="utf-8")
+BLOCKS = blocks(PAGE)
 PLVO = os.environ["PLVO_BINARY"]
 
 # The blocks, by their first words.
@@ -47,10 +51,6 @@ IN_NO_TEST = {
 }
 
 
-def blocks():
-    return [block.replace("\\\n", " ") for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.S | re.M)]
-
-
 def commands_in_the_text():
     text = re.sub(r"^```.*?^```$", "", PAGE, flags=re.S | re.M)
     for span in re.findall(r"`([^`]+)`", text):
@@ -59,16 +59,12 @@ def commands_in_the_text():
             yield command
 
 
-def file_of(name):
-    return next(path for path in ROOT.glob(f"tests/*/{name}.*") if path.suffix in (".cpp", ".py"))
-
-
 def test_every_block_is_known():
-    for block in blocks():
+    for block in BLOCKS:
         assert block.startswith((*HERE, PACKAGES, *BLOCKS_OF_TESTS)), block
     for first, (name, programs) in BLOCKS_OF_TESTS.items():
-        words = " ".join(block for block in blocks() if block.startswith(first))
-        text = file_of(name).read_text(encoding="utf-8")
+        words = " ".join(block for block in BLOCKS if block.startswith(first))
+        text = text_of_test(name)
         for program in programs:
             assert program in words and program in text
 
@@ -76,13 +72,12 @@ def test_every_block_is_known():
 def test_every_command_in_the_text_is_in_a_test_or_has_a_reason():
     assert set(commands_in_the_text()) == {*IN_THE_TEXT, *IN_NO_TEST}
     for command, name in IN_THE_TEXT.items():
-        text = file_of(name).read_text(encoding="utf-8")
-        for option in re.findall(r"--[\w-]+", command):
-            assert option in text, f"{command}: {name} has no {option}"
+        text = text_of_test(name)
+        assert not missing_options(command, text), f"{command}: not in {name}"
 
 
 def test_the_packages_are_those_of_the_build():
-    (block,) = (block for block in blocks() if block.startswith(PACKAGES))
+    (block,) = (block for block in BLOCKS if block.startswith(PACKAGES))
     known = (ROOT / "tools/setup/packages.sh").read_text(encoding="utf-8")
     for package in block.split()[3:]:
         assert re.search(rf"\b{re.escape(package)}\b", known), package
@@ -104,11 +99,8 @@ def folder(tmp_path):
 
 @pytest.mark.parametrize("first", HERE)
 def test_a_block_of_plvo_runs(folder, first):
-    (block,) = (block for block in blocks() if block.startswith(first))
-    with socket.socket() as free:  # 7000 may be in use here
-        free.bind(("127.0.0.1", 0))
-        port = str(free.getsockname()[1])
-    done = subprocess.run(["bash", "-e", "-c", block.replace("--stream 7000", f"--stream {port}")], cwd=folder, text=True,
+    (block,) = (block for block in BLOCKS if block.startswith(first))
+    done = subprocess.run(["bash", "-e", "-c", block.replace("--stream 7000", f"--stream {free_port()}")], cwd=folder, text=True,
                           env={**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}, capture_output=True, timeout=300, check=False)
     assert done.returncode == 0 and done.stderr == "", done.stderr
     if "--out poses.txt" in block:

@@ -6,7 +6,6 @@ import contextlib
 import io
 import os
 import pathlib
-import socket
 import struct
 import subprocess
 import sys
@@ -19,6 +18,7 @@ import pytest
 from PIL import Image as Picture
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from free_port import free_port
 from simulated_folder import SimulatedFolder
 
 PLVO, PACKAGES = os.environ["PLVO_BINARY"], pathlib.Path(os.environ["PLVO_ROS1"])
@@ -28,12 +28,6 @@ FRAMES = 10
 COLOUR, DEPTH, INFO, IMU = "/camera/color/image_raw", "/camera/depth/image_raw", "/camera/color/camera_info", "/camera/imu"
 AHEAD = "0.2 0 0.5 -0.5 0.5 -0.5 0.5"  # the camera looks ahead
 CAMERA = "0 0 0 0 0 0 1"  # poses of the camera itself
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def wait_until(what, condition):

@@ -12,11 +12,13 @@ import xml.etree.ElementTree
 
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from user_pages import ROOT, blocks
+
 BUILD, MADE, CMAKE = (pathlib.Path(os.environ[name]) for name in ("PLVO_BUILD", "PLVO_MADE", "PLVO_CMAKE"))
 SOURCES = ROOT / "platform/plvo/ros2"
 PAGE = (ROOT / "docs/user/robots.md").read_text(encoding="utf-8").partition("\n## A node for ROS 2")[2].partition("\n## ")[0]
-BLOCKS = re.findall(r"^```sh\n(.*?)^```", PAGE, re.S | re.M)
+BLOCKS = blocks(PAGE)
 MESSAGES = ("diagnostic_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_srvs")
 STAND_INS = ("message_filters", "rclcpp", "tf2", "tf2_ros")
 
