@@ -21,6 +21,14 @@ constexpr double kMostFirstSigma_m = 0.2, kMostFirstSigma_rad = 0.2;
 
 constexpr LmOptions kLoopSolve{.max_iterations = 20, .decrease_tolerance = 2e-2};
 
+// The settings with these bounds, where they are not stricter already.
+MotionConfig bounded(MotionConfig motion, int least_inliers, double most_sigma_m, double most_sigma_rad) {
+  motion.min_inliers = std::max(motion.min_inliers, least_inliers);
+  motion.max_sigma_m = std::min(motion.max_sigma_m, most_sigma_m);
+  motion.max_sigma_rad = std::min(motion.max_sigma_rad, most_sigma_rad);
+  return motion;
+}
+
 void unpack_points(const MapFeatures& view, const Pinhole& pinhole, PointFeatures& out) {
   out.keypoints.clear();
   for (const MapPoint& point : view.points) {
@@ -38,18 +46,11 @@ void unpack_points(const MapFeatures& view, const Pinhole& pinhole, PointFeature
 
 LoopCheck::LoopCheck(const CameraModel& of_camera, const Config& config)
     : camera(of_camera),
-      motion(config.motion),
+      first_motion(bounded(config.motion, kLeastFirstInliers, kMostFirstSigma_m, kMostFirstSigma_rad)),
+      motion(bounded(config.motion, kLeastLoopInliers, kMostLoopSigma_m, kMostLoopSigma_rad)),
       point_correlation(config.noise.point_correlation),
       line_correlation(config.noise.line_correlation),
-      seed(config.seed) {
-  first_motion = motion;
-  first_motion.min_inliers = std::max(motion.min_inliers, kLeastFirstInliers);
-  first_motion.max_sigma_m = std::min(motion.max_sigma_m, kMostFirstSigma_m);
-  first_motion.max_sigma_rad = std::min(motion.max_sigma_rad, kMostFirstSigma_rad);
-  motion.min_inliers = std::max(motion.min_inliers, kLeastLoopInliers);
-  motion.max_sigma_m = std::min(motion.max_sigma_m, kMostLoopSigma_m);
-  motion.max_sigma_rad = std::min(motion.max_sigma_rad, kMostLoopSigma_rad);
-}
+      seed(config.seed) {}
 
 void LoopCheck::match_lines_after(const Se3& T_new_old, const MapFeatures& old_view,
                                   const MapFeatures& new_view, Views& views, Arena& scratch) const {
