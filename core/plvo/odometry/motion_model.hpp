@@ -31,13 +31,6 @@ struct Velocity {
   }
 };
 
-// Whether the mean velocity of an interval describes the exposure at its end. That of a long interval does
-// not.
-inline bool describes_exposure(std::int64_t interval_ns) {
-  constexpr std::int64_t kLongest_ns = 200'000'000;
-  return interval_ns > 0 && interval_ns <= kLongest_ns;
-}
-
 // Mean velocity of a motion that took this long.
 Vector6 mean_velocity(const Se3& T_now_before, double seconds);
 // The motion at a constant velocity: T_now_before.
@@ -46,7 +39,8 @@ Se3 motion_at(const Vector6& velocity, double seconds);
 // Velocity during the exposure of the current frame. recent: mean since the last good frame. before: that of
 // the last good frame, over the interval before it. Under a constant acceleration, the velocity at the end of
 // the interval is recent + (recent − before) / 2. Half of this correction is used: all of it would add too
-// much of its noise.
+// much of its noise. The mean over a long interval serves as well: a camera that moves smoothly still has
+// this velocity, and of one that sways, the mean is small.
 Vector6 velocity_at_exposure(const Vector6& recent, const Velocity& before);
 
 // Variance of an unobserved motion from from_s to to_s after the last observation, with this SD per second.

@@ -7,7 +7,7 @@ namespace {
 // Mean velocity since the last good frame, given this motion from the reference.
 Vector6 recent_velocity(const PairPrior& prior, const Se3& T_current_reference) {
   if (prior.recent) return *prior.recent;
-  if (!describes_exposure(prior.since_last_ns)) return Vector6::Zero();
+  if (!(prior.since_last_ns > 0)) return Vector6::Zero();
   return mean_velocity(T_current_reference * prior.T_reference_last,
                        static_cast<double>(prior.since_last_ns) * 1e-9);
 }
