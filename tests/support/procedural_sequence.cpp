@@ -63,11 +63,29 @@ class Walls {
   int grey_ = 0;
 };
 
+// Plain numbers in the place of Eigen's: a sanitizer makes a call of each access to a matrix.
+struct Ray {
+  double along[3];
+};
+
+Ray rotated(const double (&R)[3][3], const Ray& ray) {
+  const auto row = [&](int i) {
+    return R[i][0] * ray.along[0] + (R[i][1] * ray.along[1] + R[i][2] * ray.along[2]);
+  };
+  return {{row(0), row(1), row(2)}};
+}
+Ray operator+(const Ray& a, const Ray& b) {
+  return {{a.along[0] + b.along[0], a.along[1] + b.along[1], a.along[2] + b.along[2]}};
+}
+
 // The room around one place of the camera.
 class View {
  public:
-  explicit View(const Vector3& origin) : origin_{origin.x(), origin.y(), origin.z()} {
+  explicit View(const Vector3& origin) {
     for (int k = 0; k < 3; ++k) {
+      origin_[k] = origin(k);
+      low_[k] = kLow(k);
+      high_[k] = kHigh(k);
       to_low_[k] = kLow(k) - origin(k);
       to_high_[k] = kHigh(k) - origin(k);
     }
@@ -78,10 +96,10 @@ class View {
     int axis = 0;
     double distance = 0;
   };
-  Hit cast(const Vector3& ray) const {
+  Hit cast(const Ray& ray) const {
     Hit nearest{0, 1e9};
     for (int k = 0; k < 3; ++k) {
-      if (ray(k) == 0) continue;
+      if (ray.along[k] == 0) continue;
       const double d = distance(ray, k);
       if (d < nearest.distance) nearest = {k, d};
     }
@@ -89,30 +107,30 @@ class View {
   }
 
   // Grey level of a ray beside one that met the wall across `axis`: most rays meet the same wall.
-  int grey(const Vector3& ray, int axis) {
+  int grey(const Ray& ray, int axis) {
     double s = 0, t = 0;
     if (!meets(ray, axis, distance(ray, axis), s, t)) {
       const Hit hit = cast(ray);
       axis = hit.axis;
       (void)meets(ray, axis, hit.distance, s, t);
     }
-    return walls_.grey(static_cast<std::uint32_t>(2 * axis + (ray(axis) > 0 ? 1 : 0)), s, t);
+    return walls_.grey(static_cast<std::uint32_t>(2 * axis + (ray.along[axis] > 0 ? 1 : 0)), s, t);
   }
 
  private:
-  double distance(const Vector3& ray, int axis) const {
-    return (ray(axis) > 0 ? to_high_[axis] : to_low_[axis]) / ray(axis);
+  double distance(const Ray& ray, int axis) const {
+    return (ray.along[axis] > 0 ? to_high_[axis] : to_low_[axis]) / ray.along[axis];
   }
   // (s, t): where the ray is at distance d, along the two other axes; false if that is outside the room.
-  bool meets(const Vector3& ray, int axis, double d, double& s, double& t) const {
+  bool meets(const Ray& ray, int axis, double d, double& s, double& t) const {
     const int i = axis < 2 ? axis + 1 : 0;
     const int j = i < 2 ? i + 1 : 0;
-    s = origin_[i] + d * ray(i);
-    t = origin_[j] + d * ray(j);
-    return s > kLow(i) && s < kHigh(i) && t > kLow(j) && t < kHigh(j);
+    s = origin_[i] + d * ray.along[i];
+    t = origin_[j] + d * ray.along[j];
+    return s > low_[i] && s < high_[i] && t > low_[j] && t < high_[j];
   }
 
-  double origin_[3];
+  double origin_[3], low_[3], high_[3];
   double to_low_[3], to_high_[3];
   Walls walls_;
 };
@@ -151,15 +169,19 @@ RgbdFrame ProceduralRenderer::render(int i) {
   const Se3 T = T_world_camera(i);
   View view(T.t);
   // Four samples a pixel, so that edges have a place below the pixel.
-  Vector3 offsets[4];
+  double R[3][3];
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) R[row][column] = T.R(row, column);
+  Ray offsets[4];
   for (int sample = 0; sample < 4; ++sample)
-    offsets[sample] = T.R * Vector3((sample % 2 == 0 ? -0.25 : 0.25) / camera_.pinhole.fx,
-                                    (sample < 2 ? -0.25 : 0.25) / camera_.pinhole.fy, 0);
+    offsets[sample] = rotated(R, {{(sample % 2 == 0 ? -0.25 : 0.25) / camera_.pinhole.fx,
+                                   (sample < 2 ? -0.25 : 0.25) / camera_.pinhole.fy, 0}});
   for (std::size_t k = 0; k < rays_.size(); ++k) {
-    const Vector3 ray = T.R * rays_[k];
+    const double* const in_camera = rays_[k].data();
+    const Ray ray = rotated(R, {{in_camera[0], in_camera[1], in_camera[2]}});
     const View::Hit hit = view.cast(ray);
     int grey = 0;
-    for (const Vector3& offset : offsets) grey += view.grey(ray + offset, hit.axis);
+    for (const Ray& offset : offsets) grey += view.grey(ray + offset, hit.axis);
     const std::uint32_t noise = hash(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 7);
     grey = std::clamp((grey + 2) / 4 + static_cast<int>(noise % 5) - 2, 0, 255);
     for (int channel = 0; channel < 3; ++channel)
