@@ -40,7 +40,7 @@ TEST(GrowthCases, VaryOneParameterAtATime) {
   }
   EXPECT_EQ(plan.cases[plan.tables[1].rows[4].measured].setting.keypoints, 2000);
   EXPECT_EQ(plan.cases[plan.tables[2].rows[0].measured].setting.segments, 20);
-  EXPECT_EQ(plan.bounds.size(), 3U + 3 + 1);
+  EXPECT_EQ(plan.bounds.size(), 2U + 3 + 1);
 }
 
 TEST(GrowthCases, CoverTheRequestedTables) {

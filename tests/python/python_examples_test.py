@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every program of docs/user/python.md runs, one after the other in one folder that has a recorded walk in it."""
+"""Every program of docs/user/python.md runs, one after the other in one folder that has a recorded sequence in it."""
 import os
 import pathlib
 import re

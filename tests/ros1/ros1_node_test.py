@@ -68,7 +68,7 @@ def ros(tmp_path_factory):
 
 # --- what is published ---------------------------------------------------------------------------------------------------------------
 
-class Walk(SimulatedFolder):
+class RecordedSequence(SimulatedFolder):
     """A simulated folder as messages of ROS. frames: (stamp in ns, RGB, depth in mm)."""
 
     def __init__(self, folder, size, frames):
@@ -80,8 +80,8 @@ class Walk(SimulatedFolder):
 
 
 @pytest.fixture(scope="module")
-def walk(tmp_path_factory):
-    return Walk(tmp_path_factory.mktemp("walk") / "walk", "320x240", FRAMES)
+def sequence(tmp_path_factory):
+    return RecordedSequence(tmp_path_factory.mktemp("sequence") / "sequence", "320x240", FRAMES)
 
 
 def stamped(message, ns, frame="camera_color_optical_frame"):
@@ -112,12 +112,12 @@ def png(pixels):
     return out.getvalue()
 
 
-def camera_info(walk, ns, model="plumb_bob"):
+def camera_info(sequence, ns, model="plumb_bob"):
     from sensor_msgs.msg import CameraInfo
-    fx, fy, cx, cy = walk.numbers[:4]
+    fx, fy, cx, cy = sequence.numbers[:4]
     message = stamped(CameraInfo(), ns)
-    message.height, message.width = walk.frames[0][2].shape
-    message.distortion_model, message.D = model, (walk.numbers[5:10] + [0] * 5)[:5]
+    message.height, message.width = sequence.frames[0][2].shape
+    message.distortion_model, message.D = model, (sequence.numbers[5:10] + [0] * 5)[:5]
     message.K = [fx, 0, cx, 0, fy, cy, 0, 0, 1]
     return message
 
@@ -138,10 +138,10 @@ def packed(ns, rgb, depth):
             compressed(ns, "16UC1; compressedDepth", form + png(depth)))
 
 
-def imu_messages(walk):
+def imu_messages(sequence):
     from sensor_msgs.msg import Imu
-    for gyro, acceleration in zip(walk.rows("gyroscope.txt"), walk.rows("accelerometer.txt")):
-        message = stamped(Imu(), walk.ns(gyro[0]), "imu")
+    for gyro, acceleration in zip(sequence.rows("gyroscope.txt"), sequence.rows("accelerometer.txt")):
+        message = stamped(Imu(), sequence.ns(gyro[0]), "imu")
         rate, force = message.angular_velocity, message.linear_acceleration
         rate.x, rate.y, rate.z = map(float, gyro[1:4])
         force.x, force.y, force.z = map(float, acceleration[1:4])
@@ -153,16 +153,16 @@ def imu_messages(walk):
 
 def rows_of(path):
     lines = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
-    return {Walk.ns(line[0]): np.array(line[1:], dtype=float) for line in lines}
+    return {RecordedSequence.ns(line[0]): np.array(line[1:], dtype=float) for line in lines}
 
 
-def bag_of(walk, kind, path, imu=False):
+def bag_of(sequence, kind, path, imu=False):
     import rosbag
     with rosbag.Bag(str(path), "w") as bag:
-        for message in imu_messages(walk) if imu else ():
+        for message in imu_messages(sequence) if imu else ():
             bag.write(IMU, message, message.header.stamp)
-        for ns, rgb, depth in walk.frames:
-            info, (colour, depth) = camera_info(walk, ns), kind(ns, rgb, depth)
+        for ns, rgb, depth in sequence.frames:
+            info, (colour, depth) = camera_info(sequence, ns), kind(ns, rgb, depth)
             for topic, message in ((INFO, info), (DEPTH, depth), (COLOUR, colour)):
                 bag.write(topic, message, message.header.stamp)
 
@@ -210,16 +210,16 @@ class Session:
     their way."""
     count = 0
 
-    def __init__(self, ros, walk, kind=raw, **parameters):
+    def __init__(self, ros, sequence, kind=raw, **parameters):
         from diagnostic_msgs.msg import DiagnosticArray
         from geometry_msgs.msg import PoseWithCovarianceStamped
         from nav_msgs.msg import Odometry
         from sensor_msgs.msg import CameraInfo, Imu
         from tf2_msgs.msg import TFMessage
         Session.count += 1
-        self.ros, self.walk, self.kind, self.name = ros, walk, kind, f"plvo{Session.count}"
+        self.ros, self.sequence, self.kind, self.name = ros, sequence, kind, f"plvo{Session.count}"
         self.lock, self.odometries, self.transforms, self.reports = threading.Lock(), {}, {}, []
-        colour, depth = kind(*walk.frames[0])
+        colour, depth = kind(*sequence.frames[0])
         topic = f"/{self.name}/"
         self.publishers = {name: ros.Publisher(topic + name, type_, queue_size=1000) for name, type_ in (
             ("camera_info", CameraInfo), ("colour", type(colour)), ("depth", type(depth)), ("set_pose", PoseWithCovarianceStamped))}
@@ -261,9 +261,9 @@ class Session:
         return wait_until(f"the diagnosis says {text!r}", find)
 
     def send(self, i, rgb=None):
-        ns, colour, depth = self.walk.frames[i]
+        ns, colour, depth = self.sequence.frames[i]
         colour, depth = self.kind(ns, colour if rgb is None else rgb, depth)
-        self.publishers["camera_info"].publish(camera_info(self.walk, ns))
+        self.publishers["camera_info"].publish(camera_info(self.sequence, ns))
         self.publishers["depth"].publish(depth)
         self.publishers["colour"].publish(colour)
         return ns
@@ -280,10 +280,10 @@ class Session:
 
 # --- tests ---------------------------------------------------------------------------------------------------------------------------
 
-def test_a_bag_that_is_played_gives_the_poses_of_plvo_run(ros, walk, tmp_path):
+def test_a_bag_that_is_played_gives_the_poses_of_plvo_run(ros, sequence, tmp_path):
     from nav_msgs.msg import Odometry
     from tf2_msgs.msg import TFMessage
-    bag_of(walk, raw, tmp_path / "walk.bag")
+    bag_of(sequence, raw, tmp_path / "sequence.bag")
     odometries, transforms = {}, {}
     odometry = ros.Subscriber("/plvo/odom", Odometry, lambda m: odometries.update({m.header.stamp.to_nsec(): m}))
     tf = ros.Subscriber("/tf", TFMessage, lambda m: transforms.update({t.header.stamp.to_nsec(): t for t in m.transforms}))
@@ -291,9 +291,9 @@ def test_a_bag_that_is_played_gives_the_poses_of_plvo_run(ros, walk, tmp_path):
               f"base_camera:={AHEAD}", "queue_size:=100")
     with running(*launch):
         wait_until("the node publishes", lambda: odometry.get_num_connections() and tf.get_num_connections())
-        with running("rosbag", "play", "--quiet", "--wait-for-subscribers", "--keep-alive", tmp_path / "walk.bag"):
+        with running("rosbag", "play", "--quiet", "--wait-for-subscribers", "--keep-alive", tmp_path / "sequence.bag"):
             wait_until("all frames have odometry", lambda: len(odometries) == FRAMES and len(transforms) == FRAMES)
-    assert_same(odometries, run(tmp_path, tmp_path / "walk.bag", AHEAD))
+    assert_same(odometries, run(tmp_path, tmp_path / "sequence.bag", AHEAD))
     for ns, message in odometries.items():  # the transform is the pose
         transform = transforms[ns]
         assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "base_link")
@@ -304,21 +304,21 @@ def test_a_bag_that_is_played_gives_the_poses_of_plvo_run(ros, walk, tmp_path):
 
 
 @pytest.mark.parametrize("kind", [raw, metres, packed])
-def test_every_transport_gives_the_poses_of_plvo_run(ros, walk, tmp_path, kind):
-    bag_of(walk, kind, tmp_path / "walk.bag")
-    with Session(ros, walk, kind, base_camera=CAMERA, publish_tf="false", exact_sync="true").runs() as session:
-        odometries = {session.walk.frames[i][0]: session.track(i) for i in range(FRAMES)}
-        assert_same(odometries, run(tmp_path, tmp_path / "walk.bag", CAMERA))
+def test_every_transport_gives_the_poses_of_plvo_run(ros, sequence, tmp_path, kind):
+    bag_of(sequence, kind, tmp_path / "sequence.bag")
+    with Session(ros, sequence, kind, base_camera=CAMERA, publish_tf="false", exact_sync="true").runs() as session:
+        odometries = {session.sequence.frames[i][0]: session.track(i) for i in range(FRAMES)}
+        assert_same(odometries, run(tmp_path, tmp_path / "sequence.bag", CAMERA))
         assert not session.transforms, "tf is switched off"
         assert session.report("tracking").level == 0
 
 
-def test_the_twist_is_the_velocity_in_the_axes_of_the_base(ros, walk):
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+def test_the_twist_is_the_velocity_in_the_axes_of_the_base(ros, sequence):
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         messages = [session.track(i) for i in range(FRAMES)]
     unknown = np.array(messages[0].twist.covariance).reshape(6, 6)
     assert np.array_equal(unknown, 1e6 * np.eye(6)), "nothing is known of the first frame's"
-    truth = {walk.ns(row[0]): matrix(np.array(row[1:], dtype=float)) for row in walk.rows("groundtruth.txt")}
+    truth = {sequence.ns(row[0]): matrix(np.array(row[1:], dtype=float)) for row in sequence.rows("groundtruth.txt")}
     T_base_camera = matrix(np.array(AHEAD.split(), dtype=float))
     nees = []
     for before, now in zip(messages, messages[1:]):
@@ -340,21 +340,21 @@ def test_the_twist_is_the_velocity_in_the_axes_of_the_base(ros, walk):
     assert 0.1 < np.mean(nees) < 12, f"6 if the covariance were exact: {nees}"
 
 
-def test_lost_frames_are_not_published_and_the_reason_is_in_the_diagnosis(ros, walk):
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+def test_lost_frames_are_not_published_and_the_reason_is_in_the_diagnosis(ros, sequence):
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         session.track(0)
         session.track(1)
-        dark = session.send(2, rgb=np.zeros_like(walk.frames[2][1]))
+        dark = session.send(2, rgb=np.zeros_like(sequence.frames[2][1]))
         report = session.report("lost: hardly anything to see")
         assert report.level == 1 and report.message.startswith("lost: hardly")
         after = session.track(3)
-        assert dark not in session.odometries and after.header.stamp.to_nsec() == walk.frames[3][0]
+        assert dark not in session.odometries and after.header.stamp.to_nsec() == sequence.frames[3][0]
         assert "1" == next(v.value for v in session.reports[-1].values if v.key == "frames without a pose")
 
 
-def test_reset_starts_anew(ros, walk):
+def test_reset_starts_anew(ros, sequence):
     from std_srvs.srv import Trigger
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         first = [pose_of(session.track(i)) for i in range(3)]
         answer = ros.ServiceProxy(f"/{session.name}/reset", Trigger)()
         assert answer.success
@@ -363,11 +363,11 @@ def test_reset_starts_anew(ros, walk):
         assert np.array_equal(first, again)
 
 
-def test_set_pose_moves_the_base(ros, walk):
+def test_set_pose_moves_the_base(ros, sequence):
     from geometry_msgs.msg import PoseWithCovarianceStamped
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         before = [matrix(pose_of(session.track(i))) for i in range(FRAMES)]
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         session.track(0)
         session.track(1)
         wanted = stamped(PoseWithCovarianceStamped(), 1, "odom")
@@ -386,9 +386,9 @@ def test_set_pose_moves_the_base(ros, walk):
         assert abs(moved.twist.twist.linear.x) < 1, "the jump is not a velocity"
 
 
-def test_set_pose_before_the_first_frame_is_that_frame_s(ros, walk):
+def test_set_pose_before_the_first_frame_is_that_frame_s(ros, sequence):
     from geometry_msgs.msg import PoseWithCovarianceStamped
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
         wanted = PoseWithCovarianceStamped()
         p, q = wanted.pose.pose.position, wanted.pose.pose.orientation
         p.x, p.y, p.z, q.z, q.w = 3, -2, 0.1, 0.6, 0.8
@@ -397,25 +397,25 @@ def test_set_pose_before_the_first_frame_is_that_frame_s(ros, walk):
         assert np.abs(pose_of(session.track(0)) - [3, -2, 0.1, 0, 0, 0.6, 0.8]).max() < 1e-9
 
 
-def test_an_imu_gives_the_poses_of_plvo_run_with_imu(ros, walk, tmp_path):
-    bag_of(walk, raw, tmp_path / "walk.bag", imu=True)
-    with Session(ros, walk, base_camera=AHEAD, imu="true", camera_imu="0 0 0 1", imu_wait_s=PATIENCE_S, level="true").runs() as session:
-        for message in imu_messages(walk):
+def test_an_imu_gives_the_poses_of_plvo_run_with_imu(ros, sequence, tmp_path):
+    bag_of(sequence, raw, tmp_path / "sequence.bag", imu=True)
+    with Session(ros, sequence, base_camera=AHEAD, imu="true", camera_imu="0 0 0 1", imu_wait_s=PATIENCE_S, level="true").runs() as session:
+        for message in imu_messages(sequence):
             session.publishers["imu"].publish(message)
         # The last frame may have no reading after it.
-        odometries = {walk.frames[i][0]: session.track(i) for i in range(FRAMES - 1)}
-        poses, covariances = run(tmp_path, tmp_path / "walk.bag", AHEAD, "--imu", "--level")
-        last = walk.frames[-1][0]
+        odometries = {sequence.frames[i][0]: session.track(i) for i in range(FRAMES - 1)}
+        poses, covariances = run(tmp_path, tmp_path / "sequence.bag", AHEAD, "--imu", "--level")
+        last = sequence.frames[-1][0]
         assert_same(odometries, ({ns: row for ns, row in poses.items() if ns != last}, covariances))
-        tilt = pose_of(odometries[walk.frames[0][0]])[3:5]
+        tilt = pose_of(odometries[sequence.frames[0][0]])[3:5]
         assert np.abs(tilt).max() > 1e-4, "odom is level, and the camera is not"
 
 
-def test_the_place_of_the_camera_comes_from_tf(ros, walk, tmp_path):
+def test_the_place_of_the_camera_comes_from_tf(ros, sequence, tmp_path):
     from geometry_msgs.msg import TransformStamped
     from tf2_msgs.msg import TFMessage
-    bag_of(walk, raw, tmp_path / "walk.bag")
-    with Session(ros, walk).runs() as session:
+    bag_of(sequence, raw, tmp_path / "sequence.bag")
+    with Session(ros, sequence).runs() as session:
         ns = session.send(0)
         report = session.report("images wait for a transform from camera_color_optical_frame to base_link")
         assert report.level == 1 and not session.odometries
@@ -425,24 +425,24 @@ def test_the_place_of_the_camera_comes_from_tf(ros, walk, tmp_path):
         t.x, t.y, t.z, q.x, q.y, q.z, q.w = map(float, AHEAD.split())
         static = ros.Publisher("/tf_static", TFMessage, latch=True, queue_size=1)
         static.publish(TFMessage([transform]))
-        odometries = {walk.frames[i][0]: session.track(i) for i in range(1, FRAMES)}
+        odometries = {sequence.frames[i][0]: session.track(i) for i in range(1, FRAMES)}
         odometries[ns] = session.odometries[ns]  # it waited
-        assert_same(odometries, run(tmp_path, tmp_path / "walk.bag", AHEAD))
+        assert_same(odometries, run(tmp_path, tmp_path / "sequence.bag", AHEAD))
         static.unregister()
 
 
-def test_what_cannot_be_tracked_is_named(ros, walk):
-    with Session(ros, walk, base_camera=AHEAD).runs() as session:
-        ns, rgb, depth = walk.frames[0]
-        session.publishers["camera_info"].publish(camera_info(walk, ns, "omnidirectional"))
+def test_what_cannot_be_tracked_is_named(ros, sequence):
+    with Session(ros, sequence, base_camera=AHEAD).runs() as session:
+        ns, rgb, depth = sequence.frames[0]
+        session.publishers["camera_info"].publish(camera_info(sequence, ns, "omnidirectional"))
         session.report("'omnidirectional' is not supported")
         session.publishers["depth"].publish(image(ns, rgb, "rgb8"))
-        session.publishers["camera_info"].publish(camera_info(walk, ns))
+        session.publishers["camera_info"].publish(camera_info(sequence, ns))
         session.publishers["colour"].publish(image(ns, rgb, "rgb8"))
         report = session.report("the encoding 'rgb8' is not read there")
         assert report.level == 2 and report.message.startswith("error: ")
         session.track(1)
-        other = camera_info(walk, ns)
+        other = camera_info(sequence, ns)
         other.K = [2 * k for k in other.K]
         session.publishers["camera_info"].publish(other)
         session.track(2)

@@ -26,7 +26,7 @@ PAGES = {
     "table2": ("TUM fr1, beside the paper's Table 2", f"plvo_bench tum {FR1} --systems ours,peers --out {{work}}/table2"),
     "lighting": ("Simulated sequences under two lights", "plvo_bench lighting --seeds 1 --frames 90 --jobs 2 --discard-images --systems ours,opencv --out {work}/lighting"),
     "stages": ("Instructions and time of each stage", f"plvo_bench stages {FR1} --instructions --out {{work}}/stages"),
-    "growth": ("How the cost of a frame grows", f"plvo_bench growth --tables sizes,points,segments,images --frames 6 --jobs 2 --out {{work}}/growth"),
+    "growth": ("How the cost of a frame grows", f"plvo_bench growth {FR1} --frames 6 --jobs 2 --out {{work}}/growth"),
     "detectors": ("Detectors beside those of OpenCV", f"plvo_bench detectors {FR1} {FR3} --frames 30 --out {{work}}/detectors"),
     "moving_world": ("A world that moves, mirrors and lies", "moving_world.py {bin}/plvo {work}/moving_world"),
     "map": ("What a map corrects, and what it recognises", "map.py {bin}/map_study {work}/map"),
