@@ -67,8 +67,8 @@ class CMap : public testing::Test {
     plvo_result result = {};
     result.struct_size = sizeof result;
     AllocationGuard guard;
-    const plvo_status status = plvo_track(odometry_, &c, &result);
-    EXPECT_EQ(plvo_map_update(map_, odometry_, &status, &result, &in_map_).code, PLVO_OK);
+    (void)plvo_track(odometry_, &c, &result);
+    EXPECT_EQ(plvo_map_update(map_, odometry_, &result, &in_map_).code, PLVO_OK);
     EXPECT_EQ(guard.calls(), 0);
     guard.disarm();
   }
@@ -121,6 +121,19 @@ TEST_F(CMap, GivesTheMapOfCpp) {
   EXPECT_EQ(plvo_map_settle(map_).code, PLVO_OK);
 }
 
+// The camera's pose in the map is not known then, however sure the caller is of the pose in the new world.
+TEST_F(CMap, IsNotLocatedInAnotherWorld) {
+  move(0, 40);
+  EXPECT_EQ(in_map_.located, 1);
+  plvo_reset(odometry_);
+  const double T[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  double covariance[36] = {};
+  for (int i = 0; i < 6; ++i) covariance[7 * i] = 1;
+  ASSERT_EQ(plvo_set_pose(odometry_, T, covariance).code, PLVO_OK);
+  see(frame(20));
+  EXPECT_EQ(in_map_.located, 0);
+}
+
 TEST_F(CMap, IsSavedAndLoadedThroughTheCallersFunctions) {
   for (int round = 0; round < 2; ++round) {
     move(0, kMapViews);
@@ -170,7 +183,6 @@ TEST_F(CMap, InvalidArgumentsAreRefusedWithAMessage) {
   MapTape tape;
   plvo_result result = {};
   result.struct_size = sizeof result;
-  const plvo_status ok = {};
   expect_says(plvo_map_save(map_, write_tape, &tape), PLVO_NOT_FOUND, "no keyframe yet");
   move(0, 2);
   expect_says(plvo_map_save(map_, write_tape, &tape), PLVO_IO, "function to write the map failed");
@@ -178,17 +190,13 @@ TEST_F(CMap, InvalidArgumentsAreRefusedWithAMessage) {
   expect_says(plvo_map_load(map_, nullptr, &tape), PLVO_INVALID_ARGUMENT, "read is NULL");
   for (const plvo_status& status :
        {plvo_map_save(nullptr, write_tape, &tape), plvo_map_load(nullptr, read_tape, &tape),
-        plvo_map_settle(nullptr), plvo_map_update(nullptr, odometry_, &ok, &result, &in_map_)})
+        plvo_map_settle(nullptr), plvo_map_update(nullptr, odometry_, &result, &in_map_)})
     expect_says(status, PLVO_INVALID_ARGUMENT, "map is NULL");
-  expect_says(plvo_map_update(map_, nullptr, &ok, &result, &in_map_), PLVO_INVALID_ARGUMENT,
-              "odometry is NULL");
-  expect_says(plvo_map_update(map_, odometry_, nullptr, &result, &in_map_), PLVO_INVALID_ARGUMENT,
-              "status is NULL");
-  expect_says(plvo_map_update(map_, odometry_, &ok, nullptr, &in_map_), PLVO_INVALID_ARGUMENT,
-              "result is NULL");
-  expect_says(plvo_map_update(map_, odometry_, &ok, &result, nullptr), PLVO_INVALID_ARGUMENT,
+  expect_says(plvo_map_update(map_, nullptr, &result, &in_map_), PLVO_INVALID_ARGUMENT, "odometry is NULL");
+  expect_says(plvo_map_update(map_, odometry_, nullptr, &in_map_), PLVO_INVALID_ARGUMENT, "result is NULL");
+  expect_says(plvo_map_update(map_, odometry_, &result, nullptr), PLVO_INVALID_ARGUMENT,
               "map_result is NULL");
-  expect_says(plvo_map_update(map_, odometry_, &ok, &result, &in_map_), PLVO_INVALID_ARGUMENT, "no rotation");
+  expect_says(plvo_map_update(map_, odometry_, &result, &in_map_), PLVO_INVALID_ARGUMENT, "no rotation");
   EXPECT_EQ(plvo_map_keyframes(nullptr) + plvo_map_loops(nullptr) + plvo_map_saved_bytes(nullptr), 0U);
   double T[12];
   EXPECT_EQ(plvo_map_keyframe_pose(nullptr, 1, T) + plvo_map_keyframe_pose(map_, 1, nullptr), 0);

@@ -69,6 +69,8 @@ inline void expect_same(const TrackResult& result, const plvo_result& c) {
   EXPECT_EQ(result.lm_iterations, c.lm_iterations);
   EXPECT_TRUE(same_bits(result.mean_brightness, c.mean_brightness));
   EXPECT_EQ(result.repeated ? 1 : 0, c.repeated);
+  EXPECT_EQ(result.world, c.world);
+  EXPECT_EQ(result.restarted ? 1 : 0, c.restarted);
   EXPECT_EQ(result.feature_step, c.feature_step);
 }
 

@@ -47,10 +47,17 @@ TEST(MavlinkOdometry, ResetsAreCounted) {
   TrackResult relocalised = tracked(2);
   relocalised.relocalised = true;
   EXPECT_EQ(odometry.message(relocalised)->at(kResets), 1);
-  TrackResult new_world = tracked(3);
+  TrackResult restarted = tracked(3);
+  restarted.state = TrackState::kInitialising;
+  restarted.restarted = true;
+  EXPECT_EQ(odometry.message(restarted)->at(kResets), 1) << "from the last good pose";
+  TrackResult new_world = tracked(4);
   new_world.state = TrackState::kInitialising;
+  new_world.world = 1;
   EXPECT_EQ(odometry.message(new_world)->at(kResets), 2);
-  EXPECT_EQ(odometry.message(tracked(4))->at(kResets), 2);
+  TrackResult next = tracked(5);
+  next.world = 1;
+  EXPECT_EQ(odometry.message(next)->at(kResets), 2);
 }
 
 TEST(MavlinkOdometry, QualityIsTheInlierRatio) {

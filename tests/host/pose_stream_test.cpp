@@ -81,7 +81,9 @@ TEST(PoseJson, SaysEverything) {
   result.state = TrackState::kLost;
   result.status =
       Status(StatusCode::kTooFewFeatures, "only \"3\" points \\ 0 lines\nlamp off\x01 caf\xc3\xa9");
+  result.world = 2;
   const nlohmann::json json = nlohmann::json::parse(pose_json(result));
+  EXPECT_EQ(json["world"], 2);
   EXPECT_EQ(json["stamp_ns"].get<std::int64_t>(), 1'600'000'001'033'333'000);
   EXPECT_EQ(json["state"], to_string(TrackState::kLost));
   EXPECT_EQ(json["status"], "too_few_features");

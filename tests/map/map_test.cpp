@@ -88,6 +88,29 @@ TEST(Map, AfterAResetNothingIsKnownUntilAPlaceIsRecognised) {
   EXPECT_LT(camera.in_map.pose_covariance(0, 0), 0.01);
 }
 
+// The covariance of the caller's pose is larger than that of the world before: no sign that it goes on.
+TEST(Map, AResetWithAPoseOfTheCallersStartsAnotherWorld) {
+  MappedCamera camera(64);
+  camera.move(0, kTurn);
+  const std::uint32_t before = camera.in_map.keyframe;
+  camera.odometry.reset();
+  ASSERT_TRUE(camera.odometry.set_pose(Se3{}, Matrix6::Identity()).ok());
+  camera.see(40);
+  EXPECT_GT(camera.in_map.keyframe, before);
+  EXPECT_FALSE(camera.in_map.located);
+  EXPECT_GT(camera.in_map.pose_covariance(0, 0), 1e3);
+}
+
+TEST(Map, AnOdometryThatWasInitialisedAnewStartsAnotherWorld) {
+  MappedCamera camera(64), anew(64);
+  camera.move(0, kTurn);
+  EXPECT_TRUE(camera.in_map.located);
+  ASSERT_TRUE(anew.odometry.set_pose(Se3{}, Matrix6::Identity()).ok());
+  anew.see(40);
+  EXPECT_EQ(anew.result.world, camera.result.world) << "each counts from 0";
+  EXPECT_FALSE(camera.map.update(anew.odometry, anew.result).located);
+}
+
 TEST(Map, APlaceThatOnlyLooksAlikeIsNotRecognised) {
   MappedCamera camera(64);
   for (int round = 0; round < 3; ++round) {

@@ -37,6 +37,7 @@ TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
   TrackResult result = camera.see(kElsewhere + 1);
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
   EXPECT_NE(std::string(result.status.message()).find("tracking restarts"), std::string::npos);
+  EXPECT_TRUE(result.restarted);
   const double unobserved_m = 0.5 * 2.0;  // ReferenceConfig::process_noise_m_per_s
   EXPECT_GE(result.pose_covariance(0, 0), unobserved_m * unobserved_m);
   bool relocalised = false;
@@ -44,6 +45,7 @@ TEST(Loss, ALostFrameIsMatchedWithTheLostFrameBefore) {
     result = camera.see(view);
     EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
     EXPECT_EQ(result.status.message()[0], '\0');
+    EXPECT_FALSE(result.restarted);
     relocalised = result.relocalised;
   }
   EXPECT_TRUE(relocalised);
@@ -71,9 +73,13 @@ TEST(Loss, WithoutMemoryTheReferencesAreGivenUpAfterHalfASecond) {
   SlowCamera camera(0);
   for (int view = 0; view <= kLeft; ++view) (void)camera.see(view);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(camera.see(kElsewhere + i).state, TrackState::kLost) << i;
-  EXPECT_EQ(camera.see(kElsewhere + 3).state, TrackState::kInitialising);
+  const TrackResult start = camera.see(kElsewhere + 3);
+  EXPECT_EQ(start.state, TrackState::kInitialising);
+  EXPECT_TRUE(start.restarted);
+  EXPECT_EQ(start.world, 0U) << "the last good pose is in the same world";
   const TrackResult result = camera.see(kElsewhere + 4);
   EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  EXPECT_FALSE(result.restarted);
 }
 
 TEST(Loss, ASingleLostFrameChangesNothing) {

@@ -97,6 +97,8 @@ TEST(SoundResults, AnUnboundedPositionStartsANewWorld) {
       EXPECT_TRUE(start.status.ok());
       EXPECT_EQ(std::string(start.status.message()).rfind("a new world starts: ", 0) == 0, far)
           << start.status.message();
+      EXPECT_EQ(start.world, far ? 1U : 0U);
+      EXPECT_EQ(start.restarted, !far);
       if (far) {
         EXPECT_TRUE(start.T_world_camera.t.isZero());
         EXPECT_TRUE(start.pose_covariance.isZero());
@@ -124,10 +126,12 @@ TEST(SoundResults, ANewLevelWorldWaitsForGravity) {
   EXPECT_EQ(waiting.state, TrackState::kInitialising);
   EXPECT_EQ(waiting.status.code(), StatusCode::kNotFound) << waiting.status.message();
   EXPECT_TRUE(waiting.T_world_camera.t.isZero());
+  EXPECT_EQ(waiting.world, 1U);
   const MotionPrior gravity = gravity_alone(61);
   const TrackResult start = camera.see(61, kSoundFrame_ns, gravity);
   EXPECT_EQ(std::string(start.status.message()).rfind("a new world starts: ", 0), 0U)
       << start.status.message();
+  EXPECT_EQ(start.world, 1U) << "the frame that waited was of this world";
   EXPECT_LT((start.T_world_camera.R * gravity.gravity->down - Vector3(0, 1, 0)).norm(), 1e-9);
 }
 
@@ -168,7 +172,7 @@ TEST(SoundResults, SurviveALongSequenceOfRandomEvents) {
   Limits limits = SmallCamera::kSmallest;
   limits.references = 3;
   limits.kept_keyframes = 2;
-  int worlds = 0;  // number of worlds that follow another one
+  std::uint32_t worlds = 0;  // number of worlds that follow another one
   for (int run = 0; run < 4; ++run) {
     Config config;
     config.references.policy = static_cast<ReferencePolicy>(run);
@@ -185,6 +189,7 @@ TEST(SoundResults, SurviveALongSequenceOfRandomEvents) {
       return std::min(value, 1e6);
     };
     int before = 0, view = 0, tracked = 0;
+    std::uint32_t world = 0;
     bool dark = false;
     for (int i = 0; i < 400; ++i) {
       before = view;
@@ -212,12 +217,14 @@ TEST(SoundResults, SurviveALongSequenceOfRandomEvents) {
       if (random.below(dark ? 4 : 10) == 0) dark = !dark;
       const TrackResult result = camera.see(dark ? kNothing : view, after_ns, prior);
       tracked += result.state == TrackState::kTracking ? 1 : 0;
-      worlds += result.status.ok() && result.status.message()[0] != '\0' ? 1 : 0;
+      EXPECT_LE(result.world - world, 1U) << "it rises by one";
+      world = result.world;
       if (testing::Test::HasFailure()) return;
     }
     EXPECT_GT(tracked, 50) << "run " << run;
+    worlds += world;
   }
-  EXPECT_GT(worlds, 3);
+  EXPECT_GT(worlds, 3U);
 }
 
 }  // namespace

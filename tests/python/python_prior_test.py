@@ -112,6 +112,8 @@ def test_set_pose_and_reset(covered):
     again = [odometry.track(*frame) for frame in frames]
     assert np.allclose(again[-1].T_world_camera, T @ first[-1], atol=1e-12)
     assert again[0].covariance[0, 0] == 1e-4
+    assert {result.world for result in again} == {1}
+    assert not any(result.restarted for result in again)
     with pytest.raises(plvo.Error, match="rotation"):
         odometry.set_pose(2 * np.eye(4) - np.diag([0, 0, 0, 1.0]))
     with pytest.raises(ValueError, match="last row"):

@@ -41,10 +41,12 @@ inline bool is_sound_pose(const Se3& T) {
 inline bool is_sound_state(const TrackResult& result) {
   switch (result.state) {
     case TrackState::kInitialising: return !result.relocalised;
-    case TrackState::kTracking: return result.status.ok() && !(result.repeated && result.relocalised);
+    case TrackState::kTracking:
+      return result.status.ok() && !(result.repeated && (result.relocalised || result.restarted));
     case TrackState::kLost:
     case TrackState::kPredicted:
-      return !result.status.ok() && result.status.message()[0] != '\0' && !result.relocalised;
+      return !result.status.ok() && result.status.message()[0] != '\0' && !result.relocalised &&
+             !result.restarted;
   }
   return false;
 }

@@ -83,6 +83,11 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
   MapResult out;
   const KeyframeView view = odometry.keyframe();
   if (!ready_) return out;
+  // Nothing is known of the motion between two worlds. The second condition finds the first world of an
+  // odometry that was initialised anew.
+  if (result.world != world_ || (result.state == TrackState::kInitialising && !result.restarted))
+    follows_camera_ = false;
+  world_ = result.world;
   if (view.features != nullptr && view.features->points.described &&
       (!follows_camera_ || view.features->stamp_ns != keyframe_stamp_ns_)) {
     add_keyframe(view, result, out);
@@ -118,23 +123,17 @@ MapResult Map::update(const Odometry& odometry, const TrackResult& result) {
 }
 
 // The motion from the keyframe before is the odometry's measurement, if the frame was matched with that
-// keyframe. Otherwise it is the difference of the poses, with their uncertainty; in a new world nothing is
-// known of it.
+// keyframe. Otherwise it is the difference of the poses, with their uncertainty; between two worlds nothing
+// is known of it.
 void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapResult& out) {
   const FrameFeatures& features = *view.features;
   const bool measured = result.state == TrackState::kTracking && result.stamp_ns == features.stamp_ns &&
                         result.reference_stamp_ns == keyframe_stamp_ns_;
-  // The motion is unobserved where a new world starts. The odometry says so by a message; after
-  // Odometry::reset() the pose is as certain as that of the first frame.
-  const bool unobserved =
-      !follows_camera_ ||
-      (result.state == TrackState::kInitialising &&
-       (result.status.message()[0] != '\0' || result.pose_covariance.trace() <= world_covariance_.trace()));
   Se3 T_previous_this;
   Matrix6 covariance = Matrix6::Zero();
   if (memory_.graph.size() == 0) {
     T_previous_this = view.T_world_camera;  // the map begins as the world
-  } else if (unobserved) {
+  } else if (!follows_camera_) {
     covariance.diagonal().head<3>().setConstant(kUnknownPosition_m2);
     covariance.diagonal().tail<3>().setConstant(kUnknownRotation_rad2);
   } else if (measured) {
@@ -148,7 +147,7 @@ void Map::add_keyframe(const KeyframeView& view, const TrackResult& result, MapR
   }
   if (!is_judged_) judge(out);
   // To be read before a keyframe is removed, which may be the latest one.
-  const bool begins_part = memory_.graph.size() == 0 || unobserved;
+  const bool begins_part = memory_.graph.size() == 0 || !follows_camera_;
   const std::uint32_t part =
       begins_part ? memory_.graph.next_id() : memory_.graph.node(memory_.graph.last()).part;
   if (memory_.graph.full()) {

@@ -38,8 +38,8 @@
 namespace plvo {
 
 struct MapResult {
-  // Whether the map knows where the camera is. After load(), and in a new world of the odometry, it does not
-  // until a place is recognised; T_map_world has no meaning until then.
+  // Whether the map knows where the camera is. After load(), and in another world of the odometry
+  // (TrackResult::world), it does not until a place is recognised; T_map_world has no meaning until then.
   bool located = false;
   Se3 T_map_world;
   // Covariance of the ⊞-perturbation of T_map_world · T_world_camera, in the axes of the map. After a motion
@@ -169,7 +169,8 @@ class Map {
   MapMemory memory_;
   std::size_t refreshed_ = 0;  // the position whose neighbour is searched next
 
-  bool follows_camera_ = false;         // a keyframe of this odometry has joined
+  bool follows_camera_ = false;         // a keyframe of this world has joined
+  std::uint32_t world_ = 0;             // of the odometry
   std::int64_t keyframe_stamp_ns_ = 0;  // of the latest keyframe
   Se3 T_world_keyframe_;                // as the odometry has it
   Matrix6 world_covariance_ = Matrix6::Zero();

@@ -86,11 +86,12 @@ Odometry::Odometry() = default;
                                           : process(input, prior);
   if (make_sound(result)) return result;
   forget_world();
+  result.world = world_;
   result.T_world_camera = result.T_camera_reference = Se3();
   result.pose_covariance.setZero();
   result.motion_covariance.setZero();
   result.mean_brightness = 0;
-  result.relocalised = result.repeated = false;
+  result.relocalised = result.restarted = result.repeated = false;
   result.state = TrackState::kLost;
   result.status = {
       StatusCode::kDegenerate,

@@ -84,7 +84,7 @@ class Odometry {
   // Never fails: the state and the status of the result report all errors. A frame of the wrong size, with
   // null views, or not later than the one before is refused (kLost, kInvalidArgument) and changes nothing.
   // After a loss so long that the position may be anywhere (covariance.hpp), the first usable frame starts a
-  // new world, like the very first frame: kInitialising, and the status is ok() with a message. The pose of
+  // new world, like the very first frame: kInitialising, and TrackResult::world has risen. The pose of
   // set_pose() is forgotten with the old world.
   TrackResult track(const RgbdFrame& input);
   // Tracks with measurements of other sensors. Their motion guides the search for features and joins the
@@ -99,8 +99,8 @@ class Odometry {
   // where the gyro measures none.
   TrackResult track(const RgbdFrame& input, ImuIntegrator& imu, const MotionPrior& wheels = MotionPrior());
 
-  // Restores the state after init: the next usable frame defines the world, and the learnt noise is
-  // forgotten. The time budget stays, because it depends on the machine.
+  // Restores the state after init: the next usable frame defines a world of the next number, and the learnt
+  // noise is forgotten. The time budget stays, because it depends on the machine.
   void reset();
   // Sets the pose of the last frame that has one, in a world of the caller's, with the covariance of its
   // ⊞-perturbation. Before the first frame it sets the pose of the first usable one. The direction of gravity
@@ -237,6 +237,7 @@ class Odometry {
   bool start_is_set_ = false;       // by set_pose()
   bool world_is_lost_ = false;      // and the next one has not started
   bool is_lost_ = false;            // the last frame had no pose from its images
+  std::uint32_t world_ = 0;         // TrackResult::world
   std::int64_t lost_since_ns_ = 0;  // stamp of the first lost frame
   ImageRepeats repeats_;
   CarriedCells carried_;

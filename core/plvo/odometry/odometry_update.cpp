@@ -62,7 +62,8 @@ void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   window_.remove_carried(carried_);
   TrackResult result = begin_result(frame, tracked);
   result.state = TrackState::kTracking;
-  result.status = decision.status.message()[0] == '\0' ? tell_carried() : decision.status;
+  result.restarted = tracked.restarted;
+  result.status = tracked.restarted ? decision.status : tell_carried();
   result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
   result.T_camera_reference = motion.T_current_reference;
   const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
@@ -129,6 +130,7 @@ Status Odometry::tell_carried() {
     gravity_.read(*prior.gravity, itself, pose);
   }
   make_reference(frame, frame.predicted.exposure, true);
+  result.restarted = window_.has_last();
   window_.start(pose);
   report(window_.last_frame().pose, Vector6::Zero(), result);
   result.reference_stamp_ns = frame.stamp_ns();
@@ -195,14 +197,16 @@ TrackResult Odometry::begin_result(const CurrentFrame& frame, const TrackedMotio
 
 // Reports a pose at its stamp, with the error of the stamp.
 void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const {
+  result.world = world_;
   result.T_world_camera = pose.T_world_camera;
   result.pose_covariance =
       pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera_.stamp_sigma_s);
 }
 
 // Forgets all poses and what depends on them; the learnt noise stays. The next usable frame is the first of a
-// new world.
+// new world. A world without a pose keeps its number for that frame.
 void Odometry::forget_world() {
+  if (window_.has_last()) ++world_;
   window_.clear();
   frames_since_relocalisation_ = 0;
   start_is_set_ = false;

@@ -16,8 +16,8 @@
 namespace plvo {
 
 enum class TrackState : std::uint8_t {
-  // The first usable frame, from which tracking starts. If the status is not ok(), there has been no usable
-  // frame yet. If it is ok() with a message, a new world starts: see Odometry::track.
+  // The frame from which tracking starts: the first usable one of a world, or, with `restarted`, one after a
+  // long loss. If the status is not ok(), there has been no usable frame yet.
   kInitialising,
   kTracking,  // the pose is new
   kLost,  // status gives the reason; the pose is the last good one, and the next good frame continues from it
@@ -53,6 +53,9 @@ struct TrackResult {
   // good frame; for a predicted pose the covariance includes the uncertainty of the priors.
   Se3 T_world_camera;
   Matrix6 pose_covariance = Matrix6::Zero();
+  // Number of that world, from 0. Poses in different worlds have no known relation. The number rises with
+  // Odometry::reset(), and after a loss so long that the position may be anywhere.
+  std::uint32_t world = 0;
 
   // Motion with respect to the reference, X_camera = T_camera_reference X_reference. Its covariance is the
   // sum of C_H (23), the common-mode error of the matches with a keyframe (common_mode_error.hpp), and the
@@ -64,6 +67,9 @@ struct TrackResult {
   FeatureCounts lines;
   // The pose was corrected: the camera recognised the view of a keyframe from before a loss.
   bool relocalised = false;
+  // Tracking goes on in the same world after a loss, and the images did not observe the motion up to this
+  // frame, or up to its reference. The covariance of the pose includes that motion.
+  bool restarted = false;
   // The colour image is that of the frame before, so no motion was measured: the pose is predicted, and its
   // covariance includes the process noise. The state is kTracking, and the status is ok() with a message.
   bool repeated = false;

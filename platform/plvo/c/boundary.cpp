@@ -95,6 +95,8 @@ Status take_result(const plvo_result* given, TrackResult& result) {
   result.pose_covariance = matrix<6>(whole.pose_covariance);
   result.T_camera_reference = se3(whole.T_camera_reference);
   result.motion_covariance = matrix<6>(whole.motion_covariance);
+  result.world = whole.world;
+  result.restarted = whole.restarted != 0;
   return {};
 }
 

@@ -118,8 +118,8 @@ Status take_camera(const plvo_camera* given, CameraModel& model);
 // As give_struct; kInvalidArgument where the caller's struct has no room for the lens.
 Status give_camera(const plvo_camera& whole, plvo_camera* caller);
 
-// State, stamps, poses and covariances of a result of plvo_track. kInvalidArgument for an unknown state; the
-// numbers are not checked.
+// State, stamps, poses, covariances, world and restart of a result of plvo_track. kInvalidArgument for an
+// unknown state; the numbers are not checked.
 Status take_result(const plvo_result* given, TrackResult& result);
 
 }  // namespace plvo::c

@@ -3,8 +3,8 @@
  * takes no memory of its own and needs no end. C99.
  *
  *   status = plvo_track(odometry, &frame, &result);
- *   plvo_map_update(map, odometry, &status, &result, &in_map);  // for each frame, in their order
- *   if (in_map.located) ...                                     // in_map.T_map_world * result.T_world_camera
+ *   plvo_map_update(map, odometry, &result, &in_map);  // for each frame, in their order
+ *   if (in_map.located) ...                            // in_map.T_map_world * result.T_world_camera
  */
 #ifndef PLVO_C_MAP_H
 #define PLVO_C_MAP_H
@@ -29,7 +29,7 @@ PLVO_API void plvo_map_limits_init(plvo_map_limits* limits, size_t size);
 /* Matrices as in plvo_result. */
 typedef struct plvo_map_result {
   uint32_t struct_size;
-  /* 1: it is known where the camera is in the map. 0 after plvo_map_load, and in a new world of the odometry,
+  /* 1: it is known where the camera is in the map. 0 after plvo_map_load, and in another plvo_result.world,
    * until a place is recognised: T_map_world has no meaning, and pose_covariance is large. */
   int32_t located;
   int32_t recognised; /* 1: a place was, in this frame */
@@ -55,8 +55,8 @@ PLVO_API plvo_status plvo_map_init(void* memory, size_t bytes, const plvo_camera
                                    const plvo_config* config, const plvo_map_limits* limits, plvo_map** map);
 
 /* Right after plvo_track, with what it gave. Does a bounded part of the work that waits. */
-PLVO_API plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_status* status,
-                                     const plvo_result* result, plvo_map_result* in_map);
+PLVO_API plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_result* result,
+                                     plvo_map_result* in_map);
 
 /* Does all the work that waits, however long it takes; for the end of a run. */
 PLVO_API plvo_status plvo_map_settle(plvo_map* map);

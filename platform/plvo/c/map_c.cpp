@@ -44,11 +44,8 @@ std::size_t map_bytes_for(const MapLimits& limits, const CameraModel& camera) {
 }
 
 // What Map::update looks at.
-Status take_tracked(const plvo_status& status, const plvo_result* given, TrackResult& result) {
+Status take_tracked(const plvo_result* given, TrackResult& result) {
   if (Status taken = take_result(given, result); !taken.ok()) return taken;
-  const std::size_t length = strnlen(status.message, sizeof status.message);
-  result.status = Status(status.code == PLVO_OK ? StatusCode::kOk : StatusCode::kInvalidArgument,
-                         std::string_view(status.message, length));
   return make_sound(result) ? Status() : refuse("result: a number is not finite, or a matrix is no rotation");
 }
 
@@ -137,14 +134,13 @@ plvo_status plvo_map_init(void* memory, std::size_t bytes, const plvo_camera* ca
   return to_c(status);
 }
 
-plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_status* status,
-                            const plvo_result* result, plvo_map_result* in_map) {
+plvo_status plvo_map_update(plvo_map* map, const plvo_odometry* odometry, const plvo_result* result,
+                            plvo_map_result* in_map) {
   if (map == nullptr) return to_c(refuse(plvo::c::kNoMap));
   if (odometry == nullptr) return to_c(refuse(plvo::c::kNoOdometry));
-  if (status == nullptr) return to_c(refuse("status is NULL: it is what plvo_track returned"));
   if (plvo::Status known = plvo::c::check_struct(in_map, "map_result"); !known.ok()) return to_c(known);
   plvo::TrackResult tracked;
-  if (plvo::Status taken = plvo::c::take_tracked(*status, result, tracked); !taken.ok()) return to_c(taken);
+  if (plvo::Status taken = plvo::c::take_tracked(result, tracked); !taken.ok()) return to_c(taken);
   plvo::c::give_map_result(map->map.update(odometry->odometry, tracked), in_map);
   return to_c(plvo::Status());
 }

@@ -147,6 +147,8 @@ void give_result(const plvo::TrackResult& result, plvo_result* caller) {
   whole.relocalised = result.relocalised ? 1 : 0;
   whole.feature_step = result.feature_step;
   whole.repeated = result.repeated ? 1 : 0;
+  whole.world = result.world;
+  whole.restarted = result.restarted ? 1 : 0;
   plvo::c::give_struct(whole, caller);
 }
 

@@ -55,8 +55,8 @@ enum {
   PLVO_NOT_CONVERGED
 };
 
-/* What went wrong and, in words a user can act on, what to do. The message of PLVO_OK is empty, but where a
- * new world starts (plvo_result.state). */
+/* What went wrong and, in words a user can act on, what to do. The message of PLVO_OK is empty, or a note on
+ * the frame. */
 typedef struct plvo_status {
   int32_t code;
   char message[252];
@@ -195,8 +195,8 @@ typedef struct plvo_counts {
 /* Matrices are row-major: T is the 3×4 matrix [R t]; a covariance is 6×6, position before orientation. */
 typedef struct plvo_result {
   uint32_t struct_size;
-  /* PLVO_INITIALISING: the frame defines the world, or the first usable one is waited for. With PLVO_OK and a
-   * message it starts a new world, which has nothing to do with the poses so far. */
+  /* PLVO_INITIALISING: the frame defines the world, or starts anew from the last good pose (restarted). Where
+   * the status is not PLVO_OK, the first usable frame is waited for. */
   int32_t state;
   int64_t stamp_ns, reference_stamp_ns;
   /* Camera to world; the world is the camera of the first frame. While lost, the last good pose. The
@@ -215,6 +215,12 @@ typedef struct plvo_result {
   /* 1: the colour image is that of the frame before, so the pose is predicted; the state is PLVO_TRACKING,
    * the status PLVO_OK with a message. */
   int32_t repeated;
+  /* Of T_world_camera, from 0. Poses in different worlds have no known relation. It rises with plvo_reset, and
+   * after a loss so long that the position may be anywhere. */
+  uint32_t world;
+  /* 1: tracking goes on in the same world after a loss, and the images did not observe the motion meanwhile;
+   * pose_covariance includes it. */
+  int32_t restarted;
 } plvo_result;
 
 /* The unit quaternion x y z w (Hamilton, w >= 0) of the rotation in a 3×4 matrix. */
@@ -281,7 +287,7 @@ PLVO_API plvo_status plvo_wheel_prior(const plvo_wheel_step* steps, size_t count
 PLVO_API plvo_status plvo_track_with_prior(plvo_odometry* odometry, const plvo_frame* frame,
                                            const plvo_prior* prior, plvo_result* result);
 
-/* As after plvo_init: the next usable frame defines the world. */
+/* As after plvo_init: the next usable frame defines a world, of the next number. */
 PLVO_API plvo_status plvo_reset(plvo_odometry* odometry);
 
 /* The pose of the last frame that has one, in a world of the caller's, with the covariance of position and

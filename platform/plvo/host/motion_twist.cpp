@@ -5,9 +5,7 @@ namespace plvo {
 namespace {
 
 bool continues_the_last_frame(const TrackResult& base) {
-  if (base.relocalised || base.state == TrackState::kInitialising) return false;
-  // A restart from a lost frame has a message; so has a repeated image, whose motion is predicted.
-  return base.state == TrackState::kPredicted || base.repeated || base.status.message()[0] == '\0';
+  return base.state != TrackState::kInitialising && !base.restarted && !base.relocalised;
 }
 
 // Covariance of T_now_last. If the last frame is the reference, it is that of the motion. Otherwise both

@@ -70,6 +70,8 @@ void bind_result(py::module_& module) {
       .def_readonly("mean_brightness", &TrackResult::mean_brightness)
       .def_readonly("relocalised", &TrackResult::relocalised)
       .def_readonly("repeated", &TrackResult::repeated)
+      .def_readonly("world", &TrackResult::world)
+      .def_readonly("restarted", &TrackResult::restarted)
       .def_readonly("feature_step", &TrackResult::feature_step)
       .def("__repr__", &describe);
 }

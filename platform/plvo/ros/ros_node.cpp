@@ -230,6 +230,7 @@ void RosNode::State::diagnose() {
   if (state == "error") diagnosis.level = RosLevel::kError;
   diagnosis.values = {{"state", state},
                       {"reason", reason},
+                      {"world", std::to_string(estimate.world)},
                       {"frames", std::to_string(frames)},
                       {"frames without a pose", std::to_string(without_pose)},
                       {"frames dropped while they waited", std::to_string(dropped)},

@@ -77,7 +77,9 @@ struct RosOdometry::State {
   std::optional<Calibration> first_camera, latest_camera;
   Se3 T_base_camera, T_odom_world;
   bool started = false;                          // a frame has a pose
-  bool pose_is_set = false;                      // before the first frame
+  bool level_is_due = true;                      // T_odom_world follows from the next frame with a pose
+  std::uint32_t first_world = 0;                 // number of the odometry's first world
+  std::uint32_t world = 0;                       // of the last result
   std::optional<PoseWithCovariance> early_pose;  // set before there were images
 
   ImageConversion conversion;
@@ -208,7 +210,7 @@ Status RosOdometry::State::set_pose(const PoseWithCovariance& base) {
   const Status status = odometry->set_pose(
       T_world_base * T_base_camera, compose_covariance(T_world_base, C_world_base, T_base_camera, exact));
   if (!status.ok()) return status;
-  if (!started) pose_is_set = true;
+  level_is_due = false;
   twist.move_to(base.T_odom_base);
   return status;
 }
@@ -294,11 +296,13 @@ void RosOdometry::State::report(const TrackResult& result, RosEstimate& estimate
   estimate.reason = result.status.message();
   estimate.points = result.points.inliers;
   estimate.lines = result.lines.inliers;
+  estimate.world = first_world + result.world;
+  level_is_due = level_is_due || estimate.world != world;
+  world = estimate.world;
   estimate.has_pose = has_pose(result);
   if (!estimate.has_pose) return;
-  const bool new_world = result.state == TrackState::kInitialising && !estimate.reason.empty();
-  if (settings.level && (new_world || (!started && !pose_is_set)))
-    T_odom_world = level_odom(result.T_world_camera, T_base_camera);
+  if (settings.level && level_is_due) T_odom_world = level_odom(result.T_world_camera, T_base_camera);
+  level_is_due = false;
   started = true;
   const TrackResult base = result_of_base(result, T_base_camera, T_odom_world);
   estimate.pose = ros_pose(base.T_world_camera);
@@ -313,7 +317,9 @@ void RosOdometry::State::report(const TrackResult& result, RosEstimate& estimate
 void RosOdometry::reset() {
   State& state = *state_;
   state.first_camera = state.latest_camera;
-  state.started = state.pose_is_set = false;
+  if (state.started) state.first_world = ++state.world;
+  state.started = false;
+  state.level_is_due = true;
   state.odometry.reset();  // the next images make one
   state.early_pose.reset();
   state.T_odom_world = state.T_base_camera;

@@ -75,6 +75,7 @@ struct RosEstimate {
   // are.
   std::string state;
   std::string reason;         // of plvo's status, empty if there is nothing to say
+  std::uint32_t world = 0;    // rises where odom is another one: after a reset or a very long loss
   int points = 0, lines = 0;  // that agree with the motion
 };
 inline constexpr double kUnknownTwistVariance = 1e6;

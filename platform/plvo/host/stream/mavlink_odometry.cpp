@@ -95,9 +95,9 @@ std::optional<std::vector<std::uint8_t>> MavlinkOdometry::message(const TrackRes
     twist_.forget();
     return std::nullopt;
   }
-  const bool new_world = base.state == TrackState::kInitialising;
-  if (started_ && (base.relocalised || new_world)) ++resets_;
+  if (started_ && (base.relocalised || base.world != world_)) ++resets_;
   started_ = true;
+  world_ = base.world;
   MavlinkPayload payload = payload_of(base, twist, resets_);
   // MAVLink 2 leaves zeros at the end of the payload away.
   while (payload.bytes().size() > 1 && payload.bytes().back() == 0) payload.bytes().pop_back();

@@ -32,6 +32,7 @@ class MavlinkOdometry {
   std::uint8_t sequence_ = 0;
   std::uint8_t resets_ = 0;
   bool started_ = false;
+  std::uint32_t world_ = 0;  // of the last pose
 };
 
 }  // namespace plvo

@@ -76,10 +76,10 @@ void put_map(std::string& to, const MapPose& map) {
 
 std::string pose_json(const TrackResult& result, const FrameNames& frames, const MapPose* map) {
   std::string out = fmt::format(
-      "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"frame_id\":\"{}\","
+      "{{\"stamp_ns\":{},\"state\":\"{}\",\"status\":\"{}\",\"message\":{},\"world\":{},\"frame_id\":\"{}\","
       "\"child_frame_id\":\"{}\"",
       result.stamp_ns, to_string(result.state), to_string(result.status.code()),
-      json_string(result.status.message()), frames.world, frames.body);
+      json_string(result.status.message()), result.world, frames.world, frames.body);
   put_pose(out, result.T_world_camera, result.pose_covariance);
   put_counts(out, "points", result.points);
   put_counts(out, "lines", result.lines);

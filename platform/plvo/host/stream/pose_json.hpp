@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose as one line of JSON, for programs that are not ours. Keys: stamp_ns, state, status, message,
+// A pose as one line of JSON, for programs that are not ours. Keys: stamp_ns, state, status, message, world,
 // frame_id and child_frame_id (frames), position (m), orientation_xyzw, covariance (36 numbers,
 // row-major: position, then orientation; axes of the world), points, lines. And what is said while there is
 // no pose, so that whoever reads can tell a camera that stalls from a program that hangs.

@@ -321,6 +321,12 @@ class Result:
     def repeated(self) -> bool:
         """Whether the colour image is that of the frame before. The pose is then predicted."""
     @property
+    def world(self) -> int:
+        """Number of the world of the pose, from 0. Poses in different worlds have no known relation. It rises with `reset`, and after a very long loss."""
+    @property
+    def restarted(self) -> bool:
+        """Whether tracking goes on after a loss and the images did not observe the motion meanwhile. The covariance includes it."""
+    @property
     def feature_step(self) -> int:
         """How far the budget has lowered the number of features: 0, all that fit, to 8, a third of them."""
 

@@ -44,10 +44,12 @@ void TrackSummary::add(const FrameRecord& record) {
     return;
   }
   // Where a pose is put right, and where a new world starts, it jumps, and the camera does not.
-  const bool starts = result.state == TrackState::kInitialising && result.status.message()[0] != '\0';
-  if (has_pose_ && !result.relocalised && !starts) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
-  has_pose_ = true;
+  const bool new_world = worlds_ == 0 || result.world != world_;
+  if (!result.relocalised && !new_world) path_m_ += (result.T_world_camera.t - last_pose_.t).norm();
+  worlds_ += new_world ? 1 : 0;
+  world_ = result.world;
   last_pose_ = result.T_world_camera;
+  restarted_ += result.restarted ? 1 : 0;
   if (result.state == TrackState::kInitialising) {
     ++started_;
     return;
@@ -84,6 +86,11 @@ SummaryRows TrackSummary::frame_rows() const {
                       fmt::format("{} (the image of the frame before; pose predicted)", repeated_));
   if (relocalised_ > 0)
     rows.emplace_back("relocalised", fmt::format("{} (by a view from before a loss)", relocalised_));
+  if (restarted_ > 0)
+    rows.emplace_back("restarted",
+                      fmt::format("{} (after a loss whose motion was not observed)", restarted_));
+  if (worlds_ > 1)
+    rows.emplace_back("worlds", fmt::format("{} (poses in different ones have no known relation)", worlds_));
   rows.emplace_back("lost", fmt::format("{}", lost_));
   for (std::size_t i = 0; i < kKinds; ++i)
     if (losses_[i] > 0) rows.emplace_back(fmt::format("  {} times", losses_[i]), last_loss_[i].message());
@@ -118,11 +125,12 @@ std::string TrackSummary::stage_table() const {
 }
 
 nlohmann::ordered_json TrackSummary::to_json() const {
-  nlohmann::ordered_json json = {{"camera", camera_name}, {"interrupted", interrupted},
-                                 {"frames", frames_},     {"initialised", started_},
-                                 {"tracked", tracked_},   {"predicted", predicted_},
-                                 {"repeated", repeated_}, {"relocalised", relocalised_},
-                                 {"lost", lost_},         {"damaged", damaged_},
+  nlohmann::ordered_json json = {{"camera", camera_name},   {"interrupted", interrupted},
+                                 {"frames", frames_},       {"initialised", started_},
+                                 {"tracked", tracked_},     {"predicted", predicted_},
+                                 {"repeated", repeated_},   {"relocalised", relocalised_},
+                                 {"restarted", restarted_}, {"worlds", worlds_},
+                                 {"lost", lost_},           {"damaged", damaged_},
                                  {"path_m", path_m_}};
   json["lost_reasons"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < kKinds; ++i)

@@ -49,12 +49,12 @@ class TrackSummary {
   static constexpr std::size_t kKinds = static_cast<std::size_t>(StatusCode::kNotConverged) + 1;
 
   std::uint64_t frames_ = 0, started_ = 0, tracked_ = 0, predicted_ = 0, repeated_ = 0, relocalised_ = 0,
-                lost_ = 0, damaged_ = 0;
+                restarted_ = 0, worlds_ = 0, lost_ = 0, damaged_ = 0;
   std::uint64_t frames_with_fewer_features_ = 0;  // for the budget's sake
   int lowest_step_ = 0;
   double path_m_ = 0;
   Se3 last_pose_;
-  bool has_pose_ = false;
+  std::uint32_t world_ = 0;                     // of the last pose
   std::array<std::uint64_t, kKinds> losses_{};  // by kind: the words of one kind differ from frame to frame
   std::array<Status, kKinds> last_loss_;
   std::array<DurationHistogram, kStageCount + 1> stages_;  // the last one: the whole of track()
