@@ -148,6 +148,22 @@ TEST(OdometryPrior, PredictsAFrameThatShowsNothing) {
   expect_to_go_on_by_the_prior(config, 0.7);
 }
 
+TEST(OdometryPrior, AtThreeFramesASecondTheTranslationGoesOnBesideAGyro) {
+  WithPrior camera;
+  const auto see = [&](int i, bool covered) {
+    RgbdFrame frame = covered ? sequence().render_dark(i) : sequence().render(i);
+    frame.stamp_ns = frame.depth_stamp_ns = 1'000'000'000 + i * 333'333'333LL;
+    MotionPrior prior;
+    if (i > 0) prior.rotation = gyro(i - 1, i);
+    return camera.odometry.track(frame, prior);
+  };
+  for (int i = 0; i < 6; ++i) (void)see(i, false);
+  const TrackResult result = see(6, true);
+  ASSERT_EQ(result.state, TrackState::kPredicted);
+  const double step_m = (truth(6).t - truth(5).t).norm();
+  EXPECT_LT((result.T_world_camera.t - truth(6).t).norm(), 0.5 * step_m);
+}
+
 TEST(OdometryPrior, AMissingPriorEndsThePrediction) {
   WithPrior instance;
   for (int i = 0; i < 4; ++i) ASSERT_NE(instance.track(i).state, TrackState::kLost);

@@ -23,11 +23,12 @@ struct Velocity {
     constexpr int kLongestPrediction = 3;
     return static_cast<double>(elapsed_ns) < kLongestPrediction * static_cast<double>(measured_ns);
   }
-  // Whether this velocity completes the priors of other sensors, elapsed_ns after it was measured. Later, the
-  // camera is taken to stand still. Such a motion is not corrected; the process noise covers its error.
+  // Whether this velocity completes the priors of other sensors, elapsed_ns after it was measured: as long as
+  // it predicts, and for 300 ms at least. Later, the camera is taken to stand still. Such a motion is not
+  // corrected; the process noise covers its error.
   bool continues(std::int64_t elapsed_ns) const {
-    constexpr std::int64_t kLongest_ns = 300'000'000;
-    return known() && measured_ns <= kLongest_ns && elapsed_ns <= kLongest_ns;
+    constexpr std::int64_t kLeast_ns = 300'000'000;
+    return known() && (predicts(elapsed_ns) || elapsed_ns <= kLeast_ns);
   }
 };
 
