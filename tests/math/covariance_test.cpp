@@ -93,6 +93,21 @@ TEST(Covariance, RefusesMatricesThatAreNotFinite) {
   }
 }
 
+// What a robot does with the covariance of its pose: to the camera's lever arm, to another frame, and back.
+TEST(Covariance, StaysValidWhereACallerMovesIt) {
+  Random random(5);
+  for (int i = 0; i < 500; ++i) {
+    const Se3 lever{rotation_exp({0.3, -0.2, 0.1}), Vector3(random.uniform(), random.uniform(), 1)};
+    const Se3 frame{rotation_exp({-1, 0.4, 2}), 100 * Vector3(random.uniform(), random.uniform(), 0)};
+    Matrix6 C = random_covariance(random, 1 + i % 6);
+    for (int k = 0; k < 6; ++k) C(k, k) += 1e-12;  // a micrometre, a microradian
+    C = compose_covariance(frame, Matrix6::Zero(), lever, C);
+    EXPECT_TRUE(is_covariance(C)) << C;
+    C = compose_covariance(Se3{}, C, {lever.R, -lever.t}, Matrix6::Zero());
+    EXPECT_TRUE(is_covariance(C)) << C;
+  }
+}
+
 // A lever arm of a kilometre, taken and given back: the position's variance is all but cancelled.
 TEST(Covariance, StaysValidAfterAReversedLeverArm) {
   Random random(4);

@@ -348,6 +348,14 @@ TEST(OdometrySetPose, RefusesInvalidPoses) {
   Matrix6 skewed = Matrix6::Identity();
   skewed(0, 1) = 0.1;
   refused({}, skewed);
+  // Rotations are judged by their own variances, however large those of the position are.
+  for (const double other_side : {0.0, 2e-4}) {
+    Matrix6 far = 1e-4 * Matrix6::Identity();
+    far.diagonal().head<3>().setConstant(1e6);
+    far(3, 4) = 2e-4;
+    far(4, 3) = other_side;
+    refused({}, far);
+  }
   WithPrior other;
   (void)other.track(0);
   EXPECT_EQ(fingerprint(instance.track(1)), fingerprint(other.track(1))) << "nothing has changed";

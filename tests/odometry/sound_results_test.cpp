@@ -159,9 +159,16 @@ TEST(SoundResults, EveryResultIsCheckedOnReturn) {
 TEST(SoundResults, SetPoseBoundsTheCovariance) {
   SmallCamera camera;
   (void)camera.see(0);
-  EXPECT_TRUE(
-      camera.odometry.set_pose({Matrix3::Identity(), {1e7, -1e7, 0}}, 1e6 * Matrix6::Identity()).ok());
-  EXPECT_EQ(camera.see(1).state, TrackState::kTracking);
+  int view = 0;
+  for (const double variance : {1e6, 1e7, 1e300}) {
+    const Status status =
+        camera.odometry.set_pose({Matrix3::Identity(), {1e7, -1e7, 0}}, variance * Matrix6::Identity());
+    EXPECT_TRUE(status.ok()) << status.message();
+    const TrackResult result = camera.see(++view);
+    EXPECT_EQ(result.state, TrackState::kTracking);
+    EXPECT_EQ(result.world, 0U);
+    EXPECT_NEAR(result.pose_covariance(0, 0), kMostPositionVariance, 1);
+  }
   EXPECT_EQ(camera.odometry.set_pose({Matrix3::Identity(), {1e9, 0, 0}}, Matrix6::Zero()).code(),
             StatusCode::kInvalidArgument);
 }

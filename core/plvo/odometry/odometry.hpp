@@ -106,8 +106,7 @@ class Odometry {
   // ⊞-perturbation. Before the first frame it sets the pose of the first usable one. The direction of gravity
   // is learnt anew. Variances beyond the bound of covariance.hpp are set to the bound. Returns
   // kInvalidArgument, and changes nothing: before init, for a matrix that is not a rotation (to 1e-6), a
-  // position beyond 1e8 m, a covariance that is not symmetric or has a negative eigenvalue, or numbers that
-  // are not finite.
+  // position beyond 1e8 m, a matrix that is no covariance (is_covariance()), or numbers that are not finite.
   Status set_pose(const Se3& T_world_camera, const Matrix6& covariance);
 
   // For Config::budget: the duration of the last call of track(), by the caller's clock. The number of

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Part of the odometry: the window, the world and the learnt noise after a frame, and its result. Also poses
 // that the caller sets.
-#include "plvo/math/symmetric_eigen.hpp"
+#include "plvo/math/covariance.hpp"
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
 #include "plvo/odometry/stamp_error.hpp"
@@ -13,13 +13,6 @@ namespace {
 
 // Farther than any place on Earth, in any system of coordinates; a double still resolves 0.01 µm there.
 constexpr double kFarthestPose_m = 1e8;
-
-bool is_semidefinite_covariance(const Matrix6& C) {
-  if (!C.allFinite()) return false;
-  const double largest = C.cwiseAbs().maxCoeff();
-  return largest <= kMostPositionVariance && (C - C.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * largest &&
-         symmetric_eigen<6>(C).values.minCoeff() >= -1e-9 * largest;
-}
 
 void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
   counts.matched = matches.matched;
@@ -222,13 +215,14 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
       !(T_world_camera.t.cwiseAbs().maxCoeff() <= kFarthestPose_m))
     return {StatusCode::kInvalidArgument,
             "set_pose: the pose must be finite, its R a rotation matrix, its position within 1e8 m"};
-  if (!is_semidefinite_covariance(covariance))
+  if (!is_covariance(covariance))
     return {StatusCode::kInvalidArgument,
             "set_pose: the covariance must be finite, symmetric and without negative eigenvalues"};
   gravity_.forget();
   PoseWithCovariance pose;
   pose.T_world_camera = {renormalise(T_world_camera.R), T_world_camera.t};
   pose.covariance = covariance;
+  (void)settle(pose);  // finite, as checked above
   start_is_set_ = true;
   world_is_lost_ = false;
   window_.kept().clear();  // their poses belong to the old world
