@@ -150,6 +150,29 @@ TEST(ImageRepeats, ADepthStreamThatStopsIsNamedAndTheFramesAreLost) {
   EXPECT_LT(error_m(result, 21), 0.05);
 }
 
+// A lost frame with old depth and the next one agree on a motion. The frames are lost all the same, and
+// nothing has moved: the pose is that of the last good frame, and tracking goes on from it.
+TEST(ImageRepeats, ADepthStreamThatStopsWhileLostChangesNothing) {
+  constexpr int kElsewhere = 60;  // a view that shares nothing with those before
+  RepeatingCamera camera;
+  TrackResult before;
+  for (int i = 0; i < 7; ++i) before = camera.see(i, stamp(i));
+  ASSERT_EQ(before.state, TrackState::kTracking);
+  const std::int64_t reference = before.reference_stamp_ns;
+  for (int i = 0; i < 2; ++i) {
+    const TrackResult lost = camera.see(kElsewhere + i, 6, stamp(14 + i));
+    EXPECT_EQ(lost.state, TrackState::kLost) << i;
+    EXPECT_EQ(lost.T_world_camera.t, before.T_world_camera.t) << i;
+    EXPECT_EQ(lost.pose_covariance, before.pose_covariance) << i;
+    EXPECT_EQ(lost.reference_stamp_ns, reference) << i;
+    EXPECT_EQ(says(lost, "the depth stream has stopped"), i == 1) << lost.status.message();
+  }
+  const TrackResult result = camera.see(7, stamp(16));
+  EXPECT_EQ(result.state, TrackState::kTracking) << result.status.message();
+  EXPECT_EQ(result.reference_stamp_ns, reference);
+  EXPECT_LT(error_m(result, 7), 0.02);
+}
+
 TEST(ImageRepeats, DepthAtHalfTheRateOfColourIsNoFault) {
   RepeatingCamera camera;
   TrackResult result;

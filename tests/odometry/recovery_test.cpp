@@ -68,6 +68,8 @@ TEST(Recovery, RestoresTheOldPoseAtAKeptKeyframe) {
     TrackResult result = camera.see(kAway);
     EXPECT_EQ(result.state, TrackState::kInitialising);
     EXPECT_FALSE(result.relocalised);
+    EXPECT_EQ(result.ransac_iterations > 0, kept > 0) << "the kept keyframe was looked for";
+    EXPECT_EQ(result.points.matched + result.lines.matched, 0) << "and not recognised";
     EXPECT_GT(distance_to_truth(result, kAway), 0.2);
     int returns = 0;
     for (int view = kAway - 1; view >= 0; --view) {

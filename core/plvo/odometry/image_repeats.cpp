@@ -13,6 +13,11 @@ constexpr int kGridStep = 7;
 constexpr int kGridShift = 3;
 // A depth image with fewer readings on the grid is not compared: an empty one has nothing to repeat.
 constexpr int kLeastReadingsCompared = 50;
+// A depth camera in its slowest usual mode delivers six images a second.
+constexpr std::int64_t kOldestDepth_ns = 200'000'000;
+// A camera that stands still may see the same depth for ever, if the depth has no noise (a simulator). The
+// depth is called stopped when the camera has moved by this much since the image came (m and rad).
+constexpr double kMovedSinceDepth = 0.01;
 
 // FNV-1a over whole pixels. Grids that differ in one pixel never have the same hash.
 class GridHash {
@@ -62,20 +67,36 @@ std::uint64_t hash_of(const DepthView& depth, GrayView mask, int& readings) {
 
 }  // namespace
 
-void ImageRepeats::look(const RgbdFrame& frame, GrayView mask) {
-  int readings = 0;
-  const std::uint64_t colour = hash_of(frame.colour, mask);
-  const std::uint64_t depth = hash_of(frame.depth, mask, readings);
-  colour_is_repeated_ = has_frame_ && colour == colour_hash_;
-  depth_is_repeated_ = has_frame_ && depth == depth_hash_ && readings >= kLeastReadingsCompared;
-  if (!depth_is_repeated_) {
-    depth_first_ns_ = frame.stamp_ns;
-    depth_stamp_ns_ = frame.depth_stamp_ns;
-  }
-  depth_age_ns_ = elapsed_ns(depth_first_ns_, frame.stamp_ns);
-  colour_hash_ = colour;
-  depth_hash_ = depth;
+void ColourStream::look(const RgbdFrame& frame, GrayView mask) {
+  const std::uint64_t hash = hash_of(frame.colour, mask);
+  is_repeated_ = has_frame_ && hash == hash_;
+  hash_ = hash;
   has_frame_ = true;
+}
+
+void DepthStream::look(const RgbdFrame& frame, GrayView mask) {
+  int readings = 0;
+  const std::uint64_t hash = hash_of(frame.depth, mask, readings);
+  is_repeated_ = has_frame_ && hash == hash_ && readings >= kLeastReadingsCompared;
+  if (!is_repeated_) {
+    has_stopped_ = false;
+    first_ns_ = frame.stamp_ns;
+    first_depth_stamp_ns_ = frame.depth_stamp_ns;
+  }
+  age_ns_ = elapsed_ns(first_ns_, frame.stamp_ns);
+  hash_ = hash;
+  has_frame_ = true;
+}
+
+bool DepthStream::is_too_old_for(const Se3& T_current_first) const {
+  return age_ns_ > kOldestDepth_ns && boxminus(T_current_first, Se3{}).norm() > kMovedSinceDepth;
+}
+
+Status DepthStream::explain_stop(const char* first_word) const {
+  return Status(StatusCode::kDamaged, first_word)
+      .append("the depth image has been the same for ")
+      .append(static_cast<std::ptrdiff_t>(age_ns_ / 1'000'000))
+      .append(" ms while the colour image moves: the depth stream has stopped; restart the camera");
 }
 
 }  // namespace plvo

@@ -9,32 +9,50 @@
 
 #include <cstdint>
 
+#include "plvo/base/status.hpp"
 #include "plvo/image/frame.hpp"
+#include "plvo/math/se3.hpp"
 
 namespace plvo {
 
-class ImageRepeats {
+class ColourStream {
  public:
-  // Takes in the images of the next frame, whose sizes were checked. mask: as in Config; masked pixels are
-  // not compared.
+  // Takes in the image of the next frame, whose size was checked. mask: as in Config; masked pixels are not
+  // compared.
   void look(const RgbdFrame& frame, GrayView mask = {});
-  void forget() { *this = ImageRepeats(); }
-
-  // Whether the colour image of the last frame, or its depth image, is that of the frame before. A depth
-  // image with hardly any reading is never called a repeated one.
-  bool colour_is_repeated() const { return colour_is_repeated_; }
-  bool depth_is_repeated() const { return depth_is_repeated_; }
-  // Time since this depth image came for the first time.
-  std::int64_t depth_age_ns() const { return depth_age_ns_; }
-  // Stamp of the depth image when it came for the first time.
-  std::int64_t depth_stamp_ns() const { return depth_stamp_ns_; }
+  void forget() { *this = ColourStream(); }
+  // Whether the image of the last frame is that of the frame before.
+  bool is_repeated() const { return is_repeated_; }
 
  private:
-  bool has_frame_ = false;
-  bool colour_is_repeated_ = false, depth_is_repeated_ = false;
-  std::uint64_t colour_hash_ = 0, depth_hash_ = 0;
-  std::int64_t depth_first_ns_ = 0;  // colour's stamp of the frame in which this depth image came first
-  std::int64_t depth_age_ns_ = 0, depth_stamp_ns_ = 0;
+  bool has_frame_ = false, is_repeated_ = false;
+  std::uint64_t hash_ = 0;
+};
+
+// A depth image that is repeated for a short time comes from a slower depth camera and is used. If it stays
+// for longer while the camera moves, the stream has stopped: the frames are lost until a new image comes.
+class DepthStream {
+ public:
+  // As above. An image with hardly any reading is never called a repeated one.
+  void look(const RgbdFrame& frame, GrayView mask = {});
+  void forget() { *this = DepthStream(); }
+  bool is_repeated() const { return is_repeated_; }
+  // Stamp of the image when it came for the first time.
+  std::int64_t first_stamp_ns() const { return first_depth_stamp_ns_; }
+
+  // Whether the image is too old, with this motion since it came for the first time.
+  bool is_too_old_for(const Se3& T_current_first) const;
+  // Notes that the stream has stopped; this holds until a new image comes.
+  void stop() { has_stopped_ = true; }
+  void forget_stop() { has_stopped_ = false; }
+  bool has_stopped() const { return has_stopped_; }
+  Status explain_stop(const char* first_word) const;
+
+ private:
+  bool has_frame_ = false, is_repeated_ = false, has_stopped_ = false;
+  std::uint64_t hash_ = 0;
+  std::int64_t first_ns_ = 0;  // colour's stamp of the frame in which this image came first
+  std::int64_t age_ns_ = 0, first_depth_stamp_ns_ = 0;
 };
 
 }  // namespace plvo

@@ -4,7 +4,8 @@
 
 #include <new>
 
-#include "plvo/odometry/tracking/motion_search.hpp"
+#include "plvo/odometry/elapsed.hpp"
+#include "plvo/odometry/stamp_error.hpp"
 
 namespace plvo {
 namespace {
@@ -80,10 +81,16 @@ Odometry::Odometry() = default;
 [[gnu::noinline]] TrackResult Odometry::track(const RgbdFrame& input, const MotionPrior& prior) {
   memory_.views.clear();
   const Status refusal = check(input, prior);
-  if (refusal.ok()) repeats_.look(input, config_->mask);
-  TrackResult result = !refusal.ok()      ? refuse(input, refusal)
-                       : is_passed_over() ? pass_over(input, prior)
-                                          : process(input, prior);
+  if (refusal.ok()) {
+    colour_.look(input, config_->mask);
+    depth_.look(input, config_->mask);
+  }
+  // After a lost frame, the motion is searched even if the image is repeated: there is no pose from which to
+  // predict.
+  const bool is_passed_over = window_.has_last() && !lost_since_ns_ && colour_.is_repeated();
+  TrackResult result = !refusal.ok()    ? refuse(input, refusal)
+                       : is_passed_over ? pass_over(input, prior)
+                                        : process(input, prior);
   if (make_sound(result)) return result;
   forget_world();
   result.world = world_;
@@ -118,40 +125,35 @@ TrackResult Odometry::process(const RgbdFrame& input, const MotionPrior& prior) 
   const double brightness = extraction.prepare_image(context, input.colour);
 
   // Predict: the motion since each reference, and that during the exposure.
-  PredictedMotion predicted = predict(input, prior);
+  const PredictedMotion predicted =
+      predict(window_, camera_, input.stamp_ns, propagate(input.stamp_ns, prior),
+              depth_after_colour_s(camera_, depth_.first_stamp_ns(), input.stamp_ns));
 
   // Associate and estimate: for one first motion after the other, until one is accepted.
   const DepthSampler depth = extraction.depth_sampler(input, config_->depth_noise);
-  const CurrentFrame frame{context, extraction, depth, predicted, window_.begin_frame()};
+  const CurrentFrame frame{context, extraction, depth, predicted, window_.begin_frame(), prior};
   frame.features.clear(budget_.capacity());
   frame.features.stamp_ns = input.stamp_ns;
   extraction.detect(context, depth.with(predicted.exposure), wants_points(), frame.features);
-  depth_has_stopped_ = depth_has_stopped_ && repeats_.depth_is_repeated();
   TrackedMotion tracked;
-  if (!depth_has_stopped_) {
-    if (window_.has_keyframe())
-      search_motion(frame, memory_.tracking, tracked);
-    else
-      resume(frame, tracked);
-    if (!tracked.ok()) search_after_loss(input, prior, frame, predicted, tracked);
-  }
-  depth_has_stopped_ = depth_has_stopped_ || depth_has_stopped(tracked);
+  if (!depth_.has_stopped()) search(frame, tracked);
 
   // Decide: what the frame is, and which references stay. Update: the window, the world, the learnt noise.
-  TrackResult result = conclude(frame, tracked, prior);
+  TrackResult result = conclude(frame, tracked);
 
   // Relocalise: where the view of an earlier keyframe is back.
   if (result.state == TrackState::kTracking && !result.relocalised) relocalise(frame, tracked, result);
+  result.ransac_iterations = tracked.ransac_iterations;
+  result.lm_iterations = tracked.lm_iterations;
   result.mean_brightness = brightness;
   result.stage_ns = times;
   return result;
 }
 
 // Not inlined, as the steps that it calls: what a step needs on the stack is there during it alone.
-[[gnu::noinline]] TrackResult Odometry::conclude(const CurrentFrame& frame, const TrackedMotion& tracked,
-                                                 const MotionPrior& prior) {
-  const Decision decision = decide(frame, tracked, prior);
-  return update(frame, decision, prior, tracked);
+[[gnu::noinline]] TrackResult Odometry::conclude(const CurrentFrame& frame, const TrackedMotion& tracked) {
+  const Decision decision = decide(frame, tracked);
+  return update(frame, decision, tracked);
 }
 
 Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
@@ -170,7 +172,7 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
   // Within this range the squares of depths and of inverse depths are far from the limits of a double.
   if (!(input.depth.metres_per_unit >= 1e-6 && input.depth.metres_per_unit < 1))
     return {StatusCode::kInvalidArgument, "metres_per_unit of the depth must lie between 1e-6 and 1"};
-  if (has_stamp_ && input.stamp_ns <= last_stamp_ns_)
+  if (last_stamp_ns_ && input.stamp_ns <= *last_stamp_ns_)
     return {StatusCode::kInvalidArgument, "the frame is not later than the one before; frame ignored"};
   return prior.validate();
 }
@@ -179,21 +181,64 @@ Status Odometry::check(const RgbdFrame& input, const MotionPrior& prior) const {
 [[gnu::noinline]] TrackResult Odometry::refuse(const RgbdFrame& input, const Status& refusal) const {
   TrackResult result;
   result.stamp_ns = input.stamp_ns;
+  result.world = world_;
   result.state = TrackState::kLost;
   result.status = refusal;
   const bool has_pose = window_.has_last();
-  report(window_[has_pose ? window_.last() : window_.current()].pose,
-         has_pose ? window_.last_frame().velocity.value : Vector6::Zero(), result);
+  report_pose(window_[has_pose ? window_.last() : window_.current()].pose,
+              has_pose ? window_.last_frame().velocity.value : Vector6::Zero(), camera_.stamp_sigma_s,
+              result);
   return result;
+}
+
+// A repeated colour image shows no motion: the pose at the stamp is predicted, by the priors or by the last
+// velocity. Nothing that the next frame needs is changed.
+[[gnu::noinline]] TrackResult Odometry::pass_over(const RgbdFrame& input, const MotionPrior& prior) {
+  propagated_prior_ = propagate(input.stamp_ns, prior);
+  last_stamp_ns_ = input.stamp_ns;
+  Se3 T_current_last = propagated_prior_.T_current_last();
+  Matrix6 covariance = propagated_prior_.covariance();
+  const Window::Frame& last = window_.last_frame();
+  if (!propagated_prior_.known()) {
+    const std::int64_t elapsed = elapsed_ns(last.features.stamp_ns, input.stamp_ns);
+    T_current_last = coasted_motion(window_, input.stamp_ns);
+    covariance.setZero();
+    add_process_noise(config_->references, static_cast<double>(elapsed) * 1e-9, covariance);
+  }
+  const SensedPose predicted = pose_after(window_, gravity_, T_current_last, covariance, prior);
+  TrackResult result;
+  result.state = TrackState::kTracking;
+  result.status = {StatusCode::kOk, "the colour image is that of the frame before: the pose is predicted"};
+  result.repeated = true;
+  result.world = world_;
+  result.stamp_ns = input.stamp_ns;
+  result.reference_stamp_ns = window_[window_.base()].features.stamp_ns;
+  result.T_camera_reference = predicted.T_camera_reference;
+  result.motion_covariance = predicted.motion_covariance;
+  result.feature_step = budget_.step();
+  report_pose(predicted.pose, last.velocity.value, camera_.stamp_sigma_s, result);
+  return result;
+}
+
+// The motion since the last good frame by other sensors, up to a frame with this prior.
+PropagatedPrior Odometry::propagate(std::int64_t stamp_ns, const MotionPrior& prior) const {
+  PropagatedPrior sensed = propagated_prior_;
+  if (!window_.has_last()) return sensed;
+  const Window::Frame& last = window_.last_frame();
+  const bool continues = last.velocity.continues(elapsed_ns(last.features.stamp_ns, stamp_ns));
+  sensed.extend(prior, continues ? last.velocity.value : Vector6::Zero(),
+                static_cast<double>(elapsed_ns(*last_stamp_ns_, stamp_ns)) * 1e-9, config_->references);
+  return sensed;
 }
 
 // Whether the current frame needs points: always where only descriptors find them again, otherwise if the
 // frame will be matched later.
 bool Odometry::wants_points() const {
-  if (!window_.has_keyframe() || !config_->points.registered || relocalisation_is_due()) return true;
+  if (!window_.has_keyframe() || !config_->points.registered) return true;
   const ReferenceConfig& references = config_->references;
+  if (relocalisation_.is_due(window_.kept(), references)) return true;
   if (references.policy == ReferencePolicy::kPreviousFrame) return true;
-  return references_of(references.policy) > 1 && !recent_is_young();
+  return references_of(references.policy) > 1 && !window_.recent_is_young(references.recent_frames);
 }
 
 void Odometry::reset() {
@@ -204,16 +249,15 @@ void Odometry::reset() {
   window_.reset();
   view_slot_ = window_.current();
   noise_ = config_->noise.initial;
-  last_stamp_ns_ = 0;
-  has_stamp_ = false;
-  repeats_.forget();
+  last_stamp_ns_.reset();
+  colour_.forget();
+  depth_.forget();
   carried_.forget();
-  carried_told_ = 0;
   memory_.views.clear();
 }
 
 FeatureView Odometry::features() const {
-  if (!has_stamp_) return {};
+  if (!last_stamp_ns_) return {};
   FeatureView view = memory_.views.view();
   view.image = memory_.extraction.pyramid().level(0);
   view.keypoints = window_[view_slot_].features.points.keypoints.span();

@@ -24,12 +24,15 @@
 #include "plvo/inertial/imu_integrator.hpp"
 #include "plvo/motion/motion_prior.hpp"
 #include "plvo/odometry/config.hpp"
+#include "plvo/odometry/decision.hpp"
 #include "plvo/odometry/feature_views.hpp"
 #include "plvo/odometry/features/feature_budget.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/gravity_filter.hpp"
 #include "plvo/odometry/image_repeats.hpp"
+#include "plvo/odometry/prediction.hpp"
 #include "plvo/odometry/propagated_prior.hpp"
+#include "plvo/odometry/recovery.hpp"
 #include "plvo/odometry/track_result.hpp"
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
@@ -124,100 +127,25 @@ class Odometry {
   KeyframeView keyframe() const;
 
  private:
-  // How a frame ends, and what follows from it.
-  struct Decision {
-    enum class Outcome : std::uint8_t {
-      kTrack,  // the motion was found
-      kStart,  // the frame starts a trajectory: the first one, or another one after a loss
-      kWait,   // there is no trajectory, and the frame cannot start one
-      kLose,   // the motion was not found
-    };
-    enum class Gravity : std::uint8_t { kRead, kLevel, kTaken };  // how kStart takes in gravity
-    Outcome outcome = Outcome::kTrack;
-    Status status;
-    Window::Kept kept;        // kTrack: the references that stay
-    PoseWithCovariance pose;  // kStart
-    Gravity gravity = Gravity::kRead;
-    bool new_world = false;  // the position in the old world is not known any more
-    bool usable = false;     // kLose: the frame has enough features for the next one to be matched with it
-  };
-  // A pose after a motion that the images did not observe.
-  struct SensedPose {
-    Se3 T_camera_reference;
-    Matrix6 motion_covariance;
-    PoseWithCovariance pose;
-  };
-
-  // odometry.cpp: the pipeline.
-  TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
+  // The steps of a frame, in their order. Before update() none changes the state.
   Status check(const RgbdFrame& input, const MotionPrior& prior) const;
-  TrackResult conclude(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior);
-  TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
+  TrackResult process(const RgbdFrame& input, const MotionPrior& prior);
+  PropagatedPrior propagate(std::int64_t stamp_ns, const MotionPrior& prior) const;
   bool wants_points() const;
-
-  // odometry_predict.cpp: the predicted pose of the camera and the references.
-  PredictedMotion predict(const RgbdFrame& input, const MotionPrior& prior) const;
-  Reference reference_of(int slot, std::int64_t stamp_ns, const PredictedMotion& predicted) const;
-  double depth_after_colour_s(std::int64_t stamp_ns) const;
-  Se3 coasted_motion(std::int64_t stamp_ns) const;
-  PoseWithCovariance unobserved_pose(std::int64_t stamp_ns) const;
-  SensedPose sensed_pose(const CurrentFrame& frame, const MotionPrior& prior) const;
-  SensedPose pose_after(const Se3& T_current_last, const Matrix6& covariance, const MotionPrior& prior) const;
-
-  // odometry_decide.cpp: the outcome of a frame, and which references are still matched.
-  Decision decide(const CurrentFrame& frame, const TrackedMotion& tracked, const MotionPrior& prior) const;
-  void decide_start(const CurrentFrame& frame, const MotionPrior& prior, Decision& decision) const;
-  Window::Kept still_good() const;
-  bool still_seen(int slot, std::size_t reference, double share) const;
-  bool affordable(int slot) const;
-  // Whether there is a recent frame that may be matched once more.
-  bool recent_is_young() const {
-    return window_.has_recent() && window_.recent_age() + 1 < config_->references.recent_frames;
-  }
-
-  // odometry_update.cpp: the state after the frame, and its result.
-  TrackResult update(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     const TrackedMotion& tracked);
-  TrackResult accept(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                     const TrackedMotion& tracked);
-  TrackResult start(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                    const TrackedMotion& tracked);
-  TrackResult lose(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior,
-                   const TrackedMotion& tracked);
-  Status tell_carried();
-  void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool keyframe);
-  void show_tracks();
-  TrackResult begin_result(const CurrentFrame& frame, const TrackedMotion& tracked);
-  void report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const;
-  void forget_world();
-
-  // odometry_repeats.cpp: images that the sensor delivers again.
-  bool is_passed_over() const;
-  TrackResult pass_over(const RgbdFrame& input, const MotionPrior& prior);
-  void note_depth();
-  bool depth_has_stopped(const TrackedMotion& tracked) const;
-  Status stopped_depth(const char* first_word) const;
-
-  // odometry_loss.cpp: lost frames are matched with each other, and references are given up.
-  void search_after_loss(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-                         PredictedMotion& predicted, TrackedMotion& tracked);
-  void predict_from_lost(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
-  void predict_anew(const RgbdFrame& input, const MotionPrior& prior, PredictedMotion& predicted) const;
-  bool search_from_lost(const RgbdFrame& input, const MotionPrior& prior, const CurrentFrame& frame,
-                        PredictedMotion& predicted, TrackedMotion& tracked);
-  bool lost_too_long(std::int64_t stamp_ns) const;
-  void note_loss(const CurrentFrame& frame, const Decision& decision, const MotionPrior& prior);
-
-  // recovery.cpp: relocalisation when the view of a kept keyframe comes back.
-  void resume(const CurrentFrame& frame, TrackedMotion& tracked);
+  void search(const CurrentFrame& frame, TrackedMotion& tracked);
+  TrackResult conclude(const CurrentFrame& frame, const TrackedMotion& tracked);
+  Decision decide(const CurrentFrame& frame, const TrackedMotion& tracked) const;
+  TrackResult update(const CurrentFrame& frame, const Decision& decision, const TrackedMotion& tracked);
+  void accept(const CurrentFrame& frame, const Decision& decision, const TrackedMotion& tracked,
+              TrackResult& result);
+  void start(const CurrentFrame& frame, const Decision& decision, TrackResult& result);
+  void lose(const CurrentFrame& frame, const Decision& decision, TrackResult& result);
+  void note_pose(TrackResult& result);
   void relocalise(const CurrentFrame& frame, TrackedMotion& tracked, TrackResult& result);
-  bool recognise(int slot, const CurrentFrame& frame, const Vector6& velocity,
-                 const PoseWithCovariance& believed, TrackedMotion& tracked);
-  void move_to_relocalised_pose(int slot, const MotionEstimate& motion);
-  bool relocalisation_is_due() const {
-    return !window_.kept().empty() &&
-           frames_since_relocalisation_ + 1 >= config_->references.relocalisation_interval_frames;
-  }
+  // Frames without a search, and results without a pose.
+  TrackResult refuse(const RgbdFrame& input, const Status& refusal) const;
+  TrackResult pass_over(const RgbdFrame& input, const MotionPrior& prior);
+  void forget_world();
 
   Arena arena_;
   CameraModel camera_;
@@ -227,23 +155,18 @@ class Odometry {
   FeatureBudget budget_;
 
   Window window_;
-  int frames_since_relocalisation_ = 0;
+  RelocalisationTurn relocalisation_;
   PropagatedPrior propagated_prior_;  // since the last good frame
   GravityFilter gravity_;
-  NoiseScales noise_;               // learnt so far
-  std::int64_t last_stamp_ns_ = 0;  // of the last frame that was processed, good or not
-  bool has_stamp_ = false;
-  bool start_is_set_ = false;       // by set_pose()
-  bool world_is_lost_ = false;      // and the next one has not started
-  bool is_lost_ = false;            // the last frame had no pose from its images
-  std::uint32_t world_ = 0;         // TrackResult::world
-  std::int64_t lost_since_ns_ = 0;  // stamp of the first lost frame
-  ImageRepeats repeats_;
+  NoiseScales noise_;                          // learnt so far
+  std::optional<std::int64_t> last_stamp_ns_;  // of the last frame that was processed, good or not
+  std::optional<std::int64_t> lost_since_ns_;  // stamp of the first lost frame since a pose from images
+  bool start_is_set_ = false;                  // by set_pose()
+  bool world_is_lost_ = false;                 // and the next one has not started
+  std::uint32_t world_ = 0;                    // TrackResult::world
+  ColourStream colour_;
+  DepthStream depth_;
   CarriedCells carried_;
-  int carried_told_ = 0;  // number of carried cells when a status last reported them
-  Se3 T_world_depth_;     // where the camera was when the last depth image came
-  bool has_depth_pose_ = false;
-  bool depth_has_stopped_ = false;
   FeatureCounts points_found_;  // of the latest frame in which points were searched
   int view_slot_ = 0;           // whose keypoints features() shows
 };

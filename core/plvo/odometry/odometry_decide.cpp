@@ -2,6 +2,7 @@
 // Part of the odometry: what the outcome of a frame is, and why.
 #include "plvo/math/covariance.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/odometry/recovery.hpp"
 
 namespace plvo {
 namespace {
@@ -37,106 +38,108 @@ Status explain_loss(const FrameFeatures& features, const TrackedMotion& tracked,
   }
 }
 
-}  // namespace
-
-[[gnu::noinline]] Odometry::Decision Odometry::decide(const CurrentFrame& frame, const TrackedMotion& tracked,
-                                                      const MotionPrior& prior) const {
-  Decision decision;
-  const char* const first_word = frame.predicted.sensed.known() ? "predicted: " : "lost: ";
-  if (depth_has_stopped_) {
-    decision.outcome = Decision::Outcome::kLose;
-    decision.status = stopped_depth(first_word);
-  } else if (tracked.ok()) {
-    decision.outcome = Decision::Outcome::kTrack;
-    if (tracked.restarted)
-      decision.status = {StatusCode::kOk,
-                         "tracking restarts from the lost frame before: the motion up to that frame was not "
-                         "observed, and the covariance includes it"};
-    decision.kept = still_good();
-  } else if (window_.has_keyframe()) {
-    decision.outcome = Decision::Outcome::kLose;
-    decision.status = explain_loss(frame.features, tracked, first_word);
-    decision.usable = frame.features.count_3d() >= kMinStartFeatures;
-  } else if (frame.features.count_3d() >= kMinStartFeatures) {
-    decide_start(frame, prior, decision);
-  } else if (window_.has_last()) {
-    decision.outcome = Decision::Outcome::kLose;
-    decision.status = hardly_anything(StatusCode::kTooFewFeatures, first_word, frame.features);
-  } else {
-    decision.outcome = Decision::Outcome::kWait;
-    decision.status =
-        Status(StatusCode::kTooFewFeatures,
-               "waiting for a first frame with texture and depth; 3D points and lines in this one: ")
-            .append(frame.features.count_3d());
-  }
-  return decision;
+// Whether the depth image is an old one, and the camera has moved since it came.
+[[gnu::noinline]] bool is_too_old(const DepthStream& depth, const Window& window,
+                                  const TrackedMotion& tracked) {
+  const std::optional<Se3>& T_world_depth = window.T_world_depth();
+  if (!tracked.ok() || !T_world_depth) return false;
+  const Se3& T_world_base = window[tracked.base.slot].pose.T_world_camera;
+  return depth.is_too_old_for(tracked.motion.T_current_reference * T_world_base.inverse() * *T_world_depth);
 }
 
 // The first frame of a world defines it, unless set_pose() or gravity did. After a loss the frame starts at
 // the last good pose propagated by the priors, or at that pose itself with the process noise of all the
 // unobserved time. If the position may then be anywhere, the frame is the first of another world.
-void Odometry::decide_start(const CurrentFrame& frame, const MotionPrior& prior, Decision& decision) const {
+void decide_start(const Window& window, const GravityFilter& gravity, const CurrentFrame& frame,
+                  bool start_is_set, Decision& decision) {
+  const Config& config = frame.context.config;
   decision.outcome = Decision::Outcome::kStart;
-  bool first = !window_.has_last();
+  bool first = !window.has_last();
   if (first) {
-    decision.pose = window_.current_frame().pose;
+    decision.pose = window.current_frame().pose;
   } else if (frame.predicted.sensed.known()) {
-    decision.pose = sensed_pose(frame, prior).pose;
+    decision.pose = sensed_pose(window, gravity, frame, true).pose;
     decision.gravity = Decision::Gravity::kTaken;
   } else {
-    decision.pose = unobserved_pose(frame.stamp_ns());
+    decision.pose = unobserved_pose(window, config.references, frame.stamp_ns());
   }
   if (!first && may_be_anywhere(decision.pose.covariance)) {
     first = decision.new_world = true;
     decision.pose = PoseWithCovariance();
     decision.gravity = Decision::Gravity::kRead;
   }
-  if (!first || !config_->level_world || (start_is_set_ && !decision.new_world)) return;
+  if (!first || !config.level_world || (start_is_set && !decision.new_world)) return;
   decision.gravity = Decision::Gravity::kLevel;
-  if (prior.gravity) return;
+  if (frame.prior.gravity) return;
   decision.outcome = Decision::Outcome::kWait;
   decision.status = {
       StatusCode::kNotFound,
       "waiting for gravity: Config::level_world wants the first frame's prior to say where down is"};
 }
 
-// Judges the references by the inliers of the last estimate.
-Window::Kept Odometry::still_good() const {
-  const ReferenceConfig& references = config_->references;
-  const bool window = references.policy == ReferencePolicy::kWindow;
-  const bool both = window_.has_recent();
+// Which references stay, by the inliers of the last estimate. A reference with more features than the budget
+// allows would keep the cost as high as before.
+Window::Kept still_good(const Window& window, const ReferenceTracking& tracking, const Config& config,
+                        const FeatureCapacity& capacity, const MotionBase& base) {
+  const ReferenceConfig& references = config.references;
+  const bool is_window = references.policy == ReferencePolicy::kWindow;
+  const bool all = base.kind == MotionBase::Kind::kReferences;
+  const bool both = all && window.has_recent();
   const auto good = [&](int slot, std::size_t index, double share) {
-    return affordable(slot) && still_seen(slot, index, share);
+    const FrameFeatures& features = window[slot].features;
+    return features.points.keypoints.size() <= capacity.keypoints &&
+           features.lines.segments.size() <= capacity.segments &&
+           still_seen(features, tracking.tracks(index), share);
   };
   Window::Kept kept;
-  kept.older = window_.has_older() && good(window_.older(), both ? 2 : 1, references.older_inlier_ratio);
+  kept.older = all && window.has_older() && good(window.older(), both ? 2 : 1, references.older_inlier_ratio);
   kept.keyframe =
       references.policy != ReferencePolicy::kPreviousFrame &&
-      good(window_.keyframe(), 0, window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
+      good(base.slot, 0, is_window ? references.window_inlier_ratio : references.keyframe_inlier_ratio);
   if (both)
-    kept.recent = recent_is_young() && good(window_.recent(), 1, kRecentInlierRatio);
+    kept.recent =
+        window.recent_is_young(references.recent_frames) && good(window.recent(), 1, kRecentInlierRatio);
   else  // Without registration find() is the whole estimate, with the base alone.
-    kept.recent = !config_->points.registered || references_of(references.policy) == 1;
+    kept.recent = !config.points.registered || references_of(references.policy) == 1;
   kept.recent = kept.recent && kept.keyframe;
   return kept;
 }
 
-// Whether this share of the features of the frame in `slot` were inliers of the last estimate. The frame was
-// the reference of this index.
-bool Odometry::still_seen(int slot, std::size_t reference, double share) const {
-  const FrameFeatures& features = window_[slot].features;
-  std::size_t available = features.lines.count_3d;
-  for (const Point3d& point : features.points.points.first(features.points.keypoints.size()))
-    available += point.p.z() > 0 ? 1 : 0;
-  return memory_.tracking.tracks(reference).inliers >= share * static_cast<double>(available);
-}
+}  // namespace
 
-// A frame with more features than the budget allows would keep the cost as high as before.
-bool Odometry::affordable(int slot) const {
-  const FrameFeatures& features = window_[slot].features;
-  const FeatureCapacity capacity = budget_.capacity();
-  return features.points.keypoints.size() <= capacity.keypoints &&
-         features.lines.segments.size() <= capacity.segments;
+[[gnu::noinline]] Decision Odometry::decide(const CurrentFrame& frame, const TrackedMotion& tracked) const {
+  Decision decision;
+  const FrameFeatures& features = frame.features;
+  const bool enough = features.count_3d() >= kMinStartFeatures;
+  const char* const first_word = frame.predicted.sensed.known() ? "predicted: " : "lost: ";
+  if (depth_.has_stopped() || is_too_old(depth_, window_, tracked)) {
+    decision.outcome = Decision::Outcome::kLose;
+    decision.depth_has_stopped = true;
+    decision.status = depth_.explain_stop(first_word);
+  } else if (tracked.ok()) {
+    decision.outcome = Decision::Outcome::kTrack;
+    if (tracked.base.kind == MotionBase::Kind::kLost)
+      decision.status = {StatusCode::kOk,
+                         "tracking restarts from the lost frame before: the motion up to that frame was not "
+                         "observed, and the covariance includes it"};
+    decision.kept = still_good(window_, memory_.tracking, *config_, budget_.capacity(), tracked.base);
+  } else if (window_.has_keyframe() && !tracked.gives_up) {
+    decision.outcome = Decision::Outcome::kLose;
+    decision.status = explain_loss(features, tracked, first_word);
+    decision.usable = enough;
+  } else if (enough) {
+    decide_start(window_, gravity_, frame, start_is_set_, decision);
+  } else if (window_.has_last()) {
+    decision.outcome = Decision::Outcome::kLose;
+    decision.status = hardly_anything(StatusCode::kTooFewFeatures, first_word, features);
+  } else {
+    decision.outcome = Decision::Outcome::kWait;
+    decision.status =
+        Status(StatusCode::kTooFewFeatures,
+               "waiting for a first frame with texture and depth; 3D points and lines in this one: ")
+            .append(features.count_3d());
+  }
+  return decision;
 }
 
 }  // namespace plvo

@@ -4,6 +4,7 @@
 #include "plvo/math/covariance.hpp"
 #include "plvo/odometry/elapsed.hpp"
 #include "plvo/odometry/odometry.hpp"
+#include "plvo/odometry/recovery.hpp"
 #include "plvo/odometry/stamp_error.hpp"
 #include "plvo/odometry/tracking/carried_features.hpp"
 #include "plvo/odometry/tracking/landmark_records.hpp"
@@ -14,84 +15,21 @@ namespace {
 // Farther than any place on Earth, in any system of coordinates; a double still resolves 0.01 µm there.
 constexpr double kFarthestPose_m = 1e8;
 
-void count_matches(const MatchCounts& matches, FeatureCounts& counts) {
-  counts.matched = matches.matched;
-  counts.inliers = matches.inliers;
+// The counts of a frame. points: those of the latest frame in which points were searched.
+void count_features(const FeatureCounts& points, const CurrentFrame& frame, const TrackedMotion& tracked,
+                    TrackResult& result) {
+  result.points = points;
+  result.points.matched = tracked.points.matched;
+  result.points.inliers = tracked.points.inliers;
+  result.lines = count(frame.features.lines);
+  result.lines.matched = tracked.lines.matched;
+  result.lines.inliers = tracked.lines.inliers;
 }
 
-}  // namespace
-
-[[gnu::noinline]] TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision,
-                                               const MotionPrior& prior, const TrackedMotion& tracked) {
-  view_slot_ = window_.current();
-  memory_.views.show(frame.features.lines);
-  last_stamp_ns_ = frame.stamp_ns();
-  has_stamp_ = true;
-  propagated_prior_ = frame.predicted.sensed;
-  switch (decision.outcome) {
-    case Decision::Outcome::kTrack: return accept(frame, decision, prior, tracked);
-    case Decision::Outcome::kLose: return lose(frame, decision, prior, tracked);
-    default: return start(frame, decision, prior, tracked);
-  }
-}
-
-[[gnu::noinline]] TrackResult Odometry::accept(const CurrentFrame& frame, const Decision& decision,
-                                               const MotionPrior& prior, const TrackedMotion& tracked) {
-  const MotionEstimate& motion = tracked.motion;
-  const Window::Kept& kept = decision.kept;
-  if (!tracked.relocalised) show_tracks();
-  // A frame that has come back to an earlier keyframe was not matched with the references.
-  const std::span<const Reference> matched =
-      tracked.relocalised ? std::span<const Reference>() : frame.predicted.references();
-  for (std::size_t r = 0; r < matched.size(); ++r)
-    if (FrameFeatures* features = window_.find(matched[r].features); features != nullptr)
-      note_records(memory_.tracking.tracks(r), *features);
-  if (!kept.recent) {
-    if (!matched.empty())
-      vote_for_carried(frame, matched[0], memory_.tracking.tracks(0), motion.T_current_reference, carried_);
-    make_reference(frame, tracked.exposure, !kept.keyframe);
-    inherit_records(matched, memory_.tracking, frame);
-  }
-  window_.remove_carried(carried_);
-  TrackResult result = begin_result(frame, tracked);
-  result.state = TrackState::kTracking;
-  result.restarted = tracked.restarted;
-  result.status = tracked.restarted ? decision.status : tell_carried();
-  result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
-  result.T_camera_reference = motion.T_current_reference;
-  const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
-                                                config_->noise.common_mode_share);
-  window_.set_motion({motion.C_H, common_mode});
-  const Matrix6 covariance = window_.last_motion().total();
-  PoseWithCovariance from = window_[window_.keyframe()].pose;
-  PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance);
-  if (prior.gravity) {
-    gravity_.read(*prior.gravity, from, pose);
-    window_.move_keyframe(from);
-  }
-  window_.set_pose(window_.current(), pose);
-  window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, frame.stamp_ns()));
-  const Vector6& velocity = window_.current_frame().velocity.value;
-  result.motion_covariance =
-      covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
-                                              window_[window_.keyframe()].velocity.value,
-                                              camera_.stamp_sigma_s);
-  is_lost_ = false;
-  propagated_prior_.restart();
-  learn(config_->noise, tracked.observed, noise_);
-  window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
-  note_depth();
-  result.relocalised = tracked.relocalised;
-  report(window_.last_frame().pose, window_.last_frame().velocity.value, result);
-  return result;
-}
-
-// A status that says where in the image something travels with the camera. It is given when this is found,
-// and again when it has grown to more than twice as many cells.
-Status Odometry::tell_carried() {
-  if (carried_.count() <= 2 * carried_told_) return {};
-  carried_told_ = carried_.count();
-  const PixelBounds bounds = carried_.bounds();
+// A status that says where in the image something travels with the camera.
+Status tell_carried(CarriedCells& carried) {
+  if (!carried.take_news()) return {};
+  const PixelBounds bounds = carried.bounds();
   return Status(StatusCode::kOk,
                 "a part of the image travels with the camera; its points are left out: columns ")
       .append(bounds.left)
@@ -103,97 +41,170 @@ Status Odometry::tell_carried() {
       .append(bounds.bottom - 1);
 }
 
-// Makes the current frame the keyframe and the last good frame, without a motion before it. A frame that
-// cannot be that is left out, and the odometry waits for the next one.
-[[gnu::noinline]] TrackResult Odometry::start(const CurrentFrame& frame, const Decision& decision,
-                                              const MotionPrior& prior, const TrackedMotion& tracked) {
-  if (decision.new_world) forget_world();
-  TrackResult result = begin_result(frame, tracked);
-  result.state = TrackState::kInitialising;
-  result.status = decision.status;
-  if (decision.outcome == Decision::Outcome::kWait) {
-    report(window_.current_frame().pose, Vector6::Zero(), result);
-    return result;
+// Prepares the features and the image of the current frame for the next ones.
+void make_reference(const CurrentFrame& frame, const Exposure& exposure, bool is_keyframe,
+                    ReferenceTracking& tracking) {
+  frame.lift_as_reference(exposure, is_keyframe);
+  tracking.keep_image(frame.extraction.pyramid(), frame.stamp_ns());
+}
+
+}  // namespace
+
+[[gnu::noinline]] TrackResult Odometry::update(const CurrentFrame& frame, const Decision& decision,
+                                               const TrackedMotion& tracked) {
+  view_slot_ = window_.current();
+  memory_.views.show(frame.features.lines);
+  last_stamp_ns_ = frame.stamp_ns();
+  propagated_prior_ = frame.predicted.sensed;
+  if (decision.depth_has_stopped)
+    depth_.stop();
+  else if (tracked.gives_up)
+    window_.give_up();
+  TrackResult result;
+  switch (decision.outcome) {
+    case Decision::Outcome::kTrack: accept(frame, decision, tracked, result); break;
+    case Decision::Outcome::kLose: lose(frame, decision, result); break;
+    default: start(frame, decision, result);
   }
-  PoseWithCovariance pose = decision.pose;
-  if (decision.gravity == Decision::Gravity::kLevel) {
-    gravity_.level(*prior.gravity, pose);
-  } else if (decision.gravity == Decision::Gravity::kRead && prior.gravity) {
-    PoseWithCovariance itself = pose;  // the camera is not chained to an earlier pose
-    gravity_.read(*prior.gravity, itself, pose);
-  }
-  make_reference(frame, frame.predicted.exposure, true);
-  result.restarted = window_.has_last();
-  window_.start(pose);
-  report(window_.last_frame().pose, Vector6::Zero(), result);
-  result.reference_stamp_ns = frame.stamp_ns();
-  is_lost_ = false;
-  propagated_prior_.restart();
-  note_depth();
-  if (!world_is_lost_) return result;
-  world_is_lost_ = false;
-  result.status = {StatusCode::kOk,
-                   "a new world starts: where the camera is in the one before is not known any more"};
+  if (frame.features.points.looked_for) points_found_ = count(frame.features.points);
+  count_features(points_found_, frame, tracked, result);
+  result.stamp_ns = frame.stamp_ns();
+  result.world = world_;
+  result.feature_step = budget_.step();
   return result;
 }
 
-[[gnu::noinline]] TrackResult Odometry::lose(const CurrentFrame& frame, const Decision& decision,
-                                             const MotionPrior& prior, const TrackedMotion& tracked) {
-  TrackResult result = begin_result(frame, tracked);
+[[gnu::noinline]] void Odometry::accept(const CurrentFrame& frame, const Decision& decision,
+                                        const TrackedMotion& tracked, TrackResult& result) {
+  if (tracked.base.kind == MotionBase::Kind::kLost) window_.go_on_from_lost();
+  if (tracked.base.kind == MotionBase::Kind::kKept) window_.resume(tracked.base.slot);
+  const MotionEstimate& motion = tracked.motion;
+  const Window::Kept& kept = decision.kept;
+  ReferenceTracking& tracking = memory_.tracking;
+  result.relocalised = tracked.base.kind == MotionBase::Kind::kKept;
+  // A frame that has come back to an earlier keyframe was not matched with the references.
+  const Window::References references = result.relocalised ? Window::References() : window_.references();
+  const std::span<const int> matched = references.span();
+  for (std::size_t r = 0; r < matched.size(); ++r) {
+    if (r == (window_.has_recent() ? 1 : 0))
+      memory_.views.show_tracks(window_[matched[r]].features, tracking.tracks(r));
+    note_records(tracking.tracks(r), window_[matched[r]].features);
+  }
+  if (!kept.recent) {
+    if (!matched.empty())
+      vote_for_carried(frame, window_[matched[0]].features.points, tracking.tracks(0),
+                       motion.T_current_reference, carried_);
+    make_reference(frame, tracked.exposure, !kept.keyframe, tracking);
+    inherit_records(window_, matched, tracking, frame);
+  }
+  window_.remove_carried(carried_);
+  result.state = TrackState::kTracking;
+  result.restarted = tracked.base.kind == MotionBase::Kind::kLost;
+  result.status = result.restarted ? decision.status : tell_carried(carried_);
+  result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
+  result.T_camera_reference = motion.T_current_reference;
+  const Matrix6 common_mode = common_mode_error(motion.references, window_.recent_motion().common_mode,
+                                                config_->noise.common_mode_share);
+  window_.set_motion({motion.C_H, common_mode});
+  const Matrix6 covariance = window_.last_motion().total();
+  PoseWithCovariance from = window_[window_.keyframe()].pose;
+  PoseWithCovariance pose = advance(from, motion.T_current_reference, covariance);
+  if (frame.prior.gravity) {
+    gravity_.read(*frame.prior.gravity, from, pose);
+    window_.move_keyframe(from);
+  }
+  window_.set_pose(window_.current(), pose);
+  window_.set_velocity(elapsed_ns(window_.last_frame().features.stamp_ns, frame.stamp_ns()));
+  const Vector6& velocity = window_.current_frame().velocity.value;
+  result.motion_covariance =
+      covariance + stamp_covariance_of_motion(motion.T_current_reference, velocity,
+                                              window_[window_.keyframe()].velocity.value,
+                                              camera_.stamp_sigma_s);
+  learn(config_->noise, tracked.observed, noise_);
+  window_.advance(kept, config_->references.policy == ReferencePolicy::kWindow && config_->points.registered);
+  note_pose(result);
+}
+
+// Makes the current frame the keyframe and the last good frame, without a motion before it. A frame that
+// cannot be that is left out, and the odometry waits for the next one.
+[[gnu::noinline]] void Odometry::start(const CurrentFrame& frame, const Decision& decision,
+                                       TrackResult& result) {
+  if (decision.new_world) forget_world();
+  result.state = TrackState::kInitialising;
+  result.status = decision.status;
+  PoseWithCovariance pose = decision.pose;
+  if (decision.outcome == Decision::Outcome::kWait) {
+    report_pose(window_.current_frame().pose, Vector6::Zero(), camera_.stamp_sigma_s, result);
+    return;
+  }
+  const std::optional<GravityPrior>& reading = frame.prior.gravity;
+  if (decision.gravity == Decision::Gravity::kLevel) {
+    gravity_.level(*reading, pose);
+  } else if (decision.gravity == Decision::Gravity::kRead && reading) {
+    PoseWithCovariance itself = pose;  // the camera is not chained to an earlier pose
+    gravity_.read(*reading, itself, pose);
+  }
+  make_reference(frame, frame.predicted.exposure, true, memory_.tracking);
+  result.restarted = window_.has_last();
+  window_.start(pose);
+  result.reference_stamp_ns = frame.stamp_ns();
+  note_pose(result);
+  if (!world_is_lost_) return;
+  world_is_lost_ = false;
+  result.status = {StatusCode::kOk,
+                   "a new world starts: where the camera is in the one before is not known any more"};
+}
+
+// The frame, now the last one of the window, has a pose from its images.
+void Odometry::note_pose(TrackResult& result) {
+  const Window::Frame& last = window_.last_frame();
+  report_pose(last.pose, last.velocity.value, camera_.stamp_sigma_s, result);
+  lost_since_ns_.reset();
+  propagated_prior_.restart();
+  if (!window_.T_world_depth() || !depth_.is_repeated()) window_.note_depth();
+}
+
+// The pose is the last good one, or that by the priors. A usable frame is kept for the next one; its pose is
+// then the last good one with the covariance of the unobserved motion since then, or that by the priors.
+[[gnu::noinline]] void Odometry::lose(const CurrentFrame& frame, const Decision& decision,
+                                      TrackResult& result) {
   result.state = TrackState::kLost;
   result.status = decision.status;
   if (window_.has_keyframe()) result.reference_stamp_ns = window_[window_.keyframe()].features.stamp_ns;
   const Window::Frame& last = window_.last_frame();
+  SensedPose sensed;
+  sensed.pose = last.pose;
   if (frame.predicted.sensed.known()) {
-    const SensedPose sensed = sensed_pose(frame, prior);
+    sensed = sensed_pose(window_, gravity_, frame);
     result.state = TrackState::kPredicted;
     result.reference_stamp_ns = window_[window_.base()].features.stamp_ns;
     result.T_camera_reference = sensed.T_camera_reference;
     result.motion_covariance = sensed.motion_covariance;
-    report(sensed.pose, last.velocity.value, result);
-  } else {
-    report(last.pose, last.velocity.value, result);
   }
-  note_loss(frame, decision, prior);
-  return result;
+  report_pose(sensed.pose, last.velocity.value, camera_.stamp_sigma_s, result);
+  if (!lost_since_ns_) lost_since_ns_ = frame.stamp_ns();
+  window_.drop_lost();
+  if (!decision.usable || !window_.can_keep_lost()) return;
+  frame.lift_as_reference(frame.predicted.exposure, true);
+  frame.extraction.lift_lines(frame.context, frame.depth, frame.predicted.exposure, frame.features.lines);
+  window_.keep_lost(result.state == TrackState::kPredicted
+                        ? sensed.pose
+                        : unobserved_pose(window_, config_->references, frame.stamp_ns()));
 }
 
-// Prepares the features and the image of the current frame for the next ones.
-void Odometry::make_reference(const CurrentFrame& frame, const Exposure& exposure, bool keyframe) {
-  frame.find_points();
-  if (keyframe) frame.describe_points();
-  memory_.extraction.lift(frame.context, frame.depth.with(exposure), frame.features);
-  memory_.tracking.keep_image(memory_.extraction.pyramid(), frame.stamp_ns());
-}
-
-// The tracks of the latest reference.
-void Odometry::show_tracks() {
-  const bool both = window_.has_recent();
-  memory_.views.show_tracks(window_[both ? window_.recent() : window_.keyframe()].features,
-                            memory_.tracking.tracks(both ? 1 : 0));
-}
-
-// A result with the counts of the frame.
-TrackResult Odometry::begin_result(const CurrentFrame& frame, const TrackedMotion& tracked) {
-  if (frame.features.points.looked_for) points_found_ = count(frame.features.points);
-  TrackResult result;
-  result.stamp_ns = frame.stamp_ns();
-  result.feature_step = budget_.step();
-  result.points = points_found_;
-  result.lines = count(frame.features.lines);
-  count_matches(tracked.points, result.points);
-  count_matches(tracked.lines, result.lines);
-  result.ransac_iterations = tracked.ransac_iterations;
-  result.lm_iterations = tracked.lm_iterations;
-  return result;
-}
-
-// Reports a pose at its stamp, with the error of the stamp.
-void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, TrackResult& result) const {
-  result.world = world_;
-  result.T_world_camera = pose.T_world_camera;
-  result.pose_covariance =
-      pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, camera_.stamp_sigma_s);
+// While tracking goes on after a start whose pose was not observed: if the view of a kept keyframe is back,
+// all poses are moved so that the pose of this frame is the one that follows from that keyframe, and the
+// result states it. tracked: holds the frame's own motion, which is accepted and no longer needed; it is
+// overwritten.
+[[gnu::noinline]] void Odometry::relocalise(const CurrentFrame& frame, TrackedMotion& tracked,
+                                            TrackResult& result) {
+  if (!relocalisation_.take(window_.kept(), config_->references)) return;
+  const int slot = window_.next_kept();
+  const Window::Frame& last = window_.last_frame();  // the frame just tracked
+  if (!recognise(window_[slot], frame, last.velocity.value, last.pose, memory_.tracking, tracked)) return;
+  window_.relocalise(slot, tracked.motion);
+  result.relocalised = true;
+  report_pose(last.pose, last.velocity.value, camera_.stamp_sigma_s, result);
 }
 
 // Forgets all poses and what depends on them; the learnt noise stays. The next usable frame is the first of a
@@ -201,11 +212,12 @@ void Odometry::report(const PoseWithCovariance& pose, const Vector6& velocity, T
 void Odometry::forget_world() {
   if (window_.has_last()) ++world_;
   window_.clear();
-  frames_since_relocalisation_ = 0;
+  relocalisation_.forget();
   start_is_set_ = false;
   propagated_prior_ = PropagatedPrior();
   gravity_.forget();
-  is_lost_ = has_depth_pose_ = depth_has_stopped_ = false;
+  lost_since_ns_.reset();
+  depth_.forget_stop();
   world_is_lost_ = true;
 }
 
@@ -225,14 +237,7 @@ Status Odometry::set_pose(const Se3& T_world_camera, const Matrix6& covariance) 
   (void)settle(pose);  // finite, as checked above
   start_is_set_ = true;
   world_is_lost_ = false;
-  window_.kept().clear();  // their poses belong to the old world
-  window_.drop_lost();
-  has_depth_pose_ = false;
-  // The keyframe moves with the last frame: the motion between them does not change.
-  if (window_.has_last())
-    window_.move_last(pose, Matrix6::Zero());
-  else
-    window_.set_pose(window_.current(), pose);
+  window_.change_world(pose);
   return {};
 }
 

@@ -31,4 +31,11 @@ Matrix6 stamp_covariance_of_motion(const Se3& T_current_reference, const Vector6
          moved_by(out_of_camera(T_current_reference.R, reference_velocity), stamp_sigma_s);
 }
 
+void report_pose(const PoseWithCovariance& pose, const Vector6& velocity, double stamp_sigma_s,
+                 TrackResult& result) {
+  result.T_world_camera = pose.T_world_camera;
+  result.pose_covariance =
+      pose.covariance + stamp_covariance_of_pose(pose.T_world_camera, velocity, stamp_sigma_s);
+}
+
 }  // namespace plvo

@@ -6,7 +6,8 @@
 // those of the next estimate.
 #pragma once
 
-#include "plvo/math/se3.hpp"
+#include "plvo/odometry/track_result.hpp"
+#include "plvo/odometry/window/pose_with_covariance.hpp"
 
 namespace plvo {
 
@@ -16,5 +17,8 @@ Matrix6 stamp_covariance_of_pose(const Se3& T_world_camera, const Vector6& veloc
 // Includes the stamp errors of both frames.
 Matrix6 stamp_covariance_of_motion(const Se3& T_current_reference, const Vector6& current_velocity,
                                    const Vector6& reference_velocity, double stamp_sigma_s);
+// States a pose and its covariance, with the error of the stamp, in a result.
+void report_pose(const PoseWithCovariance& pose, const Vector6& velocity, double stamp_sigma_s,
+                 TrackResult& result);
 
 }  // namespace plvo

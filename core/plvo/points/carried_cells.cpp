@@ -13,7 +13,13 @@ void CarriedCells::init(int width, int height) {
 
 void CarriedCells::forget() {
   votes_.fill(0);
-  count_ = references_ = 0;
+  count_ = told_ = references_ = 0;
+}
+
+bool CarriedCells::take_news() {
+  if (count_ <= 2 * told_) return false;
+  told_ = count_;
+  return true;
 }
 
 void CarriedCells::vote(const Counts& stayed, const Counts& moved) {

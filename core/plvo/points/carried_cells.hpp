@@ -54,6 +54,8 @@ class CarriedCells {
   // Number of carried cells, and the smallest rectangle that contains them.
   int count() const { return count_; }
   PixelBounds bounds() const;
+  // True when carried cells are found, and again when there are more than twice as many as the last time.
+  bool take_news();
 
   // Removes the 3D points of the keypoints in carried cells.
   void remove_points(PointFeatures& points) const;
@@ -69,6 +71,7 @@ class CarriedCells {
 
   std::array<std::uint8_t, kCells> votes_{};
   int count_ = 0;
+  int told_ = 0;        // count_ when take_news() last returned true
   int references_ = 0;  // since the votes fell
   int width_ = 1, height_ = 1;
 };

@@ -42,10 +42,9 @@ bool has_stayed(const FrameFeatures& features, const PointTracks& points, const 
 
 }  // namespace
 
-[[gnu::noinline]] void vote_for_carried(const CurrentFrame& current, const Reference& reference,
+[[gnu::noinline]] void vote_for_carried(const CurrentFrame& current, const PointFeatures& points,
                                         const ReferenceTracks& tracks, const Se3& T_current_reference,
                                         CarriedCells& cells) {
-  const PointFeatures& points = reference.features->points;
   Arena& scratch = current.context.scratch;
   const ScratchScope scope(scratch);
   const std::span<std::uint8_t> is_inlier =

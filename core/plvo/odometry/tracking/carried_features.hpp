@@ -19,7 +19,7 @@
 namespace plvo {
 
 // Votes by the keypoints of a reference: those that the motion moves by a few pixels.
-void vote_for_carried(const CurrentFrame& current, const Reference& reference, const ReferenceTracks& tracks,
+void vote_for_carried(const CurrentFrame& current, const PointFeatures& points, const ReferenceTracks& tracks,
                       const Se3& T_current_reference, CarriedCells& cells);
 
 // The matches of an estimate, by whether they stayed at their pixels.

@@ -8,6 +8,17 @@ namespace plvo {
   extraction.find_points(context, depth.with(predicted.exposure), features.points);
 }
 
-void CurrentFrame::describe_points() const { extraction.describe_points(context, features.points); }
+void CurrentFrame::describe_points() const {
+  find_points();
+  extraction.describe_points(context, features.points);
+}
+
+void CurrentFrame::lift_as_reference(const Exposure& exposure, bool described) const {
+  if (described)
+    describe_points();
+  else
+    find_points();
+  extraction.lift(context, depth.with(exposure), features);
+}
 
 }  // namespace plvo

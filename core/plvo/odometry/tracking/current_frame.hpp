@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that is being tracked, its references, and the prediction of its motion before its features are
+// The frame that is being tracked, its references and prior, and the prediction of its motion before its features are
 // associated.
 #pragma once
 
 #include <array>
 #include <span>
 
+#include "plvo/motion/motion_prior.hpp"
 #include "plvo/motion/motion_problem.hpp"
 #include "plvo/odometry/features/feature_extraction.hpp"
 #include "plvo/odometry/features/frame_features.hpp"
@@ -42,11 +43,14 @@ struct CurrentFrame {
   const DepthSampler& depth;
   const PredictedMotion& predicted;
   FrameFeatures& features;  // lines are lifted when the motion is known, and again when it is known better
+  const MotionPrior& prior;
 
   std::int64_t stamp_ns() const { return features.stamp_ns; }
-  // P1 and P4, unless they were done before; points are found with the predicted exposure.
+  // P1, and P1 with P4, unless they were done before; points are found with the predicted exposure.
   void find_points() const;
   void describe_points() const;
+  // What a reference needs besides lines, and with `described` what it needs to be found by descriptors.
+  void lift_as_reference(const Exposure& exposure, bool described) const;
 };
 
 }  // namespace plvo

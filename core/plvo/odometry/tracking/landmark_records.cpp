@@ -63,12 +63,12 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference) {
 }
 
 // Not inlined: the cells are on the stack only during this function.
-[[gnu::noinline]] void inherit_records(std::span<const Reference> references,
+[[gnu::noinline]] void inherit_records(const Window& window, std::span<const int> references,
                                        const ReferenceTracking& tracking, const CurrentFrame& current) {
   RecordsByCell cells(current);
   FrameFeatures& features = current.features;
   for (std::size_t r = 0; r < references.size(); ++r) {
-    const FrameFeatures& reference = *references[r].features;
+    const FrameFeatures& reference = window[references[r]].features;
     const ReferenceTracks& tracks = tracking.tracks(r);
     for (const Match& match : tracks.points.matches.span())
       cells.add(tracks.points.pixels[match.current], reference.points.points[match.reference].record);

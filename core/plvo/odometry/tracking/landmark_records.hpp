@@ -9,6 +9,7 @@
 
 #include "plvo/odometry/tracking/current_frame.hpp"
 #include "plvo/odometry/tracking/reference_tracking.hpp"
+#include "plvo/odometry/window/window.hpp"
 
 namespace plvo {
 
@@ -19,7 +20,8 @@ void note_records(const ReferenceTracks& tracks, FrameFeatures& reference);
 // Gives records to the landmarks of the current frame, which becomes a reference. Each gets the mean record
 // of the landmarks that were found in the same part of the image; if this is negative, the new landmark is
 // not trusted at first. tracking: the frame's matches with the references.
-void inherit_records(std::span<const Reference> references, const ReferenceTracking& tracking,
+// references: their slots in the window.
+void inherit_records(const Window& window, std::span<const int> references, const ReferenceTracking& tracking,
                      const CurrentFrame& current);
 
 }  // namespace plvo

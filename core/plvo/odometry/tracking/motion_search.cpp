@@ -191,7 +191,6 @@ bool is_findable(const Reference& reference) {
       return;
     }
   }
-  current.find_points();
   current.describe_points();
   const Reference& nearest = is_findable(latest) ? latest : references[0];
   bool accepted = find(nearest, nearest.T_current_predicted, PointMatchConfig().radius_px);

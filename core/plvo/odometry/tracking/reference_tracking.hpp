@@ -51,14 +51,25 @@ struct MatchCounts {
   int inliers = 0;
 };
 
+// The frame from which a motion was estimated.
+struct MotionBase {
+  enum class Kind : std::uint8_t {
+    kReferences,  // the keyframe, beside the other references
+    kLost,        // the lost frame before
+    kKept,        // a keyframe from before a loss
+  };
+  Kind kind = Kind::kReferences;
+  int slot = -1;  // in the window
+};
+
 struct TrackedMotion {
   MotionEstimate motion;  // from the base
+  MotionBase base;
+  bool gives_up = false;  // the references are out of view for too long
   Exposure exposure;      // motion of the camera during the exposure of the current frame
   NoiseScales observed;   // observed scales of the noise
   MatchCounts points, lines;
   int ransac_iterations = 0, lm_iterations = 0;  // of all estimates that were tried
-  bool relocalised = false;                      // the base is a keyframe from before a loss
-  bool restarted = false;                        // the base is a lost frame
 
   bool ok() const { return motion.status == StatusCode::kOk; }
   int inliers() const { return points.inliers + lines.inliers; }

@@ -20,12 +20,17 @@ void Window::clear() {
   recent_age_ = 0;
   last_motion_ = recent_motion_ = {};
   kept_.clear();
+  T_world_depth_.reset();
 }
 
-FrameFeatures* Window::find(const FrameFeatures* features) {
-  for (Frame& frame : frames_)
-    if (&frame.features == features) return &frame.features;
-  return nullptr;
+Window::References Window::references() const {
+  References references;
+  const auto add = [&](int slot) { references.slots[references.count++] = slot; };
+  if (!has_keyframe()) return references;
+  add(keyframe_);
+  if (has_recent()) add(recent_);
+  if (has_older()) add(older_);
+  return references;
 }
 
 void Window::set_pose(int slot, PoseWithCovariance pose) {
@@ -56,6 +61,24 @@ void Window::move_last(const PoseWithCovariance& pose, const Matrix6& covariance
                                      : plvo::advance(pose, from_keyframe(last_).T_reference_base.inverse(),
                                                      covariance_keyframe_last));
   set_pose(last_, pose);
+  T_world_depth_.reset();
+}
+
+// Not inlined: its matrices would otherwise stay on the stack during the search for that keyframe.
+[[gnu::noinline]] void Window::relocalise(int slot, const MotionEstimate& motion) {
+  const PoseWithCovariance pose =
+      plvo::advance((*this)[slot].pose, motion.T_current_reference, motion.C_H);
+  move_last(pose, inverse_covariance(from_keyframe(last_).T_reference_base, last_motion_.total()));
+  kept_.drop(slot);
+}
+
+void Window::change_world(const PoseWithCovariance& pose) {
+  kept_.clear();
+  drop_lost();
+  if (has_last())
+    move_last(pose, Matrix6::Zero());
+  else
+    set_pose(current_, pose);
 }
 
 void Window::remove_carried(const CarriedCells& cells) {
@@ -130,8 +153,15 @@ void Window::give_up() {
 }
 
 // A keyframe from which no frame was tracked does not replace a kept one.
+bool Window::keeps_keyframe() const { return (*this)[keyframe_].velocity.known() || !kept_.full(); }
+
 void Window::keep_keyframe() {
-  if ((*this)[keyframe_].velocity.known() || !kept_.full()) kept_.keep(keyframe_);
+  if (keeps_keyframe()) kept_.keep(keyframe_);
+}
+
+int Window::latest_kept() const {
+  if (has_keyframe() && kept_.capacity() > 0 && keeps_keyframe()) return keyframe_;
+  return kept_.empty() ? kNoFrame : kept_.latest();
 }
 
 bool Window::can_keep_lost() const {

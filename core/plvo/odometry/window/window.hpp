@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "plvo/base/arena.hpp"
@@ -81,15 +82,20 @@ class Window {
   bool has_older() const { return older_ != kNoFrame; }
   int lost() const { return lost_; }
   bool has_lost() const { return lost_ != kNoFrame; }
-  int recent_age() const { return recent_age_; }  // frames since the recent one was tracked
   const KeptKeyframes& kept() const { return kept_; }
-  KeptKeyframes& kept() { return kept_; }
+  // The frames that the current one is matched with: the keyframe, which is the base, and as far as there are
+  // any the recent and the older one.
+  struct References {
+    std::array<int, kMaxReferences> slots{};
+    std::size_t count = 0;
+    std::span<const int> span() const { return std::span(slots).first(count); }
+  };
+  References references() const;
+  // Whether there is a recent frame that may be matched once more.
+  bool recent_is_young(int recent_frames) const { return has_recent() && recent_age_ + 1 < recent_frames; }
 
   Frame& operator[](int slot) { return frames_[static_cast<std::size_t>(slot)]; }
   const Frame& operator[](int slot) const { return frames_[static_cast<std::size_t>(slot)]; }
-
-  // Mutable access to features that the window handed out as const; nullptr if they are not the window's.
-  FrameFeatures* find(const FrameFeatures* features);
 
   Frame& current_frame() { return (*this)[current_]; }
   const Frame& current_frame() const { return (*this)[current_]; }
@@ -106,9 +112,15 @@ class Window {
   const RelativeCovariance& recent_motion() const { return recent_motion_; }
   // Corrects the keyframe's pose. The last, recent and older frames keep their poses relative to it.
   void move_keyframe(const PoseWithCovariance& pose);
-  // Corrects the last frame's pose. The keyframe, if there is one, moves with it; its new covariance includes
-  // that of T_keyframe_last, which the caller gives.
-  void move_last(const PoseWithCovariance& pose, const Matrix6& covariance_keyframe_last);
+  // Moves all poses so that the last frame is where `motion` leads from a kept keyframe, which is dropped.
+  void relocalise(int slot, const MotionEstimate& motion);
+  // Gives the last frame, or without one the current frame, a pose in another world. The keyframe moves with
+  // it; the lost and the kept frames stay behind and are dropped.
+  void change_world(const PoseWithCovariance& pose);
+  // Where the camera was when the latest depth image came, as far as the world has not moved since.
+  const std::optional<Se3>& T_world_depth() const { return T_world_depth_; }
+  // The latest depth image came with the last frame.
+  void note_depth() { T_world_depth_ = last_frame().pose.T_world_camera; }
 
   // Removes the 3D points in carried cells from all frames.
   void remove_carried(const CarriedCells& cells);
@@ -119,6 +131,8 @@ class Window {
   void start(const PoseWithCovariance& pose);
   // Makes a kept keyframe the keyframe again.
   void resume(int slot);
+  // The kept keyframes in turn; there must be one.
+  int next_kept() { return kept_.next(); }
   // Stores the covariance of T_current_keyframe of the tracked frame.
   void set_motion(const RelativeCovariance& covariance) { last_motion_ = covariance; }
   // Computes the velocity of the current frame from its pose and the last frame's, elapsed_ns apart; it also
@@ -132,6 +146,8 @@ class Window {
   void advance(const Kept& kept, bool keep_older);
   // No reference is in view any more: the keyframe joins the kept ones, and its role stays empty.
   void give_up();
+  // The latest of the kept keyframes, as if the references were given up; kNoFrame without any.
+  int latest_kept() const;
 
   // Whether the current frame can stay as the lost one: there is memory for the next frame, and a place where
   // the keyframe can be kept if tracking goes on from the lost frame.
@@ -143,6 +159,10 @@ class Window {
   void go_on_from_lost();
 
  private:
+  // Corrects the last frame's pose. The keyframe, if there is one, moves with it; its new covariance includes
+  // that of T_keyframe_last, which the caller gives.
+  void move_last(const PoseWithCovariance& pose, const Matrix6& covariance_keyframe_last);
+  bool keeps_keyframe() const;
   bool is_reference(int slot) const;
   int free_slot() const;
   void keep_keyframe();
@@ -160,6 +180,7 @@ class Window {
   RelativeCovariance last_motion_, recent_motion_;
   Matrix6 older_covariance_ = Matrix6::Zero();
   KeptKeyframes kept_;
+  std::optional<Se3> T_world_depth_;
 };
 
 }  // namespace plvo

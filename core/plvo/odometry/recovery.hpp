@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Relocalisation after a loss, when the view of a kept keyframe comes back. Descriptors are matched over the
+// whole image, whatever the predicted pose; the motion is then registered and judged as usual. It is accepted
+// under two conditions. It finds the share of the keyframe's features that a keyframe needs to be kept. And
+// the resulting pose lies within the process noise of the unobserved motion: this rejects a similar view
+// elsewhere.
+#pragma once
+
+#include "plvo/odometry/tracking/reference_tracking.hpp"
+#include "plvo/odometry/window/window.hpp"
+
+namespace plvo {
+
+// Whether at least this share of the features of a reference are inliers of the last estimate.
+bool still_seen(const FrameFeatures& reference, const ReferenceTracks& tracks, double share);
+
+// Matches the current frame, which moves at this velocity, with a kept keyframe. believed: its pose without
+// the relocalisation. Returns whether the motion from the keyframe, in `tracked`, is accepted.
+bool recognise(const Window::Frame& keyframe, const CurrentFrame& frame, const Vector6& velocity,
+               const PoseWithCovariance& believed, ReferenceTracking& tracking, TrackedMotion& tracked);
+
+// When kept keyframes are looked for while tracking goes on: in every frame but for an interval.
+class RelocalisationTurn {
+ public:
+  bool is_due(const KeptKeyframes& kept, const ReferenceConfig& config) const {
+    return !kept.empty() && frames_since_ + 1 >= config.relocalisation_interval_frames;
+  }
+  // Counts a frame; returns whether it is its turn.
+  bool take(const KeptKeyframes& kept, const ReferenceConfig& config) {
+    const bool due = is_due(kept, config);
+    if (!kept.empty()) frames_since_ = due ? 0 : frames_since_ + 1;
+    return due;
+  }
+  void forget() { frames_since_ = 0; }
+
+ private:
+  int frames_since_ = 0;
+};
+
+}  // namespace plvo
